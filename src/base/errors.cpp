@@ -1,0 +1,62 @@
+#include "base/errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace crescent {
+
+namespace {
+
+std::string join(const std::vector<Complaint>& all) {
+    std::string text;
+    for (const Complaint& c : all) {
+        if (!text.empty()) text += '\n';
+        const std::string at = to_string(c.at);
+        text += at.empty() ? c.say : at + ": " + c.say;
+    }
+    return text;
+}
+
+/// Levenshtein 1966: fewest insertions, deletions and substitutions that turn a into b; case is free.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const bool same = std::tolower(static_cast<unsigned char>(a[i])) == std::tolower(static_cast<unsigned char>(b[j]));
+            const std::size_t best = std::min({row[j] + 1, row[j + 1] + 1, diagonal + (same ? 0 : 1)});
+            diagonal = row[j + 1];
+            row[j + 1] = best;
+        }
+    }
+    return row[b.size()];
+}
+
+}  // namespace
+
+std::string to_string(const Place& at) {
+    if (at.line == 0) return at.file;
+    return fmt::format("{}:{}:{}", at.file, at.line, at.column);
+}
+
+InputError::InputError(std::vector<Complaint> all) : std::invalid_argument(join(all)), all_(std::move(all)) {}
+
+Bug::Bug(const std::source_location& at, std::string_view claim)
+    : std::logic_error(fmt::format("{}:{}: a claim of our own does not hold: {}", at.file_name(), at.line(), claim)) {}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& valid) {
+    std::string best;
+    std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
+    for (const std::string& candidate : valid) {
+        const std::size_t d = edit_distance(word, candidate);
+        if (d < best_distance) best_distance = d, best = candidate;
+    }
+    return best;
+}
+
+}  // namespace crescent

@@ -1,0 +1,33 @@
+// Long work tells how far it is and asks whether to go on.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <string_view>
+
+namespace crescent {
+
+/// The work was asked to stop (Ctrl-C, SIGTERM): exit code 130, nothing half-written.
+struct Interrupted : std::exception {
+    const char* what() const noexcept override { return "interrupted"; }
+};
+
+/// Someone who watches long work. Called from many threads at once; every call is cheap.
+class Watch {
+public:
+    virtual ~Watch() = default;
+    /// A new stretch of work begins: `total` units, named for the reader ("seed 3 of 16").
+    virtual void begin(std::string_view /*what*/, double /*total*/) {}
+    /// `units` more are done.
+    virtual void advance(double /*units*/) {}
+    /// A line worth keeping in a log.
+    virtual void say(std::string_view /*line*/) {}
+
+    /// The flag kernels poll; set from a signal handler.
+    std::atomic<bool> stop{false};
+    void check() const {
+        if (stop.load(std::memory_order_relaxed)) throw Interrupted{};
+    }
+};
+
+}  // namespace crescent

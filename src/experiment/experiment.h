@@ -1,0 +1,189 @@
+// An experiment as it was written: every number of a run, in the units of its key. Lengths in scene units (m),
+// radiance in W/(sr m^2), angles in degrees, albedos in [0, 1]; y is up; the camera space is right-handed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/vec.h"
+
+namespace crescent {
+
+using Rgb = std::array<double, 3>;  // linear Rec.709
+
+/// Inclusive pixel coordinates at the image's size, origin bottom-left.
+struct Box {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    int width() const { return x1 - x0 + 1; }
+    int height() const { return y1 - y0 + 1; }
+};
+
+struct Image {
+    int width = 0, height = 0;  // pixels
+};
+
+struct Camera {
+    Vec3d eye{}, target{}, up{};
+    double vfov_deg = 0;  // vertical field of view
+};
+
+enum class BrdfKind { phong, blinn_phong, ggx };
+
+/// f = rho_d/pi + rho_s * lobe(s or alpha). A Lambert surface has rho_s = 0; its s only steers the arms.
+struct Material {
+    Rgb rho_d{};
+    double rho_s = 0;
+    BrdfKind brdf = BrdfKind::phong;
+    std::optional<double> s;      // Phong exponent
+    std::optional<double> alpha;  // GGX roughness, (0, 1], no remapping
+};
+
+enum class ShapeKind { sphere, box, quad, disk, plane, panel };
+
+/// One shape; which fields count depends on the kind (see `crescent schema`).
+struct Shape {
+    std::string name;
+    ShapeKind kind = ShapeKind::sphere;
+    Material material;
+    std::optional<Rgb> reveal_rho_d;  // panel: the four sides of the recess
+    bool occludes = false;            // whether it blocks the disk lights
+    Vec3d center{};                   // sphere, disk
+    double radius = 0;                // sphere, disk
+    Vec3d min{}, max{};               // box
+    Vec3d corner{}, edge_u{}, edge_v{};  // quad, panel opening; the outward normal is edge_u x edge_v
+    Vec3d point{};                    // plane
+    Vec3d normal{};                   // plane, disk; unit
+    double depth = 0;                 // panel: how far it is set back, against the normal
+    Place at;
+};
+
+/// A disk that emits `radiance` from the side its normal points to (or both). Seen by sampled rays only.
+struct DiskLight {
+    std::string name;
+    Vec3d center{}, normal{};
+    double radius = 0;
+    Rgb radiance{};
+    bool two_sided = false;
+    Place at;
+};
+
+/// One sampler with its ladder: rungs are prefixes of one stream.
+struct ArmPlan {
+    std::string name;     // as it appears in films and tables
+    std::string sampler;  // a word of arms/all.h
+    std::vector<std::uint64_t> n;  // ascending samples per pixel
+    Place at;
+};
+
+/// The exponent control: `arm` again at each s, which changes the pdf, the BRDF and the reference.
+struct ExponentControl {
+    std::string arm;
+    std::uint64_t n = 0;
+    std::vector<double> s;
+    std::string shape;  // whose s is meant
+    Place at;
+};
+
+struct Region {
+    std::string name;
+    Box box;
+    Place at;
+};
+
+enum class ReferenceKind { quadrature, note };
+
+/// What the meters compare with. Both are computed; `kind` is the one the meters use.
+struct ReferencePlan {
+    ReferenceKind kind = ReferenceKind::quadrature;
+    std::uint32_t seed = 0;        // of the note's Monte Carlo reference
+    std::uint64_t lobe_spp = 32;   // Phong-sampled lobe x fill
+    std::uint64_t disk_spp = 96;   // samples on each disk
+};
+
+enum class FurnacePart { combined, lobe };
+
+/// White furnace: L_i = 1, R = n. Expected: rho_d + rho_s, or rho_s for the lobe alone (as Y).
+struct FurnacePlan {
+    std::string name;
+    std::string arm;
+    FurnacePart part = FurnacePart::combined;
+    std::string shape;  // whose material
+    std::uint64_t n = 0;
+    Place at;
+};
+
+enum class PlateKind { hero, gallery, columns, ladder, exponent, surround, reference, heat, rose, meters };
+
+/// One picture. `runs` names what it shows; crops are boxes in image pixels, or the whole frame.
+struct PlateRun {
+    std::string arm;
+    std::uint64_t n = 0;
+    double s = 0;  // 0: the experiment's own
+};
+struct PlatePlan {
+    std::string name;  // file name without .png
+    PlateKind kind = PlateKind::hero;
+    std::vector<PlateRun> runs;
+    std::optional<Box> crop;
+    std::string caption;  // stands alone under the picture
+    Place at;
+};
+
+/// A comparison that must hold. Quantities are looked up by name (see meters/quantity.h).
+struct AssertionPlan {
+    std::string name;
+    std::string left;      // a quantity, e.g. "rmse.H(phong, n=64, s=32)"
+    std::string op;        // "<", "<=", ">", ">=", "=="
+    std::string right;     // a quantity or a number
+    bool median = false;   // over seeds, else at the published seed
+    Place at;
+};
+
+struct Experiment {
+    std::string file;    // as given
+    std::string title;
+    std::uint64_t hash = 0;  // of the effective values, overrides included
+    std::uint32_t seed = 0;
+    int seeds = 1;       // how many seeds the bands are made of; the first is `seed`
+    double exposure = 1;
+    double firefly_k = 4;
+    Image image;
+    Camera camera;
+    std::vector<Shape> shapes;
+    std::vector<DiskLight> disks;
+    Rgb fill{};          // uniform over the hemisphere
+    std::vector<ArmPlan> arms;
+    std::optional<ExponentControl> exponent;
+    std::vector<Region> regions;
+    ReferencePlan reference;
+    std::vector<FurnacePlan> furnaces;
+    std::vector<PlatePlan> plates;
+    std::vector<AssertionPlan> assertions;
+    std::optional<std::string> published;  // path of a JSON of published figures, resolved against `file`
+    std::map<std::string, Place> places;   // "camera.eye" -> where it was written
+
+    /// The s that steers arms on surfaces without a lobe, and that the exponent control changes.
+    double s() const;
+    /// This experiment with another exponent.
+    Experiment with_s(double s) const;
+    const Shape* find_shape(std::string_view name) const;
+    Place place_of(const std::string& path) const;
+};
+
+/// Reads and checks a whole file; throws one InputError with every mistake in it.
+/// `overrides` are "path=value" as given to --set.
+Experiment load(const std::string& path, const std::vector<std::string>& overrides = {});
+/// The same from text, `name` standing for the file in messages.
+Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
+
+/// The keys with types, units, ranges and defaults, made from the table that parses them.
+std::string schema_text();
+std::string schema_json();
+
+}  // namespace crescent

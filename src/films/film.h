@@ -1,0 +1,65 @@
+// A film: per pixel, what n samples of one arm said. Rows run bottom-up, pixel (i, j) at j * width + i.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace crescent {
+
+/// Weights of linear Rec.709 luminance, ITU-R BT.709.
+inline constexpr double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
+
+template <class C> double luminance(const C& rgb) {
+    return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
+}
+
+/// What was run: an arm at n samples per pixel, exponent s, seed.
+struct RunKey {
+    std::string arm;
+    std::uint64_t n = 0;
+    double s = 0;
+    std::uint32_t seed = 0;
+    friend bool operator==(const RunKey&, const RunKey&) = default;
+};
+/// "phong n=64 s=32": the name of a film in metrics.json (the seed stands in the provenance).
+std::string to_string(const RunKey& key);
+
+struct Film {
+    int width = 0, height = 0;
+    std::uint64_t n = 0;          // samples per pixel
+    std::vector<float> r, g, b;   // mean radiance, W/(sr m^2)
+    std::vector<float> y;         // mean luminance X
+    std::vector<float> y2;        // mean of X^2
+    std::vector<float> var;       // variance of the mean of X: 1/(n(n-1)) sum (X - mean)^2; 0 where n = 1
+    std::vector<float> largest;   // largest single X
+    std::vector<std::uint32_t> horizon;  // samples at or under the horizon
+    std::vector<std::uint32_t> hits;     // samples that met a disk light
+    std::uint64_t bad = 0;        // NaN, infinite or negative samples in the whole film
+
+    Film() = default;
+    Film(int w, int h, std::uint64_t samples);
+    std::size_t size() const { return y.size(); }
+};
+
+/// What the meters compare with: radiance, its luminance and its own standard error (of Y) per pixel.
+struct ReferenceFilm {
+    int width = 0, height = 0;
+    double s = 0;
+    std::vector<float> r, g, b, y, error;
+    std::size_t size() const { return y.size(); }
+    ReferenceFilm() = default;
+    ReferenceFilm(int w, int h, double exponent);
+};
+
+/// What a primary ray met, per pixel: the index of the shape, or -1.
+struct ShapeMap {
+    int width = 0, height = 0;
+    std::vector<std::int16_t> shape;
+};
+
+/// XXH3 of a film's bytes as 16 hexadecimal digits; equal films have equal hashes.
+std::string hash(const Film& film);
+std::string hash(const ReferenceFilm& film);
+
+}  // namespace crescent

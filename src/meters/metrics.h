@@ -1,0 +1,110 @@
+// Everything a run measured, as plain data: what the report prints and the assertions read.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "films/film.h"
+
+namespace crescent {
+
+/// Pareto tail of a set of samples. Zhang & Stephens 2009; k >= 0.5: the variance is infinite, k >= 1: the mean.
+struct Tail {
+    double k = 0, se = 0;        // estimate and its standard error
+    std::uint64_t exceedances = 0;  // how many of the largest samples it was fitted to
+    bool heavy() const { return k >= 0.5; }
+};
+
+struct RegionMeter {
+    std::string region;
+    double rmse = 0;             // against the reference, of Y
+    double var = 0;              // mean over pixels of the variance of the mean
+    std::uint64_t pixels = 0;    // geometry pixels in the box count alike with misses: |box|
+    std::optional<Tail> tail;    // of the samples X of the region; published seed only
+};
+
+struct RunMeter {
+    RunKey key;
+    std::vector<RegionMeter> regions;
+    std::uint64_t fireflies = 0;  // geometry pixels with |Y - Y_ref| > k Y_ref
+    double horizon_frac = 0;      // of the samples of geometry pixels
+    double y_mean = 0;            // over the whole frame
+    double rmse_frame = 0;        // whole frame: a footnote, never a headline
+    double largest = 0;           // the largest single sample of the frame
+    std::uint64_t bad = 0;        // NaN, infinite or negative samples
+    const RegionMeter* region(const std::string& name) const;
+};
+
+/// Spread of one number over seeds: quantiles 5 %, 50 %, 95 % (linear between order statistics).
+struct Band {
+    double q05 = 0, median = 0, q95 = 0;
+    int seeds = 0;
+    bool heavy = false;  // the tail is too heavy for the interval to mean anything
+};
+
+/// One number of one run over all seeds: "rmse.H" of "cosine n=64 s=32".
+struct BandMeter {
+    RunKey key;       // seed: the published one
+    std::string meter;  // rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame
+    double measured = 0;  // at the published seed
+    Band band;
+    std::optional<double> published;
+    std::optional<double> published_rank;  // fraction of seeds below the published value
+};
+
+/// Least squares of log RMSE against log N: RMSE ~ N^slope. Interval: 5-95 % over seeds, or the fit's own with one seed.
+struct Ladder {
+    std::string arm, region;
+    double s = 0;
+    std::vector<std::uint64_t> n;
+    std::vector<double> rmse;  // at the published seed
+    double slope = 0, low = 0, high = 0;
+    bool heavy = false;
+};
+
+struct FurnaceMeter {
+    std::string name, arm, part;
+    std::uint64_t n = 0;
+    double measured = 0, expected = 0;  // Y
+    double se = 0;                      // standard error from the samples
+    std::optional<Tail> tail;
+    std::uint64_t bad = 0;
+    std::optional<double> published;
+};
+
+struct AssertionResult {
+    std::string name;
+    bool pass = false;
+    double measured = 0, bound = 0;
+    std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
+};
+
+/// How far the note's Monte Carlo reference is from the quadrature, per region and exponent.
+struct ReferenceMeter {
+    double s = 0;
+    std::string region;
+    double rms_difference = 0;   // of Y
+    double rms_standard_error = 0;  // what the note's reference says of itself
+    double quadrature_error = 0;    // rms of the quadrature's own stated error
+    double rmse_unlike = 0;         // largest relative change of any arm's RMSE here if the note's reference is used
+};
+
+struct Metrics {
+    std::vector<RunMeter> runs;           // every arm, n, s, seed
+    std::vector<BandMeter> bands;
+    std::vector<Ladder> ladders;
+    std::vector<FurnaceMeter> furnaces;
+    std::vector<ReferenceMeter> references;
+    std::vector<AssertionResult> assertions;
+    std::map<std::string, std::uint64_t> shape_pixels;
+    std::map<std::string, std::string> film_hashes;  // "phong n=64 s=32" -> hash
+    std::uint64_t geometry_pixels = 0;
+
+    const RunMeter* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
+    bool all_hold() const;
+};
+
+}  // namespace crescent

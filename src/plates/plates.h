@@ -1,0 +1,37 @@
+// Films and numbers -> the pictures of an experiment, 1280x720, each saying on itself what it is.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "films/film.h"
+#include "meters/metrics.h"
+
+namespace crescent {
+
+/// What the plates are made from. Films are looked up by key; photographs go through the display chain,
+/// instruments read the float films.
+struct PlateInputs {
+    const Experiment& experiment;
+    const Metrics& metrics;
+    const ShapeMap& shapes;
+    std::function<const Film*(const RunKey&)> film;                   // nullptr: not run
+    std::function<const ReferenceFilm*(double s)> reference;          // the one the meters use
+    std::string instrument;  // "CPU" or the GL strings, for the instrument plates
+};
+
+/// A finished picture: 8-bit sRGB, 3 bytes a pixel, rows top-down.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<unsigned char> rgb;
+};
+
+/// Draws one plate. Throws OutputError where the font Inter is missing.
+Picture draw_plate(const PlatePlan& plan, const PlateInputs& in);
+
+/// PNG bytes with the provenance as text chunks.
+std::vector<unsigned char> encode_png(const Picture& picture, const std::vector<std::pair<std::string, std::string>>& text);
+
+}  // namespace crescent

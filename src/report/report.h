@@ -1,0 +1,52 @@
+// Numbers and plates -> metrics.json, metrics.csv, junit.xml, timing.json, report.html and the summary on the terminal.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "meters/evidence.h"
+#include "meters/metrics.h"
+
+namespace crescent {
+
+/// Where an output came from; equal for equal runs.
+struct Provenance {
+    std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
+    std::vector<std::uint32_t> seeds;
+};
+
+/// What varies from run to run; stands apart in timing.json.
+struct ArmTiming {
+    std::string arm;
+    std::uint64_t n = 0;
+    double s = 0;
+    std::uint64_t samples = 0;
+    double seconds = 0;
+};
+struct Timing {
+    double estimating_s = 0, total_s = 0;
+    int threads = 0;
+    std::string isa, date, host_cpu;
+    std::vector<ArmTiming> arms;
+    std::vector<std::pair<std::string, double>> stages;  // name, seconds
+};
+
+struct ReportInputs {
+    const Experiment& experiment;
+    const Metrics& metrics;
+    const Evidence& evidence;  // "Where the note is wrong"
+    const Provenance& provenance;
+    const std::map<std::string, std::vector<unsigned char>>& plates;  // name -> PNG bytes
+};
+
+std::string metrics_json(const ReportInputs& in);
+std::string metrics_csv(const ReportInputs& in);
+std::string junit_xml(const ReportInputs& in);
+std::string report_html(const ReportInputs& in);
+std::string timing_json(const Timing& timing, const Provenance& provenance);
+/// At most 80 columns: first whether all held, then the figures, then where to look.
+std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir, bool colour);
+
+}  // namespace crescent

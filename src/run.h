@@ -1,0 +1,54 @@
+// One run from experiment to report: the order in which the parts are called, and what is written where.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "experiment/experiment.h"
+#include "films/film.h"
+#include "meters/metrics.h"
+#include "report/report.h"
+
+namespace crescent {
+
+/// One pass over the pixels: one arm, every rung, one exponent, one seed.
+struct Job {
+    const ArmPlan* arm = nullptr;
+    std::vector<std::uint64_t> n;  // ascending
+    double s = 0;
+    std::uint32_t seed = 0;
+};
+
+/// What computes films. The CPU's is built in; a door may bring another (GL).
+class Instrument {
+public:
+    virtual ~Instrument() = default;
+    virtual std::string name() const = 0;  // for provenance and plates
+    /// One film per rung, in order.
+    virtual std::vector<Film> films(const Experiment& experiment, const Job& job, Watch& watch) = 0;
+    /// Claims of its own that join the assertions ("framebuffer is RGBA32F").
+    virtual std::vector<AssertionResult> assertions() const { return {}; }
+};
+
+struct RunOptions {
+    std::string out = "out";
+    int threads = 0;       // 0: as many as the machine has
+    std::string isa;       // "": the best this machine has
+    std::string command;   // as typed, for the provenance
+    std::shared_ptr<Instrument> instrument;  // null: the CPU
+};
+
+struct RunResult {
+    Metrics metrics;
+    Timing timing;
+    Provenance provenance;
+    std::string summary;  // for the terminal
+};
+
+/// Runs `experiment` and writes everything under options.out; outputs appear whole or not at all.
+RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch);
+
+}  // namespace crescent
