@@ -42,6 +42,7 @@ struct Material {
     BrdfKind brdf = BrdfKind::phong;
     std::optional<double> s;      // Phong exponent
     std::optional<double> alpha;  // GGX roughness, (0, 1], no remapping
+    bool inherits_s = false;      // s is not the shape's own but the experiment's
 };
 
 enum class ShapeKind { sphere, box, quad, disk, plane, panel };
@@ -150,6 +151,7 @@ struct Experiment {
     std::string title;
     std::uint64_t hash = 0;  // of the effective values, overrides included
     std::uint32_t seed = 0;
+    std::uint64_t n = 0;  // samples per pixel meant where a plate, a check or the exponent control names none; 0: none given
     int seeds = 1;       // how many seeds the bands are made of; the first is `seed`
     double exposure = 1;
     double firefly_k = 4;
@@ -168,11 +170,18 @@ struct Experiment {
     std::optional<std::string> published;  // path of a JSON of published figures, resolved against `file`
     std::map<std::string, Place> places;   // "camera.eye" -> where it was written
 
-    /// The s that steers arms on surfaces without a lobe, and that the exponent control changes.
+    /// The experiment's own s, which steers arms on surfaces without a lobe and which the exponent control changes:
+    /// that of the control's shape, else of the first shape with a lobe, else of the first shape that has one;
+    /// 0 where nothing in the experiment needs an s.
     double s() const;
-    /// This experiment with another exponent.
+    /// This experiment with another s: on the shape that s() is read from and on all that inherit it.
     Experiment with_s(double s) const;
+    /// The n meant where none is named: the experiment's own where `arm` has that rung, else the arm's highest.
+    std::uint64_t n_of(const ArmPlan& arm) const;
+    const ArmPlan* find_arm(std::string_view name) const;
+    const Region* find_region(std::string_view name) const;
     const Shape* find_shape(std::string_view name) const;
+    /// Where a key was written; a key that was not, stands where its table does.
     Place place_of(const std::string& path) const;
 };
 

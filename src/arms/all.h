@@ -1,0 +1,23 @@
+// The one list of arms. A new sampler is one file beside this one and one word here; the list feeds the experiment
+// files, the CLI, the kernels, the manual and the laws.
+#pragma once
+
+#include "arms/cosine.h"
+#include "arms/light_area.h"
+#include "arms/phong.h"
+#include "arms/uniform.h"
+
+namespace crescent {
+
+template <template <class> class... A> struct ArmList {
+    static constexpr std::size_t count = sizeof...(A);
+};
+
+using Arms = ArmList<Uniform, Cosine, Phong, LightArea>;
+
+/// Calls f.template operator()<A>() for every arm A in the list's order.
+template <class Call, template <class> class... A> constexpr void for_each_arm(ArmList<A...>, Call&& f) {
+    (f.template operator()<A>(), ...);
+}
+
+}  // namespace crescent

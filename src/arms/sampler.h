@@ -1,0 +1,57 @@
+// What a sampler is. Directions in the local frame (n = +z, wo given, wi drawn); u in [0,1)^2; pdf in 1/sr.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <string_view>
+
+#include "base/vec.h"
+#include "scene/frame.h"
+
+namespace crescent {
+
+/// A density over solid angle, 1/sr.
+template <class F> struct PerSr {
+    F v;
+};
+/// A density over area, 1/m^2.
+template <class F> struct PerM2 {
+    F v;
+};
+/// dw = cos dA / r^2, hence p_w = p_A r^2 / cos.
+template <class F> PerSr<F> per_sr(PerM2<F> p, F r2, F cos_light) { return {p.v * r2 / cos_light}; }
+
+/// A direction and the density it was drawn with. pdf 0: nothing was drawn, the sample weighs 0 and counts.
+template <class F> struct Drawn {
+    Vec3<F> wi;
+    PerSr<F> pdf;
+};
+
+/// A disk light as seen from the surface: everything in the local frame.
+template <class F> struct LocalDisk {
+    Vec3<F> to_center;  // from the surface point, m
+    Vec3<F> normal;     // unit
+    F radius;           // m
+    F two_sided;        // 1: emits from both sides
+    F power;            // Y(L) pi r^2: how much it is worth choosing
+};
+
+/// Everything about a surface point that a sampler may aim by.
+template <class F> struct Site {
+    Vec3<F> wo;
+    F s;        // Phong exponent
+    F alpha;    // GGX roughness
+    F diffuse;  // Y(rho_d)
+    F lobe;     // rho_s
+    const LocalDisk<F>* disks = nullptr;
+    int disk_count = 0;
+};
+
+template <class S, class F>
+concept Sampler = requires(const S s, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
+    { S::name } -> std::convertible_to<std::string_view>;
+    { s.sample(wo, u) } -> std::same_as<Drawn<F>>;  // u in [0,1)^2
+    { s.pdf(wo, wi) } -> std::same_as<PerSr<F>>;    // 0 off the support
+};
+
+}  // namespace crescent

@@ -1,0 +1,12 @@
+// Turbo, a rainbow map with even steps of lightness on either side of its middle, for instruments.
+// Source: A. Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", Google AI Blog, 20 August 2019.
+#pragma once
+
+#include "display/tone.h"
+
+namespace crescent {
+
+/// t in [0, 1] (clamped) -> sRGB, linear between the 256 published entries. NaN: `not_a_number_colour`.
+Srgb8 turbo(double t);
+
+}  // namespace crescent

@@ -1,0 +1,58 @@
+#include "estimator/kernel.h"
+
+#include <array>
+
+#include "arms/all.h"
+#include "base/errors.h"
+
+namespace crescent {
+
+KernelTable scalar_kernels();
+KernelTable sse4_kernels();
+KernelTable avx2_kernels();
+KernelTable avx512_kernels();
+
+void Moments::resize(std::size_t sites, std::size_t disks) {
+    for (auto* sums : {&g, &g_lobe, &square}) sums->assign(sites, 0.0);
+    disk_g.assign(disks, std::vector<double>(sites));
+    disk_g_lobe.assign(disks, std::vector<double>(sites));
+    largest.assign(sites, 0.0f);
+    for (auto* counts : {&horizon, &hits, &bad}) counts->assign(sites, 0u);
+}
+
+std::vector<std::string> isas() {
+    std::vector<std::string> out = {"scalar"};
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("sse4.2")) out.push_back("sse4");
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c")) out.push_back("avx2");
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd"))
+        out.push_back("avx512");
+#endif
+    return out;
+}
+
+const KernelTable& kernels_for(const std::string& isa) {
+    static const std::array<KernelTable, 4> tables = {scalar_kernels(), sse4_kernels(), avx2_kernels(), avx512_kernels()};
+    const std::vector<std::string> here = isas();
+    const std::string& wanted = isa.empty() ? here.back() : isa;
+    for (const KernelTable& table : tables) {
+        if (table.isa != wanted) continue;
+        for (const std::string& name : here)
+            if (name == wanted) return table;
+        throw InputError({"--isa", 0, 0}, "this machine has no " + wanted + "; it has " + here.back() + " at best");
+    }
+    const std::string near = nearest(wanted, {"scalar", "sse4", "avx2", "avx512"});
+    throw InputError({"--isa", 0, 0}, "expected scalar, sse4, avx2 or avx512, not '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+int arm_index(std::string_view sampler) {
+    int index = 0, found = -1;
+    for_each_arm(Arms{}, [&]<template <class> class A>() {
+        if (A<float>::name == sampler) found = index;
+        ++index;
+    });
+    return found;
+}
+
+}  // namespace crescent

@@ -1,0 +1,57 @@
+// The SIMD core's contract: one arm, one BRDF, one tile's sites in; raw moments at every rung out.
+//
+//   X = f L_i cos / p     with   f = rho_d/pi + rho_s lobe   and   L_i one of few constants (the fill, each disk),
+//
+// so RGB means follow from sums of g = cos/p and of g * lobe per emitter; only Y needs its square and its largest.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arms/all.h"
+#include "estimator/sites.h"
+
+namespace crescent {
+
+inline constexpr int most_disks = 64;  // disk lights in one scene
+
+/// Moments of n samples, one entry a site; sums are kept in double.
+struct Moments {
+    std::vector<double> g, g_lobe;               // sum of g and of g * lobe over all samples
+    std::vector<std::vector<double>> disk_g, disk_g_lobe;  // over the samples that met disk k
+    std::vector<double> square;                  // sum of (X - pivot)^2
+    std::vector<float> largest;                  // largest X
+    std::vector<std::uint32_t> horizon, hits, bad;
+    void resize(std::size_t sites, std::size_t disks);
+};
+
+struct KernelCall {
+    const Sites* sites = nullptr;
+    std::span<const std::uint64_t> rungs;  // ascending
+    std::uint32_t seed = 0;
+    std::span<Moments> out;                // one a rung, sized to the padded count
+    const std::atomic<bool>* stop = nullptr;
+    float* samples = nullptr;              // where not null: every X, sample k of site i at i * n + k
+};
+
+using Kernel = void (*)(const KernelCall&);
+
+/// The kernels of one instruction set, [arm in the list's order][lobe + 1].
+struct KernelTable {
+    std::string_view isa;
+    std::array<std::array<Kernel, 4>, Arms::count> kernels;
+};
+
+/// scalar, sse4, avx2, avx512: those this machine can run, best last.
+std::vector<std::string> isas();
+/// The table for a name of isas(); "" means the best. Throws InputError for an unknown or unsupported name.
+const KernelTable& kernels_for(const std::string& isa);
+/// Index in the list of arms, or -1.
+int arm_index(std::string_view sampler);
+
+}  // namespace crescent

@@ -1,0 +1,234 @@
+// The estimator, once, for any number type: lanes are pixels, samples follow one another, one pass gives every rung.
+// Included once an instruction set by kernel_<isa>.cpp, in that set's own namespace.
+//
+// Sums run in float over at most 16 samples (relative error < 1e-6) and in double from there on. Blocks begin at
+// multiples of 16 whatever the rungs, so a rung is the same prefix whichever other rungs are asked for.
+#pragma once
+
+#include "arms/all.h"
+#include "estimator/disk_hit.h"
+#include "estimator/kernel.h"
+#include "scene/brdf.h"
+#include "simd/random.h"
+
+namespace crescent {
+namespace CRESCENT_ISA {
+
+inline constexpr std::uint64_t block_length = 16;
+
+template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
+template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t at) { return load_as<UintOf<F>>(a.data() + at); }
+template <class F> Vec3<F> load_lanes(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t at) {
+    return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
+}
+
+/// What one pack of pixels has gathered in the current block.
+template <class F> struct Partial {
+    F g = number<F>(0), g_lobe = number<F>(0), square = number<F>(0);
+    F disk_g[most_disks], disk_g_lobe[most_disks];
+};
+
+/// One pack of pixels: its constants, its sums, and the step that takes one sample.
+template <class A, class L, class F> struct Lane {
+    using U = UintOf<F>;
+    const Sites& sites;
+    std::size_t at;
+    std::size_t disk_count;
+    LocalDisk<F> disks[most_disks];
+    Site<F> site;
+    F fill_d, fill_s, pivot;
+    Partial<F> partial;
+    F largest = number<F>(0);
+    U horizon{0u}, hits{0u}, bad{0u};
+    bool met = false;  // some sample of this block met a disk
+
+    Lane(const Sites& all, std::size_t first) : sites(all), at(first), disk_count(all.disks.size()) {
+        for (std::size_t k = 0; k < disk_count; ++k) {
+            const DiskArrays& d = sites.disks[k];
+            disks[k] = {load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power)};
+            partial.disk_g[k] = partial.disk_g_lobe[k] = number<F>(0);
+        }
+        site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at), load_lanes<F>(sites.alpha, at),
+                load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks, static_cast<int>(disk_count)};
+        fill_d = load_lanes<F>(sites.fill_d, at);
+        fill_s = load_lanes<F>(sites.fill_s, at);
+        pivot = load_lanes<F>(sites.pivot, at);
+    }
+
+    /// Samples that met a disk: nearest disk first, then what stands before it. Returns X where one was met.
+    [[gnu::noinline]] F meet(Vec3<F> wi, F g, F lobe, F x, MaskOf<F> up) {
+        const F far = number<F>(1e30);
+        F nearest = far;
+        F index = number<F>(-1);
+        for (std::size_t k = 0; k < disk_count; ++k) {
+            F v, c;
+            const auto hit = meets_disk(disks[k], wi, v, c);
+            const F t = select(hit, c / select(hit, v, number<F>(1)), far);
+            index = select(t < nearest, F(static_cast<float>(k)), index);
+            nearest = smaller(t, nearest);
+        }
+        const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
+        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at), load_lanes<F>(sites.bx, sites.by, sites.bz, at),
+                                load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
+        const Vec3<F> d = frame.to_world(wi);
+        const U own = load_lanes<F>(sites.shape, at);
+        F seen = select(up & (nearest < far), number<F>(1), number<F>(0));
+        for (const OccluderF& body : sites.occluders) {
+            const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
+            seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
+        }
+        for (std::size_t k = 0; k < disk_count; ++k) {
+            const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
+            const F gk = select(this_one, g, number<F>(0));
+            partial.disk_g[k] = partial.disk_g[k] + gk;
+            partial.disk_g_lobe[k] = partial.disk_g_lobe[k] + gk * lobe;
+            const F xk = g * (load_lanes<F>(sites.disks[k].d, at) + lobe * load_lanes<F>(sites.disks[k].s, at));
+            x = select(this_one, xk, x);
+        }
+        hits = hits + select(seen > number<F>(0), U(1u), U(0u));
+        met = true;
+        return x;
+    }
+
+    /// X of one drawn direction, adding what it carries to the sums.
+    [[gnu::always_inline]] F carry(const L& brdf, const Drawn<F>& drawn, F weight) {
+        const F zero = number<F>(0);
+        const F cos = drawn.wi.z;
+        const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
+        const auto up = !(down | (drawn.pdf.v == zero));
+        horizon = horizon + select(down, U(1u), U(0u));
+        const F g = select(up, weight * (cos / drawn.pdf.v), zero);
+        const F lobe = select(up, brdf(site.wo, drawn.wi), zero);
+        F x = g * fill_d;
+        partial.g = partial.g + g;
+        if constexpr (L::present) {
+            partial.g_lobe = partial.g_lobe + g * lobe;
+            x = g * (fill_d + lobe * fill_s);
+        }
+        auto hit = zero > zero;
+        for (std::size_t k = 0; k < disk_count; ++k) {
+            F v, c;
+            hit = hit | (meets_disk(disks[k], drawn.wi, v, c) & up);
+        }
+        if (any(hit)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
+        return x;
+    }
+
+    [[gnu::always_inline]] void step(const A& arm, const L& brdf, const Vec4u<U>& h, bool odd, std::uint64_t j, std::uint32_t seed, U pixel, float* samples,
+                                     std::uint64_t n) {
+        const Vec2<F> u = odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
+        F x;
+        if constexpr (requires { A::techniques; }) {
+            const Vec4u<U> second = draws<U>(pixel, static_cast<std::uint32_t>(j >> 1), 1, seed);
+            const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)} : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
+            const Drawn<F> a = arm.template sample_technique<0>(site.wo, u), b = arm.template sample_technique<1>(site.wo, v);
+            x = carry(brdf, a, arm.template weight<0>(site.wo, a)) + carry(brdf, b, arm.template weight<1>(site.wo, b));
+        } else {
+            x = carry(brdf, arm.sample(site.wo, u), number<F>(1));
+        }
+        const F off = x - pivot;
+        partial.square = partial.square + off * off;
+        largest = larger(x, largest);
+        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up (-0 counts as 0: x + 0 clears its sign).
+        bad = bad + select(bits(x + number<F>(0)) > U(0x7f7fffffu), U(1u), U(0u));
+        if (samples) keep(x, samples, j, n);
+    }
+
+    void keep(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
+        float lanes[Lanes<F>::count];
+        store(x, lanes);
+        for (std::size_t l = 0; l < Lanes<F>::count && at + l < sites.count; ++l) samples[(at + l) * n + j] = lanes[l];
+    }
+};
+
+/// to[lane] = from[lane] + partial[lane].
+template <class F> void add_lanes(F partial, const double* from, double* to) {
+    float lanes[Lanes<F>::count];
+    store(partial, lanes);
+    for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
+}
+
+/// Double totals of one pack; only the first `disks` of the disk sums are in use.
+template <class F> struct Totals {
+    static constexpr std::size_t count = Lanes<F>::count;
+    double g[count] = {}, g_lobe[count] = {}, square[count] = {};
+    double disk_g[most_disks][count], disk_g_lobe[most_disks][count];
+
+    explicit Totals(std::size_t disks) {
+        for (std::size_t k = 0; k < disks; ++k)
+            for (std::size_t l = 0; l < count; ++l) disk_g[k][l] = disk_g_lobe[k][l] = 0;
+    }
+    void add(const Partial<F>& p, std::size_t disks, bool met) {
+        add_lanes(p.g, g, g);
+        add_lanes(p.g_lobe, g_lobe, g_lobe);
+        add_lanes(p.square, square, square);
+        for (std::size_t k = 0; met && k < disks; ++k) {
+            add_lanes(p.disk_g[k], disk_g[k], disk_g[k]);
+            add_lanes(p.disk_g_lobe[k], disk_g_lobe[k], disk_g_lobe[k]);
+        }
+    }
+};
+
+template <class A, class L, class F> void write_rung(const Lane<A, L, F>& lane, const Totals<F>& totals, Moments& out) {
+    const std::size_t at = lane.at;
+    const Partial<F>& p = lane.partial;
+    add_lanes(p.g, totals.g, out.g.data() + at);
+    add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
+    add_lanes(p.square, totals.square, out.square.data() + at);
+    for (std::size_t k = 0; k < lane.disk_count; ++k) {
+        add_lanes(p.disk_g[k], totals.disk_g[k], out.disk_g[k].data() + at);
+        add_lanes(p.disk_g_lobe[k], totals.disk_g_lobe[k], out.disk_g_lobe[k].data() + at);
+    }
+    store(lane.largest, out.largest.data() + at);
+    store(lane.horizon, out.horizon.data() + at);
+    store(lane.hits, out.hits.data() + at);
+    store(lane.bad, out.bad.data() + at);
+}
+
+template <class F> void clear(Partial<F>& p, std::size_t disks, bool met) {
+    p.g = p.g_lobe = p.square = number<F>(0);
+    for (std::size_t k = 0; met && k < disks; ++k) p.disk_g[k] = p.disk_g_lobe[k] = number<F>(0);
+}
+
+/// One pack of pixels through all its samples.
+template <class A, class L, class F> void estimate_pack(const KernelCall& call, std::size_t at) {
+    using U = UintOf<F>;
+    Lane<A, L, F> lane(*call.sites, at);
+    Totals<F> totals(lane.disk_count);
+    const A arm(lane.site);
+    const L brdf(lane.site.s, lane.site.alpha);
+    const U pixel = load_lanes<F>(call.sites->pixel, at);
+    const std::uint64_t n = call.rungs.back();
+    std::size_t rung = 0;
+    for (std::uint64_t j = 0; j < n;) {
+        const std::uint64_t block_end = (j / block_length + 1) * block_length;
+        const std::uint64_t end = block_end < call.rungs[rung] ? block_end : call.rungs[rung];
+        while (j < end) {
+            const Vec4u<U> h = draws<U>(pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
+            if (!(j & 1)) {
+                lane.step(arm, brdf, h, false, j, call.seed, pixel, call.samples, n);
+                if (++j == end) break;
+            }
+            lane.step(arm, brdf, h, true, j, call.seed, pixel, call.samples, n);
+            ++j;
+        }
+        if (j == block_end) {
+            totals.add(lane.partial, lane.disk_count, lane.met);
+            clear(lane.partial, lane.disk_count, lane.met);
+            lane.met = false;
+            if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
+        }
+        if (j == call.rungs[rung]) write_rung(lane, totals, call.out[rung++]);
+    }
+}
+
+template <class A, class L, class F> void estimate(const KernelCall& call) {
+    for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count) estimate_pack<A, L, F>(call, at);
+}
+
+template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
+    return {isa, {{{estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, PhongLobe<F>, F>, estimate<A<F>, BlinnPhongLobe<F>, F>, estimate<A<F>, GgxLobe<F>, F>}...}}};
+}
+
+}  // namespace CRESCENT_ISA
+}  // namespace crescent

@@ -1,0 +1,9 @@
+// The kernels for one plain float at a time: no intrinsics, the yardstick of the others.
+#define CRESCENT_ISA scalar
+#include "estimator/kernel_body.h"
+
+namespace crescent {
+
+KernelTable scalar_kernels() { return scalar::kernels_of<float>("scalar", Arms{}); }
+
+}  // namespace crescent

@@ -1,0 +1,7 @@
+# Each instruction set's kernels are compiled with its own flags, on processors that have any of them.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(dir ${PROJECT_SOURCE_DIR}/src/estimator)
+  set_source_files_properties(${dir}/kernel_sse4.cpp PROPERTIES COMPILE_OPTIONS "-msse4.2")
+  set_source_files_properties(${dir}/kernel_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2;-mf16c")
+  set_source_files_properties(${dir}/kernel_avx512.cpp PROPERTIES COMPILE_OPTIONS "-mavx512f;-mavx512vl;-mavx512dq;-mavx512bw;-mavx512cd")
+endif()

@@ -1,0 +1,66 @@
+// The geometry pixels of a tile as the kernels want them: one float array a quantity, one entry a pixel, in the local
+// frame of each pixel (n = +z), padded so that any pack can be loaded whole.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace crescent {
+
+inline constexpr std::size_t widest_pack = 16;  // AVX-512
+
+/// A rectangle of pixels, x1 and y1 exclusive.
+struct TileBox {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+std::vector<TileBox> tiles_of(int width, int height);
+
+/// One disk light as each pixel sees it, and what a sample that meets it is worth.
+struct DiskArrays {
+    std::vector<float> cx, cy, cz;  // from the surface to the centre, local, m
+    std::vector<float> nx, ny, nz;  // the disk's normal, local
+    std::vector<float> d, s;        // Y of L rho_d / pi and of L rho_s: X = (cos/p) (d + s lobe)
+    float radius = 0;
+    bool two_sided = false;
+    float power = 0;                // Y(L) pi r^2, relative to all disks
+};
+
+/// Occluders in float, as the kernels test them.
+struct OccluderF {
+    Occluder::Kind kind;
+    std::uint32_t shape;
+    std::array<float, 3> a, b, c;
+    float radius;
+};
+
+/// Sites of one BRDF kind. `lobe` is -1 where rho_s = 0.
+struct Sites {
+    int lobe = -1;
+    std::size_t count = 0;                     // without padding
+    std::vector<std::uint32_t> pixel, shape;   // index in the image, index of the shape
+    std::vector<float> wox, woy, woz;
+    std::vector<float> s, alpha, diffuse, rho_s;  // diffuse: Y(rho_d)
+    std::vector<float> px, py, pz;             // the surface point, world
+    std::vector<float> tx, ty, tz, bx, by, bz, nx, ny, nz;  // the local frame, world
+    std::vector<float> fill_d, fill_s;         // as DiskArrays::d, s for the fill
+    std::vector<float> pivot;                  // the second moment is taken about it
+    std::vector<DiskArrays> disks;
+    std::vector<OccluderF> occluders;
+    std::vector<Rgb> rho_d;                    // per pixel, for the colours of the film
+    std::vector<double> rho_s_exact;
+
+    void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Surface& surface);
+    /// Repeats the last site until every pack is full.
+    void pad();
+};
+
+/// A scene's lights and occluders without any site yet.
+Sites empty_sites(const Scene& scene, int lobe);
+
+/// All geometry pixels of a tile, grouped by lobe; also which shape each pixel sees.
+std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
+
+}  // namespace crescent

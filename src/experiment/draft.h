@@ -1,0 +1,55 @@
+// An experiment while it is being read: values so far, every mistake so far, and the text that the hash is taken of.
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "experiment/schema.h"
+#include "experiment/tree.h"
+
+namespace crescent {
+
+/// A value that names something else in the file.
+struct Reference {
+    Type type;
+    std::string path, name;
+};
+
+struct Draft {
+    Experiment e;
+    std::vector<Complaint> complaints;
+    std::set<std::string> broken;        // paths whose values cannot be used
+    std::vector<Reference> references;
+    std::string canonical;               // "path=value" a line, defaults included, free of layout
+
+    void complain(const std::string& path, const std::string& say);
+    void complain(const std::string& path, const Place& at, const std::string& say);
+    bool sound(const std::string& path) const { return !broken.contains(path); }
+};
+
+/// "; did you mean 'phong'?", or nothing where no valid word is near.
+std::string hint(std::string_view word, const std::vector<std::string>& valid);
+
+/// Checks one value against its key; complains and returns false where it does not fit.
+bool read_value(Draft& draft, const Key& key, const Node& node, const std::string& path, Value& value);
+
+/// Walks the table over the tree: unknown and missing keys, types, ranges; fills draft.e.
+void read_tree(Draft& draft, const Node& root);
+
+/// Puts "path=value" overrides into the tree.
+void apply_overrides(Draft& draft, Node& root, const std::vector<std::string>& overrides);
+
+/// What keys say of each other: names that must exist, regions on the image, the camera, degenerate shapes.
+void check_geometry(Draft& draft);
+void check_names(Draft& draft);
+
+/// Fills in what depends on other keys (s, n, the rungs of ladder plates) and checks runs against arms and exponents.
+void resolve_runs(Draft& draft);
+
+/// Parses every check and makes sure that all it names will be measured.
+void resolve_assertions(Draft& draft);
+
+}  // namespace crescent

@@ -1,0 +1,209 @@
+// The table walked over the tree: which tables and keys there are, which are missing, what each value is.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiment/draft.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr std::size_t most_elements = 4096;  // of a family of tables; a film counts shapes in 16 bits
+
+bool file_safe(std::string_view name) {
+    const auto plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
+    return !name.empty() && name.size() <= 64 && plain(static_cast<unsigned char>(name[0])) &&
+           std::all_of(name.begin(), name.end(), [&](unsigned char c) { return plain(c) || c == '.' || c == '-'; });
+}
+
+bool one_line(std::string_view name) {
+    return !name.empty() && name.size() <= 200 && std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
+}
+
+std::string join(const std::string& path, std::string_view name) { return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name); }
+
+std::string where(const std::string& path) { return path.empty() ? "the experiment" : "[" + path + "]"; }
+
+/// The value as the hash sees it: 32 and 32.0 are one, and so are 64 and [64].
+std::string canonical(const Key& key, const Value& value) {
+    switch (key.type) {
+        case Type::flag: return value.flag ? "true" : "false";
+        case Type::integer: case Type::number: return fmt::format("{}", value.number + 0.0);
+        case Type::text: case Type::check: case Type::word: case Type::sampler: case Type::arm: case Type::shape: return value.text;
+        default: return fmt::format("{}", fmt::join(value.numbers, ","));
+    }
+}
+
+class TreeReader {
+public:
+    explicit TreeReader(Draft& draft) : draft_(draft) {}
+
+    void table(const Section& section, const Node& node, const std::string& path, const Place& at, void* object) {
+        const std::string kind = kind_of(section, node);
+        unknown_keys(section, node, path, kind);
+        for (const Key& key : section.keys) {
+            if (!has_kind(key, kind)) continue;
+            const Member* member = node.find(key.name);
+            if (member) value(key, member->value, join(path, key.name), object);
+            else if (key.need == Need::required) missing_key(key, path, at, kind);
+            else if (key.need == Need::defaulted) fallback(key, join(path, key.name), object);
+        }
+        for (const Section& sub : section.sections) family(sub, node, join(path, sub.name), at, object);
+    }
+
+    std::vector<std::string> siblings;  // names beside the table that is being read
+
+private:
+    static std::string kind_of(const Section& section, const Node& node) {
+        const Key* key = section.find_key("kind");
+        const Member* member = node.find("kind");
+        if (!key || !member || member->value.kind != Node::Kind::text) return "";
+        return std::count(key->words.begin(), key->words.end(), member->value.text) ? member->value.text : "";
+    }
+
+    void unknown_keys(const Section& section, const Node& node, const std::string& path, const std::string& kind) {
+        for (const Member& member : node.members) {
+            const Key* key = section.find_key(member.key);
+            if ((key && has_kind(*key, kind)) || section.find_section(member.key)) continue;
+            if (section.many == Many::titled && member.key == "name") continue;
+            const std::vector<std::string> valid = words_of(section, kind);
+            const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key) : fmt::format("unknown key '{}'", member.key.substr(0, 64));
+            draft_.complain(join(path, member.key), member.at,
+                            fmt::format("{} in {}: expected {}{}", whose, where(path), fmt::join(valid, ", "), hint(member.key, valid)));
+        }
+    }
+
+    void missing_key(const Key& key, const std::string& path, const Place& at, const std::string& kind) {
+        if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is needed
+        const std::string name = path.substr(path.rfind('.') + 1);
+        const bool made_by_override = at.line == 0 && !siblings.empty();
+        draft_.complain(join(path, key.name), at,
+                        fmt::format("missing key '{}' in {}: expected {}{}", key.name, where(path), expectation(key),
+                                    made_by_override ? hint(name, siblings) : ""));
+    }
+
+    void value(const Key& key, const Node& node, const std::string& path, void* object) {
+        place(node, path);
+        store(key, node, path, object);
+    }
+
+    void place(const Node& node, const std::string& path) {
+        draft_.e.places[path] = node.at;
+        if (node.is_array())
+            for (std::size_t i = 0; i < node.members.size() && i < most_elements; ++i)
+                draft_.e.places[fmt::format("{}.{}", path, i)] = node.members[i].value.at;
+    }
+
+    void store(const Key& key, const Node& node, const std::string& path, void* object) {
+        Value value;
+        if (!read_value(draft_, key, node, path, value)) return;
+        key.store(object, value);
+        draft_.canonical += fmt::format("{}={}\n", path, canonical(key, value));
+        if (key.type == Type::sampler || key.type == Type::arm || key.type == Type::shape)
+            draft_.references.push_back({key.type, path, value.text});
+    }
+
+    void fallback(const Key& key, const std::string& path, void* object) {
+        if (key.type == Type::sampler) {  // the arm's own name
+            Node name;
+            name.kind = Node::Kind::text;
+            name.text = static_cast<const ArmPlan*>(object)->name;
+            return store(key, name, path, object);
+        }
+        store(key, read_toml(fmt::format("default = {}", key.fallback), "default").members.front().value, path, object);
+    }
+
+    /// A table, or all tables of a family.
+    void family(const Section& section, const Node& parent, const std::string& path, const Place& parent_at, void* object) {
+        const Member* member = parent.find(section.name);
+        if (!member) return absent(section, path, parent_at, object);
+        const Node& node = member->value;
+        draft_.e.places[path] = member->at;
+        const bool listed = section.many == Many::list || section.many == Many::titled;
+        if (!node.is_table() && !(listed && node.is_array()))
+            return draft_.complain(path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
+        if (section.many == Many::list && node.is_table())
+            return draft_.complain(path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
+        if (section.many == Many::one)
+            return table(section, node, path, member->at, section.add ? section.add(object, "", member->at) : object);
+        if (section.need == Need::required && node.members.empty())
+            return draft_.complain(path, member->at, fmt::format("{}: expected at least one {}, found none", path, form(section, path)));
+        elements(section, node, path, object);
+    }
+
+    static std::string form(const Section& section, const std::string& path) {
+        if (section.many == Many::one) return fmt::format("a table [{}]", path);
+        if (section.many == Many::list) return "a list of tables";
+        return fmt::format("tables [{}.NAME]", path);
+    }
+
+    void absent(const Section& section, const std::string& path, const Place& parent_at, void* object) {
+        if (section.need == Need::required)
+            return draft_.complain(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
+        const bool all_default = std::none_of(section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
+        if (section.many == Many::one && all_default)
+            table(section, Node{}, path, parent_at, section.add ? section.add(object, "", parent_at) : object);
+    }
+
+    void elements(const Section& section, const Node& node, const std::string& path, void* object) {
+        if (node.members.size() > most_elements)
+            return draft_.complain(path, node.at, fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
+        std::vector<std::string> names;
+        for (const Member& member : node.members) names.push_back(member.key);
+        for (std::size_t i = 0; i < node.members.size(); ++i) {
+            const Member& member = node.members[i];
+            siblings = names;
+            std::erase(siblings, member.key);
+            element(section, node, member, path, i, object);
+        }
+        siblings.clear();
+    }
+
+    void element(const Section& section, const Node& node, const Member& member, const std::string& path, std::size_t index, void* object) {
+        if (!member.value.is_table())
+            return draft_.complain(join(path, member.key), member.at, fmt::format("{}: expected {}, found {}", join(path, member.key),
+                                                                      section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
+        std::string name = member.key;
+        Place at = member.at;
+        if (section.many == Many::titled && node.is_array() && !title(member, path, index, name, at)) return;
+        const std::string own = section.many == Many::list ? fmt::format("{}.{}", path, index) : join(path, name);
+        if (section.many == Many::named && !file_safe(name))
+            draft_.complain(own, at, fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a letter, digit or '_' first: names become file names",
+                                                 name.substr(0, 64), where(path)));
+        if (section.many == Many::titled && !one_line(name))
+            draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
+        draft_.e.places[own] = at;
+        table(section, member.value, own, at, section.add(object, name, at));
+    }
+
+    /// The name of a table in a list; false where it has none that is new.
+    bool title(const Member& member, const std::string& path, std::size_t index, std::string& name, Place& at) {
+        const Member* own = member.value.find("name");
+        at = member.value.at;
+        if (!own || own->value.kind != Node::Kind::text) {
+            draft_.complain(fmt::format("{}.{}", path, index), own ? own->value.at : at,
+                            fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'", path,
+                                        own ? ", found " + describe(own->value) : ""));
+            return false;
+        }
+        name = own->value.text;
+        if (const auto before = draft_.e.places.find(join(path, name)); before != draft_.e.places.end()) {
+            draft_.complain(fmt::format("{}.{}", path, index), own->value.at,
+                            fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path, to_string(before->second)));
+            return false;
+        }
+        return true;
+    }
+
+    Draft& draft_;
+};
+
+}  // namespace
+
+void read_tree(Draft& draft, const Node& root) {
+    const Place top{draft.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
+    TreeReader(draft).table(schema(), root, "", top, &draft.e);
+}
+
+}  // namespace crescent

@@ -1,0 +1,44 @@
+// An experiment file as a tree of plain nodes in file order, each with its place. The only door to the TOML parser.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/errors.h"
+
+namespace crescent {
+
+struct Member;
+
+/// One TOML value. Tables and arrays keep their members in file order; an array's members have no key.
+struct Node {
+    enum class Kind { table, array, text, integer, number, flag, date };
+    Kind kind = Kind::table;
+    Place at;
+    std::vector<Member> members;  // table, array
+    std::string text;
+    std::int64_t integer = 0;
+    double number = 0;  // number, and integer as well
+    bool flag = false;
+
+    bool is_table() const { return kind == Kind::table; }
+    bool is_array() const { return kind == Kind::array; }
+    const Member* find(std::string_view key) const;
+    Member* find(std::string_view key);
+};
+
+struct Member {
+    std::string key;
+    Place at;  // of the key
+    Node value;
+};
+
+/// "the text 'red'", "3.5", "a table": what was found, for messages.
+std::string describe(const Node& node);
+
+/// Reads TOML; throws InputError where the syntax is wrong. `file` stands in every place.
+Node read_toml(std::string_view text, const std::string& file);
+
+}  // namespace crescent

@@ -1,0 +1,153 @@
+// One TOML value against one key of the table: type, count, range, finite numbers, unit vectors, order.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiment/draft.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr double unit_tolerance = 1e-4;  // what four written decimals leave of a unit vector
+constexpr std::size_t longest_list = 64;
+constexpr std::size_t longest_text = 4096;
+
+bool is_number(const Node& node) { return node.kind == Node::Kind::number || node.kind == Node::Kind::integer; }
+
+/// How many numbers the type holds; 0: a list of any length.
+std::size_t count_of(Type type) {
+    if (type == Type::box) return 4;
+    return type == Type::numbers || type == Type::integers ? 0 : 3;
+}
+
+class ValueReader {
+public:
+    ValueReader(Draft& draft, const Key& key, const std::string& path, Value& value)
+        : draft_(draft), key_(key), path_(path), value_(value) {}
+
+    bool read(const Node& node) {
+        switch (key_.type) {
+            case Type::text: case Type::check: case Type::sampler: case Type::arm: case Type::shape: return text(node);
+            case Type::word: return word(node);
+            case Type::flag: return flag(node);
+            case Type::integer: case Type::number: return scalar(node, value_.number);
+            case Type::direction: return list(node) && unit();
+            case Type::box: return list(node) && box();
+            case Type::numbers: case Type::integers: return list(node) && ascending(node);
+            case Type::point: case Type::color: return list(node);
+        }
+        return false;
+    }
+
+private:
+    bool fail(const Node& node, const std::string& more = "") {
+        draft_.complain(path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
+        return false;
+    }
+    bool fail(const std::string& say) {
+        draft_.complain(path_, fmt::format("{}: {}", path_, say));
+        return false;
+    }
+
+    bool text(const Node& node) {
+        if (node.kind != Node::Kind::text) return fail(node);
+        if (node.text.size() > longest_text) return fail(fmt::format("expected at most {} bytes, found {}", longest_text, node.text.size()));
+        const bool control = std::any_of(node.text.begin(), node.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+        if (control) return fail("expected one line of text without control characters");
+        value_.text = node.text;
+        return true;
+    }
+
+    bool word(const Node& node) {
+        const auto it = std::find(key_.words.begin(), key_.words.end(), node.text);
+        if (node.kind != Node::Kind::text || it == key_.words.end())
+            return fail(node, node.kind == Node::Kind::text ? hint(node.text, key_.words) : "");
+        value_.word = static_cast<int>(it - key_.words.begin());
+        value_.flag = value_.word != 0;
+        value_.text = node.text;
+        return true;
+    }
+
+    bool flag(const Node& node) {
+        if (node.kind != Node::Kind::flag) return fail(node);
+        value_.flag = node.flag;
+        return true;
+    }
+
+    bool scalar(const Node& node, double& to) {
+        const bool whole = key_.type == Type::integer || key_.type == Type::integers || key_.type == Type::box;
+        if (whole ? node.kind != Node::Kind::integer : !is_number(node)) return fail(node);
+        if (!std::isfinite(node.number)) return fail(node, "; numbers are finite");
+        if (key_.type != Type::box && !key_.range.holds(node.number)) return fail(node, key_.type == Type::direction ? "; no component is outside [-1, 1]" : "");
+        to = node.number;
+        return true;
+    }
+
+    bool list(const Node& node) {
+        const std::size_t count = count_of(key_.type);
+        if (count == 0 && is_number(node)) {
+            value_.numbers.resize(1);
+            return scalar(node, value_.numbers[0]);
+        }
+        if (!node.is_array() || (count != 0 && node.members.size() != count) || node.members.empty()) return fail(node);
+        if (node.members.size() > longest_list) return fail(node, fmt::format("; at most {} are taken", longest_list));
+        value_.numbers.resize(node.members.size());
+        bool good = true;
+        for (std::size_t i = 0; i < value_.numbers.size(); ++i) good = scalar(node.members[i].value, value_.numbers[i]) && good;
+        return good;
+    }
+
+    bool ascending(const Node& node) {
+        for (std::size_t i = 1; i < value_.numbers.size(); ++i) {
+            const double before = value_.numbers[i - 1], now = value_.numbers[i];
+            if (now > before) continue;
+            draft_.complain(path_, node.members[i].value.at,
+                            fmt::format("{}: expected {}, found {} after {}", path_, expectation(key_),
+                                        now == before ? fmt::format("{} again", now) : fmt::format("{}", now), before));
+            return false;
+        }
+        return true;
+    }
+
+    bool unit() {
+        std::vector<double>& v = value_.numbers;
+        const double length = std::hypot(v[0], v[1], v[2]);
+        if (length == 0) return fail("expected a unit vector, found the zero vector");
+        if (std::abs(length - 1) > unit_tolerance)
+            return fail(fmt::format("expected a unit vector, found length {:.6g}; the unit vector is [{:.6g}, {:.6g}, {:.6g}]", length,
+                                    v[0] / length, v[1] / length, v[2] / length));
+        for (double& x : v) x /= length;
+        return true;
+    }
+
+    bool box() {
+        const std::vector<double>& v = value_.numbers;
+        for (int axis = 0; axis < 2; ++axis) {
+            const auto low = static_cast<std::size_t>(axis), high = low + 2;
+            if (v[high] < v[low])
+                return fail(fmt::format("expected [x0, y0, x1, y1] with {0}0 <= {0}1, found {0}0 = {1} and {0}1 = {2}: {3}", axis ? 'y' : 'x', v[low],
+                                        v[high], v[high] + 1 == v[low] ? "an empty box" : "an inverted box"));
+        }
+        return true;
+    }
+
+    Draft& draft_;
+    const Key& key_;
+    const std::string& path_;
+    Value& value_;
+};
+
+}  // namespace
+
+std::string hint(std::string_view word, const std::vector<std::string>& valid) {
+    const std::string near = word.size() > 64 ? "" : nearest(word, valid);
+    return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+bool read_value(Draft& draft, const Key& key, const Node& node, const std::string& path, Value& value) {
+    return ValueReader(draft, key, path, value).read(node);
+}
+
+}  // namespace crescent

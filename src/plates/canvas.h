@@ -1,0 +1,111 @@
+// The surface a plate is drawn on: rectangles, lines, pixel blocks, and text that is measured before it is set.
+// Units are pixels of the plate, origin top-left, y down. Colours are sRGB in [0, 1].
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "display/tone.h"
+#include "plates/plates.h"
+
+typedef struct _cairo cairo_t;
+
+namespace crescent::plates {
+
+struct Rect {
+    double x = 0, y = 0, w = 0, h = 0;
+    double right() const { return x + w; }
+    double bottom() const { return y + h; }
+    Rect inset(double d) const { return {x + d, y + d, w - 2 * d, h - 2 * d}; }
+    bool meets(const Rect& o) const {
+        return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom();
+    }
+};
+
+struct Colour {
+    double r = 0, g = 0, b = 0, a = 1;
+};
+Colour colour(const Srgb8& c);
+
+enum class Weight { regular = 400, medium = 500, semibold = 600 };
+enum class Align { left, centre, right };
+enum class Vertical { top, middle, bottom };
+
+/// How text is set. It is shrunk from `px` to `least` until it fits its box, then wrapped words are ellipsized.
+struct Text {
+    double px = 18;
+    Colour ink;
+    Weight weight = Weight::regular;
+    Align align = Align::left;
+    Vertical vertical = Vertical::top;
+    int lines = 1;      // at most
+    double least = 13;  // px
+};
+
+/// What became of one piece of text: for tests, which ask that nothing is cut or runs into its neighbour.
+struct Setting {
+    std::string text;
+    Rect box, extents;   // what it was given and what it took
+    double px = 0;       // the size it was set at
+    bool ellipsized = false;
+};
+
+/// 8-bit sRGB pixels, rows top-down.
+struct Block {
+    int width = 0, height = 0;
+    std::vector<unsigned char> rgb;
+    Block() = default;
+    Block(int w, int h) : width(w), height(h), rgb(3 * std::size_t(w) * std::size_t(h)) {}
+    void set(int x, int y, const Srgb8& c) {
+        unsigned char* p = &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
+        p[0] = c[0], p[1] = c[1], p[2] = c[2];
+    }
+};
+
+class Canvas {
+public:
+    /// Throws OutputError where the font Inter is missing.
+    Canvas(int width, int height, const Colour& ground);
+    ~Canvas();
+    Canvas(const Canvas&) = delete;
+    Canvas& operator=(const Canvas&) = delete;
+
+    /// Sets Pango markup in `box`; names from the experiment must have gone through `escaped`. Returns its extents.
+    Rect text(const Rect& box, const std::string& markup, const Text& how);
+    /// Width and height the markup takes on one line at how.px.
+    Rect measure(const std::string& markup, const Text& how) const;
+
+    void fill(const Rect& r, const Colour& c);
+    void outline(const Rect& r, const Colour& c, double width);
+    void line(double x0, double y0, double x1, double y1, const Colour& c, double width, double dash = 0);
+    struct Point {
+        double x, y;
+    };
+    void polyline(const std::vector<Point>& points, const Colour& c, double width, double dash = 0);
+    void polygon(const std::vector<Point>& points, const Colour& c);
+    void dot(double x, double y, double radius, const Colour& c);
+    void arrow(Point from, Point to, const Colour& c, double width);
+
+    /// Copies pixels one to one with the top-left corner at (x, y), which are whole numbers on the canvas.
+    void paint(const Block& block, int x, int y);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    const std::vector<Setting>& settings() const { return settings_; }
+    const std::vector<Rect>& pictures() const { return pictures_; }
+    Picture picture() const;
+
+private:
+    struct Surface;
+    int width_, height_;
+    std::unique_ptr<Surface> surface_;
+    std::vector<Setting> settings_;
+    std::vector<Rect> pictures_;
+};
+
+/// Text with <, > and & made safe for markup.
+std::string escaped(std::string_view plain);
+
+}  // namespace crescent::plates

@@ -1,0 +1,94 @@
+#include "plates/sheet.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace crescent::plates {
+
+namespace {
+
+void header(Sheet& sheet, const Colour& accent, const std::string& label) {
+    const Rect& b = header_band;
+    sheet.canvas.fill({b.x, b.y + 4, 5, b.h - 8}, accent);
+    std::string seed = fmt::format("seed {}", sheet.experiment().seed);
+    Text right = with(with(small_text, Align::right), Vertical::middle);
+    double w = sheet.canvas.measure(seed, right).w + 2;
+    sheet.canvas.text({b.right() - w, b.y, w, b.h}, seed, right);
+    sheet.canvas.text({b.x + 17, b.y, b.w - 17 - w - gap, b.h}, label, label_text);
+}
+
+std::string tinted(const std::string& text, const Colour& c) {
+    auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+    return fmt::format("<span foreground='#{:02x}{:02x}{:02x}' weight='600'>{}</span>", byte(c.r), byte(c.g), byte(c.b),
+                       text);
+}
+
+}  // namespace
+
+void photograph_header(Sheet& sheet, const std::string& what) {
+    header(sheet, photograph_accent,
+           "Khronos PBR Neutral / " + tinted("PHOTO-ONLY", photograph_accent) + " / " + what);
+}
+
+void instrument_header(Sheet& sheet, const std::string& name, const std::string& what) {
+    header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what);
+    if (!sheet.in.instrument.empty()) sheet.notes.push_back("measured on " + escaped(sheet.in.instrument));
+}
+
+void finish(Sheet& sheet) {
+    Text caption = with_lines(body_text, 2);
+    std::string text = escaped(sheet.plan.caption);
+    // A caption that does not fit in two lines is set smaller, in three.
+    Text probe = with_px(caption, body_text.px);
+    if (sheet.canvas.measure(text, probe).w > 1.9 * caption_band.w) caption = with_lines(with_px(caption, 15), 3);
+    caption.least = 13;
+    sheet.canvas.text(caption_band, text, caption);
+
+    Rect foot = footer_band;
+    if (sheet.not_finite > 0) {
+        std::string say = fmt::format("{} pixel{} not a number, shown in magenta", count(sheet.not_finite),
+                                      sheet.not_finite == 1 ? "" : "s");
+        Text how = with(with(with(small_text, alert), Align::right), Weight::semibold);
+        double w = sheet.canvas.measure(say, how).w + 2;
+        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, say, how);
+        foot.w -= w + gap;
+    }
+    sheet.canvas.text(foot, fmt::format("{}", fmt::join(sheet.notes, "  ·  ")), small_text);
+}
+
+Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot) {
+    int x = static_cast<int>(std::floor(slot.x + (slot.w - block.width) / 2));
+    int y = static_cast<int>(std::floor(slot.y));
+    sheet.canvas.paint(block, x, y);
+    Rect r{double(x), double(y), double(block.width), double(block.height)};
+    sheet.canvas.outline(r.inset(-0.5), rule, 1);
+    return r;
+}
+
+Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& say) {
+    sheet.canvas.fill(slot, panel);
+    sheet.canvas.outline(slot.inset(0.5), rule, 1);
+    sheet.canvas.text(slot.inset(12), say, with_lines(with(with(body_text, Align::centre), Vertical::middle), 3));
+    return slot;
+}
+
+Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& slot) {
+    sheet.not_finite += not_finite(v, box);
+    Fit f = fit(box.width(), box.height(), slot.w, slot.h);
+    return paint_framed(sheet, photograph_block(v, box, f, sheet.experiment().exposure), slot);
+}
+
+Rect on_picture(const Rect& picture, const Box& shown, const Box& box) {
+    double sx = picture.w / shown.width(), sy = picture.h / shown.height();
+    return {picture.x + (box.x0 - shown.x0) * sx, picture.y + (shown.y1 - box.y1) * sy, box.width() * sx,
+            box.height() * sy};
+}
+
+double round_step(double top, int about) {
+    double rough = top / about, power = std::pow(10, std::floor(std::log10(rough)));
+    double lead = rough / power;
+    return (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10) * power;
+}
+
+}  // namespace crescent::plates

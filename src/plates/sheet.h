@@ -1,0 +1,59 @@
+// What all plates share: the sheet with its header, caption and footer, and the film of a run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plates/raster.h"
+#include "plates/style.h"
+#include "plates/words.h"
+
+namespace crescent::plates {
+
+/// A plate being drawn.
+struct Sheet {
+    Canvas canvas{sheet_width, sheet_height, ground};
+    const PlatePlan& plan;
+    const PlateInputs& in;
+    std::uint64_t not_finite = 0;         // pixels shown that are not numbers
+    std::vector<std::string> notes;       // for the footer, markup
+
+    Sheet(const PlatePlan& p, const PlateInputs& i) : plan(p), in(i) {}
+    const Experiment& experiment() const { return in.experiment; }
+};
+
+/// "Khronos PBR Neutral / PHOTO-ONLY / `what`": no measured number stands on a photograph.
+void photograph_header(Sheet& sheet, const std::string& what);
+/// "INSTRUMENT `name` / `what`", names the instrument in the footer.
+void instrument_header(Sheet& sheet, const std::string& name, const std::string& what);
+/// Caption and footer; last, when the notes are known.
+void finish(Sheet& sheet);
+
+/// Paints `box` of a view at the centre-top of `slot` and frames it; counts what is not finite. A run without a film
+/// leaves a framed note. Returns the rectangle of the picture.
+Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& slot);
+/// A framed empty picture that says what is missing.
+Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& say);
+/// Paints a block centred across the slot at its top, with a hairline around it.
+Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
+
+/// Where image box `box` lies in the picture of `shown`.
+Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
+
+/// A vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels stand to its right.
+void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);
+/// Round steps that cut 0..top into about `about` parts.
+double round_step(double top, int about);
+
+// The plates by kind; the table stands in plates.cpp.
+void draw_still(Sheet& sheet);      // hero, gallery
+void draw_strip(Sheet& sheet);      // columns, ladder, exponent, surround
+void draw_reference(Sheet& sheet);
+void draw_heat(Sheet& sheet);
+void draw_rose(Sheet& sheet);
+void draw_meters(Sheet& sheet);
+
+/// Draws by kind onto a fresh sheet; what draw_plate and the tests of the layout share.
+void draw(Sheet& sheet);
+
+}  // namespace crescent::plates

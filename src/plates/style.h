@@ -1,0 +1,50 @@
+// One palette, one type scale and one grid for all plates, in pixels of the 1280x720 sheet.
+#pragma once
+
+#include "plates/canvas.h"
+
+namespace crescent::plates {
+
+inline constexpr int sheet_width = 1280, sheet_height = 720;
+
+// A neutral dark ground, so that photographs keep their tones; text at 17:1 and 8:1 contrast.
+inline constexpr Colour ground{0.078, 0.082, 0.090};
+inline constexpr Colour panel{0.118, 0.125, 0.137};
+inline constexpr Colour rule{0.235, 0.247, 0.267};
+inline constexpr Colour bright{0.953, 0.953, 0.941};
+inline constexpr Colour muted{0.682, 0.702, 0.729};
+inline constexpr Colour photograph_accent{0.957, 0.733, 0.373};
+inline constexpr Colour instrument_accent{0.431, 0.792, 0.867};
+inline constexpr Colour alert{1.0, 0.43, 1.0};
+/// For curves and outlines, told apart by lightness as well as by hue.
+inline constexpr Colour series[] = {{0.431, 0.792, 0.867}, {0.957, 0.733, 0.373}, {0.929, 0.502, 0.494},
+                                    {0.616, 0.827, 0.506}, {0.769, 0.651, 0.925}, {0.80, 0.80, 0.80}};
+inline constexpr std::size_t series_count = sizeof series / sizeof series[0];
+
+// Margins, and the bands of the sheet from top to bottom.
+inline constexpr double margin = 32, gap = 20;
+inline constexpr double sheet_inner = sheet_width - 2 * margin;
+inline constexpr Rect header_band{margin, 20, sheet_inner, 32};
+inline constexpr Rect content_band{margin, 64, sheet_inner, 540};
+inline constexpr Rect caption_band{margin, 616, sheet_inner, 56};
+inline constexpr Rect footer_band{margin, 680, sheet_inner, 20};
+
+inline constexpr Text label_text{20, bright, Weight::medium, Align::left, Vertical::middle, 1, 15};
+inline constexpr Text title_text{24, bright, Weight::semibold, Align::left, Vertical::top, 1, 15};
+inline constexpr Text body_text{18, bright, Weight::regular, Align::left, Vertical::top, 1, 14};
+inline constexpr Text small_text{15, muted, Weight::regular, Align::left, Vertical::top, 1, 12};
+
+constexpr Text with(Text t, Align a) { return t.align = a, t; }
+constexpr Text with(Text t, Vertical v) { return t.vertical = v, t; }
+constexpr Text with(Text t, const Colour& c) { return t.ink = c, t; }
+constexpr Text with(Text t, Weight w) { return t.weight = w, t; }
+constexpr Text with_lines(Text t, int lines) { return t.lines = lines, t; }
+constexpr Text with_px(Text t, double px) { return t.px = px, t; }
+
+/// The band cut into `n` equal columns.
+inline Rect column(const Rect& band, std::size_t n, std::size_t i) {
+    double w = (band.w - gap * double(n - 1)) / double(n);
+    return {band.x + double(i) * (w + gap), band.y, w, band.h};
+}
+
+}  // namespace crescent::plates

@@ -1,0 +1,117 @@
+#include "plates/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plates/canvas.h"
+
+namespace crescent::plates {
+
+namespace {
+
+struct Sampler {
+    const char *word, *name, *formula;
+};
+// The note's three densities, in 1/sr; {s1} stands for s + 1 and {s} for s.
+constexpr Sampler samplers[] = {
+    {"uniform", "Uniform", "p(ω) = 1/(2π)"},
+    {"cosine", "Cosine", "p(ω) = (n·ω)/π"},
+    {"phong", "Phong-IS", "p(ω) = {s1}/(2π) (ω·R)<sup>{s}</sup>"},
+};
+
+const Sampler* find(const std::string& word) {
+    for (const Sampler& s : samplers) {
+        if (word == s.word) return &s;
+    }
+    return nullptr;
+}
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+    if (auto at = text.find(what); at != std::string::npos) text.replace(at, what.size(), by);
+}
+
+std::string formula(const std::string& arm, const Experiment& e, const std::string& s, const std::string& s1) {
+    std::string word = sampler_of(arm, e);
+    const Sampler* known = find(word);
+    if (!known) return "sampler " + escaped(word.empty() ? arm : word);
+    std::string text = known->formula;
+    replace(text, "{s1}", s1);
+    replace(text, "{s}", s);
+    return text;
+}
+
+// The distinct values in order of appearance, joined by " | ".
+template <class F> std::string distinct(const std::vector<RunKey>& runs, F text) {
+    std::vector<std::string> seen;
+    for (const RunKey& r : runs) {
+        std::string t = text(r);
+        if (std::find(seen.begin(), seen.end(), t) == seen.end()) seen.push_back(t);
+    }
+    return fmt::format("{}", fmt::join(seen, " | "));
+}
+
+}  // namespace
+
+RunKey key_of(const PlateRun& run, const Experiment& e) { return {run.arm, run.n, run.s > 0 ? run.s : e.s(), e.seed}; }
+
+std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e) {
+    std::vector<RunKey> keys;
+    for (const PlateRun& r : plan.runs) keys.push_back(key_of(r, e));
+    return keys;
+}
+
+std::string sampler_of(const std::string& arm, const Experiment& e) {
+    for (const ArmPlan& a : e.arms) {
+        if (a.name == arm) return a.sampler;
+    }
+    return {};
+}
+
+std::string arm_name(const std::string& arm, const Experiment& e) {
+    const Sampler* known = sampler_of(arm, e) == arm ? find(arm) : nullptr;
+    return known ? known->name : escaped(arm);
+}
+
+std::string density_formula(const std::string& arm, const Experiment& e) { return formula(arm, e, "s", "(s+1)"); }
+
+std::string density_formula_at(const std::string& arm, double s, const Experiment& e) {
+    return formula(arm, e, number(s), number(s + 1));
+}
+
+std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n) {
+    std::string label = distinct(runs, [&](const RunKey& r) { return arm_name(r.arm, e); });
+    if (with_n) label += " N=" + distinct(runs, [](const RunKey& r) { return fmt::format("{}", r.n); });
+    return label + " s=" + distinct(runs, [](const RunKey& r) { return number(r.s); });
+}
+
+std::string reference_words(const Experiment& e) {
+    const ReferencePlan& r = e.reference;
+    if (r.kind == ReferenceKind::quadrature) return "by quadrature, no samples";
+    return fmt::format("lobe {} spp, disk {} spp, seed {}", r.lobe_spp, r.disk_spp, r.seed);
+}
+
+std::string number(double v, int digits) {
+    if (std::isnan(v)) return "not a number";
+    if (std::isinf(v)) return v > 0 ? "∞" : "−∞";
+    std::string text = fmt::format("{:.{}g}", v, digits);
+    if (auto e = text.find('e'); e != std::string::npos) {
+        int power = std::stoi(text.substr(e + 1));
+        std::string exponent = (power < 0 ? "−" : "") + std::to_string(std::abs(power));
+        text = text.substr(0, e) + "·10<sup>" + exponent + "</sup>";
+    }
+    if (text[0] == '-') text.replace(0, 1, "−");
+    return text;
+}
+
+std::string count(std::uint64_t v) {
+    std::string digits = std::to_string(v), out;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0 && digits.size() > 4) out += "\u2009";
+        out += digits[i];
+    }
+    return out;
+}
+
+}  // namespace crescent::plates

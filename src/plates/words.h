@@ -1,0 +1,40 @@
+// The words and numbers that stand on plates, all read from the experiment: arm names, densities, labels.
+// Everything returned is Pango markup.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "films/film.h"
+#include "plates/plates.h"
+
+namespace crescent::plates {
+
+/// A run of the plan with the experiment's own s and seed filled in.
+RunKey key_of(const PlateRun& run, const Experiment& e);
+std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e);
+
+/// The arm as a reader calls it ("Phong-IS"); an arm that was given another name than its sampler keeps it.
+std::string arm_name(const std::string& arm, const Experiment& e);
+/// The word of arms/all.h that the arm uses, "" where the experiment has no such arm.
+std::string sampler_of(const std::string& arm, const Experiment& e);
+/// "p(ω) = (s+1)/(2π) (ω·R)ˢ"; for a sampler without a short form, its name.
+std::string density_formula(const std::string& arm, const Experiment& e);
+/// The same density after `s` has been put in.
+std::string density_formula_at(const std::string& arm, double s, const Experiment& e);
+
+/// "Phong-IS N=256 s=32", or with several runs "Uniform | Cosine | Phong-IS N=64 s=32": what they share is said once.
+std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n = true);
+
+/// How the reference was computed: "by quadrature, no samples" or its sample counts and seed.
+std::string reference_words(const Experiment& e);
+
+/// At most `digits` significant digits, a true minus, ∞ and "not a number" in words; powers of ten set as such.
+std::string number(double v, int digits = 4);
+/// 12345678 -> "12 345 678" with thin spaces.
+std::string count(std::uint64_t v);
+
+inline constexpr const char* radiance_unit = "W·sr<sup>−1</sup>·m<sup>−2</sup>";
+
+}  // namespace crescent::plates

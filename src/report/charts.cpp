@@ -1,0 +1,190 @@
+#include "report/charts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "report/escape.h"
+#include "report/numbers.h"
+
+namespace crescent {
+namespace {
+
+constexpr double left_margin = 58, right_margin = 16, top_margin = 12, bottom_margin = 44;
+
+std::string tick_text(double x, bool log) {
+    if (log && x >= 1e4) {
+        const int power = static_cast<int>(std::lround(std::log10(x)));
+        if (std::fabs(std::pow(10.0, power) / x - 1) < 1e-9)
+            return fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", power);
+    }
+    return fmt::format("{:g}", x);
+}
+
+/// The round step (1, 2 or 5 times a power of ten) that cuts `length` into four to eight parts.
+double round_step(double length) {
+    const double power = std::pow(10.0, std::floor(std::log10(length / 4)));
+    for (const double step : {5.0, 2.0, 1.0})
+        if (length / (step * power) >= 4) return step * power;
+    return power;
+}
+
+}  // namespace
+
+double Axis::share(double x) const {
+    if (log) return std::log(x / low) / std::log(high / low);
+    return (x - low) / (high - low);
+}
+
+Axis linear_axis(std::string label, const std::vector<double>& values) {
+    Axis axis;
+    axis.label = std::move(label);
+    std::vector<double> finite;
+    for (const double v : values)
+        if (std::isfinite(v)) finite.push_back(v);
+    if (finite.empty()) finite = {0, 1};
+    double low = *std::min_element(finite.begin(), finite.end()), high = *std::max_element(finite.begin(), finite.end());
+    if (high <= low) high = low + std::max(1e-12, std::fabs(low));
+    const double step = round_step(high - low);
+    axis.low = step * std::floor(low / step + 1e-9);
+    axis.high = step * std::ceil(high / step - 1e-9);
+    const int count = static_cast<int>(std::lround((axis.high - axis.low) / step));
+    for (int i = 0; i <= count; ++i) {
+        const double tick = axis.low + i * step;
+        axis.ticks.push_back(std::fabs(tick) < 1e-9 * step ? 0 : tick);
+    }
+    return axis;
+}
+
+Axis log_axis(std::string label, const std::vector<double>& values) {
+    Axis axis;
+    axis.label = std::move(label);
+    axis.log = true;
+    std::vector<double> positive;
+    for (const double v : values)
+        if (std::isfinite(v) && v > 0) positive.push_back(v);
+    if (positive.empty()) positive = {1, 10};
+    axis.low = *std::min_element(positive.begin(), positive.end()) / 1.25;
+    axis.high = *std::max_element(positive.begin(), positive.end()) * 1.25;
+    const double decades = std::log10(axis.high / axis.low);
+    const std::vector<double> parts = decades > 4 ? std::vector<double>{1} : decades > 1.5 ? std::vector<double>{1, 3}
+                                                                            : std::vector<double>{1, 2, 3, 5};
+    for (int power = static_cast<int>(std::floor(std::log10(axis.low))); std::pow(10.0, power) <= axis.high; ++power)
+        for (const double part : parts) {
+            const double tick = part * std::pow(10.0, power);
+            if (tick >= axis.low && tick <= axis.high) axis.ticks.push_back(tick);
+        }
+    return axis;
+}
+
+Chart::Chart(int w, int h, Axis x, Axis y, std::string title)
+    : width_(w), height_(h), x_(std::move(x)), y_(std::move(y)), title_(std::move(title)) {}
+
+double Chart::px(double x) const { return left_margin + x_.share(x) * (width_ - left_margin - right_margin); }
+double Chart::py(double y) const { return height_ - bottom_margin - y_.share(y) * (height_ - top_margin - bottom_margin); }
+
+bool Chart::drawable(double x, double y) const {
+    return std::isfinite(x) && std::isfinite(y) && (!x_.log || x > 0) && (!y_.log || y > 0);
+}
+
+void Chart::line(const std::vector<Point>& points, std::string_view css) {
+    std::string path;
+    for (const Point& p : points)
+        if (drawable(p.x, p.y)) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", px(p.x), py(p.y));
+    if (!path.empty()) body_ += fmt::format("<path class=\"line {}\" d=\"{}\" />\n", css, path);
+}
+
+void Chart::dots(const std::vector<Point>& points, std::string_view css) {
+    for (const Point& p : points)
+        if (drawable(p.x, p.y))
+            body_ += fmt::format("<circle class=\"dot {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.6\" />\n", css, px(p.x), py(p.y));
+}
+
+void Chart::diamonds(const std::vector<Point>& points, std::string_view css) {
+    for (const Point& p : points)
+        if (drawable(p.x, p.y))
+            body_ += fmt::format("<path class=\"diamond {}\" d=\"M{:.1f} {:.1f} l5 5 l-5 5 l-5 -5 z\" />\n", css, px(p.x),
+                                 py(p.y) - 5);
+}
+
+void Chart::band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
+                 std::string_view css) {
+    std::string there, back;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!drawable(x[i], low[i]) || !drawable(x[i], high[i])) continue;
+        there += fmt::format("{}{:.1f} {:.1f}", there.empty() ? "M" : " L", px(x[i]), py(high[i]));
+        back = fmt::format(" L{:.1f} {:.1f}", px(x[i]), py(low[i])) + back;
+    }
+    if (!there.empty()) body_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, there, back);
+}
+
+void Chart::bar(double x, double low, double high, std::string_view css) {
+    if (!drawable(x, low) || !drawable(x, high)) return;
+    const double at = px(x), from = py(low), to = py(high);
+    body_ += fmt::format("<path class=\"line {}\" d=\"M{:.1f} {:.1f} h8 m-4 0 V{:.1f} m-4 0 h8\" />\n", css, at - 4, from, to);
+}
+
+void Chart::rule(double y, std::string_view css, std::string_view name) {
+    if (!drawable(x_.low, y)) return;
+    body_ += fmt::format("<path class=\"rule {}\" d=\"M{:.1f} {:.1f} H{:.1f}\" />\n", css, left_margin, py(y),
+                         width_ - right_margin);
+    if (!name.empty())
+        body_ += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", css,
+                             width_ - right_margin - 3, py(y) - 5, escape(name));
+}
+
+void Chart::name(Point at, std::string_view text, std::string_view css) {
+    if (!drawable(at.x, at.y)) return;
+    body_ += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", css, px(at.x) + 8, py(at.y) + 4,
+                         escape(text));
+}
+
+std::string Chart::axes() const {
+    const double bottom = height_ - bottom_margin, right = width_ - right_margin;
+    std::string out;
+    for (const double t : x_.ticks)
+        out += fmt::format("<path class=\"grid\" d=\"M{0:.1f} {1:.1f} V{2:.1f}\" /><text class=\"tick\" x=\"{0:.1f}\" "
+                           "y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n",
+                           px(t), bottom, top_margin, bottom + 16, tick_text(t, x_.log));
+    for (const double t : y_.ticks)
+        out += fmt::format("<path class=\"grid\" d=\"M{0:.1f} {1:.1f} H{2:.1f}\" /><text class=\"tick\" x=\"{3:.1f}\" "
+                           "y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
+                           left_margin, py(t), right, left_margin - 7, py(t) + 4, tick_text(t, y_.log));
+    out += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f} V{:.1f} H{:.1f}\" />\n", left_margin, top_margin, bottom, right);
+    out += fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                       (left_margin + right) / 2, height_ - 8, escape(x_.label));
+    const double middle = (top_margin + bottom) / 2;
+    return out + fmt::format("<text class=\"label\" transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                             middle, escape(y_.label));
+}
+
+std::string Chart::str() const {
+    return fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n",
+                       width_, height_, escape(title_), escape(title_), axes(), body_);
+}
+
+std::string strip_svg(const Strip& s) {
+    constexpr double w = 132, h = 18, margin = 8, middle = h / 2;
+    std::vector<double> all{s.median, s.measured};
+    if (s.bar) all.insert(all.end(), {s.q05, s.q95});
+    if (s.has_published) all.push_back(s.published);
+    for (const double v : all)
+        if (!std::isfinite(v)) return {};
+    const double low = *std::min_element(all.begin(), all.end()), high = *std::max_element(all.begin(), all.end());
+    const auto at = [&](double v) { return high > low ? margin + (v - low) / (high - low) * (w - 2 * margin) : w / 2; };
+    std::string marks = fmt::format("<path class=\"grid\" d=\"M0 {} H{}\" />", middle, w);
+    if (s.bar)
+        marks += fmt::format("<rect class=\"reach\" x=\"{:.1f}\" y=\"4.5\" width=\"{:.1f}\" height=\"9\" />", at(s.q05),
+                             std::max(1.0, at(s.q95) - at(s.q05)));
+    marks += fmt::format("<path class=\"median\" d=\"M{:.1f} 2 V16\" />", at(s.median));
+    if (s.has_published) marks += fmt::format("<path class=\"diamond pub\" d=\"M{:.1f} 4 l5 5 l-5 5 l-5 -5 z\" />", at(s.published));
+    marks += fmt::format("<circle class=\"dot meas\" cx=\"{:.1f}\" cy=\"9\" r=\"3\" />", at(s.measured));
+    std::string words = fmt::format("median {}, measured {}", figures(s.median), figures(s.measured));
+    if (s.bar) words += fmt::format(", 5 to 95 % from {} to {}", figures(s.q05), figures(s.q95));
+    if (s.has_published) words += fmt::format(", published {}", figures(s.published));
+    return fmt::format("<svg class=\"strip\" viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>", w,
+                       h, w, h, words, marks);
+}
+
+}  // namespace crescent

@@ -1,0 +1,70 @@
+// Charts as inline SVG: axes (linear or log), lines, dots, bands, bars. Sizes in CSS pixels of an unscaled chart; the
+// chart scales with the page. Colours are classes of the page's style sheet (c0, c1, ...), so that they follow light and
+// dark. Points that are not finite, or not positive on a log axis, are not drawn.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace crescent {
+
+struct Point {
+    double x = 0, y = 0;
+};
+
+struct Axis {
+    double low = 0, high = 1;  // data at the two ends
+    bool log = false;
+    std::string label;         // MathML does not go into SVG: plain text
+    std::vector<double> ticks;
+
+    /// Where x lies on the axis: 0 at low, 1 at high.
+    double share(double x) const;
+};
+
+/// An axis that holds all values, with round ticks; log axes need positive values (others are passed over). Values that
+/// are all alike still get an axis of some length.
+Axis linear_axis(std::string label, const std::vector<double>& values);
+Axis log_axis(std::string label, const std::vector<double>& values);
+
+class Chart {
+public:
+    /// `title` is read out in place of the picture.
+    Chart(int width, int height, Axis x, Axis y, std::string title);
+
+    void line(const std::vector<Point>& points, std::string_view css);
+    void dots(const std::vector<Point>& points, std::string_view css);
+    void diamonds(const std::vector<Point>& points, std::string_view css);
+    /// The area between two curves over the same x.
+    void band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
+              std::string_view css);
+    /// A vertical bar with caps, as for an interval.
+    void bar(double x, double low, double high, std::string_view css);
+    /// A horizontal line at y, named at its right end inside the frame.
+    void rule(double y, std::string_view css, std::string_view name);
+    /// Words at a data point, shifted right by a few pixels; for the end of a line.
+    void name(Point at, std::string_view text, std::string_view css);
+    std::string str() const;
+
+private:
+    double px(double x) const;
+    double py(double y) const;
+    bool drawable(double x, double y) const;
+    std::string axes() const;
+
+    int width_, height_;
+    Axis x_, y_;
+    std::string title_, body_;
+};
+
+/// A strip: 5-95 % as a bar, the median as a tick, the measured value as a dot, the published one as a diamond.
+struct Strip {
+    double q05 = 0, median = 0, q95 = 0, measured = 0;
+    bool bar = true;          // false: no interval (heavy tail)
+    bool has_published = false;
+    double published = 0;
+};
+std::string strip_svg(const Strip& strip);
+
+}  // namespace crescent

@@ -1,0 +1,123 @@
+#include "report/findings.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace crescent {
+
+Comparison compare(const std::string& a, double value_a, const std::string& b, double value_b) {
+    Comparison c;
+    const bool first = value_a >= value_b;
+    c.larger = first ? a : b;
+    c.smaller = first ? b : a;
+    c.high = first ? value_a : value_b;
+    c.low = first ? value_b : value_a;
+    c.equal = value_a == value_b;
+    c.ratio = c.equal ? 1 : c.low > 0 ? c.high / c.low : std::numeric_limits<double>::infinity();
+    return c;
+}
+
+const ArmPlan* Findings::arm_with(const std::string& sampler) const {
+    for (const ArmPlan& arm : in_.experiment.arms)
+        if (arm.sampler == sampler) return &arm;
+    return nullptr;
+}
+
+std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const {
+    if (arms.empty()) return 0;
+    const auto has = [](const ArmPlan* arm, std::uint64_t n) {
+        return std::find(arm->n.begin(), arm->n.end(), n) != arm->n.end();
+    };
+    std::uint64_t best = 0;
+    for (const std::uint64_t n : arms.front()->n)
+        if (std::all_of(arms.begin(), arms.end(), [&](const ArmPlan* arm) { return has(arm, n); }))
+            best = std::max(best, n);
+    return best;
+}
+
+std::uint64_t Findings::headline_n() const {
+    std::vector<const ArmPlan*> all;
+    for (const ArmPlan& arm : in_.experiment.arms) all.push_back(&arm);
+    if (const std::uint64_t n = common_n(all)) return n;
+    return all.empty() || all.front()->n.empty() ? 0 : all.front()->n.back();
+}
+
+const RunMeter* Findings::run(const std::string& arm, std::uint64_t n, std::optional<double> s) const {
+    const RunKey key{arm, n, s.value_or(this->s()), in_.experiment.seed};
+    for (const RunMeter& run : in_.metrics.runs)
+        if (run.key == key) return &run;
+    return nullptr;
+}
+
+const BandMeter* Findings::band(const std::string& arm, std::uint64_t n, const std::string& meter,
+                                std::optional<double> s) const {
+    const double exponent = s.value_or(this->s());
+    for (const BandMeter& b : in_.metrics.bands)
+        if (b.meter == meter && b.key.arm == arm && b.key.n == n && b.key.s == exponent) return &b;
+    return nullptr;
+}
+
+std::optional<double> Findings::rmse(const std::string& arm, std::uint64_t n, const std::string& region) const {
+    const RunMeter* found = run(arm, n);
+    const RegionMeter* meter = found ? found->region(region) : nullptr;
+    return meter ? std::optional(meter->rmse) : std::nullopt;
+}
+
+std::optional<Tail> Findings::tail(const BandMeter& band) const {
+    const auto dot = band.meter.find('.');
+    const RunMeter* found = dot == std::string::npos ? nullptr : run(band.key.arm, band.key.n, band.key.s);
+    const RegionMeter* meter = found ? found->region(band.meter.substr(dot + 1)) : nullptr;
+    return meter ? meter->tail : std::nullopt;
+}
+
+SeedCount Findings::seeds_above(const std::string& arm_a, const std::string& arm_b, std::uint64_t n,
+                                const std::string& region) const {
+    SeedCount count;
+    for (const RunMeter& a : in_.metrics.runs) {
+        if (a.key.arm != arm_a || a.key.n != n || a.key.s != s()) continue;
+        const RunMeter* b = in_.metrics.find(arm_b, n, s(), a.key.seed);
+        const RegionMeter *in_a = a.region(region), *in_b = b ? b->region(region) : nullptr;
+        if (!in_a || !in_b) continue;
+        ++count.of;
+        if (in_a->rmse > in_b->rmse) ++count.held;
+    }
+    return count;
+}
+
+std::string Findings::region_where_worst(const std::string& a, const std::string& b, std::uint64_t n) const {
+    std::string worst;
+    double largest = 0;
+    for (const Region& region : in_.experiment.regions) {
+        const auto of_a = rmse(a, n, region.name), of_b = rmse(b, n, region.name);
+        if (!of_a || !of_b) continue;
+        const double ratio = *of_b > 0 ? *of_a / *of_b : std::numeric_limits<double>::infinity();
+        if (worst.empty() || ratio > largest) {
+            worst = region.name;
+            largest = ratio;
+        }
+    }
+    return worst;
+}
+
+bool Findings::anything_published() const {
+    const auto has = [](const auto& x) { return x.published.has_value(); };
+    const Metrics& m = in_.metrics;
+    return std::any_of(m.bands.begin(), m.bands.end(), has) || std::any_of(m.furnaces.begin(), m.furnaces.end(), has);
+}
+
+std::uint64_t Findings::bad_samples() const {
+    std::uint64_t bad = 0;
+    for (const RunMeter& run : in_.metrics.runs) bad += run.bad;
+    for (const FurnaceMeter& furnace : in_.metrics.furnaces) bad += furnace.bad;
+    return bad;
+}
+
+std::vector<std::string> headline_meters(const Experiment& experiment) {
+    std::vector<std::string> all;
+    for (const char* kind : {"rmse.", "var."})
+        for (const Region& region : experiment.regions) all.push_back(kind + region.name);
+    for (const char* frame : {"fireflies", "horizon_frac", "y_mean"}) all.emplace_back(frame);
+    return all;
+}
+
+}  // namespace crescent

@@ -1,0 +1,65 @@
+// What the numbers of a run say, looked up and compared: which arms play which part, which run is the headline, and
+// sentences that are made from two values and so turn round when the values do. Nothing here is typed in.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/report.h"
+
+namespace crescent {
+
+/// "3.1 times", "the same as", with what was compared; see compare().
+struct Comparison {
+    std::string larger, smaller;  // names; as given where the values are equal
+    double high = 0, low = 0;
+    double ratio = 1;             // high / low, >= 1; infinite where low is 0
+    bool equal = false;
+};
+Comparison compare(const std::string& a, double value_a, const std::string& b, double value_b);
+
+/// How many seeds had meter(a) > meter(b), of how many.
+struct SeedCount {
+    int held = 0, of = 0;
+};
+
+class Findings {
+public:
+    explicit Findings(const ReportInputs& in) : in_(in) {}
+
+    /// First arm of the experiment that draws with this sampler ("cosine"); nullptr: none.
+    const ArmPlan* arm_with(const std::string& sampler) const;
+
+    /// The largest n that every arm of `arms` has, 0 where they share none.
+    std::uint64_t common_n(const std::vector<const ArmPlan*>& arms) const;
+    /// The n at which arms are set side by side: common to all, else the largest of the first arm.
+    std::uint64_t headline_n() const;
+
+    /// At the published seed and the experiment's own s unless given.
+    const RunMeter* run(const std::string& arm, std::uint64_t n, std::optional<double> s = {}) const;
+    const BandMeter* band(const std::string& arm, std::uint64_t n, const std::string& meter,
+                          std::optional<double> s = {}) const;
+    /// RMSE in a region at the published seed.
+    std::optional<double> rmse(const std::string& arm, std::uint64_t n, const std::string& region) const;
+    /// Tail of the region that a meter such as "rmse.H" names; empty for whole-frame meters.
+    std::optional<Tail> tail(const BandMeter& band) const;
+    SeedCount seeds_above(const std::string& arm_a, const std::string& arm_b, std::uint64_t n,
+                          const std::string& region) const;
+
+    /// Region in which rmse(a)/rmse(b) at n is largest, "" where there is none.
+    std::string region_where_worst(const std::string& a, const std::string& b, std::uint64_t n) const;
+
+    bool anything_published() const;
+    double s() const { return in_.experiment.s(); }
+    std::uint64_t bad_samples() const;
+
+private:
+    const ReportInputs& in_;
+};
+
+/// Meters in the order in which they are told, without the whole-frame RMSE: rmse.*, var.*, fireflies, ...
+std::vector<std::string> headline_meters(const Experiment& experiment);
+
+}  // namespace crescent

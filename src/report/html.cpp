@@ -1,0 +1,59 @@
+#include "report/html.h"
+
+#include <fmt/format.h>
+
+namespace crescent::html {
+namespace {
+
+std::string cell(const Cell& c, std::string_view scope) {
+    std::string attributes;
+    if (!scope.empty()) attributes += fmt::format(" scope=\"{}\"", scope);
+    if (c.number) attributes += " class=\"n\"";
+    if (c.rows > 1) attributes += fmt::format(" rowspan=\"{}\"", c.rows);
+    if (c.across > 1) attributes += fmt::format(" colspan=\"{}\"", c.across);
+    const std::string_view tag = scope.empty() ? "td" : "th";
+    return fmt::format("<{}{}>{}</{}>", tag, attributes, c.html, tag);
+}
+
+}  // namespace
+
+std::string element(std::string_view tag, std::string_view attributes, std::string_view html) {
+    return fmt::format("<{}{}{}>{}</{}>", tag, attributes.empty() ? "" : " ", attributes, html, tag);
+}
+
+std::string list(const std::vector<std::string>& html_items) {
+    std::string items;
+    for (const std::string& item : html_items) items += element("li", item) + "\n";
+    return element("ul", "\n" + items) + "\n";
+}
+
+std::string heavy_tail() { return element("span", "class=\"heavy\"", "heavy tail"); }
+
+Cell words(std::string html) { return {std::move(html), false, false, 1, 1}; }
+Cell figure(std::string text) { return {text.empty() ? "–" : escape(text), true, false, 1, 1}; }
+Cell heading(std::string html, int rows) { return {std::move(html), false, true, rows, 1}; }
+
+void Table::row(const std::vector<Cell>& cells) {
+    if (!grouped_ && rows_ == 0) body_ += "<tbody>\n";
+    body_ += "<tr>";
+    for (const Cell& c : cells) body_ += cell(c, c.head ? "row" : "");
+    body_ += "</tr>\n";
+    ++rows_;
+}
+
+void Table::group(std::string_view html) {
+    if (grouped_ || rows_ > 0) body_ += "</tbody>\n";
+    body_ += fmt::format("<tbody>\n<tr class=\"group\"><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n", head_.size(), html);
+    grouped_ = true;
+}
+
+std::string Table::str() const {
+    std::string head;
+    for (const Cell& c : head_) head += cell(c, "col");
+    const std::string end = grouped_ || rows_ > 0 ? "</tbody>" : "";
+    return fmt::format("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"table\"><table>\n"
+                       "<caption>{}</caption>\n<thead><tr>{}</tr></thead>\n{}{}</table></div>\n",
+                       caption_, head, body_, end);
+}
+
+}  // namespace crescent::html

@@ -1,0 +1,62 @@
+// XHTML-compatible HTML5 in small pieces: every tag is closed, every attribute quoted, every name escaped. A function
+// that takes `html` passes it on as it is; one that takes `text` escapes it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/escape.h"
+
+namespace crescent::html {
+
+/// <tag attributes>html</tag>; attributes as written, e.g. R"(class="note")".
+std::string element(std::string_view tag, std::string_view attributes, std::string_view html);
+inline std::string element(std::string_view tag, std::string_view html) { return element(tag, "", html); }
+
+inline std::string p(std::string_view html) { return element("p", html) + "\n"; }
+inline std::string code(std::string_view text) { return element("code", escape(text)); }
+/// One command on a line of its own.
+inline std::string command(std::string_view text) { return element("pre", element("code", escape(text))) + "\n"; }
+inline std::string link(std::string_view id, std::string_view html) {
+    return element("a", "href=\"#" + std::string(id) + "\"", html);
+}
+std::string list(const std::vector<std::string>& html_items);
+
+/// A number in a sentence keeps its digits together and in tabular figures.
+inline std::string value(std::string_view text) { return element("span", "class=\"v\"", escape(text)); }
+
+/// "heavy tail", set apart where an interval would stand.
+std::string heavy_tail();
+
+/// One cell; `head` makes it a row's heading, `number` aligns it to the right.
+struct Cell {
+    std::string html;
+    bool number = false;
+    bool head = false;
+    int rows = 1;  // rowspan
+    int across = 1;  // colspan
+};
+Cell words(std::string html);
+Cell figure(std::string text);  // escaped, right-aligned; "" becomes an en dash
+Cell heading(std::string html, int rows = 1);
+
+/// A table that scrolls by itself on a narrow screen and is never cut across pages inside a row.
+class Table {
+public:
+    Table(std::string caption_html, std::vector<Cell> head) : caption_(std::move(caption_html)), head_(std::move(head)) {}
+    void row(const std::vector<Cell>& cells);
+    /// A heading across the table; the rows that follow belong to it.
+    void group(std::string_view html);
+    bool empty() const { return rows_ == 0; }
+    std::string str() const;
+
+private:
+    std::string caption_;
+    std::vector<Cell> head_;
+    std::string body_;
+    std::size_t rows_ = 0;
+    bool grouped_ = false;
+};
+
+}  // namespace crescent::html

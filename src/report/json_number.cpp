@@ -1,0 +1,19 @@
+#include "report/json_number.h"
+
+#include <cmath>
+
+#include "report/numbers.h"
+
+namespace crescent {
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(shortest(x)); }
+
+Json numbers(const std::vector<double>& all) {
+    Json out = Json::array();
+    for (const double x : all) out.push_back(number(x));
+    return out;
+}
+
+std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+}  // namespace crescent

@@ -1,0 +1,101 @@
+#include "report/mathml.h"
+
+#include <fmt/format.h>
+
+namespace crescent::mathml {
+namespace {
+
+M n_dot_omega(std::string_view index = "") { return paren({mi("n"), mo("⋅"), omega(index)}); }
+M omega_dot_R() { return paren({omega(), mo("⋅"), mi("R")}); }
+M plus_s() { return row({mi("s"), mo("+"), mn("1")}); }
+M two_pi() { return row({mn("2"), mi("π")}); }
+M Y(const M& low) { return sub(mi("Y"), low); }
+M f_r(std::string_view index) {
+    return row({sub(mi("f"), mi("r")), paren({omega(index), mo(","), omega("o")})});
+}
+M L_i(std::string_view index) { return row({sub(mi("L"), mi("i")), paren({omega(index)})}); }
+M hemisphere() { return sup(upright("Ω"), mo("+")); }
+M index_from_one() { return row({mi("k"), mo("="), mn("1")}); }
+
+}  // namespace
+
+M in_line(const M& inside) { return "<math>" + inside + "</math>"; }
+
+M display(const M& inside, std::string_view alt) {
+    return fmt::format("<div class=\"equation\"><math display=\"block\" alttext=\"{}\">{}</math></div>\n", alt, row({inside}));
+}
+
+M omega(std::string_view index) { return index.empty() ? mi("ω") : sub(mi("ω"), mi(index)); }
+
+M rmse(std::string_view region) {
+    const M name = "<mi mathvariant=\"normal\">RMSE</mi>";
+    return region.empty() ? name : sub(name, mi(region));
+}
+
+M integral() {
+    return row({sub(mi("L"), mi("o")), paren({omega("o")}), mo("="), sub(mo("∫"), hemisphere()), f_r(""), space(),
+                L_i(""), space(), n_dot_omega(), space(), upright("d"), omega()});
+}
+
+M estimator() {
+    return row({sub(hat(mi("L")), mi("o")), mo("="), frac(mn("1"), mi("N")),
+                under(mo("∑"), index_from_one(), mi("N")),
+                frac(row({f_r("k"), space(), L_i("k"), space(), n_dot_omega("k")}), row({mi("p"), paren({omega("k")})}))});
+}
+
+M brdf_phong() {
+    return row({sub(mi("f"), mi("r")), mo("="), frac(sub(mi("ρ"), mi("d")), mi("π")), mo("+"), sub(mi("ρ"), mi("s")),
+                space(), frac(row({mi("s"), mo("+"), mn("2")}), two_pi()), space(),
+                subsup(omega_dot_R(), mo("+"), mi("s"))});
+}
+
+M mirror() {
+    return row({mi("R"), mo("="), mn("2"), paren({mi("n"), mo("⋅"), omega("o")}), space(), mi("n"), mo("−"), omega("o")});
+}
+
+M rmse_region() {
+    const M square = sup(paren({Y(mi("N")), paren({mi("x")}), mo("−"), Y(upright("ref")), paren({mi("x")})}), mn("2"));
+    return row({rmse("A"), mo("="),
+                root(row({frac(mn("1"), row({mo("|"), mi("A"), mo("|")})),
+                          "<munder>" + mo("∑") + row({mi("x"), mo("∈"), mi("A")}) + "</munder>", square}))});
+}
+
+M variance() {
+    return row({upright("var"), paren({mi("x")}), mo("="),
+                frac(mn("1"), row({mi("N"), paren({mi("N"), mo("−"), mn("1")})})),
+                under(mo("∑"), index_from_one(), mi("N")),
+                sup(paren({sub(mi("X"), mi("k")), mo("−"), bar(mi("X"))}), mn("2"))});
+}
+
+M firefly() {
+    return row({mo("|"), Y(mi("N")), mo("−"), Y(upright("ref")), mo("|"), mo(">"), mi("k"), space(), Y(upright("ref"))});
+}
+
+M density_uniform() { return frac(mn("1"), two_pi()); }
+M density_cosine() { return frac(n_dot_omega(), mi("π")); }
+M density_phong() { return row({frac(plus_s(), two_pi()), space(), subsup(omega_dot_R(), mo("+"), mi("s"))}); }
+
+M inverse_uniform() { return row({mi("cos"), mi("θ"), mo("="), sub(mi("u"), mn("1"))}); }
+M inverse_cosine() { return row({mi("cos"), mi("θ"), mo("="), root(sub(mi("u"), mn("1")))}); }
+M inverse_phong() {
+    return row({mi("cos"), mi("θ"), mo("="),
+                subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
+}
+
+M pareto_index() { return row({mi("k"), mo("="), frac(row({mi("s"), mo("−"), mn("1")}), plus_s())}); }
+
+M lost_share() {
+    return frac(row({mn("1"), mo("−"), mi("cos"), sub(mi("θ"), mi("R"))}), mn("2"));
+}
+
+M capped_mean() {
+    return row({sub(mi("ρ"), mi("s")), mo("+"), sub(mi("ρ"), mi("d")),
+                paren({mn("1"), mo("−"),
+                       sup(mn("2"), row({mo("−"), mi("b"), paren({mn("1"), mo("−"), mi("k")})}))})});
+}
+
+M power_law() {
+    return row({rmse(), mo("∝"), sup(mi("N"), mi("m"))});
+}
+
+}  // namespace crescent::mathml

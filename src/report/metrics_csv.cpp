@@ -1,0 +1,57 @@
+// metrics.csv: every run in long form, one number a row, in RFC 4180 (CRLF, quotes doubled). The region is empty for
+// the meters of the whole frame. Units are those of meters/metrics.h.
+#include <string_view>
+
+#include "report/numbers.h"
+#include "report/report.h"
+
+namespace crescent {
+namespace {
+
+std::string quoted(std::string_view field) {
+    if (field.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(field);
+    std::string out = "\"";
+    for (const char c : field) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+struct Rows {
+    std::string out;
+    std::string run;  // "arm,n,s,seed,", the same for all rows of a run
+
+    void add(std::string_view meter, std::string_view region, const std::string& value) {
+        out += run + quoted(meter) + "," + quoted(region) + "," + value + "\r\n";
+    }
+    void add(std::string_view meter, std::string_view region, double value) { add(meter, region, shortest(value)); }
+};
+
+void add_region(Rows& rows, const RegionMeter& r) {
+    rows.add("rmse", r.region, r.rmse);
+    rows.add("var", r.region, r.var);
+    rows.add("pixels", r.region, std::to_string(r.pixels));
+    if (!r.tail) return;
+    rows.add("tail_k", r.region, r.tail->k);
+    rows.add("tail_se", r.region, r.tail->se);
+    rows.add("tail_exceedances", r.region, std::to_string(r.tail->exceedances));
+}
+
+}  // namespace
+
+std::string metrics_csv(const ReportInputs& in) {
+    Rows rows;
+    rows.out = "arm,n,s,seed,meter,region,value\r\n";
+    for (const RunMeter& run : in.metrics.runs) {
+        rows.run = quoted(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
+                   std::to_string(run.key.seed) + ",";
+        for (const RegionMeter& r : run.regions) add_region(rows, r);
+        rows.add("fireflies", "", std::to_string(run.fireflies));
+        rows.add("horizon_frac", "", run.horizon_frac);
+        rows.add("y_mean", "", run.y_mean);
+        rows.add("rmse_frame", "", run.rmse_frame);
+        rows.add("largest", "", run.largest);
+        rows.add("bad", "", std::to_string(run.bad));
+    }
+    return rows.out;
+}
+
+}  // namespace crescent

@@ -1,0 +1,79 @@
+#include "report/numbers.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace crescent {
+namespace {
+
+bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
+
+/// Where the code point number `count` begins.
+std::size_t offset_of(std::string_view text, std::size_t count) {
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < text.size(); ++i)
+        if (starts_code_point(text[i]) && seen++ == count) return i;
+    return text.size();
+}
+
+}  // namespace
+
+std::string shortest(double x) {
+    if (std::isnan(x)) return "nan";
+    if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, x);
+    return {text, end.ptr};
+}
+
+std::string figures(double x, int digits) {
+    if (!std::isfinite(x)) return shortest(x);
+    if (x == 0) return "0";
+    const double size = std::fabs(x);
+    if (size < 1e-4 || size >= 1e9) return fmt::format("{:.{}e}", x, std::max(0, digits - 2));
+    if (size >= 1000) return fmt::format("{:.0f}", x);
+    const int decimals = digits - 1 - static_cast<int>(std::floor(std::log10(size)));
+    return fmt::format("{:.{}f}", x, std::max(0, decimals));
+}
+
+std::string figures_of(std::string_view meter, double x) {
+    if (meter == "fireflies" && x == std::floor(x)) return fmt::format("{:.0f}", x);
+    return figures(x);
+}
+
+std::string percent(double fraction, int digits) {
+    if (!std::isfinite(fraction)) return shortest(fraction);
+    return fmt::format("{:.{}g} %", 100 * fraction, digits);
+}
+
+std::size_t width(std::string_view utf8) {
+    return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), starts_code_point));
+}
+
+std::string clip(std::string_view utf8, std::size_t columns) {
+    const std::size_t wide = width(utf8);
+    if (wide <= columns) return std::string(utf8);
+    if (columns == 0) return {};
+    const std::size_t head = (columns - 1) / 2, tail = columns - 1 - head;
+    return std::string(utf8.substr(0, offset_of(utf8, head))) + "…" +
+           std::string(utf8.substr(offset_of(utf8, wide - tail)));
+}
+
+std::string left(std::string_view utf8, std::size_t columns) {
+    const std::string text = clip(utf8, columns);
+    return text + std::string(columns - width(text), ' ');
+}
+
+std::string right(std::string_view utf8, std::size_t columns) {
+    const std::string text = clip(utf8, columns);
+    return std::string(columns - width(text), ' ') + text;
+}
+
+std::string plural(std::uint64_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace crescent

@@ -1,0 +1,95 @@
+// The page while it is written: the run it tells of, its figures and their numbers, and the sections in their order.
+// A section whose html is empty has nothing to say in this run and is left out, from the contents too.
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "report/charts.h"
+#include "report/findings.h"
+#include "report/html.h"
+#include "report/mathml.h"
+#include "report/numbers.h"
+#include "report/report.h"
+
+namespace crescent {
+
+/// Numbers the figures, embeds plates, and says under each what it is and which command makes it.
+class Figures {
+public:
+    explicit Figures(const ReportInputs& in);
+
+    /// Every plate of a kind that has not been shown yet; `only` may pick among them.
+    std::string plates(PlateKind kind, const std::function<bool(const PlatePlan&)>& only = {});
+    /// Plates that no section asked for.
+    std::string rest();
+    /// A chart drawn here from the numbers; `source` names the part of metrics.json it shows.
+    std::string chart(const std::string& svg, const std::string& caption_html, const std::string& source);
+    /// Plates that would make the page too heavy stay outside and are linked: their names.
+    const std::set<std::string>& outside() const { return outside_; }
+
+private:
+    std::string plate(const std::string& name, const PlatePlan* plan);
+    std::string figure(const std::string& id, const std::string& picture, const std::string& caption, const std::string& made);
+
+    const ReportInputs& in_;
+    std::set<std::string> shown_, outside_;
+    int count_ = 0;
+};
+
+struct Page {
+    const ReportInputs& in;
+    Findings find;
+    Figures figures;
+
+    explicit Page(const ReportInputs& inputs) : in(inputs), find(inputs), figures(inputs) {}
+    /// Class of an arm's colour, the same in every chart.
+    std::string colour(const std::string& arm) const;
+};
+
+struct Section {
+    std::string id, title, html;
+};
+
+// Theory.
+Section question(Page& page);
+Section estimator(Page& page);
+Section scene(Page& page);
+Section densities(Page& page);
+// What was measured.
+Section results(Page& page);
+Section failure_a(Page& page);
+Section failure_b(Page& page);
+Section ladders(Page& page);
+Section exponent(Page& page);
+Section furnaces(Page& page);
+Section published(Page& page);
+Section reference(Page& page);
+// What it means.
+Section where_wrong(Page& page);
+Section disagreements(Page& page);
+Section more_plates(Page& page);
+Section what_ifs(Page& page);
+Section limits(Page& page);
+Section assertions(Page& page);
+Section provenance(Page& page);
+
+// Parts that several sections share.
+
+/// "RMSE_H" with a real subscript, for "rmse.H"; and so on for every meter.
+std::string meter_html(const std::string& meter);
+/// The same without markup, for the labels of charts: "RMSE, region H".
+std::string meter_text(const std::string& meter);
+/// "k = 0.71 ± 0.02", or an en dash.
+std::string tail_html(const std::optional<Tail>& tail);
+/// "7.218 … 8.277", or the words heavy tail; nothing from a single seed.
+std::string interval_html(const std::string& meter, const Band& band);
+/// Which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
+std::string ordering_sentence(const Page& page, const std::string& a, const std::string& b, std::uint64_t n,
+                              const std::string& region);
+/// "3.1", "12": how many times.
+std::string times(double ratio);
+
+}  // namespace crescent

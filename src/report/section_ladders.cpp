@@ -1,0 +1,142 @@
+// RMSE against N with the fitted slope, and the exponent control. Ladders are prefixes of one stream of samples.
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "report/page.h"
+
+namespace crescent {
+namespace {
+
+using html::words;
+
+constexpr const char* ladder_prose = R"(
+<p>Every rung is the beginning of the next: the first 4 of 16 samples are the 4. Where the variance of a sample is finite the
+error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the first
+seed; the interval is the 5–95 % band of that slope over seeds. A heavy tail breaks the law: the rungs then jump whenever a
+rare sample arrives, and the slope says more about luck than about the arm.</p>
+)";
+
+constexpr const char* exponent_prose = R"(
+<p>The control runs {arm} again at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF of
+{shape} and in the reference alike, so each row is measured against its own truth. A wider lobe sends more samples under the
+horizon, a narrower one leaves more of the hemisphere to chance.</p>
+)";
+
+std::vector<const Ladder*> ladders_in(const Page& page, const std::string& region) {
+    std::vector<const Ladder*> all;
+    for (const Ladder& l : page.in.metrics.ladders)
+        if (l.region == region && l.n.size() > 1 && l.n.size() == l.rmse.size()) all.push_back(&l);
+    return all;
+}
+
+std::string slope_interval(const Ladder& l) {
+    if (l.heavy) return html::heavy_tail();
+    return html::value(fmt::format("{:.3f} … {:.3f}", l.low, l.high));
+}
+
+std::vector<Point> points_of(const Ladder& l) {
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < l.n.size(); ++i) points.push_back({static_cast<double>(l.n[i]), l.rmse[i]});
+    return points;
+}
+
+std::vector<Point> published_of(const Page& page, const Ladder& l) {
+    std::vector<Point> points;
+    for (const std::uint64_t n : l.n)
+        if (const BandMeter* band = page.find.band(l.arm, n, "rmse." + l.region, l.s); band && band->published)
+            points.push_back({static_cast<double>(n), *band->published});
+    return points;
+}
+
+/// RMSE = c N^(-1/2) through the first point, over the whole axis.
+std::vector<Point> guide(const Point& first, const Axis& x) {
+    return {{x.low, first.y * std::sqrt(first.x / x.low)}, {x.high, first.y * std::sqrt(first.x / x.high)}};
+}
+
+std::string ladder_chart(const Page& page, const std::string& region) {
+    const auto all = ladders_in(page, region);
+    std::vector<double> ns, values;
+    for (const Ladder* l : all)
+        for (const Point& p : points_of(*l)) ns.push_back(p.x), values.push_back(p.y);
+    for (const Ladder* l : all)
+        for (const Point& p : published_of(page, *l)) values.push_back(p.y);
+    Axis x = log_axis("N, samples per pixel", ns);
+    x.ticks.assign(ns.begin(), ns.end());
+    std::sort(x.ticks.begin(), x.ticks.end());
+    x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
+    x.high *= 2.2;  // room for names at the ends of lines
+    Chart chart(420, 330, x, log_axis(meter_text("rmse." + region), values), "RMSE against N in region " + region);
+    for (const Ladder* l : all) {
+        const auto points = points_of(*l);
+        const std::string colour = page.colour(l->arm);
+        if (points.front().y > 0) chart.line(guide(points.front(), {x.low, x.high / 2.2, true, "", {}}), "dashed " + colour);
+        chart.line(points, colour);
+        chart.dots(points, colour);
+        chart.diamonds(published_of(page, *l), colour);
+        chart.name(points.back(), l->arm, colour);
+    }
+    return chart.str();
+}
+
+std::string slope_table(const Page& page) {
+    html::Table table("Fitted slopes of log RMSE on log <i>N</i>; −0.5 where the variance is finite",
+                      {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
+    for (const Ladder& l : page.in.metrics.ladders)
+        if (l.n.size() > 1)
+            table.row({html::heading(escape(l.region)), words(escape(l.arm)), html::figure(shortest(l.s)),
+                       html::figure(fmt::format("{:.3f}", l.slope)), {slope_interval(l), true}});
+    return table.str();
+}
+
+html::Cell cell(const BandMeter* band) {
+    if (!band) return html::figure("");
+    std::string out = figures_of(band->meter, band->measured);
+    if (band->band.seeds > 1)
+        out += fmt::format("<small>{} [{}]</small>", figures_of(band->meter, band->band.median),
+                           interval_html(band->meter, band->band));
+    return {out, true, false, 1, 1};
+}
+
+}  // namespace
+
+Section ladders(Page& page) {
+    std::string charts;
+    for (const Region& region : page.in.experiment.regions)
+        if (!ladders_in(page, region.name).empty()) charts += ladder_chart(page, region.name);
+    if (charts.empty()) return {};
+    const std::string published = page.find.anything_published() ? " Diamonds: published values." : "";
+    std::string out = fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())));
+    out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
+                              "RMSE against <i>N</i> at the first seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
+                              "metrics.json, ladders");
+    return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
+}
+
+Section exponent(Page& page) {
+    const auto& control = page.in.experiment.exponent;
+    if (!control) return {};
+    const std::vector<std::string> meters = headline_meters(page.in.experiment);
+    std::vector<html::Cell> head{{"<i>s</i>", true}};
+    for (const std::string& meter : meters) head.push_back({meter_html(meter), true});
+    html::Table table(fmt::format("{} at <i>N</i> = {} by exponent. Large: first seed. Small: median and 5–95 % band", escape(control->arm),
+                                  control->n), head);
+    for (const double s : control->s) {
+        std::vector<html::Cell> row{{shortest(s), true, true}};
+        bool any = false;
+        for (const std::string& meter : meters) {
+            const BandMeter* band = page.find.band(control->arm, control->n, meter, s);
+            any = any || band;
+            row.push_back(cell(band));
+        }
+        if (any) table.row(row);
+    }
+    if (table.empty()) return {};
+    return {"exponent", "Exponent control",
+            fmt::format(exponent_prose, fmt::arg("arm", escape(control->arm)), fmt::arg("n", control->n),
+                        fmt::arg("shape", "<b>" + escape(control->shape) + "</b>")) +
+                table.str() + page.figures.plates(PlateKind::exponent)};
+}
+
+}  // namespace crescent

@@ -1,0 +1,109 @@
+// Every meter over seeds: the published value, the measured one, the band, and where in it the published value falls.
+#include <set>
+
+#include <fmt/format.h>
+
+#include "report/page.h"
+
+namespace crescent {
+namespace {
+
+using html::words;
+
+constexpr const char* published_prose = R"(
+<p>A published figure is one draw from one stream of random numbers. What can be asked of it is whether it lies where draws
+lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the first seed ({seed}) and
+the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the tail index
+<i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
+)";
+
+constexpr const char* measured_prose = R"(
+<p>In the strips the bar spans the middle 90 % of {seeds}, the tick is their median and the dot the first seed ({seed}); each
+strip has its own scale. Beside each RMSE and variance stands the tail index <i>k</i> of the samples of its region: from 1/2
+on their variance is infinite.</p>
+)";
+
+std::string fallen(const BandMeter& b) {
+    if (!b.published || !b.published_rank || b.band.seeds < 2) return "–";
+    if (*b.published_rank <= 0) return "below all";
+    if (*b.published_rank >= 1) return "above all";
+    return percent(*b.published_rank, 2);
+}
+
+std::vector<html::Cell> band_row(const Page& page, const BandMeter& b, bool published) {
+    Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1, b.published.has_value(),
+                b.published.value_or(0)};
+    std::vector<html::Cell> row{html::heading(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s)))};
+    if (published) row.push_back(html::figure(b.published ? figures_of(b.meter, *b.published) : ""));
+    row.push_back(html::figure(figures_of(b.meter, b.measured)));
+    row.push_back(html::figure(figures_of(b.meter, b.band.median)));
+    row.push_back({interval_html(b.meter, b.band), true});
+    row.push_back(words(strip_svg(strip)));
+    if (published) row.push_back({fallen(b), true});
+    row.push_back({tail_html(page.find.tail(b)), true});
+    return row;
+}
+
+std::vector<html::Cell> header(bool published) {
+    std::vector<html::Cell> head{words("Run")};
+    if (published) head.push_back({"Published", true});
+    head.insert(head.end(), {{"Measured", true}, {"Median", true}, {"5–95 %", true}, words("Strip")});
+    if (published) head.push_back({"Seeds below it", true});
+    head.push_back({"<i>k</i>", true});
+    return head;
+}
+
+/// Meters in the order they are told; whatever else was measured follows, without the whole frame.
+std::vector<std::string> meters_in_order(const Page& page) {
+    std::vector<std::string> order = headline_meters(page.in.experiment);
+    std::set<std::string> seen(order.begin(), order.end());
+    for (const BandMeter& b : page.in.metrics.bands)
+        if (b.meter != "rmse_frame" && seen.insert(b.meter).second) order.push_back(b.meter);
+    return order;
+}
+
+}  // namespace
+
+Section published(Page& page) {
+    const bool published = page.find.anything_published();
+    const Experiment& e = page.in.experiment;
+    html::Table table(published ? "Published beside measured" : "Every meter of every run", header(published));
+    for (const std::string& meter : meters_in_order(page)) {
+        bool first = true;
+        for (const BandMeter& b : page.in.metrics.bands) {
+            if (b.meter != meter) continue;
+            if (first) table.group(meter_html(meter));
+            first = false;
+            table.row(band_row(page, b, published));
+        }
+    }
+    if (table.empty()) return {};
+    const std::string prose = published ? published_prose : measured_prose;
+    const std::string intro = fmt::format(fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")),
+                                          fmt::arg("seed", e.seed));
+    return {"published", published ? "Published and measured" : "All meters",
+            intro + "<div class=\"wide\">" + table.str() + "</div>" + page.figures.plates(PlateKind::meters)};
+}
+
+Section disagreements(Page& page) {
+    if (!page.find.anything_published()) return {};
+    html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
+                      {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true}, {"Median against published", true}});
+    std::size_t judged = 0, outside = 0;
+    for (const BandMeter& b : page.in.metrics.bands) {
+        if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
+        ++judged;
+        if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
+        ++outside;
+        const std::string relative = *b.published == 0 ? "–" : fmt::format("{:+.1f} %", 100 * (b.band.median / *b.published - 1));
+        table.row({html::heading(meter_html(b.meter)), words(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s))),
+                   html::figure(figures_of(b.meter, *b.published)), html::figure(figures_of(b.meter, b.band.median)),
+                   {interval_html(b.meter, b.band), true}, html::figure(relative)});
+    }
+    if (judged == 0) return {};
+    std::string out = html::p(fmt::format("{} published values can be held against a band; {} of them fall outside it.", judged, outside));
+    if (outside > 0) out += table.str();
+    return {"disagreements", "Where note and scene disagree", out};
+}
+
+}  // namespace crescent

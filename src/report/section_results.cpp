@@ -1,0 +1,153 @@
+// The arms side by side at one N, and the two ways in which they fail: the broad density on a small light, the narrow
+// one on a broad integrand. Which region shows which is found from the numbers.
+#include <fmt/format.h>
+
+#include "report/page.h"
+
+namespace crescent {
+namespace {
+
+using html::words;
+
+/// The arms that tell the story: broad (cosine) and narrow (phong), where both ran at one N.
+struct Pair {
+    const ArmPlan *broad = nullptr, *narrow = nullptr;
+    std::uint64_t n = 0;
+    explicit operator bool() const { return broad && narrow && n > 0; }
+};
+Pair pair_of(const Page& page) {
+    Pair pair{page.find.arm_with("cosine"), page.find.arm_with("phong"), 0};
+    if (!pair.broad || !pair.narrow) return {};
+    const std::uint64_t shared = page.find.headline_n();
+    const auto ran = [&](std::uint64_t n) { return page.find.run(pair.broad->name, n) && page.find.run(pair.narrow->name, n); };
+    pair.n = ran(shared) ? shared : page.find.common_n({pair.broad, pair.narrow});
+    return ran(pair.n) ? pair : Pair{};
+}
+
+html::Cell cell(const BandMeter* band) {
+    if (!band) return html::figure("");
+    std::string out = figures_of(band->meter, band->measured);
+    if (band->band.seeds > 1)
+        out += fmt::format("<small>{} [{}]</small>", figures_of(band->meter, band->band.median), interval_html(band->meter, band->band));
+    return {out, true, false, 1, 1};
+}
+
+std::string headline_table(const Page& page, std::uint64_t n) {
+    const Experiment& e = page.in.experiment;
+    const std::vector<std::string> meters = headline_meters(e);
+    std::vector<html::Cell> head{words("Arm")};
+    for (const std::string& meter : meters) head.push_back({meter_html(meter), true, false, 1, 1});
+    html::Table table(fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: measured at the first seed, {}. Small: median "
+                                  "over {} and its 5–95 % band",
+                                  n, shortest(page.find.s()), e.seed, plural(static_cast<std::uint64_t>(e.seeds), "seed")), head);
+    for (const ArmPlan& arm : e.arms) {
+        std::vector<html::Cell> row{html::heading(escape(arm.name))};
+        for (const std::string& meter : meters) row.push_back(cell(page.find.band(arm.name, n, meter)));
+        table.row(row);
+    }
+    return table.str();
+}
+
+std::string frame_footnote(const Page& page, std::uint64_t n) {
+    std::string values;
+    for (const ArmPlan& arm : page.in.experiment.arms)
+        if (const RunMeter* run = page.find.run(arm.name, n))
+            values += fmt::format("{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
+    if (values.empty()) return {};
+    return html::element("p", "class=\"footnote\"",
+                         "Footnote: the RMSE of the whole frame, which lumps the regions together, reads " + values + ".") + "\n";
+}
+
+std::string broad_arms_sentence(const Page& page, const Pair& pair, const std::string& region) {
+    const ArmPlan* uniform = page.find.arm_with("uniform");
+    if (!uniform) return {};
+    const std::string sentence = ordering_sentence(page, uniform->name, pair.broad->name, pair.n, region);
+    return sentence.empty() ? "" : html::p("The uniform arm shows what aiming at nothing costs. " + sentence);
+}
+
+std::string not_seen(const Pair& pair, const std::string& loser, const std::string& winner) {
+    return html::p(fmt::format("In this run the failure does not show: at <i>N</i> = {} there is no region in which {}’s RMSE is "
+                               "larger than {}’s.", pair.n, escape(loser), escape(winner)));
+}
+
+bool larger_in(const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
+    const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
+    return of_a && of_b && *of_a > *of_b;
+}
+
+constexpr const char* a_prose = R"(
+<p>A small bright disk fills little of the hemisphere. A density that spreads its rays over all of it meets the disk seldom;
+when one ray does, it carries the light of all those that missed. On a glossy highlight that one ray also meets the lobe at
+its height, which the density knows nothing of, so its weight is enormous: the largest single sample of {broad} at
+<i>N</i> = {n} weighs {largest_broad}, that of {narrow} {largest_narrow}. Most pixels come out too dark, a few far too bright.
+Those few are fireflies: {fireflies_broad} pixels with {broad}, {fireflies_narrow} with {narrow}.</p>
+)";
+
+constexpr const char* b_prose = R"(
+<p>A lobe about the mirror direction sends nearly all rays where the lobe is. A matt surface gathers light from the whole
+hemisphere, and what comes from the sides is left to the few rays that stray there. Each of those stands for many that were
+never sent. The pixel is dark until one arrives, and then it sparkles. The mean of the frame tells it at a glance: all
+arms estimate the same integral, yet at <i>N</i> = {n} <i>Y</i><sub>mean</sub> reads {mean_narrow} with {narrow} and
+{mean_broad} with {broad}.</p>
+<p>On a surface without a gloss of its own the arm still aims about the mirror direction with the scene’s <i>s</i>, because an
+arm on trial is not told what it is shining on.</p>
+)";
+
+}  // namespace
+
+Section results(Page& page) {
+    const std::uint64_t n = page.find.headline_n();
+    if (n == 0) return {};
+    std::string out = page.figures.plates(PlateKind::columns) + headline_table(page, n);
+    const Pair pair = pair_of(page);
+    std::vector<std::string> items;
+    for (const Region& region : page.in.experiment.regions)
+        if (pair) items.push_back(ordering_sentence(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
+    if (!items.empty()) out += html::p("Region by region:") + html::list(items);
+    if (const std::uint64_t bad = page.find.bad_samples())
+        out += html::p(fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
+                                   "trusted until that is understood.", plural(bad, "sample")));
+    return {"results", "Results", out + page.figures.plates(PlateKind::heat) + frame_footnote(page, n)};
+}
+
+Section failure_a(Page& page) {
+    const Pair pair = pair_of(page);
+    if (!pair || page.in.experiment.regions.empty() || page.in.experiment.disks.empty()) return {};
+    const std::string broad = pair.broad->name, narrow = pair.narrow->name;
+    const std::string region = page.find.region_where_worst(broad, narrow, pair.n);
+    const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
+    std::string out;
+    if (larger_in(page, broad, narrow, pair.n, region))
+        out = html::p("It shows in region <b>" + escape(region) + "</b>. " + ordering_sentence(page, broad, narrow, pair.n, region)) +
+              broad_arms_sentence(page, pair, region);
+    else
+        out = not_seen(pair, broad, narrow);
+    out += fmt::format(a_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
+                       fmt::arg("largest_broad", html::value(figures(of_broad->largest))),
+                       fmt::arg("largest_narrow", html::value(figures(of_narrow->largest))),
+                       fmt::arg("fireflies_broad", of_broad->fireflies), fmt::arg("fireflies_narrow", of_narrow->fireflies));
+    const auto shows = [](const std::string& arm) {
+        return [arm](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; };
+    };
+    out += page.figures.plates(PlateKind::ladder, shows(broad)) + page.figures.plates(PlateKind::ladder, shows(narrow));
+    return {"failure-a", "Failure A: " + escape(broad) + " fireflies the highlight", out};
+}
+
+Section failure_b(Page& page) {
+    const Pair pair = pair_of(page);
+    if (!pair || page.in.experiment.regions.empty()) return {};
+    const std::string broad = pair.broad->name, narrow = pair.narrow->name;
+    const std::string region = page.find.region_where_worst(narrow, broad, pair.n);
+    const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
+    std::string out;
+    if (larger_in(page, narrow, broad, pair.n, region))
+        out = html::p("It shows in region <b>" + escape(region) + "</b>. " + ordering_sentence(page, narrow, broad, pair.n, region));
+    else
+        out = not_seen(pair, narrow, broad);
+    out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
+                       fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
+                       fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))));
+    return {"failure-b", "Failure B: " + escape(narrow) + " starves the surround", out + page.figures.plates(PlateKind::surround)};
+}
+
+}  // namespace crescent

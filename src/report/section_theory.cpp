@@ -1,0 +1,146 @@
+// The question, the estimator with its meters, and the densities of the arms.
+#include <fmt/format.h>
+
+#include "report/page.h"
+
+namespace crescent {
+namespace {
+
+using namespace mathml;
+
+constexpr const char* question_prose = R"(
+<p>A renderer asks how much light leaves a point towards the eye. It answers by firing <i>N</i> rays, weighing what each
+brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives the
+right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the picture
+the noise sits.</p>
+<p>This run puts {arms} on trial against each other: {names}. They look at one scene through one camera, take the same
+number of samples and are fed the same random numbers, pixel by pixel and sample by sample. The density
+<math><mi>p</mi></math> is all that differs, so whatever differs in the films is its doing.{regions}</p>
+<p>Every figure below is read off the linear float films, none off a picture. A value at the first seed is one draw out of
+many; the band beside it shows what other seeds give, and where the samples are too unruly for a band to mean anything the
+words {heavy} stand in its place.</p>
+)";
+
+constexpr const char* estimator_prose = R"(
+<p>The light that leaves a point towards the eye after one bounce is</p>
+{integral}
+<p>and its estimate from <i>N</i> directions drawn with density {p} (in 1/sr) is</p>
+{estimator}
+<p>Three rules hold for every arm. The cosine {cosine} stays in the numerator. A direction at or under the horizon weighs
+nothing and still counts in <i>N</i>; no density is rescaled to make up for it. And a direction is divided by the density
+of the arm that drew it, never by another’s.</p>
+)";
+
+constexpr const char* lobe_prose = R"(
+<p>A glossy surface adds a normalised Phong lobe to its Lambert part:</p>
+{brdf}{mirror}
+<p>The constants look alike and mean different things. The BRDF’s <i>s</i> + 2 makes the lobe reflect the share {rho_s} of
+the light at normal incidence; the density’s <i>s</i> + 1, below, makes it integrate to one. Exchanging them is an error of
+{slip} at <i>s</i> = {s}.</p>
+)";
+
+constexpr const char* meters_prose = R"(
+<h3>What is measured</h3>
+<p>All on luminance <i>Y</i> (Rec. 709 weights, linear). Against the reference, over a region <i>A</i>:</p>
+{rmse}
+<p>Without a reference, from the samples themselves, the variance of a pixel’s mean, averaged over the region:</p>
+{variance}
+<p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of all
+samples that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of the whole frame
+mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
+)";
+
+constexpr const char* densities_prose = R"(
+<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in [0, 1) into a direction. The azimuth is
+2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over the axis it is measured from.</p>
+)";
+
+std::string spelled(std::size_t count) {
+    static const char* words[] = {"no arms", "one arm", "two arms", "three arms", "four arms", "five arms", "six arms"};
+    return count < 7 ? words[count] : fmt::format("{} arms", count);
+}
+
+std::string join(const std::vector<std::string>& names) {
+    std::string out;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    return out;
+}
+
+std::string regions_sentence(const Experiment& e) {
+    if (e.regions.empty()) return {};
+    std::vector<std::string> names;
+    for (const Region& r : e.regions)
+        names.push_back(fmt::format("<b>{}</b> ({} × {} pixels)", escape(r.name), r.box.width(), r.box.height()));
+    return fmt::format(" Each is judged by itself in {} {}.", e.regions.size() == 1 ? "the region" : "the regions", join(names));
+}
+
+bool any_phong_lobe(const Experiment& e) {
+    for (const Shape& shape : e.shapes)
+        if (shape.material.rho_s > 0 && shape.material.brdf == BrdfKind::phong) return true;
+    return false;
+}
+
+struct Known {
+    M density, inverse;
+    std::string axis;
+};
+std::optional<Known> known(const std::string& sampler) {
+    if (sampler == "uniform") return Known{density_uniform(), inverse_uniform(), "the normal <i>n</i>"};
+    if (sampler == "cosine") return Known{density_cosine(), inverse_cosine(), "the normal <i>n</i>"};
+    if (sampler == "phong") return Known{density_phong(), inverse_phong(), "the mirror direction <i>R</i>"};
+    return {};
+}
+
+std::string rungs(const ArmPlan& arm) {
+    std::vector<std::string> all;
+    for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
+    return join(all);
+}
+
+}  // namespace
+
+Section question(Page& page) {
+    std::vector<std::string> names;
+    for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
+    return {"question", "The question",
+            fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", join(names)),
+                        fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()))};
+}
+
+Section estimator(Page& page) {
+    const Experiment& e = page.in.experiment;
+    std::string out = fmt::format(
+        estimator_prose, fmt::arg("integral", display(integral(), "the reflection integral over the upper hemisphere")),
+        fmt::arg("estimator", display(mathml::estimator(), "one over N times the sum of f times L times cosine over p")),
+        fmt::arg("p", in_line(mi("p"))), fmt::arg("cosine", in_line(row({mi("n"), mo("⋅"), omega()}))));
+    if (any_phong_lobe(e)) {
+        const double s = page.find.s();
+        out += fmt::format(lobe_prose, fmt::arg("brdf", display(brdf_phong(), "Lambert plus normalised Phong lobe")),
+                           fmt::arg("mirror", display(mirror(), "R is the outgoing direction mirrored at the normal")),
+                           fmt::arg("rho_s", in_line(sub(mi("ρ"), mi("s")))), fmt::arg("slip", percent(1 / (s + 1), 2)),
+                           fmt::arg("s", figures(s, 3)));
+    }
+    out += fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
+                       fmt::arg("variance", display(variance(), "sample variance over N")),
+                       fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
+    return {"estimator", "The estimator", out};
+}
+
+Section densities(Page& page) {
+    using html::words;
+    html::Table table("The densities, their inverse distribution functions and the rungs of <i>N</i> each arm ran",
+                      {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
+    for (const ArmPlan& arm : page.in.experiment.arms) {
+        const auto it = known(arm.sampler);
+        const std::string other = "sampler " + html::code(arm.sampler);
+        table.row({html::heading(escape(arm.name)), words(it ? in_line(it->density) : other),
+                   words(it ? in_line(it->inverse) : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
+    }
+    if (table.empty()) return {};
+    const std::size_t count = page.in.experiment.arms.size();
+    return {"densities", count == 3 ? "Three densities" : "The densities",
+            densities_prose + table.str() + page.figures.plates(PlateKind::rose)};
+}
+
+}  // namespace crescent

@@ -1,0 +1,126 @@
+// What a run says on the terminal, at most 80 columns: whether all held, the headline figures (published, measured at
+// the published seed, median and 5-95 % over seeds), the hashes of the films, bad samples, speed, where to look.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "report/findings.h"
+#include "report/numbers.h"
+#include "report/report.h"
+
+namespace crescent {
+namespace {
+
+constexpr std::size_t columns = 80;
+
+struct Paint {
+    bool on;
+    std::string operator()(const char* code, const std::string& text) const {
+        return on ? std::string("\x1b[") + code + "m" + text + "\x1b[0m" : text;
+    }
+};
+constexpr const char *green = "32", *red = "1;31", *bold = "1";
+
+std::string failures_line(const std::vector<const AssertionResult*>& failed, std::size_t of) {
+    const std::string head = fmt::format("{} of {} assertions FAIL: ", failed.size(), of);
+    std::string all = head;
+    for (const AssertionResult* a : failed) all += (a == failed.front() ? "" : ", ") + a->name;
+    if (width(all) <= columns || failed.size() == 1) return clip(all, columns);
+    const std::string more = fmt::format(", and {} more", failed.size() - 1);
+    return clip(head + failed.front()->name, columns - more.size()) + more;
+}
+
+std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint) {
+    if (all.empty()) return "no assertions in this experiment\n";
+    std::vector<const AssertionResult*> failed;
+    for (const AssertionResult& a : all)
+        if (!a.pass) failed.push_back(&a);
+    if (failed.empty() && all.size() == 1) return paint(green, "the one assertion holds") + "\n";
+    if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", all.size())) + "\n";
+    std::string out = paint(red, failures_line(failed, all.size())) + "\n";
+    for (const AssertionResult* a : failed) {
+        const std::string values =
+            fmt::format(": measured {}, must be {} {}", figures(a->measured, 6), a->op, figures(a->bound, 6));
+        out += "  " + clip(a->name, columns - 2 - width(values)) + values + "\n";
+    }
+    return out;
+}
+
+std::string table_row(const BandMeter& b, bool published) {
+    const std::string name = fmt::format("{} {}", b.meter, b.key.arm);
+    std::string row = "  " + left(name, published ? 25 : 36);
+    if (published) row += " " + right(b.published ? figures_of(b.meter, *b.published) : "-", 10);
+    row += " " + right(figures_of(b.meter, b.measured), 10);
+    if (b.band.seeds < 2) return row;
+    row += " " + right(figures_of(b.meter, b.band.median), 10) + "  ";
+    if (b.band.heavy) return row + "heavy tail";
+    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 19);
+}
+
+std::string table(const ReportInputs& in, const Paint& paint) {
+    const Findings find(in);
+    const std::uint64_t n = find.headline_n();
+    const bool published = find.anything_published();
+    std::string rows;
+    int seeds = 1;
+    for (const std::string& meter : headline_meters(in.experiment))
+        for (const ArmPlan& arm : in.experiment.arms)
+            if (const BandMeter* band = find.band(arm.name, n, meter)) {
+                rows += table_row(*band, published) + "\n";
+                seeds = std::max(seeds, band->band.seeds);
+            }
+    if (rows.empty()) return {};
+    std::string head = "  " + left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 25 : 36);
+    if (published) head += "  published";
+    head += "   measured";
+    if (seeds > 1) head += fmt::format("     median  5-95 % of {} seeds", seeds);
+    return "\n" + paint(bold, head) + "\n" + rows;
+}
+
+std::string films(const std::map<std::string, std::string>& hashes, const Paint& paint) {
+    if (hashes.empty()) return {};
+    std::string out = "\n" + paint(bold, "  films (XXH3-64)") + "\n";
+    std::size_t longest = 0;
+    for (const auto& [name, hash] : hashes) longest = std::max(longest, width(name) + width(hash));
+    const std::size_t across = longest + 2 <= 38 ? 2 : 1;
+    const std::size_t cell = across == 2 ? 38 : columns - 2;
+    std::size_t at = 0;
+    for (const auto& [name, hash] : hashes) {
+        const std::string digits = clip(hash, cell / 2);
+        std::string text = left(name, cell - 2 - width(digits)) + "  " + digits;
+        out += at % across == 0 ? "  " + text : "  " + text;
+        if (++at % across == 0 || at == hashes.size()) out += "\n";
+    }
+    return out;
+}
+
+std::string speed(const Timing& t) {
+    std::uint64_t samples = 0;
+    double seconds = 0;
+    for (const ArmTiming& arm : t.arms) {
+        samples += arm.samples;
+        seconds += arm.seconds;
+    }
+    std::string out = fmt::format("  {:.2f} s estimating, {:.2f} s in all", t.estimating_s, t.total_s);
+    if (seconds > 0) out += fmt::format(", {:.0f} Msamples/s", static_cast<double>(samples) / seconds * 1e-6);
+    return clip(out + fmt::format(", {}, {}", plural(static_cast<std::uint64_t>(t.threads), "thread"), t.isa), columns) + "\n";
+}
+
+std::string where(const ReportInputs& in, const std::string& out_dir) {
+    const std::string dir = out_dir.empty() ? "." : out_dir;
+    std::string out = "  look at  " + clip(dir + "/report.html", columns - 11) + "\n";
+    if (!in.plates.empty()) out += "  plates   " + clip(dir + "/plates/", columns - 11) + "\n";
+    return out + "  numbers  " + clip(dir + "/metrics.json", columns - 11) + "\n";
+}
+
+}  // namespace
+
+std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir, bool colour) {
+    const Paint paint{colour};
+    std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(in.metrics.film_hashes, paint);
+    if (const std::uint64_t bad = Findings(in).bad_samples())
+        out += "\n" + paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))) + "\n";
+    return out + "\n" + speed(timing) + where(in, out_dir);
+}
+
+}  // namespace crescent

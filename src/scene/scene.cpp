@@ -1,0 +1,78 @@
+#include "scene/scene.h"
+
+#include <cmath>
+
+#include "scene/intersect.h"
+
+namespace crescent {
+
+namespace {
+
+void add_occluders(const Shape& q, int index, std::vector<Occluder>& out) {
+    using K = Occluder::Kind;
+    switch (q.kind) {
+        case ShapeKind::sphere: out.push_back({K::sphere, index, q.center, {}, {}, q.radius}); break;
+        case ShapeKind::box: out.push_back({K::box, index, q.min, q.max, {}, 0}); break;
+        case ShapeKind::quad: out.push_back({K::quad, index, q.corner, q.edge_u, q.edge_v, 0}); break;
+        case ShapeKind::disk: out.push_back({K::disk, index, q.center, q.normal, {}, q.radius}); break;
+        case ShapeKind::plane: out.push_back({K::plane, index, q.point, q.normal, {}, 0}); break;
+        case ShapeKind::panel: {
+            const Vec3d down = -q.depth * quad_normal(q);
+            out.push_back({K::quad, index, q.corner + down, q.edge_u, q.edge_v, 0});
+            out.push_back({K::quad, index, q.corner, q.edge_u, down, 0});
+            out.push_back({K::quad, index, q.corner, q.edge_v, down, 0});
+            out.push_back({K::quad, index, q.corner + q.edge_v, q.edge_u, down, 0});
+            out.push_back({K::quad, index, q.corner + q.edge_u, q.edge_v, down, 0});
+            break;
+        }
+    }
+}
+
+}  // namespace
+
+Scene::Scene(const Experiment& experiment) : experiment_(experiment) {
+    const Camera& c = experiment_.camera;
+    const Image& image = experiment_.image;
+    const Vec3d forward = normalize(c.target - c.eye);
+    const Vec3d right = normalize(cross(forward, c.up));
+    const double pixel = 2 * std::tan(c.vfov_deg * pi / 360) / image.height;  // at distance 1
+    forward_ = forward;
+    right_ = pixel * right;
+    up_ = pixel * cross(right, forward);
+    bool needs_s = false;
+    for (const Shape& shape : experiment_.shapes) needs_s = needs_s || !shape.material.s;
+    s_ = needs_s ? experiment_.s() : 0;
+    for (std::size_t k = 0; k < experiment_.shapes.size(); ++k)
+        if (experiment_.shapes[k].occludes) add_occluders(experiment_.shapes[k], static_cast<int>(k), occluders_);
+}
+
+std::optional<Hit> Scene::primary(int i, int j) const {
+    const Image& image = experiment_.image;
+    const Vec3d d = normalize(forward_ + (i + 0.5 - 0.5 * image.width) * right_ + (j + 0.5 - 0.5 * image.height) * up_);
+    const Vec3d eye = experiment_.camera.eye;
+    Crossing best;
+    Hit hit;
+    for (std::size_t k = 0; k < experiment_.shapes.size(); ++k) {
+        const Crossing c = intersect(experiment_.shapes[k], eye, d);
+        if (c.order < best.order) best = c, hit.shape = static_cast<int>(k);
+    }
+    if (hit.shape < 0) return {};
+    hit.reveal = best.reveal;
+    hit.x = eye + best.t * d;
+    hit.n = dot(best.n, d) < 0 ? best.n : -best.n;
+    hit.wo = -d;
+    return hit;
+}
+
+Surface Scene::surface(const Hit& hit) const {
+    const Shape& shape = experiment_.shapes[static_cast<std::size_t>(hit.shape)];
+    const Material& m = shape.material;
+    Surface out{m.rho_d, m.rho_s, m.brdf, m.s.value_or(s_), m.alpha.value_or(0.0)};
+    if (hit.reveal) {
+        out.rho_d = shape.reveal_rho_d.value_or(m.rho_d);
+        out.rho_s = 0;
+    }
+    return out;
+}
+
+}  // namespace crescent

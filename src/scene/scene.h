@@ -1,0 +1,60 @@
+// An experiment's shapes, lights and camera, ready to be asked: what does pixel (i, j) see, and what blocks a light.
+// Double precision; lengths in m. Lights are seen by sampled rays only, never by the camera.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "scene/frame.h"
+
+namespace crescent {
+
+/// What a primary ray met. The normal is unit and faces the camera.
+struct Hit {
+    int shape = -1;       // index into Experiment::shapes
+    bool reveal = false;  // the side of a recessed panel
+    Vec3d x{}, n{};
+    Vec3d wo{};           // towards the camera, unit
+};
+
+/// A surface's BRDF with every default filled in.
+struct Surface {
+    Rgb rho_d{};
+    double rho_s = 0;
+    BrdfKind brdf = BrdfKind::phong;
+    double s = 0, alpha = 0;
+};
+
+/// A convex body that can stand between a surface and a light. Shapes that are not convex are made of several.
+struct Occluder {
+    enum class Kind { sphere, box, quad, disk, plane } kind = Kind::sphere;
+    int shape = -1;   // its own surface is never shadowed by it
+    Vec3d a{}, b{}, c{};  // sphere: centre; box: min, max; quad: corner, edges; disk, plane: centre, normal
+    double radius = 0;
+};
+
+class Scene {
+public:
+    explicit Scene(const Experiment& experiment);
+
+    /// The ray through the centre of pixel (i, j), counted from the bottom-left.
+    std::optional<Hit> primary(int i, int j) const;
+    Surface surface(const Hit& hit) const;
+
+    const std::vector<Occluder>& occluders() const { return occluders_; }
+    const std::vector<DiskLight>& disks() const { return experiment_.disks; }
+    const Rgb& fill() const { return experiment_.fill; }
+    const Experiment& experiment() const { return experiment_; }
+
+private:
+    Experiment experiment_;  // a copy: a scene outlives the experiment it was made from
+    Vec3d forward_{}, right_{}, up_{};  // right and up scaled to one pixel
+    double s_ = 0;
+    std::vector<Occluder> occluders_;
+};
+
+/// Does the open segment from x to y meet the body?
+bool blocks(const Occluder& o, Vec3d x, Vec3d y);
+
+}  // namespace crescent

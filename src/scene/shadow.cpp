@@ -1,0 +1,153 @@
+#include "scene/shadow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crescent {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// v in [0, 1] with a v^2 + 2 b v + c <= 0 as one interval (the set is convex by construction of the callers).
+Interval where_negative(double a, double b, double c) {
+    if (std::fabs(a) < 1e-300) {
+        if (b == 0) return c <= 0 ? Interval{0, 1} : Interval{};
+        const double root = -c / (2 * b);
+        return b > 0 ? Interval{0, std::min(1.0, root)} : Interval{std::max(0.0, root), 1};
+    }
+    const double discriminant = b * b - a * c;
+    if (discriminant <= 0) return a < 0 ? Interval{0, 1} : Interval{};
+    const double root = std::sqrt(discriminant);
+    const double r0 = (-b - root) / a, r1 = (-b + root) / a;
+    return {std::max(0.0, std::min(r0, r1)), std::min(1.0, std::max(r0, r1))};
+}
+
+/// v in [0, 1] with p0 + v (p1 - p0) >= 0.
+Interval where_positive(double p0, double p1) {
+    if (p0 >= 0 && p1 >= 0) return {0, 1};
+    if (p0 < 0 && p1 < 0) return {};
+    const double root = p0 / (p0 - p1);
+    return p0 < 0 ? Interval{root, 1} : Interval{0, root};
+}
+
+Interval both(Interval a, Interval b) { return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)}; }
+
+/// The segment crosses the sphere: it comes within r of the centre between its ends. Outside points see the sphere's
+/// cone, (d.c)^2 >= |d|^2 (|c|^2 - r^2) and d.c > 0, cut off where the chord itself is nearer than the sphere.
+Interval sphere(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
+    const Vec3d c = o.a - x, d0 = y0 - x, e = y1 - y0;
+    const double q = dot(c, c) - o.radius * o.radius;
+    if (q <= 0) return {};
+    const double a = q * dot(e, e) - sqr(dot(e, c));
+    const double b = q * dot(d0, e) - dot(d0, c) * dot(e, c);
+    const double k = q * dot(d0, d0) - sqr(dot(d0, c));
+    const Interval cone = where_negative(a, b, k);
+    // Inside the cone the far end lies behind the first crossing where d.c >= q (the polar plane of x).
+    return both(cone, where_positive(dot(d0, c) - q, dot(d0 + e, c) - q));
+}
+
+/// The chord's segments cross the parallelogram or disk in the plane through p with normal n.
+struct OnPlane {
+    Vec3d at0, step;  // where segment v meets the plane, homogeneous: (at0 + v step) / (w0 + v w1)
+    double w0, w1;
+    Interval sides;   // x and y(v) on different sides
+};
+OnPlane project(Vec3d p, Vec3d n, Vec3d x, Vec3d y0, Vec3d y1) {
+    const double hx = dot(n, x - p), h0 = dot(n, y0 - p), h1 = dot(n, y1 - p);
+    const double s = hx > 0 ? 1 : -1;
+    // Crossing point = x + (y - x) hx / (hx - h), with hx - h linear in v: relative to p, times (hx - h).
+    const Vec3d g0 = s * ((hx - h0) * (x - p) + hx * (y0 - x)), g1 = s * ((hx - h1) * (x - p) + hx * (y1 - x));
+    return {g0, g1 - g0, s * (hx - h0), s * (h0 - h1), hx == 0 ? Interval{} : where_positive(-s * h0, -s * h1)};
+}
+
+Interval quad(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
+    const Vec3d n = cross(o.b, o.c);
+    const OnPlane m = project(o.a, n, x, y0, y1);
+    const auto inside = [&](Vec3d axis) {  // 0 <= axis . g <= w
+        const double a0 = dot(axis, m.at0), a1 = dot(axis, m.at0 + m.step);
+        return both(where_positive(a0, a1), where_positive(m.w0 - a0, m.w0 + m.w1 - a1));
+    };
+    const double nn = dot(n, n);
+    return both(m.sides, both(inside(cross(o.c, n) * (1 / nn)), inside(cross(n, o.b) * (1 / nn))));
+}
+
+Interval disk(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
+    const OnPlane m = project(o.a, o.b, x, y0, y1);
+    const double r2 = o.radius * o.radius;
+    return both(m.sides, where_negative(dot(m.step, m.step) - r2 * m.w1 * m.w1, dot(m.at0, m.step) - r2 * m.w0 * m.w1,
+                                        dot(m.at0, m.at0) - r2 * m.w0 * m.w0));
+}
+
+/// The triangle (x, y0, y1) cut by the box: its points x + a (y0 - x) + b (y1 - x) inside the six half-spaces form a
+/// convex polygon in (a, b); each of its corners is seen at v = b / (a + b).
+Interval box(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
+    struct Corner {
+        double a, b;
+    };
+    std::vector<Corner> polygon = {{0, 0}, {1, 0}, {0, 1}}, next;
+    const auto cut = [&](double h0, double ha, double hb) {  // keep h0 + a ha + b hb >= 0
+        next.clear();
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const Corner p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+            const double hp = h0 + p.a * ha + p.b * hb, hq = h0 + q.a * ha + q.b * hb;
+            if (hp >= 0) next.push_back(p);
+            if ((hp >= 0) != (hq >= 0)) {
+                const double t = hp / (hp - hq);
+                next.push_back({p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)});
+            }
+        }
+        polygon.swap(next);
+    };
+    const Vec3d d0 = y0 - x, d1 = y1 - x;
+    cut(x.x - o.a.x, d0.x, d1.x), cut(o.b.x - x.x, -d0.x, -d1.x);
+    cut(x.y - o.a.y, d0.y, d1.y), cut(o.b.y - x.y, -d0.y, -d1.y);
+    cut(x.z - o.a.z, d0.z, d1.z), cut(o.b.z - x.z, -d0.z, -d1.z);
+    Interval out{infinity, -infinity};
+    for (const Corner& c : polygon) {
+        if (!(c.a + c.b > 0)) return {};  // x itself lies in the box
+        const double v = c.b / (c.a + c.b);
+        out = {std::min(out.lo, v), std::max(out.hi, v)};
+    }
+    return out;
+}
+
+}  // namespace
+
+Interval hidden(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
+    switch (o.kind) {
+        case Occluder::Kind::sphere: return sphere(o, x, y0, y1);
+        case Occluder::Kind::box: return box(o, x, y0, y1);
+        case Occluder::Kind::quad: return quad(o, x, y0, y1);
+        case Occluder::Kind::disk: return disk(o, x, y0, y1);
+        case Occluder::Kind::plane: return project(o.a, o.b, x, y0, y1).sides;
+    }
+    return {};
+}
+
+Bound bound_of(const Occluder& o) {
+    switch (o.kind) {
+        case Occluder::Kind::sphere: return {o.a, o.radius};
+        case Occluder::Kind::box: return {0.5 * (o.a + o.b), 0.5 * length(o.b - o.a)};
+        case Occluder::Kind::quad: return {o.a + 0.5 * (o.b + o.c), 0.5 * std::max(length(o.b + o.c), length(o.b - o.c))};
+        case Occluder::Kind::disk: return {o.a, o.radius};
+        case Occluder::Kind::plane: return {o.a, infinity};
+    }
+    return {};
+}
+
+std::vector<Interval> open_parts(std::vector<Interval> parts) {
+    std::sort(parts.begin(), parts.end(), [](Interval a, Interval b) { return a.lo < b.lo; });
+    std::vector<Interval> open;
+    double from = 0;
+    for (const Interval& part : parts) {
+        if (part.empty()) continue;
+        if (part.lo > from) open.push_back({from, part.lo});
+        from = std::max(from, part.hi);
+    }
+    if (from < 1) open.push_back({from, 1});
+    return open;
+}
+
+}  // namespace crescent

@@ -1,0 +1,62 @@
+// The vocabulary of the kernels on plain numbers: float (with uint32_t beside it and bool as mask) and double.
+// simd/pack.h says the same words for packs; a template written in these words gives the same bits on both.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace crescent {
+
+/// What belongs to a number type F: its mask and, for single precision, its 32-bit integers.
+template <class F> struct Lanes;
+template <> struct Lanes<float> {
+    using Mask = bool;
+    using Uint = std::uint32_t;
+    static constexpr std::size_t count = 1;
+};
+template <> struct Lanes<double> {
+    using Mask = bool;
+    static constexpr std::size_t count = 1;
+};
+template <class F> using MaskOf = typename Lanes<F>::Mask;
+template <class F> using UintOf = typename Lanes<F>::Uint;
+
+constexpr float select(bool m, float a, float b) { return m ? a : b; }
+constexpr double select(bool m, double a, double b) { return m ? a : b; }
+constexpr std::uint32_t select(bool m, std::uint32_t a, std::uint32_t b) { return m ? a : b; }
+constexpr bool any(bool m) { return m; }
+
+inline float sqrt(float x) { return std::sqrt(x); }
+inline double sqrt(double x) { return std::sqrt(x); }
+inline float abs(float x) { return std::fabs(x); }
+inline double abs(double x) { return std::fabs(x); }
+
+inline std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
+template <class F> F from_bits(UintOf<F> u);
+template <> inline float from_bits<float>(std::uint32_t u) { return std::bit_cast<float>(u); }
+/// Exact for u < 2^24.
+template <class F> F to_float(UintOf<F> u);
+template <> inline float to_float<float>(std::uint32_t u) { return static_cast<float>(static_cast<std::int32_t>(u)); }
+template <int n> constexpr std::uint32_t shift_right(std::uint32_t u) { return u >> n; }
+template <int n> constexpr std::uint32_t shift_left(std::uint32_t u) { return u << n; }
+
+/// b where either is NaN, as maxps has it.
+template <class F> F larger(F a, F b) { return select(a > b, a, b); }
+template <class F> F smaller(F a, F b) { return select(a < b, a, b); }
+
+inline constexpr double pi = 3.14159265358979323846;
+/// A constant in the number type at hand.
+template <class F> F number(double x) { return F(static_cast<float>(x)); }
+template <> inline double number<double>(double x) { return x; }
+template <> inline float number<float>(double x) { return static_cast<float>(x); }
+
+/// From and to memory, as many at once as F has lanes.
+template <class F> F load_as(const float* p);
+template <> inline float load_as<float>(const float* p) { return *p; }
+template <class U> U load_as(const std::uint32_t* p);
+template <> inline std::uint32_t load_as<std::uint32_t>(const std::uint32_t* p) { return *p; }
+inline void store(float a, float* p) { *p = a; }
+inline void store(std::uint32_t a, std::uint32_t* p) { *p = a; }
+
+}  // namespace crescent
