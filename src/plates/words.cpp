@@ -12,13 +12,13 @@ namespace crescent::plates {
 namespace {
 
 struct Sampler {
-    const char *word, *name, *formula;
+    const char *word, *name, *axis, *formula;
 };
 // The note's three densities, in 1/sr; {s1} stands for s + 1 and {s} for s.
 constexpr Sampler samplers[] = {
-    {"uniform", "Uniform", "p(ω) = 1/(2π)"},
-    {"cosine", "Cosine", "p(ω) = (n·ω)/π"},
-    {"phong", "Phong-IS", "p(ω) = {s1}/(2π) (ω·R)<sup>{s}</sup>"},
+    {"uniform", "Uniform", "n", "p(ω) = 1/(2π)"},
+    {"cosine", "Cosine", "n", "p(ω) = (n·ω)/π"},
+    {"phong", "Phong-IS", "R", "p(ω) = {s1}/(2π) (ω·R)<sup>{s}</sup>"},
 };
 
 const Sampler* find(const std::string& word) {
@@ -72,6 +72,11 @@ std::string sampler_of(const std::string& arm, const Experiment& e) {
 std::string arm_name(const std::string& arm, const Experiment& e) {
     const Sampler* known = sampler_of(arm, e) == arm ? find(arm) : nullptr;
     return known ? known->name : escaped(arm);
+}
+
+std::string axis_of(const std::string& arm, const Experiment& e) {
+    const Sampler* known = find(sampler_of(arm, e));
+    return known ? known->axis : "";
 }
 
 std::string density_formula(const std::string& arm, const Experiment& e) { return formula(arm, e, "s", "(s+1)"); }

@@ -19,6 +19,8 @@ std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e);
 std::string arm_name(const std::string& arm, const Experiment& e);
 /// The word of arms/all.h that the arm uses, "" where the experiment has no such arm.
 std::string sampler_of(const std::string& arm, const Experiment& e);
+/// "n" or "R", what the arm's density is centred on; "" where that is not one of them.
+std::string axis_of(const std::string& arm, const Experiment& e);
 /// "p(ω) = (s+1)/(2π) (ω·R)ˢ"; for a sampler without a short form, its name.
 std::string density_formula(const std::string& arm, const Experiment& e);
 /// The same density after `s` has been put in.

@@ -1,0 +1,43 @@
+#include "plates/density.h"
+
+#include <cmath>
+
+#include "arms/all.h"
+#include "films/film.h"
+
+namespace crescent::plates {
+
+namespace {
+
+// The surface the density is shown for: the first shape with a lobe, as the experiment's s is read from it.
+Site<double> site_of(const Experiment& e, double s, double tilt) {
+    Site<double> site{};
+    site.wo = {-std::sin(tilt), 0, std::cos(tilt)};
+    site.s = s;
+    for (const Shape& shape : e.shapes) {
+        if (shape.material.rho_s <= 0) continue;
+        site.alpha = shape.material.alpha.value_or(0);
+        site.diffuse = luminance(shape.material.rho_d);
+        site.lobe = shape.material.rho_s;
+        break;
+    }
+    return site;
+}
+
+}  // namespace
+
+Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
+    : pdf_([](const Vec3d&) { return 0.0; }) {
+    Site<double> site = site_of(e, s, tilt);
+    for_each_arm(Arms{}, [&]<template <class> class A>() {
+        if (sampler != A<double>::name) return;
+        pdf_ = [arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
+            double p = arm.pdf(wo, wi).v;
+            return std::isfinite(p) ? p : 0.0;
+        };
+    });
+}
+
+double Density::in_plane(double angle) const { return pdf_({std::sin(angle), 0, std::cos(angle)}); }
+
+}  // namespace crescent::plates

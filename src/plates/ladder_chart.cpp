@@ -1,0 +1,119 @@
+#include "plates/ladder_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace crescent::plates {
+
+namespace {
+
+struct Axes {
+    Rect plot;
+    double x0 = 0, x1 = 1, y0 = 0, y1 = 1;  // natural logarithms
+    double x(double n) const { return plot.x + plot.w * (std::log(n) - x0) / (x1 - x0); }
+    double y(double v) const { return plot.bottom() - plot.h * (std::log(v) - y0) / (y1 - y0); }
+};
+
+std::vector<const Ladder*> ladders_of(const Sheet& sheet, const std::string& region) {
+    std::vector<const Ladder*> list;
+    for (const Ladder& l : sheet.in.metrics.ladders) {
+        if (l.region == region && l.s == sheet.experiment().s() && l.n.size() > 1) list.push_back(&l);
+    }
+    return list;
+}
+
+bool drawable(double v) { return std::isfinite(v) && v > 0; }
+
+Axes scale(const std::vector<const Ladder*>& ladders, const Rect& plot) {
+    double n0 = 1e300, n1 = 0, v0 = 1e300, v1 = 0;
+    for (const Ladder* l : ladders) {
+        for (std::size_t i = 0; i < l->n.size(); ++i) {
+            n0 = std::min(n0, double(l->n[i])), n1 = std::max(n1, double(l->n[i]));
+            if (!drawable(l->rmse[i])) continue;
+            v0 = std::min(v0, l->rmse[i]), v1 = std::max(v1, l->rmse[i]);
+        }
+    }
+    if (v1 <= 0) v0 = v1 = 1;
+    Axes a{plot, std::log(n0) - 0.15, std::log(n1) + 0.15, std::log(v0 / 1.4), std::log(v1 * 1.4)};
+    return a;
+}
+
+void draw_axes(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& ladders) {
+    Canvas& c = sheet.canvas;
+    std::set<std::uint64_t> rungs;
+    for (const Ladder* l : ladders) rungs.insert(l->n.begin(), l->n.end());
+    double last = -1e9;
+    for (std::uint64_t n : rungs) {
+        double x = a.x(double(n));
+        c.line(x, a.plot.bottom(), x, a.plot.bottom() + 5, muted, 1.5);
+        if (x - last < 44) continue;
+        c.text({x - 40, a.plot.bottom() + 6, 80, 20}, count(n), with(with_px(small_text, 16), Align::centre));
+        last = x;
+    }
+    int decades = static_cast<int>(std::ceil((a.y1 - a.y0) / std::log(10.0)));
+    for (int p = static_cast<int>(std::floor(a.y0 / std::log(10.0))); p <= std::ceil(a.y1 / std::log(10.0)); ++p) {
+        for (int m : {1, 2, 5}) {
+            double v = m * std::pow(10.0, p);
+            if ((m != 1 && decades > 2) || std::log(v) < a.y0 || std::log(v) > a.y1) continue;
+            c.line(a.plot.x, a.y(v), a.plot.right(), a.y(v), rule, 1);
+            c.text({a.plot.x - 66, a.y(v) - 11, 58, 22}, number(v, 3),
+                   with(with(with_px(small_text, 16), Align::right), Vertical::middle));
+        }
+    }
+    c.line(a.plot.x, a.plot.bottom(), a.plot.right(), a.plot.bottom(), muted, 1.5);
+}
+
+std::string slope_text(const Ladder& l, const Experiment& e) {
+    std::string name = arm_name(l.arm, e);
+    if (l.heavy) return name + ": heavy tail";
+    return fmt::format("{}: N<sup> {}</sup>", name, number(l.slope, 2));
+}
+
+// Names at the right end of the lines, pushed apart where lines end close together.
+void draw_names(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& ladders) {
+    struct Name {
+        double y;
+        std::size_t i;
+    };
+    std::vector<Name> names;
+    for (std::size_t i = 0; i < ladders.size(); ++i) {
+        double v = ladders[i]->rmse.back();
+        names.push_back({drawable(v) ? a.y(v) : a.plot.y, i});
+    }
+    std::sort(names.begin(), names.end(), [](const Name& p, const Name& q) { return p.y < q.y; });
+    constexpr double pitch = 23;
+    double floor = a.plot.y - 4;
+    for (Name& n : names) n.y = floor = std::max(n.y, floor + pitch);
+    double ceiling = a.plot.bottom() + pitch;
+    for (auto n = names.rbegin(); n != names.rend(); ++n) n->y = ceiling = std::min(n->y, ceiling - pitch);
+    for (const Name& n : names) {
+        sheet.canvas.text({a.plot.right() + 10, n.y - 12, 178, 24}, slope_text(*ladders[n.i], sheet.experiment()),
+                          with(with(with_px(body_text, 17), series[n.i % series_count]), Vertical::middle));
+    }
+}
+
+}  // namespace
+
+void draw_ladder_chart(Sheet& sheet, const Rect& slot, const std::string& region) {
+    std::vector<const Ladder*> ladders = ladders_of(sheet, region);
+    if (ladders.empty()) return;
+    Axes a = scale(ladders, {slot.x + 70, slot.y + 34, slot.w - 70 - 188, slot.h - 34 - 28});
+    sheet.canvas.text({slot.x, slot.y, slot.w - 188, 26}, "RMSE<sub>" + escaped(region) + "</sub> against N",
+                      with(body_text, Weight::semibold));
+    draw_axes(sheet, a, ladders);
+    for (std::size_t i = 0; i < ladders.size(); ++i) {
+        const Ladder& l = *ladders[i];
+        std::vector<Canvas::Point> path;
+        for (std::size_t k = 0; k < l.n.size(); ++k) {
+            if (drawable(l.rmse[k])) path.push_back({a.x(double(l.n[k])), a.y(l.rmse[k])});
+        }
+        sheet.canvas.polyline(path, series[i % series_count], 2.5);
+        for (const Canvas::Point& p : path) sheet.canvas.dot(p.x, p.y, 4, series[i % series_count]);
+    }
+    draw_names(sheet, a, ladders);
+}
+
+}  // namespace crescent::plates

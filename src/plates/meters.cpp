@@ -1,0 +1,176 @@
+// meters: the table of what was measured on the float films, published figures beside it, and the N-ladders.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plates/ladder_chart.h"
+#include "plates/sheet.h"
+
+namespace crescent::plates {
+
+namespace {
+
+struct Column {
+    std::string meter, title;
+};
+
+std::vector<Column> columns_of(const Experiment& e) {
+    std::vector<Column> c;
+    auto named = [](const char* what, const Region& r) {
+        return std::string(what) + "<sub>" + escaped(r.name) + "</sub>";
+    };
+    for (std::size_t i = 0; i < e.regions.size() && i < 3; ++i) {
+        c.push_back({"rmse." + e.regions[i].name, named("RMSE", e.regions[i])});
+    }
+    c.push_back({"fireflies", "fireflies"});
+    if (!e.regions.empty()) c.push_back({"var." + e.regions[0].name, named("var", e.regions[0])});
+    c.push_back({"horizon_frac", "horizon frac."});
+    c.push_back({"y_mean", "mean Y"});
+    return c;
+}
+
+std::optional<double> measured(const RunMeter& r, const std::string& meter) {
+    if (meter == "fireflies") return double(r.fireflies);
+    if (meter == "horizon_frac") return r.horizon_frac;
+    if (meter == "y_mean") return r.y_mean;
+    bool rmse = meter.rfind("rmse.", 0) == 0;
+    const RegionMeter* region = r.region(meter.substr(meter.find('.') + 1));
+    if (!region) return {};
+    return rmse ? region->rmse : region->var;
+}
+
+const BandMeter* band_of(const Metrics& m, const RunKey& key, const std::string& meter) {
+    for (const BandMeter& b : m.bands) {
+        if (b.meter == meter && b.key.arm == key.arm && b.key.n == key.n && b.key.s == key.s) return &b;
+    }
+    return nullptr;
+}
+
+std::string value(const std::string& meter, double v) {
+    if (meter == "fireflies" && std::isfinite(v)) return count(static_cast<std::uint64_t>(std::llround(v)));
+    return number(v, 4);
+}
+
+std::string band_text(const std::string& meter, const Band& b) {
+    if (b.heavy) return "heavy tail";
+    if (b.seeds < 2) return "–";
+    return value(meter, b.q05) + " – " + value(meter, b.q95);
+}
+
+// The measured runs the plate shows: the plan's, else every one at the published seed.
+std::vector<const RunMeter*> rows_of(const Sheet& sheet) {
+    const Experiment& e = sheet.experiment();
+    std::vector<const RunMeter*> rows;
+    for (const RunKey& k : keys_of(sheet.plan, e)) {
+        if (const RunMeter* r = sheet.in.metrics.find(k.arm, k.n, k.s, k.seed)) rows.push_back(r);
+    }
+    if (!sheet.plan.runs.empty()) return rows;
+    for (const RunMeter& r : sheet.in.metrics.runs) {
+        if (r.key.seed == e.seed) rows.push_back(&r);
+    }
+    return rows;
+}
+
+// How much stands in each row: 3 lines (measured, published, band), 2 or 1, as the number of rows allows.
+struct Table {
+    std::vector<const RunMeter*> rows;
+    std::vector<Column> columns;
+    int lines = 3;
+    double row_h = 0, head_h = 32, name_w = 250;
+    double bottom = 0;
+};
+
+Table plan_table(const Sheet& sheet) {
+    Table t;
+    t.rows = rows_of(sheet);
+    t.columns = columns_of(sheet.experiment());
+    std::size_t n = t.rows.size();
+    t.lines = n <= 5 ? 3 : n <= 8 ? 2 : 1;
+    t.row_h = t.lines == 3 ? 78 : t.lines == 2 ? 58 : 30;
+    std::size_t room = static_cast<std::size_t>((content_band.h - t.head_h) / t.row_h);
+    if (n > room) t.rows.resize(room);
+    return t;
+}
+
+Rect cell(const Table& t, std::size_t c, double y, double h) {
+    double w = (content_band.w - t.name_w) / double(t.columns.size());
+    return {content_band.x + t.name_w + double(c) * w + 8, y, w - 8, h};
+}
+
+void draw_head(Sheet& sheet, const Table& t) {
+    Text how = with(with(with_px(body_text, 17), muted), Align::right);
+    for (std::size_t c = 0; c < t.columns.size(); ++c) {
+        sheet.canvas.text(cell(t, c, content_band.y, 26), t.columns[c].title, how);
+    }
+    double y = content_band.y + t.head_h - 0.5;
+    sheet.canvas.line(content_band.x, y, content_band.right(), y, muted, 1);
+}
+
+void draw_row(Sheet& sheet, const Table& t, const RunMeter& r, double y, int seeds) {
+    const Experiment& e = sheet.experiment();
+    Canvas& c = sheet.canvas;
+    Text value_text = with(with(with_px(body_text, 20), Weight::medium), Align::right);
+    Text under = with(small_text, Align::right);
+    double top = y + (t.lines == 1 ? 2 : 6);
+    c.text({content_band.x, top, t.name_w, 27}, runs_label({r.key}, e), with(with_px(body_text, 20), Weight::semibold));
+    if (t.lines > 1) c.text({content_band.x, top + 27, t.name_w, 20}, "published", small_text);
+    if (t.lines > 2) {
+        std::string say = seeds > 1 ? fmt::format("5–95 % of {} seeds", seeds) : "one seed, no band";
+        c.text({content_band.x, top + 46, t.name_w, 20}, say, small_text);
+    }
+    for (std::size_t k = 0; k < t.columns.size(); ++k) {
+        const std::string& meter = t.columns[k].meter;
+        const BandMeter* b = band_of(sheet.in.metrics, r.key, meter);
+        std::optional<double> v = measured(r, meter);
+        c.text(cell(t, k, top, 27), v ? value(meter, *v) : "–", value_text);
+        if (t.lines > 1) c.text(cell(t, k, top + 27, 20), b && b->published ? value(meter, *b->published) : "–", under);
+        if (t.lines > 2) c.text(cell(t, k, top + 46, 20), b ? band_text(meter, b->band) : "–", under);
+    }
+    c.line(content_band.x, y + t.row_h - 0.5, content_band.right(), y + t.row_h - 0.5, rule, 1);
+}
+
+int seeds_of(const Metrics& m) {
+    int seeds = 1;
+    for (const BandMeter& b : m.bands) seeds = std::max(seeds, b.band.seeds);
+    return seeds;
+}
+
+void draw_charts(Sheet& sheet, const Rect& slot) {
+    const Experiment& e = sheet.experiment();
+    std::vector<std::string> regions;
+    for (const Region& r : e.regions) {
+        bool any = std::any_of(sheet.in.metrics.ladders.begin(), sheet.in.metrics.ladders.end(), [&](const Ladder& l) {
+            return l.region == r.name && l.n.size() > 1 && l.s == e.s();
+        });
+        if (any && regions.size() < 2) regions.push_back(r.name);
+    }
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        draw_ladder_chart(sheet, column(slot, regions.size(), i), regions[i]);
+    }
+}
+
+}  // namespace
+
+void draw_meters(Sheet& sheet) {
+    Table t = plan_table(sheet);
+    instrument_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG");
+    if (t.rows.empty()) {
+        paint_missing(sheet, content_band, "no run of this plate was measured");
+        return;
+    }
+    draw_head(sheet, t);
+    int seeds = seeds_of(sheet.in.metrics);
+    double y = content_band.y + t.head_h;
+    for (const RunMeter* r : t.rows) {
+        draw_row(sheet, t, *r, y, seeds);
+        y += t.row_h;
+    }
+    Rect rest{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
+    if (rest.h >= 170) draw_charts(sheet, rest);
+    sheet.notes.push_back(fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "
+                                      "Y<sub>ref</sub>",
+                                      radiance_unit, number(sheet.experiment().firefly_k)));
+}
+
+}  // namespace crescent::plates

@@ -1,0 +1,26 @@
+// A half-circle polar plot: an angle from -90 to 90 deg from n, a radius from 0 to `top`, in 1/sr.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "plates/style.h"
+
+namespace crescent::plates {
+
+struct PolarCurve {
+    bool filled = false;
+    Colour ink;
+    std::string name;
+    std::function<double(double)> value;  // of the angle in radians
+};
+struct PolarPlot {
+    Rect slot;
+    double top = 1;   // value at the outer circle
+    double tilt = 0;  // of R, radians
+    std::vector<PolarCurve> curves;
+};
+void draw_polar(Canvas& canvas, const PolarPlot& plot);
+
+}  // namespace crescent::plates

@@ -1,0 +1,180 @@
+// rose: the densities themselves, in 1/sr, each over the hemisphere of n as a dome through turbo, and under it in the
+// plane of incidence as a polar plot. Nothing is sampled: the numbers are the arms' own pdf.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "display/turbo.h"
+#include "plates/density.h"
+#include "plates/polar.h"
+#include "plates/sheet.h"
+
+namespace crescent::plates {
+
+namespace {
+
+using Direction = Vec3d;
+constexpr double degree = std::numbers::pi / 180;
+// R stands this far from n, in the xz plane: enough to tell R from n, far enough from the horizon to show the lobe.
+constexpr double tilt_deg = 30;
+// The dome is seen from 45 deg above the surface, across the plane of incidence.
+const double up = std::sin(45 * degree), away = std::cos(45 * degree);
+
+struct Dome {
+    double x = 0, y = 0, radius = 0;  // centre of the base on the sheet
+    Canvas::Point at(const Direction& d, double reach = 1) const {
+        return {x + reach * radius * d.x, y - reach * radius * (d.z * away + d.y * up)};
+    }
+    static bool visible(const Direction& d) { return d.z * up - d.y * away >= 0; }
+};
+
+Direction from_angles(double theta, double phi) {
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+// The dome's pixels: what lies on the sphere towards the viewer and above the surface.
+Block dome_block(const Density& p, double peak, int r) {
+    Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
+    Srgb8 back{};
+    auto byte = [](double v) { return static_cast<unsigned char>(std::lround(255 * v)); };
+    back = {byte(ground.r), byte(ground.g), byte(ground.b)};
+    for (int j = 0; j < block.height; ++j) {
+        for (int i = 0; i < block.width; ++i) {
+            double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
+            double w = w2 > 0 ? std::sqrt(w2) : 0;
+            Direction d{u, v * up - w * away, v * away + w * up};
+            block.set(i, j, w2 > 0 && d.z >= 0 ? turbo(p.at(d) / peak) : back);
+        }
+    }
+    return block;
+}
+
+void trace(Canvas& c, const Dome& dome, const std::vector<Direction>& path, const Colour& ink, double width) {
+    std::vector<Canvas::Point> run;
+    for (const Direction& d : path) {
+        if (Dome::visible(d)) {
+            run.push_back(dome.at(d));
+        } else {
+            c.polyline(run, ink, width);
+            run.clear();
+        }
+    }
+    c.polyline(run, ink, width);
+}
+
+// Circles of equal polar angle and meridians every 30 deg, the rim, and the outline.
+void draw_grid(Canvas& c, const Dome& dome) {
+    constexpr Colour thin{1, 1, 1, 0.28};
+    for (int theta = 30; theta <= 90; theta += 30) {
+        std::vector<Direction> ring;
+        for (int k = 0; k <= 120; ++k) ring.push_back(from_angles(theta * degree, k * 3 * degree));
+        trace(c, dome, ring, theta == 90 ? muted : thin, theta == 90 ? 2 : 1);
+    }
+    for (int phi = 0; phi < 360; phi += 30) {
+        std::vector<Direction> meridian;
+        for (int k = 0; k <= 60; ++k) meridian.push_back(from_angles(k * 1.5 * degree, phi * degree));
+        trace(c, dome, meridian, thin, 1);
+    }
+    std::vector<Canvas::Point> rim;
+    for (int k = 0; k <= 120; ++k) {
+        double a = k * 1.5 * degree;
+        rim.push_back({dome.x + dome.radius * std::cos(a), dome.y - dome.radius * std::sin(a)});
+    }
+    c.polyline(rim, muted, 2);
+}
+
+void draw_arrow(Canvas& c, const Dome& dome, const Direction& d, const std::string& name, double side) {
+    Canvas::Point foot = dome.at(d), tip = dome.at(d, 1.42);
+    c.arrow(foot, tip, {0, 0, 0, 0.5}, 4.5);
+    c.arrow(foot, tip, bright, 2.5);
+    Text how = with(with(body_text, Weight::semibold), side < 0 ? Align::right : Align::left);
+    double x = side < 0 ? tip.x - 48 : tip.x + 8;
+    c.text({x, tip.y - 14, 40, 24}, name, how);
+}
+
+struct Part {
+    RunKey key;
+    Density p;
+    double peak = 0;
+};
+
+void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
+    constexpr double bar_room = 128;
+    int r = static_cast<int>(std::min((slot.w - bar_room - 24) / 2, slot.h / (1 + up)));
+    if (r < 8) return;
+    Dome dome{std::floor(slot.x + (slot.w - bar_room) / 2), slot.y + r, double(r)};
+    sheet.canvas.paint(dome_block(part.p, part.peak, r), int(dome.x) - r, int(slot.y));
+    draw_grid(sheet.canvas, dome);
+    draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
+    draw_arrow(sheet.canvas, dome, {std::sin(tilt), 0, std::cos(tilt)}, "R", 1);
+    double bar_h = std::floor(dome.radius * (1 + up)) - 24;
+    Rect bar{slot.right() - bar_room + 24, slot.y + 24, 22, bar_h};
+    sheet.canvas.text({bar.x, slot.y - 6, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
+    colour_bar(sheet, bar, part.peak, false);
+}
+
+std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
+    const Experiment& e = sheet.experiment();
+    std::vector<RunKey> keys = keys_of(sheet.plan, e);
+    if (keys.empty()) {
+        for (const ArmPlan& a : e.arms) keys.push_back({a.name, 0, e.s(), e.seed});
+    }
+    std::vector<Part> parts;
+    for (const RunKey& k : keys) {
+        Part part{k, Density(e, sampler_of(k.arm, e), k.s, tilt), 0};
+        for (int i = -900; i <= 900; ++i) part.peak = std::max(part.peak, part.p.in_plane(i * 0.1 * degree));
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, double tilt) {
+    const Experiment& e = sheet.experiment();
+    const Part& part = parts[i];
+    Rect col = column(content_band, parts.size(), i);
+    std::string axis = axis_of(part.key.arm, e);
+    std::string title = arm_name(part.key.arm, e) + (axis.empty() ? "" : " about " + axis);
+    sheet.canvas.text({col.x, col.y, col.w, 30}, title, with_px(title_text, 22));
+    sheet.canvas.text({col.x, col.y + 31, col.w, 24},
+                      density_formula_at(part.key.arm, part.key.s, e) + ",  peak " + number(part.peak, 3) + " sr<sup>−1</sup>",
+                      with(with_px(body_text, 17), muted));
+    Rect dome{col.x, col.y + 72, col.w, 218};
+    if (!(part.peak > 0)) {
+        paint_missing(sheet, dome, "no density in closed form");
+        return;
+    }
+    draw_dome(sheet, part, dome, tilt);
+    PolarPlot plot;
+    plot.slot = {col.x, col.y + 304, col.w, 236};
+    plot.top = part.peak;
+    plot.tilt = tilt;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (k != i && !(parts[k].peak < part.peak && parts[k].peak > 0)) continue;
+        plot.curves.push_back({k == i, series[k % series_count], arm_name(parts[k].key.arm, e),
+                               [&p = parts[k].p](double a) { return p.in_plane(a); }});
+    }
+    draw_polar(sheet.canvas, plot);
+}
+
+}  // namespace
+
+void draw_rose(Sheet& sheet) {
+    double tilt = tilt_deg * degree;
+    std::vector<Part> parts = parts_of(sheet, tilt);
+    bool elementary = std::all_of(parts.begin(), parts.end(), [&](const Part& p) {
+        return !axis_of(p.key.arm, sheet.experiment()).empty();
+    });
+    std::vector<RunKey> keys;
+    for (const Part& p : parts) keys.push_back(p.key);
+    instrument_header(sheet, "PDF ROSE",
+                      "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)) +
+                          (elementary ? " / not Blinn, not GGX VNDF" : ""));
+    for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i, tilt);
+    sheet.notes = {fmt::format("R stands {}° from n", number(tilt_deg)),
+                   "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale",
+                   "polar: plane of incidence"};
+}
+
+}  // namespace crescent::plates
