@@ -1,0 +1,199 @@
+#include "report/evidence_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace crescent {
+namespace {
+
+/// What one panel shows: an arithmetic and a resolution of u.
+struct Series {
+    std::string arithmetic;
+    int u_bits = 0;
+    std::vector<const FurnaceQuantiles*> rungs;  // by n
+    std::string name() const { return fmt::format("{}, u of {} bits", arithmetic, u_bits); }
+};
+
+std::vector<Series> series_of(const Evidence& evidence) {
+    std::vector<Series> all;
+    for (const FurnaceQuantiles& q : evidence.furnace) {
+        auto found = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
+        if (found == all.end()) found = all.insert(all.end(), {q.arithmetic, q.u_bits, {}});
+        found->rungs.push_back(&q);
+    }
+    for (Series& s : all)
+        std::sort(s.rungs.begin(), s.rungs.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
+    return all;
+}
+
+const FurnaceMeter* combined_furnace(const Page& page) {
+    const ArmPlan* phong = page.find.arm_with("phong");
+    for (const FurnaceMeter& f : page.in.metrics.furnaces)
+        if (phong && f.arm == phong->name && f.part == "combined") return &f;
+    return nullptr;
+}
+
+std::optional<double> cap_of(const Evidence& evidence, int bits) {
+    for (const FurnaceCap& cap : evidence.caps)
+        if (cap.u_bits == bits) return cap.y;
+    return {};
+}
+
+std::vector<double> column(const Series& s, double FurnaceQuantiles::*field) {
+    std::vector<double> out;
+    for (const FurnaceQuantiles* q : s.rungs) out.push_back(q->*field);
+    return out;
+}
+
+Axis y_axis(const Evidence& evidence) {
+    std::vector<double> values{evidence.expected};
+    for (const FurnaceQuantiles& q : evidence.furnace) values.insert(values.end(), {q.q05, q.q25, q.median, q.q75, std::min(q.q95, 1.6 * evidence.expected)});
+    return linear_axis("furnace reads, Y", values);
+}
+
+std::string panel(const Page& page, const Series& s) {
+    const Evidence& evidence = page.in.evidence;
+    std::vector<double> n;
+    for (const FurnaceQuantiles* q : s.rungs) n.push_back(static_cast<double>(q->n));
+    const Axis y = y_axis(evidence);
+    const auto held = [&](std::vector<double> v) {
+        for (double& x : v) x = std::min(x, y.high);
+        return v;
+    };
+    Chart chart(420, 280, log_axis("N", n), y, "Combined furnace of the Phong arm against N: " + s.name());
+    chart.band(n, held(column(s, &FurnaceQuantiles::q05)), held(column(s, &FurnaceQuantiles::q95)), "c1 faint");
+    chart.band(n, held(column(s, &FurnaceQuantiles::q25)), held(column(s, &FurnaceQuantiles::q75)), "c1");
+    std::vector<Point> medians;
+    for (const FurnaceQuantiles* q : s.rungs) medians.push_back({static_cast<double>(q->n), q->median});
+    chart.line(medians, "c1");
+    chart.dots(medians, "c1");
+    chart.rule(evidence.expected, "strong", "expected");
+    if (const auto cap = cap_of(evidence, s.u_bits)) chart.rule(*cap, "dashed c0", fmt::format("limit of {} bits", s.u_bits));
+    if (const FurnaceMeter* f = combined_furnace(page); f && f->published)
+        chart.diamonds({{static_cast<double>(f->n), *f->published}}, "pub");
+    return "<div class=\"panel\">" + html::element("p", "class=\"panel-title\"", escape(s.name())) + chart.str() + "</div>";
+}
+
+/// The rung of the series nearest to n, on a log scale.
+const FurnaceQuantiles* nearest_rung(const Series& s, double n) {
+    const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(std::log(static_cast<double>(q->n) / n)); };
+    return *std::min_element(s.rungs.begin(), s.rungs.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
+}
+
+std::string share_text(const FalseRejection& r) { return percent(r.runs > 0 ? static_cast<double>(r.rejected) / r.runs : 0, 3); }
+
+}  // namespace
+
+std::string furnace_charts(const Page& page) {
+    std::string panels;
+    for (const Series& s : series_of(page.in.evidence)) panels += panel(page, s);
+    return "<div class=\"pair\">" + panels + "</div>";
+}
+
+std::string furnace_table(const Evidence& evidence) {
+    const auto all = series_of(evidence);
+    std::vector<html::Cell> head{{"<i>N</i>", true}};
+    std::set<std::uint64_t> rungs;
+    for (const Series& s : all) {
+        head.push_back({escape(s.name()), true});
+        for (const FurnaceQuantiles* q : s.rungs) rungs.insert(q->n);
+    }
+    html::Table table(fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)), head);
+    for (const std::uint64_t n : rungs) {
+        std::vector<html::Cell> row{{std::to_string(n), true, true}};
+        for (const Series& s : all) {
+            const auto found = std::find_if(s.rungs.begin(), s.rungs.end(), [&](const auto* q) { return q->n == n; });
+            row.push_back(html::figure(found == s.rungs.end() ? "" : figures((*found)->median)));
+        }
+        table.row(row);
+    }
+    return table.str();
+}
+
+std::string furnace_sentence(const Page& page) {
+    const Evidence& evidence = page.in.evidence;
+    const auto all = series_of(evidence);
+    const auto coarse = std::min_element(all.begin(), all.end(), [](const Series& a, const Series& b) { return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits); });
+    const auto fine = std::max_element(all.begin(), all.end(), [](const Series& a, const Series& b) { return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits); });
+    if (coarse == fine || evidence.expected <= 0) return {};
+    const FurnaceMeter* run = combined_furnace(page);
+    const double n = run ? static_cast<double>(run->n) : static_cast<double>(fine->rungs.front()->n);
+    const FurnaceQuantiles *low = nearest_rung(*coarse, n), *high = nearest_rung(*fine, n);
+    const double short_low = 1 - low->median / evidence.expected, short_high = 1 - high->median / evidence.expected;
+    std::string out = fmt::format("At <i>N</i> = {} half of all furnaces read below {} in {} and below {} in {}, where {} is due: {} and {} "
+                                  "short.", low->n, html::value(figures(low->median)), escape(coarse->name()), html::value(figures(high->median)),
+                                  escape(fine->name()), html::value(figures(evidence.expected)), percent(short_low, 2), percent(short_high, 2));
+    out += short_high > 0.5 * short_low
+               ? " Nearly the same undershoot stands in the finer arithmetic, so precision is not what is missing."
+               : " The finer arithmetic recovers most of it, so in this run precision does explain the undershoot.";
+    return html::p(out);
+}
+
+std::string lost_chart(const Evidence& evidence) {
+    std::vector<double> angles{0}, shares{0};
+    std::vector<Point> theory, measured;
+    for (const LostSupport& l : evidence.lost) {
+        angles.push_back(l.theta_R_deg);
+        shares.insert(shares.end(), {l.theory, l.measured});
+        measured.push_back({l.theta_R_deg, l.measured});
+    }
+    const Axis x = linear_axis("tilt of R from the normal, degrees", angles);
+    for (int i = 0; i <= 60; ++i) {
+        const double angle = x.low + (x.high - x.low) * i / 60;
+        theory.push_back({angle, (1 - std::cos(angle * std::numbers::pi / 180)) / 2});
+        shares.push_back(theory.back().y);
+    }
+    Chart chart(560, 300, x, linear_axis("share of the fill that is lost", shares), "Lost share of Lambert under the fill against the tilt of R");
+    chart.line(theory, "c0");
+    for (const LostSupport& l : evidence.lost) chart.bar(l.theta_R_deg, l.measured - 2 * l.se, l.measured + 2 * l.se, "c1");
+    chart.dots(measured, "c1");
+    return chart.str();
+}
+
+std::string lost_sentence(const Evidence& evidence) {
+    std::string values;
+    double worst = 0;
+    for (const LostSupport& l : evidence.lost) {
+        if (l.theta_R_deg > 0)
+            values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(l.measured)), shortest(l.theta_R_deg));
+        if (l.se > 0) worst = std::max(worst, std::fabs(l.measured - l.theory) / l.se);
+    }
+    return html::p(fmt::format("Measured by drawing from the cosine and asking the Phong density whether it could have drawn the same: {}. "
+                               "The largest departure from theory is {:.1f} standard errors{}.", values, worst,
+                               worst <= 4 ? "" : ", more than chance allows: theory and measurement disagree here"));
+}
+
+std::string rejection_chart(const Evidence& evidence) {
+    std::vector<double> exponents, rates{0, evidence.alpha};
+    std::vector<Point> points;
+    for (const FalseRejection& r : evidence.rejections) {
+        exponents.push_back(r.s);
+        rates.insert(rates.end(), {r.low, r.high});
+        points.push_back({r.s, r.runs > 0 ? static_cast<double>(r.rejected) / r.runs : 0});
+    }
+    Axis x = log_axis("exponent s", exponents);
+    x.ticks = exponents;
+    Chart chart(560, 300, x, linear_axis("rejected", rates), "Share of correct runs that a t-test rejects, against s");
+    chart.rule(evidence.alpha, "dashed strong", fmt::format("what the test promises: {}", percent(evidence.alpha)));
+    for (const FalseRejection& r : evidence.rejections) chart.bar(r.s, r.low, r.high, "c1");
+    chart.dots(points, "c1");
+    return chart.str();
+}
+
+std::string rejection_sentence(const Evidence& evidence) {
+    std::string values;
+    int above = 0;
+    for (const FalseRejection& r : evidence.rejections) {
+        values += fmt::format("{}{} at <i>s</i> = {} (<i>k</i> = {:.3f}, {} of {} runs, 95 % interval {} to {})", values.empty() ? "" : "; ",
+                              html::value(share_text(r)), shortest(r.s), r.k, r.rejected, r.runs, percent(r.low), percent(r.high));
+        if (r.low > evidence.alpha) ++above;
+    }
+    return html::p(fmt::format("Rejected were {}. A test at level {} promises to reject {}; at {} of the {} exponents the interval lies above "
+                               "that.", values, shortest(evidence.alpha), percent(evidence.alpha), above, evidence.rejections.size()));
+}
+
+}  // namespace crescent
