@@ -49,6 +49,9 @@ void check_names(Draft& draft);
 /// Fills in what depends on other keys (s, n, the rungs of ladder plates) and checks runs against arms and exponents.
 void resolve_runs(Draft& draft);
 
+/// Why the experiment makes no run of this arm at this s (0: its own); "" where it does. The rung is checked apart.
+std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s);
+
 /// Parses every check and makes sure that all it names will be measured.
 void resolve_assertions(Draft& draft);
 

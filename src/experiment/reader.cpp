@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "experiment/draft.h"
 
@@ -31,7 +32,7 @@ std::string canonical(const Key& key, const Value& value) {
         case Type::flag: return value.flag ? "true" : "false";
         case Type::integer: case Type::number: return fmt::format("{}", value.number + 0.0);
         case Type::text: case Type::check: case Type::word: case Type::sampler: case Type::arm: case Type::shape: return value.text;
-        default: return fmt::format("{}", fmt::join(value.numbers, ","));
+        default: return listed(value.numbers, ",");
     }
 }
 
@@ -70,7 +71,7 @@ private:
             const std::vector<std::string> valid = words_of(section, kind);
             const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key) : fmt::format("unknown key '{}'", member.key.substr(0, 64));
             draft_.complain(join(path, member.key), member.at,
-                            fmt::format("{} in {}: expected {}{}", whose, where(path), fmt::join(valid, ", "), hint(member.key, valid)));
+                            fmt::format("{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
         }
     }
 
@@ -151,6 +152,7 @@ private:
             return draft_.complain(path, node.at, fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
         std::vector<std::string> names;
         for (const Member& member : node.members) names.push_back(member.key);
+        titles_.clear();
         for (std::size_t i = 0; i < node.members.size(); ++i) {
             const Member& member = node.members[i];
             siblings = names;
@@ -188,15 +190,16 @@ private:
             return false;
         }
         name = own->value.text;
-        if (const auto before = draft_.e.places.find(join(path, name)); before != draft_.e.places.end()) {
-            draft_.complain(fmt::format("{}.{}", path, index), own->value.at,
-                            fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path, to_string(before->second)));
-            return false;
-        }
-        return true;
+        at = own->value.at;
+        const auto [first, fresh] = titles_.emplace(name, at);
+        if (!fresh)
+            draft_.complain(fmt::format("{}.{}", path, index), at,
+                            fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path, to_string(first->second)));
+        return fresh;
     }
 
     Draft& draft_;
+    std::map<std::string, Place> titles_;  // names of a list so far
 };
 
 }  // namespace

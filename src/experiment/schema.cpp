@@ -21,7 +21,7 @@ std::string noun(const Key& key) {
     switch (key.type) {
         case Type::text: return "a line of text";
         case Type::check: return "a comparison of two quantities";
-        case Type::word: return fmt::format("one of {}", fmt::join(key.words, ", "));
+        case Type::word: return fmt::format("one of {}", listed(key.words, ", "));
         case Type::flag: return "true or false";
         case Type::integer: return "an integer";
         case Type::number: return "a number";

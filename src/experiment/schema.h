@@ -2,6 +2,8 @@
 // goes. The reader, `crescent schema`, the overrides and the nearest-word hints all walk this table.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -88,6 +90,13 @@ bool has_kind(const Key& key, std::string_view kind);
 
 /// "a number above 0 (m)": what a key takes, for messages and for the manual.
 std::string expectation(const Key& key);
+
+/// "a, b, c".
+template <class T> std::string listed(const std::vector<T>& all, std::string_view between = ", ") {
+    std::string text;
+    for (const T& one : all) (text += text.empty() ? std::string_view() : between) += fmt::to_string(one);
+    return text;
+}
 
 /// The valid words of a section, for hints: keys of this kind and sections.
 std::vector<std::string> words_of(const Section& section, std::string_view kind = {});

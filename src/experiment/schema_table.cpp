@@ -130,7 +130,7 @@ Section plates() {
     return {"plates", Many::named, optional, "The pictures; a plate's name is its file's name.", in<&Experiment::plates>,
             {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
               {"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference", "heat", "rose", "meters"}},
-             {"crop", Type::box, pixel_range, "pixels", optional, "none", "The part that is shown or enlarged.", to<&PlatePlan::crop>},
+             {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last", "The part that is enlarged.", to<&PlatePlan::crop>},
              {"caption", Type::text, none, "", defaulted, "\"\"", "Stands alone under the picture.", to<&PlatePlan::caption>}},
             {runs}};
 }

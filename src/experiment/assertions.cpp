@@ -1,0 +1,36 @@
+// Every check of the file, parsed; its quantities are written out in full.
+#include <fmt/format.h>
+
+#include "experiment/draft.h"
+#include "experiment/quantity_text.h"
+
+namespace crescent {
+
+namespace {
+
+bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
+
+void resolve(Draft& draft, AssertionPlan& plan, const std::string& path) {
+    std::string why;
+    std::optional<Comparison> check = parse_comparison(plan.left, why);
+    if (check && is_number(*check)) check.reset(), why = "expected a quantity on one side at least, found two numbers";
+    if (check)
+        if (why = resolve_quantity(check->left, draft.e); why.empty()) why = resolve_quantity(check->right, draft.e);
+    if (why.empty() && plan.median && (check->left.word == "tail" || check->right.word == "tail"))
+        why = "expected over = \"seed\": tails are measured at the experiment's seed alone";
+    if (!why.empty()) return draft.complain(path, fmt::format("{}: {}", path, why));
+    plan.left = to_string(check->left);
+    plan.op = check->op;
+    plan.right = to_string(check->right);
+}
+
+}  // namespace
+
+void resolve_assertions(Draft& draft) {
+    for (AssertionPlan& plan : draft.e.assertions) {
+        const std::string path = fmt::format("assertions.{}.check", plan.name);
+        if (draft.sound(path)) resolve(draft, plan, path);
+    }
+}
+
+}  // namespace crescent

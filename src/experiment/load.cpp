@@ -1,0 +1,79 @@
+// A file, or text, and its overrides -> Experiment; every mistake in one InputError, in file order.
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <tuple>
+
+#include "experiment/draft.h"
+#include "experiment/published.h"
+
+namespace crescent {
+
+namespace {
+
+/// In file order; overrides come after the file, as given.
+void throw_if_any(std::vector<Complaint> all) {
+    if (all.empty()) return;
+    const auto key = [](const Complaint& c) { return std::tuple(c.at.line == 0, c.at.line, c.at.column); };
+    std::stable_sort(all.begin(), all.end(), [&](const Complaint& a, const Complaint& b) { return key(a) < key(b); });
+    throw InputError(std::move(all));
+}
+
+Draft draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+    Draft draft;
+    draft.e.file = name;
+    Node root = read_toml(text, name);
+    apply_overrides(draft, root, overrides);
+    read_tree(draft, root);
+    check_geometry(draft);
+    check_names(draft);
+    resolve_runs(draft);
+    resolve_assertions(draft);
+    Experiment& e = draft.e;
+    e.hash = XXH3_64bits(draft.canonical.data(), draft.canonical.size());
+    if (e.published) e.published = (std::filesystem::path(name).parent_path() / *e.published).string();
+    return draft;
+}
+
+}  // namespace
+
+Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+    Draft draft = draft_of(text, name, overrides);
+    throw_if_any(std::move(draft.complaints));
+    return std::move(draft.e);
+}
+
+Experiment load(const std::string& path, const std::vector<std::string>& overrides) {
+    Draft draft = draft_of(read_text(path, "an experiment file"), path, overrides);
+    if (draft.e.published) {
+        try {
+            (void)load_published(*draft.e.published);
+        } catch (const InputError& error) {
+            draft.complain("published", fmt::format("published: {}", error.what()));
+        }
+    }
+    throw_if_any(std::move(draft.complaints));
+    return std::move(draft.e);
+}
+
+std::string read_text(const std::string& path, std::string_view what) {
+    constexpr std::streamsize most = (std::streamsize{4} << 20) + 1;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) throw InputError({path, 0, 0}, fmt::format("expected {}, found a folder", what));
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
+    std::string text(static_cast<std::size_t>(most), '\0');
+    file.read(text.data(), most);
+    if (file.bad()) throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    if (text.size() == static_cast<std::size_t>(most)) throw InputError({path, 0, 0}, fmt::format("expected {} of at most 4 MiB, found more", what));
+    return text;
+}
+
+}  // namespace crescent

@@ -1,0 +1,163 @@
+// --set path=value: the tree is changed before it is read, so that an override meets the same checks as the file.
+// A path is a full one (shapes.sphere.s) or starts at a name (sphere.s); list items are .0 or [0].
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "experiment/draft.h"
+
+namespace crescent {
+
+namespace {
+
+using Segments = std::vector<std::string>;
+
+/// "a.'b c'.d[2]" -> a, b c, d, 2.
+Segments split(std::string_view path) {
+    Segments segments(1);
+    char quote = 0;
+    for (const char c : path) {
+        if (quote) {
+            if (c == quote) quote = 0;
+            else segments.back() += c;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '.' || c == '[') {
+            segments.emplace_back();
+        } else if (c != ']') {
+            segments.back() += c;
+        }
+    }
+    return segments;
+}
+
+std::string_view trim(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+    return text;
+}
+
+std::optional<std::size_t> index_of(const std::string& segment) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(segment.data(), segment.data() + segment.size(), index);
+    return error == std::errc{} && end == segment.data() + segment.size() ? std::optional(index) : std::nullopt;
+}
+
+/// Whether the table has this path, names of the user's choice taken as they come.
+bool in_table(const Section& section, const Segments& path, std::size_t i) {
+    if (i >= path.size()) return true;
+    if (section.find_key(path[i])) return i + 1 == path.size() || (i + 2 == path.size() && index_of(path[i + 1]));
+    const Section* sub = section.find_section(path[i]);
+    return sub && in_table(*sub, path, i + (sub->many == Many::one ? 1 : 2));
+}
+
+std::string name_of(const Member& member) {
+    const Member* name = member.key.empty() ? member.value.find("name") : nullptr;
+    return name ? name->value.text : member.key;
+}
+
+Member* step(Node& node, const std::string& segment) {
+    if (node.is_table()) return node.find(segment);
+    if (const auto index = index_of(segment)) return *index < node.members.size() ? &node.members[*index] : nullptr;
+    const auto named = std::find_if(node.members.begin(), node.members.end(), [&](const Member& m) { return name_of(m) == segment; });
+    return named == node.members.end() ? nullptr : &*named;
+}
+
+void move_to(Node& node, const Place& at) {
+    node.at = at;
+    for (Member& member : node.members) member.at = at, move_to(member.value, at);
+}
+
+class Override {
+public:
+    Override(Draft& draft, Node& root, const std::string& text) : draft_(draft), root_(root), place_{"--set " + text, 0, 0} {}
+
+    void apply(const std::string& text) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos) return fail("expected path=value, e.g. sphere.s=64");
+        written_ = std::string(trim(std::string_view(text).substr(0, equals)));
+        Node value;
+        if (!parse_value(std::string(trim(std::string_view(text).substr(equals + 1))), value)) return;
+        Segments path = split(written_);
+        if (std::any_of(path.begin(), path.end(), [](const std::string& s) { return s.empty(); }) || path.size() > 8)
+            return fail(fmt::format("expected a path such as sphere.s or shapes.sphere.s, found '{}'", written_));
+        if (resolve(path)) set(path, std::move(value));
+    }
+
+private:
+    void fail(const std::string& say) { draft_.complain(written_, place_, say); }
+
+    /// TOML where it is TOML, else the bare words as text.
+    bool parse_value(const std::string& text, Node& value) {
+        try {
+            Node tree = read_toml("value = " + text, place_.file);
+            if (tree.members.size() == 1 && tree.members[0].key == "value") value = std::move(tree.members[0].value);
+            else value.kind = Node::Kind::text, value.text = text;
+        } catch (const InputError& error) {
+            if (text.empty()) return fail("expected a value after '='"), false;
+            if (std::string_view("[{\"'").find(text[0]) != std::string_view::npos)
+                return fail(fmt::format("the value: {}", error.complaints().front().say)), false;
+            value.kind = Node::Kind::text, value.text = text;
+        }
+        move_to(value, place_);
+        return true;
+    }
+
+    /// Completes a path that starts at a name with the family the name belongs to.
+    bool resolve(Segments& path) {
+        if (in_table(schema(), path, 0)) return true;
+        std::vector<Segments> valid, all;
+        std::vector<std::string> words = words_of(schema());
+        const bool top = std::count(words.begin(), words.end(), path[0]);
+        for (const Section& section : schema().sections) {
+            const Member* family = root_.find(section.name);
+            if (section.many == Many::one || !family) continue;
+            for (const Member& member : family->value.members) {
+                words.push_back(name_of(member));
+                if (words.back() != path[0]) continue;
+                all.push_back(path);
+                all.back().insert(all.back().begin(), std::string(section.name));
+                if (in_table(schema(), all.back(), 0)) valid.push_back(all.back());
+            }
+        }
+        if (valid.size() > 1)
+            return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_, valid[1][0], written_)), false;
+        if (valid.empty() && !top && all.empty())
+            return fail(fmt::format("no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}", path[0], hint(path[0], words))), false;
+        if (!valid.empty()) path = valid[0];
+        else if (!top) path = all[0];  // the reader says what is wrong with its key
+        return true;
+    }
+
+    void set(const Segments& path, Node value) {
+        Node* node = &root_;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            Member* next = node->is_table() || node->is_array() ? step(*node, path[i]) : nullptr;
+            if (!next) {
+                if (!node->is_table())
+                    return fail(fmt::format("no '{}' in '{}': expected {}", path[i], listed(Segments(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i)), "."),
+                                            node->is_array() && !node->members.empty() ? fmt::format("an index from 0 to {}", node->members.size() - 1) : "no more keys after it"));
+                node->members.push_back({path[i], place_, Node{}});
+                next = &node->members.back();
+                next->value.at = place_;
+            }
+            if (i + 1 == path.size()) next->at = place_;
+            node = &next->value;
+        }
+        *node = std::move(value);
+    }
+
+    Draft& draft_;
+    Node& root_;
+    Place place_;
+    std::string written_;
+};
+
+}  // namespace
+
+void apply_overrides(Draft& draft, Node& root, const std::vector<std::string>& overrides) {
+    for (const std::string& text : overrides) Override(draft, root, text).apply(text);
+}
+
+}  // namespace crescent

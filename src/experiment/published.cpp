@@ -1,0 +1,101 @@
+// Published figures from JSON. A place in the file is known for wrong syntax; elsewhere a JSON pointer stands for it.
+#include "experiment/published.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.h"
+
+namespace crescent {
+
+namespace {
+
+using nlohmann::json;
+
+Place place_of_byte(std::string_view text, std::size_t byte, const std::string& file) {
+    const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
+    const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+    return {file, static_cast<unsigned>(std::count(before.begin(), before.end(), '\n') + 1), static_cast<unsigned>(before.size() - line_start + 1)};
+}
+
+class Reader {
+public:
+    explicit Reader(const std::string& file) : file_(file) {}
+
+    Published read(const json& root) {
+        Published all;
+        if (!root.is_object()) fail("", "an object with 'runs' and 'furnaces'", root);
+        for (const auto& [key, value] : root.items()) {
+            if (key == "source") all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
+            else if (key == "runs") runs(value, all);
+            else if (key == "furnaces") furnaces(value, all);
+            else fail("/" + key, "one of the keys source, runs, furnaces", key);
+        }
+        return all;
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& at, const std::string& expected, const json& found) const {
+        std::string text = found.dump(-1, ' ', false, json::error_handler_t::replace);
+        if (text.size() > 40) text = text.substr(0, 37) + "...";
+        throw InputError({file_, 0, 0}, fmt::format("{}: expected {}, found {}", at.empty() ? "/" : at, expected, text));
+    }
+
+    void runs(const json& list, Published& all) const {
+        if (!list.is_array()) fail("/runs", "a list of objects", list);
+        for (std::size_t i = 0; i < list.size(); ++i) run(list[i], fmt::format("/runs/{}", i), all);
+    }
+
+    void run(const json& run, const std::string& at, Published& all) const {
+        const auto arm = run.find("arm"), n = run.find("n"), s = run.find("s");
+        if (!run.is_object() || arm == run.end() || !arm->is_string() || n == run.end() || !n->is_number_unsigned() || s == run.end() || !s->is_number())
+            fail(at, "an object with arm (text), n (integer) and s (number)", run);
+        for (const auto& [key, value] : run.items()) {
+            if (key == "arm" || key == "n" || key == "s") continue;
+            if (!value.is_number()) fail(at + "/" + key, "a number", value);
+            const bool fresh = all.runs.emplace(std::tuple(arm->get<std::string>(), n->get<std::uint64_t>(), s->get<double>(), key), value.get<double>()).second;
+            if (!fresh) fail(at + "/" + key, "a figure that was not given before", value);
+        }
+    }
+
+    void furnaces(const json& object, Published& all) const {
+        if (!object.is_object()) fail("/furnaces", "an object", object);
+        for (const auto& [key, value] : object.items()) {
+            if (!value.is_number()) fail("/furnaces/" + key, "a number", value);
+            all.furnaces[key] = value.get<double>();
+        }
+    }
+
+    const std::string& file_;
+};
+
+}  // namespace
+
+std::optional<double> Published::find(const std::string& arm, std::uint64_t n, double s, const std::string& meter) const {
+    const auto it = runs.find({arm, n, s, meter});
+    return it == runs.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<double> Published::furnace(const std::string& name) const {
+    const auto it = furnaces.find(name);
+    return it == furnaces.end() ? std::nullopt : std::optional(it->second);
+}
+
+Published parse_published(std::string_view text, const std::string& name) {
+    try {
+        return Reader(name).read(json::parse(text));
+    } catch (const json::parse_error& error) {
+        throw InputError(place_of_byte(text, error.byte, name), fmt::format("not JSON: {}", error.what()));
+    } catch (const json::exception& error) {
+        throw InputError({name, 0, 0}, fmt::format("expected published figures: {}", error.what()));
+    }
+}
+
+std::optional<Published> load_published(const std::string& path) {
+    if (path.empty()) return {};
+    return parse_published(read_text(path, "a JSON of published figures"), path);
+}
+
+}  // namespace crescent

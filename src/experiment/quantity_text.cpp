@@ -1,0 +1,204 @@
+// Text -> ParsedQuantity, by recursive descent over one line.
+#include "experiment/quantity_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "experiment/draft.h"
+
+namespace crescent {
+
+namespace {
+
+std::vector<std::string> all_words() {
+    std::vector<std::string> words;
+    for (const QuantityWord& w : quantity_words()) words.emplace_back(w.word);
+    return words;
+}
+
+class Parser {
+public:
+    Parser(std::string_view text, std::string& why) : rest_(text), why_(why) {}
+
+    std::optional<Comparison> comparison() {
+        Comparison c;
+        if (!side(c.left)) return {};
+        blanks();
+        for (const std::string_view op : {"<=", ">=", "==", "<", ">"})
+            if (c.op.empty() && rest_.starts_with(op)) c.op = op;
+        if (c.op.empty()) return fail("<, <=, >, >= or =="), std::nullopt;
+        rest_.remove_prefix(c.op.size());
+        if (!side(c.right) || !end()) return {};
+        return c;
+    }
+
+    std::optional<ParsedQuantity> quantity() {
+        ParsedQuantity q;
+        if (!side(q) || !end()) return {};
+        return q;
+    }
+
+private:
+    static bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-'; }
+    void blanks() {
+        while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
+    }
+    bool take(char c) {
+        blanks();
+        if (rest_.empty() || rest_.front() != c) return false;
+        rest_.remove_prefix(1);
+        return true;
+    }
+    bool fail(std::string_view expected) {
+        blanks();
+        why_ = rest_.empty() ? fmt::format("expected {} at the end", expected) : fmt::format("expected {}, found '{}'", expected, rest_.substr(0, 40));
+        return false;
+    }
+    bool end() {
+        blanks();
+        return rest_.empty() || fail("nothing more");
+    }
+    std::string word() {
+        blanks();
+        const auto length = static_cast<std::size_t>(std::find_if_not(rest_.begin(), rest_.end(), is_word) - rest_.begin());
+        const std::string taken(rest_.substr(0, length));
+        rest_.remove_prefix(length);
+        return taken;
+    }
+    bool number(double& to) {
+        blanks();
+        std::string_view text = rest_.starts_with('+') ? rest_.substr(1) : rest_;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), to);
+        if (error != std::errc{} || !std::isfinite(to)) return fail("a finite number");
+        rest_ = std::string_view(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
+        return true;
+    }
+
+    bool side(ParsedQuantity& q) {
+        blanks();
+        if (rest_.empty()) return fail("a quantity or a number");
+        if (std::string_view("0123456789+-.").find(rest_.front()) != std::string_view::npos) return number(q.number.emplace());
+        const std::string name = word();
+        const std::size_t dot = name.find('.');
+        q.word = name.substr(0, dot);
+        if (dot != std::string::npos) q.region = name.substr(dot + 1);
+        const auto& words = quantity_words();
+        const auto known = std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
+        if (known == words.end()) {
+            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(all_words(), ", "), hint(q.word, all_words()));
+            return false;
+        }
+        if (known->of_region != !q.region.empty()) {
+            why_ = fmt::format("expected {}, found '{}'", form_of(*known), name.substr(0, 64));
+            return false;
+        }
+        return known->subject == Subject::none || brackets(q, *known);
+    }
+
+    bool brackets(ParsedQuantity& q, const QuantityWord& known) {
+        if (!take('(')) return fail(fmt::format("'(' as in {}", form_of(known)));
+        q.subject = word();
+        if (q.subject.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
+        while (known.subject == Subject::run && take(','))
+            if (!argument(q)) return false;
+        return take(')') || fail("')'");
+    }
+
+    bool argument(ParsedQuantity& q) {
+        const std::string name = word();
+        if ((name != "n" && name != "s") || !take('=')) return fail("n= or s=");
+        double value = 0;
+        if (!number(value)) return false;
+        if (!(value > 0) || (name == "n" && (value > 16777216 || value != std::floor(value)))) {
+            why_ = fmt::format("expected {}, found {}", name == "n" ? "n from 1 to 16777216" : "s above 0", value);
+            return false;
+        }
+        if (name == "n") q.n = static_cast<std::uint64_t>(value);
+        else q.s = value;
+        return true;
+    }
+
+    std::string_view rest_;
+    std::string& why_;
+};
+
+template <class T> std::string missing(const std::vector<T>& all, const char* what, const std::string& name) {
+    std::vector<std::string> names;
+    for (const T& one : all) names.push_back(one.name);
+    if (std::count(names.begin(), names.end(), name)) return "";
+    return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64), names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
+}
+
+std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
+    if (std::string why = missing(e.arms, "arm", q.subject); !why.empty()) return why;
+    const ArmPlan& arm = *e.find_arm(q.subject);
+    if (arm.n.empty()) return "";
+    if (q.n == 0) q.n = q.word == "bad" || q.word == "largest" ? arm.n.back() : e.n_of(arm);
+    if (!std::count(arm.n.begin(), arm.n.end(), q.n))
+        return fmt::format("the arm '{}' has no rung n = {}: expected one of {}", arm.name, q.n, listed(arm.n, ", "));
+    return why_not_run(e, q.subject, q.n, q.s);
+}
+
+}  // namespace
+
+const std::vector<QuantityWord>& quantity_words() {
+    static const std::vector<QuantityWord> words = {
+        {"rmse", true, Subject::run, "root mean square error of Y against the reference over a region"},
+        {"var", true, Subject::run, "mean over a region of the variance of the mean of Y"},
+        {"tail", true, Subject::run, "Pareto index k of a region's samples, at the experiment's seed"},
+        {"fireflies", false, Subject::run, "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"},
+        {"horizon_frac", false, Subject::run, "part of the samples of geometry pixels that fall under the horizon"},
+        {"y_mean", false, Subject::run, "mean Y of the whole frame"},
+        {"rmse_frame", false, Subject::run, "root mean square error of Y over the whole frame"},
+        {"largest", false, Subject::run, "largest single sample of the frame; the arm's highest rung unless n is said"},
+        {"bad", false, Subject::run, "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
+        {"furnace", false, Subject::furnace, "Y that a white furnace reads"},
+        {"furnace_error", false, Subject::furnace, "how far it is from what is expected, without sign"},
+        {"shape_pixels", false, Subject::shape, "pixels in which the camera sees a shape"},
+        {"region_pixels", false, Subject::region, "pixels of a region's box"},
+        {"geometry_pixels", false, Subject::none, "pixels in which the camera sees any shape"},
+        {"plate_bytes", false, Subject::plate, "size of a plate's PNG file"},
+    };
+    return words;
+}
+
+std::string form_of(const QuantityWord& word) {
+    static constexpr std::string_view brackets[] = {"", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)"};
+    return fmt::format("{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
+}
+
+std::optional<ParsedQuantity> parse_quantity(std::string_view text, std::string& why) { return Parser(text, why).quantity(); }
+std::optional<Comparison> parse_comparison(std::string_view text, std::string& why) { return Parser(text, why).comparison(); }
+
+std::string to_string(const ParsedQuantity& q) {
+    if (q.number) return fmt::format("{}", *q.number);
+    std::string text = q.word;
+    if (!q.region.empty()) text += "." + q.region;
+    if (q.subject.empty()) return text;
+    text += "(" + q.subject;
+    if (q.n > 0) text += fmt::format(", n={}", q.n);
+    if (q.s > 0) text += fmt::format(", s={}", q.s);
+    return text + ")";
+}
+
+std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
+    if (q.number) return "";
+    if (!q.region.empty())
+        if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
+    const auto& words = quantity_words();
+    const auto known = std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
+    switch (known == words.end() ? Subject::none : known->subject) {
+        case Subject::none: return "";
+        case Subject::run: return resolve_run(q, e);
+        case Subject::furnace: return missing(e.furnaces, "furnace", q.subject);
+        case Subject::shape: return missing(e.shapes, "shape", q.subject);
+        case Subject::region: return missing(e.regions, "region", q.subject);
+        case Subject::plate: return missing(e.plates, "plate", q.subject);
+    }
+    return "";
+}
+
+}  // namespace crescent

@@ -1,0 +1,109 @@
+// `crescent schema`: the table as text of at most 80 columns, and as JSON.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiment/names.h"
+#include "experiment/quantity_text.h"
+#include "experiment/schema.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr std::size_t columns = 80;
+
+std::string type_name(Type type) {
+    static constexpr const char* names[] = {"text", "check", "word", "flag", "integer", "number", "point", "direction", "color",
+                                            "numbers", "integers", "box", "sampler", "arm", "shape"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+std::string join(const std::string& path, std::string_view name) { return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name); }
+
+std::string path_of(const Section& section, const std::string& parent) {
+    std::string path = join(parent, section.name);
+    if (section.many == Many::named || section.many == Many::titled) path += ".NAME";
+    if (section.many == Many::list) path += ".INDEX";
+    return path;
+}
+
+/// Words set in lines of at most 80 columns, every line indented.
+std::string wrapped(std::string_view text, std::size_t indent) {
+    std::string out, line(indent, ' ');
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        const std::string_view word = text.substr(at, end - at);
+        if (line.size() > indent && line.size() + 1 + word.size() > columns) out += line + "\n", line.assign(indent, ' ');
+        if (line.size() > indent) line += ' ';
+        line += word;
+        at = end + 1;
+    }
+    return out + line + "\n";
+}
+
+std::string need_text(const Key& key) {
+    if (key.need == Need::required) return "required";
+    return fmt::format("default {}", key.fallback);
+}
+
+std::string key_text(const Key& key) {
+    std::string line = fmt::format("{}: {}; {}", key.name, expectation(key), need_text(key));
+    if (!key.kinds.empty()) line += fmt::format("; of {}", key.kinds);
+    return wrapped(line, 2) + wrapped(key.means, 6);
+}
+
+void print(const Section& section, const std::string& parent, std::string& out) {
+    const std::string path = path_of(section, parent);
+    if (!path.empty()) {
+        const std::string header = section.many == Many::list ? "[[" + join(parent, section.name) + "]]" : "[" + path + "]";
+        out += fmt::format("\n{}{}\n", header, section.need == Need::required ? "  (required)" : "");
+    }
+    out += wrapped(section.means, 0);
+    for (const Key& key : section.keys) out += key_text(key);
+    for (const Section& sub : section.sections) print(sub, path, out);
+}
+
+using nlohmann::ordered_json;
+
+ordered_json number_or_null(double x, bool there) { return there ? ordered_json(x) : ordered_json(nullptr); }
+
+void collect(const Section& section, const std::string& parent, ordered_json& keys, ordered_json& sections) {
+    const std::string path = path_of(section, parent);
+    sections.push_back({{"path", path}, {"required", section.need == Need::required}, {"means", section.means}});
+    for (const Key& key : section.keys) {
+        const bool ranged = key.range.low != key.range.high;
+        keys.push_back({{"key", join(path, key.name)},
+                        {"type", type_name(key.type)},
+                        {"expects", expectation(key)},
+                        {"unit", key.unit},
+                        {"range", {{"low", number_or_null(key.range.low, ranged)}, {"low_open", key.range.low_open},
+                                   {"high", number_or_null(key.range.high, ranged)}, {"high_open", key.range.high_open}}},
+                        {"required", key.need == Need::required},
+                        {"default", key.need == Need::required ? ordered_json(nullptr) : ordered_json(key.fallback)},
+                        {"words", key.words},
+                        {"kinds", key.kinds},
+                        {"means", key.means}});
+    }
+    for (const Section& sub : section.sections) collect(sub, path, keys, sections);
+}
+
+}  // namespace
+
+std::string schema_text() {
+    std::string out;
+    print(schema(), "", out);
+    out += "\nSamplers\n" + wrapped(listed(sampler_names(), ", "), 2);
+    out += "\nQuantities of a check\n";
+    for (const QuantityWord& word : quantity_words()) out += wrapped(form_of(word), 2) + wrapped(word.means, 6);
+    return out;
+}
+
+std::string schema_json() {
+    ordered_json root = {{"keys", ordered_json::array()}, {"sections", ordered_json::array()}, {"samplers", sampler_names()}, {"quantities", ordered_json::array()}};
+    collect(schema(), "", root["keys"], root["sections"]);
+    for (const QuantityWord& word : quantity_words()) root["quantities"].push_back({{"form", form_of(word)}, {"means", word.means}});
+    return root.dump(2) + "\n";
+}
+
+}  // namespace crescent
