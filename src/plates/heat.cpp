@@ -51,29 +51,38 @@ Box shown_box(const Sheet& sheet) {
     return e.regions.empty() ? whole(all) : inside(e.regions[0].box, all);
 }
 
-// RMSE over the crop from the float film, and how much of it lies above the scale.
-std::string reading(const Residual& r, const Box& box, double top) {
+bool within(const Box& b, const Box& box) {
+    return b.x0 >= box.x0 && b.x1 <= box.x1 && b.y0 >= box.y0 && b.y1 <= box.y1;
+}
+
+double rmse(const std::vector<double>& v) {
     double sum = 0;
-    std::size_t above = 0, n = 0;
-    for (double v : values(r, box)) {
-        if (!std::isfinite(v)) continue;
-        sum += v * v, above += v > top, ++n;
+    for (double x : v) sum += x * x;
+    return std::sqrt(sum / double(v.size()));
+}
+
+// RMSE of each region that is wholly shown, and how much of the crop lies above the scale.
+std::string reading(const Residual& r, const Box& box, double top, const Experiment& e) {
+    std::vector<std::string> parts;
+    for (const Region& region : e.regions) {
+        if (!within(region.box, box)) continue;
+        parts.push_back(fmt::format("RMSE<sub>{}</sub> {}", escaped(region.name), figure(rmse(values(r, region.box)))));
     }
-    if (n == 0) return "nothing finite";
-    return fmt::format("RMSE over the crop {}, {} % above the scale", number(std::sqrt(sum / double(n)), 3),
-                       number(100.0 * double(above) / double(n), 2));
+    std::vector<double> v = values(r, box);
+    auto above = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
+    parts.push_back(fmt::format("{} % of pixels above the scale", number(100.0 * double(above) / double(v.size()), 2)));
+    return joined(parts, ", ");
 }
 
 void outline_regions(Sheet& sheet, const Rect& picture, const Box& box) {
     for (const Region& region : sheet.experiment().regions) {
         const Box& b = region.box;
-        bool within = b.x0 >= box.x0 && b.x1 <= box.x1 && b.y0 >= box.y0 && b.y1 <= box.y1;
-        bool same = within && b.width() == box.width() && b.height() == box.height();
-        if (!within || same) continue;
-        Rect r = on_picture(picture, box, b).inset(-1);
-        sheet.canvas.outline(r, {0, 0, 0, 0.55}, 3.5);
-        sheet.canvas.outline(r, bright, 1.5);
-        sheet.canvas.text({r.x + 6, r.y + 4, r.w - 12, 22}, escaped(region.name), with(body_text, Weight::semibold));
+        bool same = b.width() == box.width() && b.height() == box.height();
+        if (!within(b, box) || same) continue;
+        Rect r = on_picture(picture, box, b).inset(-1.5);
+        sheet.canvas.outline(r, {0, 0, 0, 0.6}, 5);
+        sheet.canvas.outline(r, bright, 2);
+        name_tag(sheet, picture, r, region.name, bright);
     }
 }
 
@@ -93,7 +102,7 @@ void draw_run(Sheet& sheet, const Residual& r, const Box& box, const Fit& f, dou
     double y = slot.bottom() + 8;
     sheet.canvas.text({col.x, y, col.w, 28}, runs_label({r.key}, e), with(with_px(title_text, 22), Align::centre));
     if (r.there()) {
-        sheet.canvas.text({col.x, y + 29, col.w, 23}, reading(r, box, top),
+        sheet.canvas.text({col.x, y + 29, col.w, 23}, reading(r, box, top, e),
                           with(with(with_px(body_text, 17), muted), Align::centre));
     }
 }
@@ -110,7 +119,8 @@ std::vector<Residual> residuals(const Sheet& sheet) {
 
 void draw_heat(Sheet& sheet) {
     std::vector<Residual> runs = residuals(sheet);
-    instrument_header(sheet, "FINGERPRINT", "linear Rec.709 Y residual, not PNG");
+    std::vector<RunKey> keys = keys_of(sheet.plan, sheet.experiment());
+    instrument_header(sheet, "FINGERPRINT", "linear Rec.709 Y residual, not PNG", stream_words(keys));
     if (runs.empty()) {
         paint_missing(sheet, content_band, "the plan names no run");
         return;

@@ -69,7 +69,7 @@ void draw_axes(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& la
 std::string slope_text(const Ladder& l, const Experiment& e) {
     std::string name = arm_name(l.arm, e);
     if (l.heavy) return name + ": heavy tail";
-    return fmt::format("{}: N<sup> {}</sup>", name, number(l.slope, 2));
+    return fmt::format("{}: N<sup> {}{:.2f}</sup>", name, l.slope < 0 ? "−" : "", std::abs(l.slope));
 }
 
 // Names at the right end of the lines, pushed apart where lines end close together.

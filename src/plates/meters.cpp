@@ -49,7 +49,7 @@ const BandMeter* band_of(const Metrics& m, const RunKey& key, const std::string&
 
 std::string value(const std::string& meter, double v) {
     if (meter == "fireflies" && std::isfinite(v)) return count(static_cast<std::uint64_t>(std::llround(v)));
-    return number(v, 4);
+    return figure(v, 4);
 }
 
 std::string band_text(const std::string& meter, const Band& b) {
@@ -154,7 +154,8 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
 
 void draw_meters(Sheet& sheet) {
     Table t = plan_table(sheet);
-    instrument_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG");
+    instrument_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG",
+                      fmt::format("measured at seed {}", sheet.experiment().seed));
     if (t.rows.empty()) {
         paint_missing(sheet, content_band, "no run of this plate was measured");
         return;

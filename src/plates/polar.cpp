@@ -21,24 +21,37 @@ struct Frame {
     }
 };
 
-void draw_axes(Canvas& c, const Frame& f, double top) {
+// The rim names the angles: n at 0, and where they fall on a ray, R and the direction it mirrors.
+std::string angle_name(int deg, int tilt_deg) {
+    if (deg == 0) return "n";
+    std::string text = fmt::format("{}{}°", deg < 0 ? "−" : "", std::abs(deg));
+    if (deg == tilt_deg) return "R, " + text;
+    if (deg == -tilt_deg) return "ω<sub>o</sub>, " + text;
+    return text;
+}
+
+void draw_rays(Canvas& c, const Frame& f, double tilt) {
     for (int a = -90; a <= 90; a += 30) {
         Canvas::Point rim = f.at(a * degree, 1);
         c.line(f.x, f.y, rim.x, rim.y, rule, 1);
         if (std::abs(a) == 90) continue;
-        Canvas::Point p = f.at(a * degree, 1 + 14 / f.radius);
-        std::string text = a == 0 ? "n" : fmt::format("{}{}°", a < 0 ? "−" : "", std::abs(a));
-        double shift = 22 * std::sin(a * degree);
-        c.text({p.x - 24 + shift, p.y - 11, 48, 22}, text,
-               with(with(with_px(small_text, 16), Align::centre), Vertical::middle));
+        Canvas::Point p = f.at(a * degree, 1 + 8 / f.radius);
+        Text how = with(with(with_px(small_text, 16), Vertical::middle),
+                        a < 0 ? Align::right : a > 0 ? Align::left : Align::centre);
+        double x = a < 0 ? p.x - 80 : a > 0 ? p.x : p.x - 40;
+        c.text({x, p.y - 11 - 6 * std::cos(a * degree), 80, 22}, angle_name(a, int(std::lround(tilt / degree))), how);
     }
-    double step = round_step(top, 3);
+    Canvas::Point r = f.at(tilt, 1);
+    c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
+}
+
+void draw_circles(Canvas& c, const Frame& f, double step, int rings) {
     Text how = with(with_px(small_text, 16), Align::centre);
-    for (int k = 0; k * step <= top * 1.001; ++k) {
-        double fraction = k * step / top;
+    for (int k = 0; k <= rings; ++k) {
+        double fraction = double(k) / rings;
         std::vector<Canvas::Point> arc;
         for (int a = -90; a <= 90; a += 2) arc.push_back(f.at(a * degree, fraction));
-        c.polyline(arc, rule, 1);
+        if (k > 0) c.polyline(arc, rule, 1);
         double x = f.x + f.radius * fraction;
         c.line(x, f.y, x, f.y + 5, muted, 1.5);
         c.text({x - 28, f.y + 7, 56, 20}, number(k * step, 3), how);
@@ -58,23 +71,31 @@ void draw_curve(Canvas& c, const Frame& f, const PolarCurve& curve, double top) 
         wash.a = 0.25;
         c.polygon(path, wash);
     }
-    c.polyline(path, curve.ink, curve.filled ? 2.5 : 1.75);
+    c.polyline(path, curve.ink, curve.filled ? 2.5 : 2);
+}
+
+void draw_legend(Canvas& c, const PolarPlot& plot) {
+    Rect row{plot.slot.right() - plot.legend_w + 24, plot.slot.y + 14, plot.legend_w - 24, 22};
+    for (const PolarCurve& curve : plot.curves) {
+        c.line(row.x, row.y + 11, row.x + 18, row.y + 11, curve.ink, curve.filled ? 3 : 2);
+        c.text({row.x + 26, row.y, row.w - 26, row.h}, curve.name, with(with_px(small_text, 16), Vertical::middle));
+        row.y += 25;
+    }
 }
 
 }  // namespace
 
 void draw_polar(Canvas& canvas, const PolarPlot& plot) {
-    double radius = std::min(plot.slot.w / 2 - 56, plot.slot.h - 30 - 24);
+    double w = plot.slot.w - plot.legend_w;
+    double radius = std::min(w / 2 - 40, plot.slot.h - 30 - 28);
     if (radius < 20) return;
-    // A circle short of the peak would cut the curve; the outermost ring is the peak itself.
-    Frame f{plot.slot.x + plot.slot.w / 2, plot.slot.bottom() - 30, radius};
-    draw_axes(canvas, f, plot.top);
-    std::vector<Canvas::Point> arc;
-    for (int a = -90; a <= 90; a += 2) arc.push_back(f.at(a * degree, 1));
-    canvas.polyline(arc, rule, 1);
-    Canvas::Point r = f.at(plot.tilt, 1);
-    canvas.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
-    for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, plot.top);
+    double step = round_step(plot.peak, 3);
+    int rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
+    Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
+    draw_circles(canvas, f, step, rings);
+    draw_rays(canvas, f, plot.tilt);
+    for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, step * rings);
+    draw_legend(canvas, plot);
 }
 
 }  // namespace crescent::plates

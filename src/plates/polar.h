@@ -1,4 +1,4 @@
-// A half-circle polar plot: an angle from -90 to 90 deg from n, a radius from 0 to `top`, in 1/sr.
+// A half-circle polar plot: an angle from -90 to 90 deg from n, a radius from 0 to the round number above `peak`, in 1/sr.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,9 @@ struct PolarCurve {
 };
 struct PolarPlot {
     Rect slot;
-    double top = 1;   // value at the outer circle
-    double tilt = 0;  // of R, radians
+    double legend_w = 0;  // at the right of the slot
+    double peak = 1;      // the largest value; the outer circle is the next round one
+    double tilt = 0;      // of R, radians
     std::vector<PolarCurve> curves;
 };
 void draw_polar(Canvas& canvas, const PolarPlot& plot);

@@ -9,19 +9,11 @@ namespace crescent::plates {
 
 namespace {
 
-// A name tag at the outside of the outline, inside the picture.
 void outline_region(Sheet& sheet, const Rect& picture, const View& v, const Region& region, const Colour& c) {
     Rect r = on_picture(picture, whole(v), inside(region.box, v)).inset(-1.5);
     sheet.canvas.outline(r, {0, 0, 0, 0.6}, 5);
     sheet.canvas.outline(r, c, 2.5);
-    Text how = with(with(body_text, ground), Weight::semibold);
-    how.align = Align::centre, how.vertical = Vertical::middle;
-    std::string name = escaped(region.name);
-    double w = std::min(sheet.canvas.measure(name, how).w + 16, picture.w);
-    double x = std::clamp(r.x - 1.25, picture.x, picture.right() - w);
-    double y = r.y - 27 >= picture.y ? r.y - 27 : std::min(r.bottom() + 1, picture.bottom() - 26);
-    sheet.canvas.fill({x, y, w, 26}, c);
-    sheet.canvas.text({x + 4, y, w - 8, 26}, name, how);
+    name_tag(sheet, picture, r, region.name, c);
 }
 
 double mean(const View& v, const Box& box) {
@@ -35,20 +27,20 @@ double mean(const View& v, const Box& box) {
 void region_facts(Sheet& sheet, const View& v, double y) {
     const auto& regions = sheet.experiment().regions;
     Rect line{facts_slot.x, y + 18, facts_slot.w, 24};
-    for (std::size_t i = 0; i < regions.size() && line.y + 78 <= facts_slot.bottom(); ++i) {
+    for (std::size_t i = 0; i < regions.size() && line.y + 98 <= facts_slot.bottom(); ++i) {
         const Box& b = regions[i].box;
         sheet.canvas.fill({line.x, line.y + 3, 18, 18}, series[i % series_count]);
         sheet.canvas.text({line.x + 28, line.y, line.w - 28, 24}, "region " + escaped(regions[i].name),
                           with(body_text, Weight::semibold));
         sheet.canvas.text({line.x, line.y + 27, line.w, 20},
-                          fmt::format("x {}–{}, y {}–{}, {} pixels", b.x0, b.x1, b.y0, b.y1,
-                                      count(std::uint64_t(b.width()) * std::uint64_t(b.height()))),
-                          small_text);
+                          fmt::format("x {}–{}, y {}–{}", b.x0, b.x1, b.y0, b.y1), small_text);
+        sheet.canvas.text({line.x, line.y + 47, line.w, 20},
+                          count(std::uint64_t(b.width()) * std::uint64_t(b.height())) + " pixels", small_text);
         if (v.width > 0) {
-            sheet.canvas.text({line.x, line.y + 48, line.w, 20},
-                              "mean Y " + number(mean(v, inside(b, v))) + " " + radiance_unit, small_text);
+            sheet.canvas.text({line.x, line.y + 67, line.w, 20},
+                              "mean Y " + figure(mean(v, inside(b, v))) + " " + radiance_unit, small_text);
         }
-        line.y += 84;
+        line.y += 104;
     }
 }
 
@@ -58,7 +50,7 @@ void draw_reference(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
     View v = view(sheet.in.reference(s));
-    instrument_header(sheet, "REFERENCE", "not a sampling arm / s=" + number(s));
+    instrument_header(sheet, "REFERENCE", "not a sampling arm / s=" + number(s), reference_stream(e));
     if (v.width > 0) {
         Fit f = fit(v.width, v.height, picture_slot.w, picture_slot.h);
         Rect slot = picture_slot;

@@ -19,6 +19,8 @@ using Direction = Vec3d;
 constexpr double degree = std::numbers::pi / 180;
 // R stands this far from n, in the xz plane: enough to tell R from n, far enough from the horizon to show the lobe.
 constexpr double tilt_deg = 30;
+// At the right of each half, for the colour bar and the legend.
+constexpr double bar_room = 128;
 // The dome is seen from 45 deg above the surface, across the plane of incidence.
 const double up = std::sin(45 * degree), away = std::cos(45 * degree);
 
@@ -86,12 +88,11 @@ void draw_grid(Canvas& c, const Dome& dome) {
 }
 
 void draw_arrow(Canvas& c, const Dome& dome, const Direction& d, const std::string& name, double side) {
-    Canvas::Point foot = dome.at(d), tip = dome.at(d, 1.42);
-    c.arrow(foot, tip, {0, 0, 0, 0.5}, 4.5);
+    Canvas::Point foot = dome.at(d), tip = dome.at(d, 1.62);
     c.arrow(foot, tip, bright, 2.5);
     Text how = with(with(body_text, Weight::semibold), side < 0 ? Align::right : Align::left);
     double x = side < 0 ? tip.x - 48 : tip.x + 8;
-    c.text({x, tip.y - 14, 40, 24}, name, how);
+    c.text({x, tip.y - 8, 40, 24}, name, how);
 }
 
 struct Part {
@@ -101,17 +102,16 @@ struct Part {
 };
 
 void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
-    constexpr double bar_room = 128;
-    int r = static_cast<int>(std::min((slot.w - bar_room - 24) / 2, slot.h / (1 + up)));
+    double head = 26;  // above the dome, for the tips of the arrows
+    int r = static_cast<int>(std::min((slot.w - bar_room - 24) / 2, (slot.h - head) / (1 + up)));
     if (r < 8) return;
-    Dome dome{std::floor(slot.x + (slot.w - bar_room) / 2), slot.y + r, double(r)};
-    sheet.canvas.paint(dome_block(part.p, part.peak, r), int(dome.x) - r, int(slot.y));
+    Dome dome{std::floor(slot.x + (slot.w - bar_room) / 2), slot.y + head + r, double(r)};
+    sheet.canvas.paint(dome_block(part.p, part.peak, r), int(dome.x) - r, int(slot.y + head));
     draw_grid(sheet.canvas, dome);
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
     draw_arrow(sheet.canvas, dome, {std::sin(tilt), 0, std::cos(tilt)}, "R", 1);
-    double bar_h = std::floor(dome.radius * (1 + up)) - 24;
-    Rect bar{slot.right() - bar_room + 24, slot.y + 24, 22, bar_h};
-    sheet.canvas.text({bar.x, slot.y - 6, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
+    Rect bar{slot.right() - bar_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
+    sheet.canvas.text({bar.x, slot.y - 2, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
     colour_bar(sheet, bar, part.peak, false);
 }
 
@@ -137,18 +137,22 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
     std::string axis = axis_of(part.key.arm, e);
     std::string title = arm_name(part.key.arm, e) + (axis.empty() ? "" : " about " + axis);
     sheet.canvas.text({col.x, col.y, col.w, 30}, title, with_px(title_text, 22));
-    sheet.canvas.text({col.x, col.y + 31, col.w, 24},
-                      density_formula_at(part.key.arm, part.key.s, e) + ",  peak " + number(part.peak, 3) + " sr<sup>−1</sup>",
+    std::string peak = ",  peak " + number(part.peak, 3) + " sr<sup>−1</sup>";
+    if (i > 0 && parts[0].peak > 0) {
+        peak += fmt::format(" = {} × {}", number(part.peak / parts[0].peak, 3), arm_name(parts[0].key.arm, e));
+    }
+    sheet.canvas.text({col.x, col.y + 31, col.w, 24}, density_formula_at(part.key.arm, part.key.s, e) + peak,
                       with(with_px(body_text, 17), muted));
-    Rect dome{col.x, col.y + 72, col.w, 218};
+    Rect dome{col.x, col.y + 62, col.w, 232};
     if (!(part.peak > 0)) {
         paint_missing(sheet, dome, "no density in closed form");
         return;
     }
     draw_dome(sheet, part, dome, tilt);
     PolarPlot plot;
-    plot.slot = {col.x, col.y + 304, col.w, 236};
-    plot.top = part.peak;
+    plot.slot = {col.x, col.y + 300, col.w, 240};
+    plot.legend_w = bar_room;
+    plot.peak = part.peak;
     plot.tilt = tilt;
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (k != i && !(parts[k].peak < part.peak && parts[k].peak > 0)) continue;
@@ -170,7 +174,8 @@ void draw_rose(Sheet& sheet) {
     for (const Part& p : parts) keys.push_back(p.key);
     instrument_header(sheet, "PDF ROSE",
                       "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)) +
-                          (elementary ? " / not Blinn, not GGX VNDF" : ""));
+                          (elementary ? " / not Blinn, not GGX VNDF" : ""),
+                      "nothing sampled");
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i, tilt);
     sheet.notes = {fmt::format("R stands {}° from n", number(tilt_deg)),
                    "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale",

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crescent::plates {
 
 namespace {
 
-void header(Sheet& sheet, const Colour& accent, const std::string& label) {
+void header(Sheet& sheet, const Colour& accent, const std::string& label, const std::string& stream) {
     const Rect& b = header_band;
     sheet.canvas.fill({b.x, b.y + 4, 5, b.h - 8}, accent);
-    std::string seed = fmt::format("seed {}", sheet.experiment().seed);
-    Text right = with(with(small_text, Align::right), Vertical::middle);
-    double w = sheet.canvas.measure(seed, right).w + 2;
-    sheet.canvas.text({b.right() - w, b.y, w, b.h}, seed, right);
+    Text right = with(with(with_px(small_text, 16), Align::right), Vertical::middle);
+    double w = stream.empty() ? 0 : sheet.canvas.measure(stream, right).w + 2;
+    sheet.canvas.text({b.right() - w, b.y, w, b.h}, stream, right);
     sheet.canvas.text({b.x + 17, b.y, b.w - 17 - w - gap, b.h}, label, label_text);
 }
 
@@ -26,13 +26,22 @@ std::string tinted(const std::string& text, const Colour& c) {
 
 }  // namespace
 
-void photograph_header(Sheet& sheet, const std::string& what) {
-    header(sheet, photograph_accent,
-           "Khronos PBR Neutral / " + tinted("PHOTO-ONLY", photograph_accent) + " / " + what);
+std::string stream_words(const std::vector<RunKey>& runs) {
+    if (runs.empty()) return "";
+    return fmt::format("{}seed {}", runs.size() > 1 ? "one stream, " : "", runs[0].seed);
 }
 
-void instrument_header(Sheet& sheet, const std::string& name, const std::string& what) {
-    header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what);
+std::string reference_stream(const Experiment& e) {
+    return e.reference.kind == ReferenceKind::note ? fmt::format("seed {}", e.reference.seed) : "";
+}
+
+void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream) {
+    header(sheet, photograph_accent, "Khronos PBR Neutral / " + tinted("PHOTO-ONLY", photograph_accent) + " / " + what,
+           stream);
+}
+
+void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream) {
+    header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what, stream);
     if (!sheet.in.instrument.empty()) sheet.notes.push_back("measured on " + escaped(sheet.in.instrument));
 }
 
@@ -54,7 +63,7 @@ void finish(Sheet& sheet) {
         sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, say, how);
         foot.w -= w + gap;
     }
-    sheet.canvas.text(foot, fmt::format("{}", fmt::join(sheet.notes, "  ·  ")), small_text);
+    sheet.canvas.text(foot, joined(sheet.notes, "  ·  "), small_text);
 }
 
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot) {
@@ -83,6 +92,17 @@ Rect on_picture(const Rect& picture, const Box& shown, const Box& box) {
     double sx = picture.w / shown.width(), sy = picture.h / shown.height();
     return {picture.x + (box.x0 - shown.x0) * sx, picture.y + (shown.y1 - box.y1) * sy, box.width() * sx,
             box.height() * sy};
+}
+
+void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c) {
+    constexpr double h = 26;
+    Text how = with(with(with(with(body_text, ground), Weight::semibold), Align::centre), Vertical::middle);
+    std::string text = escaped(name);
+    double w = std::min(sheet.canvas.measure(text, how).w + 16, picture.w);
+    double x = std::clamp(outline.x - 1.25, picture.x, picture.right() - w);
+    double y = outline.y - h - 1 >= picture.y ? outline.y - h - 1 : std::min(outline.bottom() + 1, picture.bottom() - h);
+    sheet.canvas.fill({x, y, w, h}, c);
+    sheet.canvas.text({x + 4, y, w - 8, h}, text, how);
 }
 
 double round_step(double top, int about) {

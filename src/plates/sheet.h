@@ -22,10 +22,15 @@ struct Sheet {
     const Experiment& experiment() const { return in.experiment; }
 };
 
-/// "Khronos PBR Neutral / PHOTO-ONLY / `what`": no measured number stands on a photograph.
-void photograph_header(Sheet& sheet, const std::string& what);
-/// "INSTRUMENT `name` / `what`", names the instrument in the footer.
-void instrument_header(Sheet& sheet, const std::string& name, const std::string& what);
+/// "Khronos PBR Neutral / PHOTO-ONLY / `what`", and `stream` ("seed 7") at the right: no measured number stands on a
+/// photograph.
+void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream);
+/// "INSTRUMENT `name` / `what`"; names the instrument in the footer.
+void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream);
+/// "seed 7", "one stream, seed 7" for several runs.
+std::string stream_words(const std::vector<RunKey>& runs);
+/// The reference's own seed, "" where it is not sampled.
+std::string reference_stream(const Experiment& e);
 /// Caption and footer; last, when the notes are known.
 void finish(Sheet& sheet);
 
@@ -39,6 +44,9 @@ Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
 
 /// Where image box `box` lies in the picture of `shown`.
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
+
+/// The name of an outlined region on a tag at its outside, kept on the picture.
+void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c);
 
 /// A vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels stand to its right.
 void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);

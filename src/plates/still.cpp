@@ -48,6 +48,7 @@ void picture(Sheet& sheet, const View& v, const std::string& missing) {
     Rect slot = picture_slot;
     slot.y += std::floor((slot.h - f.out_h) / 2);
     paint_photograph(sheet, v, whole(v), slot);
+    sheet.notes.push_back("numbers are read off the float films, never off a photograph");
     if (f.reduced) sheet.notes.push_back("area average in linear light, then tone-mapped");
     if (f.times > 1) sheet.notes.push_back("each pixel repeated " + to_string(f));
 }
@@ -55,7 +56,7 @@ void picture(Sheet& sheet, const View& v, const std::string& missing) {
 void draw_run(Sheet& sheet, const RunKey& key) {
     const Experiment& e = sheet.experiment();
     View v = view(sheet.in.film(key));
-    photograph_header(sheet, runs_label({key}, e));
+    photograph_header(sheet, runs_label({key}, e), stream_words({key}));
     picture(sheet, v, escaped(to_string(key)) + " was not run");
     std::vector<Fact> list{{"N", count(key.n)}, {"s", number(key.s)}, {"seed", fmt::format("{}", key.seed)}};
     for (Fact& f : common_facts(sheet, v)) list.push_back(std::move(f));
@@ -66,7 +67,7 @@ void draw_converged(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
     View v = view(sheet.in.reference(s));
-    photograph_header(sheet, "Converged reference s=" + number(s));
+    photograph_header(sheet, "Converged reference s=" + number(s), reference_stream(e));
     picture(sheet, v, "no reference for s=" + number(s));
     std::vector<Fact> list{{"s", number(s)}};
     for (Fact& f : common_facts(sheet, v)) list.push_back(std::move(f));

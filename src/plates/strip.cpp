@@ -29,7 +29,7 @@ std::string heading(const RunKey& r, const Varies& v, const Experiment& e) {
     if (v.arm || (!v.n && !v.s)) parts.push_back(arm_name(r.arm, e));
     if (v.n) parts.push_back("N = " + count(r.n));
     if (v.s) parts.push_back("s = " + number(r.s));
-    return fmt::format("{}", fmt::join(parts, ", "));
+    return joined(parts, ", ");
 }
 
 // The crop of the plan; else the first region for the highlight, the last for the surround; else nothing.
@@ -111,11 +111,11 @@ void draw_strip(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     std::vector<RunKey> runs = keys_of(sheet.plan, e);
     if (runs.empty()) {
-        photograph_header(sheet, "no runs");
+        photograph_header(sheet, "no runs", "");
         paint_missing(sheet, content_band, "the plan names no run");
         return;
     }
-    photograph_header(sheet, runs_label(runs, e));
+    photograph_header(sheet, runs_label(runs, e), stream_words(runs));
     View any;
     any.width = e.image.width, any.height = e.image.height;
     std::optional<Box> crop = crop_of(sheet);

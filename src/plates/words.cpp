@@ -49,10 +49,32 @@ template <class F> std::string distinct(const std::vector<RunKey>& runs, F text)
         std::string t = text(r);
         if (std::find(seen.begin(), seen.end(), t) == seen.end()) seen.push_back(t);
     }
-    return fmt::format("{}", fmt::join(seen, " | "));
+    return joined(seen, " | ");
+}
+
+std::string not_finite_word(double v) { return std::isnan(v) ? "not a number" : v > 0 ? "∞" : "−∞"; }
+
+// A number as printf leaves it, with a true minus and its power of ten set as one.
+std::string typeset(std::string text) {
+    if (auto e = text.find('e'); e != std::string::npos) {
+        int power = std::stoi(text.substr(e + 1));
+        std::string exponent = (power < 0 ? "−" : "") + std::to_string(std::abs(power));
+        text = text.substr(0, e) + "·10<sup>" + exponent + "</sup>";
+    }
+    if (text[0] == '-') text.replace(0, 1, "−");
+    return text;
 }
 
 }  // namespace
+
+std::string joined(const std::vector<std::string>& parts, std::string_view between) {
+    std::string all;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (i > 0) all += between;
+        all += parts[i];
+    }
+    return all;
+}
 
 RunKey key_of(const PlateRun& run, const Experiment& e) { return {run.arm, run.n, run.s > 0 ? run.s : e.s(), e.seed}; }
 
@@ -98,18 +120,17 @@ std::string reference_words(const Experiment& e) {
 }
 
 std::string number(double v, int digits) {
-    if (std::isnan(v)) return "not a number";
-    if (std::isinf(v)) return v > 0 ? "∞" : "−∞";
-    std::string text = fmt::format("{:.{}g}", v, digits);
-    if (auto e = text.find('e'); e != std::string::npos) {
-        int power = std::stoi(text.substr(e + 1));
-        std::string exponent = (power < 0 ? "−" : "") + std::to_string(std::abs(power));
-        text = text.substr(0, e) + "·10<sup>" + exponent + "</sup>";
-    }
-    if (text[0] == '-') text.replace(0, 1, "−");
-    return text;
+    if (!std::isfinite(v)) return not_finite_word(v);
+    return typeset(fmt::format("{:.{}g}", v, digits));
 }
 
+std::string figure(double v, int digits) {
+    if (!std::isfinite(v)) return not_finite_word(v);
+    if (v == 0) return "0";
+    std::string text = typeset(fmt::format("{:#.{}g}", v, digits));
+    if (text.back() == '.') text.pop_back();
+    return text;
+}
 std::string count(std::uint64_t v) {
     std::string digits = std::to_string(v), out;
     for (std::size_t i = 0; i < digits.size(); ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -34,8 +35,13 @@ std::string reference_words(const Experiment& e);
 
 /// At most `digits` significant digits, a true minus, ∞ and "not a number" in words; powers of ten set as such.
 std::string number(double v, int digits = 4);
+/// Exactly `digits` significant digits, trailing zeros kept, so that columns of a table align; 0 is "0".
+std::string figure(double v, int digits = 4);
 /// 12345678 -> "12 345 678" with thin spaces.
 std::string count(std::uint64_t v);
+
+/// The parts with `between` between them.
+std::string joined(const std::vector<std::string>& parts, std::string_view between);
 
 inline constexpr const char* radiance_unit = "W·sr<sup>−1</sup>·m<sup>−2</sup>";
 
