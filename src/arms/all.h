@@ -2,8 +2,15 @@
 // files, the CLI, the kernels, the manual and the laws.
 #pragma once
 
+#include "arms/blinn.h"
 #include "arms/cosine.h"
+#include "arms/ggx_d.h"
+#include "arms/ggx_vndf.h"
 #include "arms/light_area.h"
+#include "arms/light_solid_angle.h"
+#include "arms/mis_balance.h"
+#include "arms/mis_power.h"
+#include "arms/mixture.h"
 #include "arms/phong.h"
 #include "arms/uniform.h"
 
@@ -13,7 +20,7 @@ template <template <class> class... A> struct ArmList {
     static constexpr std::size_t count = sizeof...(A);
 };
 
-using Arms = ArmList<Uniform, Cosine, Phong, LightArea>;
+using Arms = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD, GgxVndf>;
 
 /// Calls f.template operator()<A>() for every arm A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_arm(ArmList<A...>, Call&& f) {

@@ -13,7 +13,7 @@ template <class F> struct LightArea {
     int count;
     explicit LightArea(const Site<F>& site) : disks(site.disks), count(site.disk_count) {}
 
-    Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
+    Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
         Drawn<F> drawn = {{zero, zero, one}, {zero}};
         F below = zero;
@@ -25,6 +25,8 @@ template <class F> struct LightArea {
             drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
             below = above;
         }
+        if (count > 1)  // disks may stand one behind another: every one that wi meets could have drawn it
+            drawn.pdf.v = select(drawn.pdf.v > zero, larger(pdf(wo, drawn.wi).v, drawn.pdf.v), zero);
         return drawn;
     }
 

@@ -1,0 +1,37 @@
+// ggx-vndf: a GGX normal among those that wo sees, mirrored to wi.
+//   p = G1(wo) D(m) max(wo.m, 0) / wo.z / (4 wo.m) = G1(wo) D(m) / (4 wo.z).
+// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eq. (3) and (17); the draw by a spherical cap in
+// the stretched space: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.
+// With u1 the height on the cap and u2 the angle.
+#pragma once
+
+#include "arms/halfway.h"
+#include "scene/brdf.h"
+
+namespace crescent {
+
+template <class F> struct GgxVndf {
+    static constexpr std::string_view name = "ggx-vndf";
+    Ggx<F> ggx;
+    explicit GgxVndf(const Site<F>& site) : ggx{site.alpha} {}
+
+    Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
+        const F one = number<F>(1), a = ggx.alpha;
+        const Vec3<F> stretched = normalize(Vec3<F>{a * wo.x, a * wo.y, wo.z});
+        const F rise = (one - u.x) * (one + stretched.z);     // z + stretched.z on the cap
+        const F z = rise - stretched.z;
+        const F sin = sqrt(larger((one - z) * (one + z), number<F>(0)));
+        const SinCos<F> phi = sincos_turns(u.y);
+        const Vec3<F> m = normalize(Vec3<F>{a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise});
+        return {mirror_about(wo, m), density(wo, m)};
+    }
+    PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return density(wo, halfway(wo, wi).m); }
+
+private:
+    PerSr<F> density(Vec3<F> wo, Vec3<F> m) const {
+        const auto seen = (wo.z > number<F>(0)) & (dot(wo, m) > number<F>(0));
+        return {select(seen, ggx.G1(wo) * ggx.D(m) / (number<F>(4) * select(seen, wo.z, number<F>(1))), number<F>(0))};
+    }
+};
+
+}  // namespace crescent

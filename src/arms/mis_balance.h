@@ -1,0 +1,22 @@
+// mis-balance: BRDF mixture and disk light, two samples, balance heuristic.
+//   w_i = p_i / (p_1 + p_2)      Veach & Guibas 1995, eq. (11) with one sample from each.
+#pragma once
+
+#include "arms/mis.h"
+
+namespace crescent {
+
+struct BalanceHeuristic {
+    /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and weighs 0.
+    template <class F> static F weight(F own, F other) {
+        const auto drawn = own > number<F>(0);
+        return select(drawn, number<F>(1) / (number<F>(1) + other / select(drawn, own, number<F>(1))), number<F>(0));
+    }
+};
+
+template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
+    static constexpr std::string_view name = "mis-balance";
+    using TwoSampleMis<F, BalanceHeuristic>::TwoSampleMis;
+};
+
+}  // namespace crescent

@@ -1,0 +1,21 @@
+// mis-power: BRDF mixture and disk light, two samples, power heuristic.
+//   w_i = p_i^2 / (p_1^2 + p_2^2)      Veach & Guibas 1995, eq. (13) with beta = 2.
+#pragma once
+
+#include "arms/mis.h"
+
+namespace crescent {
+
+struct PowerHeuristic {
+    template <class F> static F weight(F own, F other) {
+        const auto drawn = own > number<F>(0);
+        return select(drawn, number<F>(1) / (number<F>(1) + sqr(other / select(drawn, own, number<F>(1)))), number<F>(0));
+    }
+};
+
+template <class F> struct MisPower : TwoSampleMis<F, PowerHeuristic> {
+    static constexpr std::string_view name = "mis-power";
+    using TwoSampleMis<F, PowerHeuristic>::TwoSampleMis;
+};
+
+}  // namespace crescent
