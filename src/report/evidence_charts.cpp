@@ -138,7 +138,7 @@ std::string lost_chart(const Evidence& evidence) {
     std::vector<Point> theory, measured;
     for (const LostSupport& l : evidence.lost) {
         angles.push_back(l.theta_R_deg);
-        shares.insert(shares.end(), {l.theory, l.measured});
+        shares.insert(shares.end(), {l.theory, std::max(0.0, l.measured)});
         measured.push_back({l.theta_R_deg, l.measured});
     }
     const Axis x = linear_axis("tilt of R from the normal, degrees", angles);
@@ -147,9 +147,9 @@ std::string lost_chart(const Evidence& evidence) {
         theory.push_back({angle, (1 - std::cos(angle * std::numbers::pi / 180)) / 2});
         shares.push_back(theory.back().y);
     }
-    Chart chart(560, 300, x, linear_axis("share of the fill that is lost", shares), "Lost share of Lambert under the fill against the tilt of R");
+    Chart chart(600, 320, x, linear_axis("share of the fill that is lost", shares), "Lost share of Lambert under the fill against the tilt of R");
     chart.line(theory, "c0");
-    for (const LostSupport& l : evidence.lost) chart.bar(l.theta_R_deg, l.measured - 2 * l.se, l.measured + 2 * l.se, "c1");
+    for (const LostSupport& l : evidence.lost) chart.bar(l.theta_R_deg, std::max(0.0, l.measured - 2 * l.se), l.measured + 2 * l.se, "c1");
     chart.dots(measured, "c1");
     return chart.str();
 }
@@ -177,23 +177,29 @@ std::string rejection_chart(const Evidence& evidence) {
     }
     Axis x = log_axis("exponent s", exponents);
     x.ticks = exponents;
-    Chart chart(560, 300, x, linear_axis("rejected", rates), "Share of correct runs that a t-test rejects, against s");
+    Chart chart(600, 320, x, linear_axis("rejected", rates), "Share of correct runs that a t-test rejects, against s");
     chart.rule(evidence.alpha, "dashed strong", fmt::format("what the test promises: {}", percent(evidence.alpha)));
     for (const FalseRejection& r : evidence.rejections) chart.bar(r.s, r.low, r.high, "c1");
     chart.dots(points, "c1");
     return chart.str();
 }
 
+std::string rejection_table(const Evidence& evidence) {
+    html::Table table("Rejections of the correct arm, with Clopper–Pearson 95 % intervals",
+                      {{"<i>s</i>", true}, {"<i>k</i>", true}, {"Runs", true}, {"Rejected", true}, {"Rate", true}, {"95 % interval", true}});
+    for (const FalseRejection& r : evidence.rejections)
+        table.row({{shortest(r.s), true, true}, html::figure(fmt::format("{:.3f}", r.k)), html::figure(std::to_string(r.runs)),
+                   html::figure(std::to_string(r.rejected)), html::figure(share_text(r)), html::figure(percent(r.low) + " … " + percent(r.high))});
+    return table.str();
+}
+
 std::string rejection_sentence(const Evidence& evidence) {
-    std::string values;
-    int above = 0;
-    for (const FalseRejection& r : evidence.rejections) {
-        values += fmt::format("{}{} at <i>s</i> = {} (<i>k</i> = {:.3f}, {} of {} runs, 95 % interval {} to {})", values.empty() ? "" : "; ",
-                              html::value(share_text(r)), shortest(r.s), r.k, r.rejected, r.runs, percent(r.low), percent(r.high));
-        if (r.low > evidence.alpha) ++above;
-    }
-    return html::p(fmt::format("Rejected were {}. A test at level {} promises to reject {}; at {} of the {} exponents the interval lies above "
-                               "that.", values, shortest(evidence.alpha), percent(evidence.alpha), above, evidence.rejections.size()));
+    const auto above = std::count_if(evidence.rejections.begin(), evidence.rejections.end(), [&](const FalseRejection& r) { return r.low > evidence.alpha; });
+    const auto worst = std::max_element(evidence.rejections.begin(), evidence.rejections.end(), [](const FalseRejection& a, const FalseRejection& b) { return a.low < b.low; });
+    std::string out = fmt::format("At {} of {} exponents the whole interval of the measured rate lies above {}.", above, evidence.rejections.size(), percent(evidence.alpha));
+    if (above > 0) out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s), html::value(share_text(*worst)));
+    else out += " So this run shows no false alarms beyond what the test promises.";
+    return html::p(out);
 }
 
 }  // namespace crescent

@@ -18,6 +18,7 @@ std::string lost_chart(const Evidence& evidence);
 std::string lost_sentence(const Evidence& evidence);
 
 std::string rejection_chart(const Evidence& evidence);
+std::string rejection_table(const Evidence& evidence);
 std::string rejection_sentence(const Evidence& evidence);
 
 }  // namespace crescent

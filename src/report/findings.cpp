@@ -36,6 +36,9 @@ std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const 
 }
 
 std::uint64_t Findings::headline_n() const {
+    const std::uint64_t given = in_.experiment.n;
+    for (const ArmPlan& arm : in_.experiment.arms)
+        if (given > 0 && run(arm.name, given)) return given;
     std::vector<const ArmPlan*> all;
     for (const ArmPlan& arm : in_.experiment.arms) all.push_back(&arm);
     if (const std::uint64_t n = common_n(all)) return n;

@@ -34,7 +34,8 @@ public:
 
     /// The largest n that every arm of `arms` has, 0 where they share none.
     std::uint64_t common_n(const std::vector<const ArmPlan*>& arms) const;
-    /// The n at which arms are set side by side: common to all, else the largest of the first arm.
+    /// The n at which arms are set side by side: the experiment's own where one ran it, else common to all, else the
+    /// largest of the first arm.
     std::uint64_t headline_n() const;
 
     /// At the published seed and the experiment's own s unless given.

@@ -27,10 +27,19 @@ std::string list(const std::vector<std::string>& html_items) {
     return element("ul", "\n" + items) + "\n";
 }
 
+std::string number(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool minus = text[i] == '-' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+        out += minus ? "−" : std::string(1, text[i]);
+    }
+    return escape(out);
+}
+
 std::string heavy_tail() { return element("span", "class=\"heavy\"", "heavy tail"); }
 
 Cell words(std::string html) { return {std::move(html), false, false, 1, 1}; }
-Cell figure(std::string text) { return {text.empty() ? "–" : escape(text), true, false, 1, 1}; }
+Cell figure(std::string_view text) { return {text.empty() ? "–" : number(text), true, false, 1, 1}; }
 Cell heading(std::string html, int rows) { return {std::move(html), false, true, rows, 1}; }
 
 void Table::row(const std::vector<Cell>& cells) {

@@ -23,8 +23,10 @@ inline std::string link(std::string_view id, std::string_view html) {
 }
 std::string list(const std::vector<std::string>& html_items);
 
+/// Escaped, with a true minus sign before digits.
+std::string number(std::string_view text);
 /// A number in a sentence keeps its digits together and in tabular figures.
-inline std::string value(std::string_view text) { return element("span", "class=\"v\"", escape(text)); }
+inline std::string value(std::string_view text) { return element("span", "class=\"v\"", number(text)); }
 
 /// "heavy tail", set apart where an interval would stand.
 std::string heavy_tail();
@@ -38,7 +40,7 @@ struct Cell {
     int across = 1;  // colspan
 };
 Cell words(std::string html);
-Cell figure(std::string text);  // escaped, right-aligned; "" becomes an en dash
+Cell figure(std::string_view text);  // number(), right-aligned; "" becomes an en dash
 Cell heading(std::string html, int rows = 1);
 
 /// A table that scrolls by itself on a narrow screen and is never cut across pages inside a row.

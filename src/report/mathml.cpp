@@ -21,6 +21,8 @@ M index_from_one() { return row({mi("k"), mo("="), mn("1")}); }
 
 M in_line(const M& inside) { return "<math>" + inside + "</math>"; }
 
+M in_cell(const M& inside) { return "<math displaystyle=\"true\">" + inside + "</math>"; }
+
 M display(const M& inside, std::string_view alt) {
     return fmt::format("<div class=\"equation\"><math display=\"block\" alttext=\"{}\">{}</math></div>\n", alt, row({inside}));
 }
@@ -56,7 +58,7 @@ M mirror() {
 M rmse_region() {
     const M square = sup(paren({Y(mi("N")), paren({mi("x")}), mo("−"), Y(upright("ref")), paren({mi("x")})}), mn("2"));
     return row({rmse("A"), mo("="),
-                root(row({frac(mn("1"), row({mo("|"), mi("A"), mo("|")})),
+                root(row({frac(mn("1"), abs({mi("A")})),
                           "<munder>" + mo("∑") + row({mi("x"), mo("∈"), mi("A")}) + "</munder>", square}))});
 }
 
@@ -68,7 +70,7 @@ M variance() {
 }
 
 M firefly() {
-    return row({mo("|"), Y(mi("N")), mo("−"), Y(upright("ref")), mo("|"), mo(">"), mi("k"), space(), Y(upright("ref"))});
+    return row({abs({Y(mi("N")), mo("−"), Y(upright("ref"))}), mo(">"), mi("k"), space(), Y(upright("ref"))});
 }
 
 M density_uniform() { return frac(mn("1"), two_pi()); }

@@ -31,10 +31,14 @@ inline M frac(const M& top, const M& bottom) { return wrap("mfrac", top + bottom
 inline M root(const M& inside) { return wrap("msqrt", inside); }
 inline M hat(const M& base) { return "<mover accent=\"true\">" + base + mo("^") + "</mover>"; }
 inline M bar(const M& base) { return "<mover accent=\"true\">" + base + mo("¯") + "</mover>"; }
+inline M abs(std::initializer_list<M> parts) {
+    return row({"<mo form=\"prefix\" stretchy=\"false\">|</mo>", row(parts), "<mo form=\"postfix\" stretchy=\"false\">|</mo>"});
+}
 inline M paren(std::initializer_list<M> parts) { return row({mo("("), row(parts), mo(")")}); }
 
 /// In a line of text, and on a line of its own (with words for those who do not see it).
 M in_line(const M& inside);
+M in_cell(const M& inside);  // in a table: fractions at full size
 M display(const M& inside, std::string_view alt);
 
 // The equations of the report.

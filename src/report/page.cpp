@@ -1,6 +1,8 @@
 #include "report/page.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -124,7 +126,7 @@ std::string tail_html(const std::optional<Tail>& tail) {
 std::string interval_html(const std::string& meter, const Band& band) {
     if (band.heavy) return html::heavy_tail();
     if (band.seeds < 2) return "–";
-    return fmt::format("<span class=\"v\">{} … {}</span>", figures_of(meter, band.q05), figures_of(meter, band.q95));
+    return html::value(figures_of(meter, band.q05) + " … " + figures_of(meter, band.q95));
 }
 
 std::string times(double ratio) { return std::isfinite(ratio) ? fmt::format("{:.{}f}", ratio, ratio < 10 ? 1 : 0) : "infinitely many"; }

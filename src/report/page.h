@@ -45,6 +45,8 @@ struct Page {
     Figures figures;
 
     explicit Page(const ReportInputs& inputs) : in(inputs), find(inputs), figures(inputs) {}
+    /// What the first seed is called: "published" where figures were published for it.
+    std::string seed_name() const { return find.anything_published() ? "published" : "first"; }
     /// Class of an arm's colour, the same in every chart.
     std::string colour(const std::string& arm) const;
 };
@@ -86,6 +88,13 @@ std::string meter_text(const std::string& meter);
 std::string tail_html(const std::optional<Tail>& tail);
 /// "7.218 … 8.277", or the words heavy tail; nothing from a single seed.
 std::string interval_html(const std::string& meter, const Band& band);
+/// Meters down, runs across: large what the first seed measured, small the median, its band and the tail index.
+struct Column {
+    std::string title_html, arm;
+    std::uint64_t n = 0;
+    double s = 0;
+};
+std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
 /// Which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
 std::string ordering_sentence(const Page& page, const std::string& a, const std::string& b, std::uint64_t n,
                               const std::string& region);

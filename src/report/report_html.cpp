@@ -60,23 +60,27 @@ std::string verdict(const std::vector<AssertionResult>& all) {
                        html::link("assertions", "which"));
 }
 
-/// One line per region: what the arms with a cosine and a Phong density read there.
-std::string lead(const Page& page) {
+/// What the arms with a cosine and a Phong density read in each region, in one sentence.
+std::string story(const Page& page) {
     const ArmPlan *broad = page.find.arm_with("cosine"), *narrow = page.find.arm_with("phong");
+    if (!broad || !narrow) return {};
+    const std::uint64_t n = page.find.headline_n();
     std::string out;
-    if (broad && narrow)
-        for (const Region& region : page.in.experiment.regions) {
-            const std::uint64_t n = page.find.common_n({broad, narrow});
-            const std::uint64_t shared = page.find.run(broad->name, page.find.headline_n()) ? page.find.headline_n() : n;
-            const auto a = page.find.rmse(broad->name, shared, region.name), b = page.find.rmse(narrow->name, shared, region.name);
-            if (!a || !b) continue;
-            const Comparison c = compare(broad->name, *a, narrow->name, *b);
-            out += c.equal ? fmt::format(" In region {} the two are level.", escape(region.name))
-                           : fmt::format(" In region {} the error of {} is {} times that of {}.", escape(region.name), escape(c.larger),
-                                         times(c.ratio), escape(c.smaller));
-        }
-    if (!out.empty()) out = "One integral, one number of samples, one stream of random numbers, and only the aim differs." + out;
-    return (out.empty() ? "" : html::element("p", "class=\"lead\"", out) + "\n") + verdict(page.in.metrics.assertions);
+    for (const Region& region : page.in.experiment.regions) {
+        const auto a = page.find.rmse(broad->name, n, region.name), b = page.find.rmse(narrow->name, n, region.name);
+        if (!a || !b) continue;
+        const Comparison c = compare(broad->name, *a, narrow->name, *b);
+        out += out.empty() ? fmt::format(" At <i>N</i> = {} and the {} seed", n, page.seed_name()) : ";";
+        const std::string where = " in region " + escape(region.name);
+        out += c.equal ? where + " the two err alike"
+                       : fmt::format("{} {}’s error is {} times {}’s", where, escape(c.larger), times(c.ratio), escape(c.smaller));
+    }
+    return out.empty() ? out : "One integral, one number of samples, one stream of random numbers: only the aim differs." + out + ".";
+}
+
+std::string lead(const Page& page) {
+    const std::string words = story(page);
+    return (words.empty() ? "" : html::element("p", "class=\"lead\"", words) + "\n") + verdict(page.in.metrics.assertions);
 }
 
 }  // namespace

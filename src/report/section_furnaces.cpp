@@ -41,14 +41,14 @@ Section furnaces(Page& page) {
     std::vector<html::Cell> head{words("Furnace"), words("Arm"), words("BRDF"), {"<i>N</i>", true}, {"Expected <i>Y</i>", true},
                                  {"Measured <i>Y</i>", true}, {"Standard error", true}, {"Tail index", true}, words("Verdict")};
     if (any_published) head.insert(head.begin() + 5, {"Published", true});
-    html::Table table("White furnaces at the first seed", head);
+    html::Table table("White furnaces at the " + page.seed_name() + " seed", head);
     std::string sentences;
     for (const FurnaceMeter& f : page.in.metrics.furnaces) {
         const bool heavy = f.tail && f.tail->heavy();
         std::vector<html::Cell> row{html::heading(escape(f.name)), words(escape(f.arm)),
                                     words(f.part == "lobe" ? "lobe alone" : escape(f.part)), html::figure(std::to_string(f.n)),
                                     html::figure(figures(f.expected)), html::figure(figures(f.measured)),
-                                    {heavy ? html::heavy_tail() : figures(f.se, 2), true}, {tail_html(f.tail), true}, words(state(f))};
+                                    {heavy ? html::heavy_tail() : figures(f.se, 2), true}, html::figure(tail_html(f.tail)), words(state(f))};
         if (any_published) row.insert(row.begin() + 5, html::figure(f.published ? figures(*f.published) : ""));
         table.row(row);
         sentences += shortfall(f);

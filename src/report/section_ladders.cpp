@@ -1,6 +1,6 @@
 // RMSE against N with the fitted slope, and the exponent control. Ladders are prefixes of one stream of samples.
 #include <algorithm>
-#include <set>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -12,15 +12,15 @@ namespace {
 using html::words;
 
 constexpr const char* ladder_prose = R"(
-<p>Every rung is the beginning of the next: the first 4 of 16 samples are the 4. Where the variance of a sample is finite the
-error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the first
-seed; the interval is the 5–95 % band of that slope over seeds. A heavy tail breaks the law: the rungs then jump whenever a
+<p>The samples of a rung are the first samples of the next. Where the variance of a sample is finite the
+error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the {seed}
+seed; the interval is the <span class="v">5–95 %</span> band of that slope over seeds. A heavy tail breaks the law: the rungs then jump whenever a
 rare sample arrives, and the slope says more about luck than about the arm.</p>
 )";
 
 constexpr const char* exponent_prose = R"(
 <p>The control runs {arm} again at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF of
-{shape} and in the reference alike, so each row is measured against its own truth. A wider lobe sends more samples under the
+{shape} and in the reference alike, so each column is measured against its own truth. A wider lobe sends more samples under the
 horizon, a narrower one leaves more of the hemisphere to chance.</p>
 )";
 
@@ -90,15 +90,6 @@ std::string slope_table(const Page& page) {
     return table.str();
 }
 
-html::Cell cell(const BandMeter* band) {
-    if (!band) return html::figure("");
-    std::string out = figures_of(band->meter, band->measured);
-    if (band->band.seeds > 1)
-        out += fmt::format("<small>{} [{}]</small>", figures_of(band->meter, band->band.median),
-                           interval_html(band->meter, band->band));
-    return {out, true, false, 1, 1};
-}
-
 }  // namespace
 
 Section ladders(Page& page) {
@@ -107,9 +98,9 @@ Section ladders(Page& page) {
         if (!ladders_in(page, region.name).empty()) charts += ladder_chart(page, region.name);
     if (charts.empty()) return {};
     const std::string published = page.find.anything_published() ? " Diamonds: published values." : "";
-    std::string out = fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())));
+    std::string out = fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())), fmt::arg("seed", page.seed_name()));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
-                              "RMSE against <i>N</i> at the first seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
+                              "RMSE against <i>N</i> at the " + page.seed_name() + " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
                               "metrics.json, ladders");
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }
@@ -117,26 +108,16 @@ Section ladders(Page& page) {
 Section exponent(Page& page) {
     const auto& control = page.in.experiment.exponent;
     if (!control) return {};
-    const std::vector<std::string> meters = headline_meters(page.in.experiment);
-    std::vector<html::Cell> head{{"<i>s</i>", true}};
-    for (const std::string& meter : meters) head.push_back({meter_html(meter), true});
-    html::Table table(fmt::format("{} at <i>N</i> = {} by exponent. Large: first seed. Small: median and 5–95 % band", escape(control->arm),
-                                  control->n), head);
-    for (const double s : control->s) {
-        std::vector<html::Cell> row{{shortest(s), true, true}};
-        bool any = false;
-        for (const std::string& meter : meters) {
-            const BandMeter* band = page.find.band(control->arm, control->n, meter, s);
-            any = any || band;
-            row.push_back(cell(band));
-        }
-        if (any) table.row(row);
-    }
+    std::vector<Column> columns;
+    for (const double s : control->s) columns.push_back({"<i>s</i> = " + shortest(s), control->arm, control->n, s});
+    const std::string table = meters_table(
+        page, fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
+                          escape(control->arm), control->n, page.seed_name()), columns);
     if (table.empty()) return {};
     return {"exponent", "Exponent control",
             fmt::format(exponent_prose, fmt::arg("arm", escape(control->arm)), fmt::arg("n", control->n),
                         fmt::arg("shape", "<b>" + escape(control->shape) + "</b>")) +
-                table.str() + page.figures.plates(PlateKind::exponent)};
+                table + page.figures.plates(PlateKind::exponent)};
 }
 
 }  // namespace crescent

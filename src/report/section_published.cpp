@@ -12,8 +12,8 @@ using html::words;
 
 constexpr const char* published_prose = R"(
 <p>A published figure is one draw from one stream of random numbers. What can be asked of it is whether it lies where draws
-lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the first seed ({seed}) and
-the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the tail index
+lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the published seed ({seed})
+and the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the tail index
 <i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
 )";
 
@@ -25,8 +25,9 @@ on their variance is infinite.</p>
 
 std::string fallen(const BandMeter& b) {
     if (!b.published || !b.published_rank || b.band.seeds < 2) return "–";
-    if (*b.published_rank <= 0) return "below all";
-    if (*b.published_rank >= 1) return "above all";
+    if (b.band.q05 == *b.published && b.band.q95 == *b.published) return "the same";
+    if (*b.published_rank <= 0) return "none";
+    if (*b.published_rank >= 1) return "all";
     return percent(*b.published_rank, 2);
 }
 
@@ -40,7 +41,7 @@ std::vector<html::Cell> band_row(const Page& page, const BandMeter& b, bool publ
     row.push_back({interval_html(b.meter, b.band), true});
     row.push_back(words(strip_svg(strip)));
     if (published) row.push_back({fallen(b), true});
-    row.push_back({tail_html(page.find.tail(b)), true});
+    row.push_back(html::figure(tail_html(page.find.tail(b))));
     return row;
 }
 
@@ -48,7 +49,7 @@ std::vector<html::Cell> header(bool published) {
     std::vector<html::Cell> head{words("Run")};
     if (published) head.push_back({"Published", true});
     head.insert(head.end(), {{"Measured", true}, {"Median", true}, {"5–95 %", true}, words("Strip")});
-    if (published) head.push_back({"Seeds below it", true});
+    if (published) head.push_back({"Seeds below published", true});
     head.push_back({"<i>k</i>", true});
     return head;
 }
@@ -83,27 +84,6 @@ Section published(Page& page) {
                                           fmt::arg("seed", e.seed));
     return {"published", published ? "Published and measured" : "All meters",
             intro + "<div class=\"wide\">" + table.str() + "</div>" + page.figures.plates(PlateKind::meters)};
-}
-
-Section disagreements(Page& page) {
-    if (!page.find.anything_published()) return {};
-    html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
-                      {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true}, {"Median against published", true}});
-    std::size_t judged = 0, outside = 0;
-    for (const BandMeter& b : page.in.metrics.bands) {
-        if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
-        ++judged;
-        if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
-        ++outside;
-        const std::string relative = *b.published == 0 ? "–" : fmt::format("{:+.1f} %", 100 * (b.band.median / *b.published - 1));
-        table.row({html::heading(meter_html(b.meter)), words(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s))),
-                   html::figure(figures_of(b.meter, *b.published)), html::figure(figures_of(b.meter, b.band.median)),
-                   {interval_html(b.meter, b.band), true}, html::figure(relative)});
-    }
-    if (judged == 0) return {};
-    std::string out = html::p(fmt::format("{} published values can be held against a band; {} of them fall outside it.", judged, outside));
-    if (outside > 0) out += table.str();
-    return {"disagreements", "Where note and scene disagree", out};
 }
 
 }  // namespace crescent

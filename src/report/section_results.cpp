@@ -7,8 +7,6 @@
 namespace crescent {
 namespace {
 
-using html::words;
-
 /// The arms that tell the story: broad (cosine) and narrow (phong), where both ran at one N.
 struct Pair {
     const ArmPlan *broad = nullptr, *narrow = nullptr;
@@ -24,28 +22,15 @@ Pair pair_of(const Page& page) {
     return ran(pair.n) ? pair : Pair{};
 }
 
-html::Cell cell(const BandMeter* band) {
-    if (!band) return html::figure("");
-    std::string out = figures_of(band->meter, band->measured);
-    if (band->band.seeds > 1)
-        out += fmt::format("<small>{} [{}]</small>", figures_of(band->meter, band->band.median), interval_html(band->meter, band->band));
-    return {out, true, false, 1, 1};
-}
-
 std::string headline_table(const Page& page, std::uint64_t n) {
     const Experiment& e = page.in.experiment;
-    const std::vector<std::string> meters = headline_meters(e);
-    std::vector<html::Cell> head{words("Arm")};
-    for (const std::string& meter : meters) head.push_back({meter_html(meter), true, false, 1, 1});
-    html::Table table(fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: measured at the first seed, {}. Small: median "
-                                  "over {} and its 5–95 % band",
-                                  n, shortest(page.find.s()), e.seed, plural(static_cast<std::uint64_t>(e.seeds), "seed")), head);
-    for (const ArmPlan& arm : e.arms) {
-        std::vector<html::Cell> row{html::heading(escape(arm.name))};
-        for (const std::string& meter : meters) row.push_back(cell(page.find.band(arm.name, n, meter)));
-        table.row(row);
-    }
-    return table.str();
+    std::vector<Column> columns;
+    for (const ArmPlan& arm : e.arms)
+        if (page.find.run(arm.name, n)) columns.push_back({escape(arm.name), arm.name, n, page.find.s()});
+    return meters_table(page, fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: at the {} seed, {}. Small: median over {}, "
+                                          "its 5–95 % band, and the tail index of the region’s samples",
+                                          n, shortest(page.find.s()), page.seed_name(), e.seed,
+                                          plural(static_cast<std::uint64_t>(e.seeds), "seed")), columns);
 }
 
 std::string frame_footnote(const Page& page, std::uint64_t n) {
@@ -129,7 +114,7 @@ Section failure_a(Page& page) {
     const auto shows = [](const std::string& arm) {
         return [arm](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; };
     };
-    out += page.figures.plates(PlateKind::ladder, shows(broad)) + page.figures.plates(PlateKind::ladder, shows(narrow));
+    for (const std::string& arm : {broad, narrow}) out += page.figures.plates(PlateKind::ladder, shows(arm));
     return {"failure-a", "Failure A: " + escape(broad) + " fireflies the highlight", out};
 }
 

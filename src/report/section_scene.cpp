@@ -8,10 +8,12 @@ namespace {
 
 using html::words;
 
-std::string vec(const Vec3d& v) { return fmt::format("({}, {}, {})", shortest(v.x), shortest(v.y), shortest(v.z)); }
+std::string vec(const Vec3d& v) {
+    return html::value(fmt::format("({}, {}, {})", shortest(v.x), shortest(v.y), shortest(v.z)));
+}
 std::string rgb(const Rgb& c) {
     if (c[0] == c[1] && c[1] == c[2]) return shortest(c[0]);
-    return fmt::format("({}, {}, {})", shortest(c[0]), shortest(c[1]), shortest(c[2]));
+    return html::value(fmt::format("({}, {}, {})", shortest(c[0]), shortest(c[1]), shortest(c[2])));
 }
 
 const char* kind_name(ShapeKind kind) {

@@ -16,7 +16,7 @@ the noise sits.</p>
 <p>This run puts {arms} on trial against each other: {names}. They look at one scene through one camera, take the same
 number of samples and are fed the same random numbers, pixel by pixel and sample by sample. The density
 <math><mi>p</mi></math> is all that differs, so whatever differs in the films is its doing.{regions}</p>
-<p>Every figure below is read off the linear float films, none off a picture. A value at the first seed is one draw out of
+<p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out of
 many; the band beside it shows what other seeds give, and where the samples are too unruly for a band to mean anything the
 words {heavy} stand in its place.</p>
 )";
@@ -72,7 +72,7 @@ std::string regions_sentence(const Experiment& e) {
     std::vector<std::string> names;
     for (const Region& r : e.regions)
         names.push_back(fmt::format("<b>{}</b> ({} × {} pixels)", escape(r.name), r.box.width(), r.box.height()));
-    return fmt::format(" Each is judged by itself in {} {}.", e.regions.size() == 1 ? "the region" : "the regions", join(names));
+    return fmt::format(" Errors are read in {}, {}.", e.regions.size() == 1 ? "one region" : "regions that behave differently", join(names));
 }
 
 bool any_phong_lobe(const Experiment& e) {
@@ -105,7 +105,7 @@ Section question(Page& page) {
     for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
     return {"question", "The question",
             fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", join(names)),
-                        fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()))};
+                        fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()), fmt::arg("seed", page.seed_name()))};
 }
 
 Section estimator(Page& page) {
@@ -119,7 +119,7 @@ Section estimator(Page& page) {
         out += fmt::format(lobe_prose, fmt::arg("brdf", display(brdf_phong(), "Lambert plus normalised Phong lobe")),
                            fmt::arg("mirror", display(mirror(), "R is the outgoing direction mirrored at the normal")),
                            fmt::arg("rho_s", in_line(sub(mi("ρ"), mi("s")))), fmt::arg("slip", percent(1 / (s + 1), 2)),
-                           fmt::arg("s", figures(s, 3)));
+                           fmt::arg("s", shortest(s)));
     }
     out += fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
                        fmt::arg("variance", display(variance(), "sample variance over N")),
@@ -134,8 +134,8 @@ Section densities(Page& page) {
     for (const ArmPlan& arm : page.in.experiment.arms) {
         const auto it = known(arm.sampler);
         const std::string other = "sampler " + html::code(arm.sampler);
-        table.row({html::heading(escape(arm.name)), words(it ? in_line(it->density) : other),
-                   words(it ? in_line(it->inverse) : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
+        table.row({html::heading(escape(arm.name)), words(it ? in_cell(it->density) : other),
+                   words(it ? in_cell(it->inverse) : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
     }
     if (table.empty()) return {};
     const std::size_t count = page.in.experiment.arms.size();

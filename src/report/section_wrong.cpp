@@ -20,7 +20,7 @@ carried by samples so rare that a run of ordinary length holds none of them: its
 What the resolution of <i>u</i> does add is a ceiling. If <i>u</i> is never below 2<sup>−<i>b</i></sup>, then even infinitely
 many samples read only</p>
 {cap}
-<p>({caps}), and no run short of many millions of samples comes near it.</p>
+<p>({caps}). The dashed lines below are these ceilings.</p>
 )";
 
 constexpr const char* lost_prose = R"(
@@ -69,17 +69,19 @@ std::string rejection_point(Page& page) {
     const Evidence& e = page.in.evidence;
     if (e.rejections.empty()) return {};
     return fmt::format(rejection_prose, fmt::arg("alpha", shortest(e.alpha)), fmt::arg("alpha_percent", percent(e.alpha)), fmt::arg("n", e.rejections.front().n)) +
-           rejection_sentence(e) +
+           rejection_sentence(e) + rejection_table(e) +
            page.figures.chart(rejection_chart(e), "Correct runs of the Phong arm that a plain t-test rejects, with Clopper–Pearson 95 % intervals.", "metrics.json, evidence.rejections");
 }
 
 }  // namespace
 
 Section where_wrong(Page& page) {
-    const std::string points = furnace_point(page) + lost_point(page) + rejection_point(page);
+    std::string points = furnace_point(page);  // one after the other: figures are numbered as they come
+    points += lost_point(page);
+    points += rejection_point(page);
     if (points.empty()) return {};
     return {"wrong", "Where the note is wrong",
-            html::p("The note’s figures are sound; some of what it says about them is not. Each point below was measured in this run.") + points};
+            html::p("What the note measured and what it makes of it are two things. Each explanation below was put to a measurement of its own in this run.") + points};
 }
 
 }  // namespace crescent

@@ -14,7 +14,7 @@ const char* const style_sheet = R"css(
 html { font: 17px/1.62 Inter, system-ui, -apple-system, "Segoe UI", "Helvetica Neue", Arial, sans-serif; background: var(--ground); color: var(--ink);
   -webkit-text-size-adjust: 100%; scroll-behavior: smooth; }
 body { margin: 0; padding: 0 1.25rem 5rem; }
-main, header, footer { max-width: 42rem; margin: 0 auto; }
+main, header, footer { max-width: 38rem; margin: 0 auto; }
 h1, h2, h3 { line-height: 1.22; letter-spacing: -0.012em; text-wrap: balance; }
 h1 { font-size: 2.35rem; margin: 0.2rem 0 0.6rem; font-weight: 700; }
 h2 { font-size: 1.5rem; margin: 4rem 0 1rem; padding-top: 1.2rem; border-top: 1px solid var(--line); }
@@ -22,6 +22,8 @@ h3 { font-size: 1.1rem; margin: 2.2rem 0 0.6rem; }
 h2 .number { color: var(--soft); font-weight: 400; margin-right: 0.55em; font-variant-numeric: tabular-nums; }
 h2 a { color: inherit; text-decoration: none; }
 h2 a:hover, h2 a:focus { text-decoration: underline; text-decoration-thickness: 1px; }
+main section:first-child h2 { border-top: 0; margin-top: 1.5rem; }
+sub, sup { line-height: 0; }
 p { margin: 0 0 1rem; hyphens: auto; }
 a { color: var(--accent); text-underline-offset: 0.16em; }
 ul { padding-left: 1.2rem; } li { margin-bottom: 0.55rem; }
@@ -44,7 +46,7 @@ nav a { color: inherit; text-decoration: none; } nav a:hover, nav a:focus { text
 math { font-family: "STIX Two Math", "Latin Modern Math", "Cambria Math", "DejaVu Math TeX Gyre", math; }
 math[display="block"] { font-size: 1.12em; }
 figure, .table, .wide { margin: 2rem 0; }
-figure img, figure svg.chart { display: block; width: 100%; height: auto; }
+figure img, figure svg.chart { display: block; width: 100%; height: auto; } figure > svg.chart { max-width: 40rem; margin: 0 auto; }
 figure img { border-radius: 3px; background: #000; }
 figcaption, caption { font-size: 0.84rem; line-height: 1.5; color: var(--soft); text-align: left; }
 figcaption { margin-top: 0.6rem; } figcaption b, caption b { color: var(--ink); }
@@ -70,7 +72,7 @@ svg .rule { stroke: currentColor; stroke-width: 1.3; fill: none; } svg .dashed {
 svg .name { fill: currentColor; font-size: 11.5px; font-weight: 600; paint-order: stroke; stroke: var(--ground); stroke-width: 3px; }
 svg .c0 { color: var(--c0); } svg .c1 { color: var(--c1); } svg .c2 { color: var(--c2); } svg .c3 { color: var(--c3); } svg .c4 { color: var(--c4); } svg .c5 { color: var(--c5); }
 svg.strip { vertical-align: middle; } svg .reach { fill: var(--c1); opacity: 0.25; } svg .median { stroke: var(--c1); stroke-width: 2; } svg .meas { color: var(--c1); } svg .pub { color: var(--c2); }
-@media (min-width: 64rem) { figure, .wide, .table { width: 58rem; margin-left: calc((42rem - 58rem) / 2); } .wide .table { margin: 0; width: auto; } .table table { width: auto; min-width: 42rem; margin: 0 auto; } }
+@media (min-width: 64rem) { figure, .wide, .table { width: 58rem; margin-left: calc((38rem - 58rem) / 2); } .wide .table { margin: 0; width: auto; } .table table { width: auto; min-width: 38rem; margin: 0 auto; } }
 @media (max-width: 40rem) { html { font-size: 16px; } nav ol { columns: 1; } .pair { grid-template-columns: 1fr; } h1 { font-size: 1.9rem; } }
 @media print {
   @page { size: A4; margin: 18mm 16mm; }
