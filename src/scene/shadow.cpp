@@ -1,6 +1,7 @@
 #include "scene/shadow.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,18 +11,24 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// v in [0, 1] with a v^2 + 2 b v + c <= 0 as one interval (the set is convex by construction of the callers).
-Interval where_negative(double a, double b, double c) {
-    if (std::fabs(a) < 1e-300) {
-        if (b == 0) return c <= 0 ? Interval{0, 1} : Interval{};
-        const double root = -c / (2 * b);
-        return b > 0 ? Interval{0, std::min(1.0, root)} : Interval{std::max(0.0, root), 1};
-    }
+/// v in `range` with a v^2 + 2 b v + c <= 0, known to be one interval there.
+Interval where_negative(double a, double b, double c, Interval range) {
+    if (range.empty()) return {};
+    std::array<double, 4> cut = {range.lo, range.lo, range.hi, range.hi};
     const double discriminant = b * b - a * c;
-    if (discriminant <= 0) return a < 0 ? Interval{0, 1} : Interval{};
-    const double root = std::sqrt(discriminant);
-    const double r0 = (-b - root) / a, r1 = (-b + root) / a;
-    return {std::max(0.0, std::min(r0, r1)), std::min(1.0, std::max(r0, r1))};
+    if (discriminant > 0) {
+        const double q = -(b + std::copysign(std::sqrt(discriminant), b));  // Numerical Recipes (5.6.4): no cancellation
+        double r0 = q / a, r1 = c / q;
+        if (!(r0 < r1)) std::swap(r0, r1);
+        if (r0 > range.lo && r0 < range.hi) cut[1] = r0;
+        if (r1 > range.lo && r1 < range.hi) cut[2] = r1;
+    }
+    Interval out{range.hi, range.lo};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double middle = 0.5 * (cut[i] + cut[i + 1]);
+        if (cut[i] < cut[i + 1] && (a * middle + 2 * b) * middle + c <= 0) out = {std::min(out.lo, cut[i]), std::max(out.hi, cut[i + 1])};
+    }
+    return out;
 }
 
 /// v in [0, 1] with p0 + v (p1 - p0) >= 0.
@@ -43,9 +50,8 @@ Interval sphere(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
     const double a = q * dot(e, e) - sqr(dot(e, c));
     const double b = q * dot(d0, e) - dot(d0, c) * dot(e, c);
     const double k = q * dot(d0, d0) - sqr(dot(d0, c));
-    const Interval cone = where_negative(a, b, k);
-    // Inside the cone the far end lies behind the first crossing where d.c >= q (the polar plane of x).
-    return both(cone, where_positive(dot(d0, c) - q, dot(d0 + e, c) - q));
+    // Inside the cone an end lies behind the first crossing where d.c >= q (the polar plane of x).
+    return where_negative(a, b, k, where_positive(dot(d0, c) - q, dot(d0 + e, c) - q));
 }
 
 /// The chord's segments cross the parallelogram or disk in the plane through p with normal n.
@@ -76,8 +82,8 @@ Interval quad(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
 Interval disk(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
     const OnPlane m = project(o.a, o.b, x, y0, y1);
     const double r2 = o.radius * o.radius;
-    return both(m.sides, where_negative(dot(m.step, m.step) - r2 * m.w1 * m.w1, dot(m.at0, m.step) - r2 * m.w0 * m.w1,
-                                        dot(m.at0, m.at0) - r2 * m.w0 * m.w0));
+    return where_negative(dot(m.step, m.step) - r2 * m.w1 * m.w1, dot(m.at0, m.step) - r2 * m.w0 * m.w1,
+                          dot(m.at0, m.at0) - r2 * m.w0 * m.w0, m.sides);
 }
 
 /// The triangle (x, y0, y1) cut by the box: its points x + a (y0 - x) + b (y1 - x) inside the six half-spaces form a

@@ -1,0 +1,159 @@
+#include "estimator/estimator.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <mutex>
+
+#include "base/errors.h"
+
+namespace crescent {
+
+namespace {
+
+Kernel kernel_of(const std::string& isa, std::string_view sampler, int lobe) {
+    const int arm = arm_index(sampler);
+    ensure(arm >= 0, "the parser lets only known samplers through");
+    return kernels_for(isa).kernels[static_cast<std::size_t>(arm)][static_cast<std::size_t>(lobe + 1)];
+}
+
+/// Sums of one site over its n samples -> the film's pixel.
+class Finish {
+public:
+    Finish(const Scene& scene, const Sites& sites, const Moments& m, Film& film) : scene_(scene), sites_(sites), m_(m), film_(film) {}
+
+    void pixel(std::size_t i) const {
+        const std::size_t at = sites_.pixel[i];
+        const double n = static_cast<double>(film_.n);
+        const Rgb mean = radiance(i, n);
+        const double y = luminance(mean);
+        const double pivot = static_cast<double>(sites_.pivot[i]);
+        const double off = y - pivot;
+        const double spread = m_.square[i] - n * off * off;  // sum of (X - mean)^2
+        film_.r[at] = static_cast<float>(mean[0]);
+        film_.g[at] = static_cast<float>(mean[1]);
+        film_.b[at] = static_cast<float>(mean[2]);
+        film_.y[at] = static_cast<float>(y);
+        film_.y2[at] = static_cast<float>(m_.square[i] / n + pivot * (2 * y - pivot));
+        film_.var[at] = film_.n > 1 ? static_cast<float>((spread < 0 ? 0 : spread) / (n * (n - 1))) : 0.0f;
+        film_.largest[at] = m_.largest[i];
+        film_.horizon[at] = m_.horizon[i];
+        film_.hits[at] = m_.hits[i];
+    }
+
+private:
+    Rgb radiance(std::size_t i, double n) const {
+        double fill_g = m_.g[i], fill_lobe = m_.g_lobe[i];
+        Rgb diffuse{}, lobe{};
+        for (std::size_t k = 0; k < m_.disk_g.size(); ++k) {
+            fill_g -= m_.disk_g[k][i];
+            fill_lobe -= m_.disk_g_lobe[k][i];
+            for (std::size_t c = 0; c < 3; ++c) {
+                diffuse[c] += scene_.disks()[k].radiance[c] * m_.disk_g[k][i];
+                lobe[c] += scene_.disks()[k].radiance[c] * m_.disk_g_lobe[k][i];
+            }
+        }
+        Rgb out{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
+            lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
+            out[c] = (sites_.rho_d[i][c] / pi * diffuse[c] + sites_.rho_s_exact[i] * lobe[c]) / n;
+        }
+        return out;
+    }
+
+    const Scene& scene_;
+    const Sites& sites_;
+    const Moments& m_;
+    Film& film_;
+};
+
+}  // namespace
+
+void for_each_tile(int width, int height, Watch& watch, const std::function<void(const TileBox&)>& work) {
+    const std::vector<TileBox> tiles = tiles_of(width, height);
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
+        if (watch.stop.load(std::memory_order_relaxed)) return;
+        work(tiles[k]);
+    });
+    watch.check();
+}
+
+std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
+                                 const std::string& isa, Watch& watch) {
+    const Image& image = scene.experiment().image;
+    std::vector<Film> films;
+    for (std::uint64_t rung : n) films.emplace_back(image.width, image.height, rung);
+    std::vector<std::atomic<std::uint64_t>> bad(n.size());
+    for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
+        std::vector<Moments> moments(n.size());
+        for (const Sites& sites : sites_of(scene, tile, nullptr)) {
+            for (Moments& m : moments) m.resize(sites.pixel.size(), sites.disks.size());
+            kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});
+            for (std::size_t r = 0; r < n.size(); ++r) {
+                const Finish finish(scene, sites, moments[r], films[r]);
+                for (std::size_t i = 0; i < sites.count; ++i) {
+                    finish.pixel(i);
+                    bad[r] += moments[r].bad[i];
+                }
+            }
+            watch.advance(static_cast<double>(sites.count) * static_cast<double>(n.back()));
+        }
+    });
+    for (std::size_t r = 0; r < n.size(); ++r) films[r].bad = bad[r];
+    return films;
+}
+
+ShapeMap shape_map(const Scene& scene) {
+    const Image& image = scene.experiment().image;
+    ShapeMap map{image.width, image.height, {}};
+    map.shape.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), -1);
+    tbb::parallel_for(0, image.height, [&](int j) {
+        for (int i = 0; i < image.width; ++i)
+            if (const auto hit = scene.primary(i, j))
+                map.shape[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i)] = static_cast<std::int16_t>(hit->shape);
+    });
+    return map;
+}
+
+Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const std::string& isa,
+                       const std::atomic<bool>* stop, float* samples) {
+    std::array<Moments, 1> moments;
+    moments[0].resize(sites.pixel.size(), sites.disks.size());
+    const std::array<std::uint64_t, 1> rungs = {n};
+    kernel_of(isa, sampler, sites.lobe)({&sites, rungs, seed, moments, stop, samples});
+    return std::move(moments[0]);
+}
+
+std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const Box& box,
+                                   std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn) {
+    std::vector<float> all;
+    std::mutex lock;
+    drawn = 0;
+    std::vector<TileBox> tiles;
+    for (const TileBox& t : tiles_of(box.width(), box.height())) tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
+        for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
+            if (watch.stop.load(std::memory_order_relaxed)) return;
+            std::vector<float> samples(sites.count * n);
+            estimate_sites(sites, sampler, n, seed, isa, &watch.stop, samples.data());
+            const std::uint64_t here = samples.size();
+            std::erase_if(samples, [](float x) { return std::isnan(x); });  // counted by the kernels; not a size
+            if (samples.size() > count) {
+                std::nth_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count), samples.end(), std::greater<>());
+                samples.resize(count);
+            }
+            const std::lock_guard guard(lock);
+            drawn += here;
+            all.insert(all.end(), samples.begin(), samples.end());
+        }
+    });
+    watch.check();
+    std::sort(all.begin(), all.end(), std::greater<>());  // the same values in any order of tiles
+    if (all.size() > count) all.resize(count);
+    return all;
+}
+
+}  // namespace crescent

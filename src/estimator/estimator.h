@@ -1,0 +1,34 @@
+// Integrand + arm -> films, on all cores. Films are the same bits for any number of threads and any instruction set.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "estimator/kernel.h"
+#include "films/film.h"
+#include "scene/scene.h"
+
+namespace crescent {
+
+/// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best.
+std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
+                                 const std::string& isa, Watch& watch);
+
+/// Which shape each pixel sees.
+ShapeMap shape_map(const Scene& scene);
+
+/// The `count` largest samples X of one arm over the geometry pixels of a box, n samples each, in falling order.
+/// `drawn` receives how many samples there were.
+std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const Box& box,
+                                   std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn);
+
+/// Runs a kernel over sites that the caller made; moments of the last rung only.
+Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const std::string& isa,
+                       const std::atomic<bool>* stop, float* samples = nullptr);
+
+/// Calls work(tile) for every tile of the image on all cores; stops early when the watch says so.
+void for_each_tile(int width, int height, Watch& watch, const std::function<void(const TileBox&)>& work);
+
+}  // namespace crescent

@@ -1,0 +1,37 @@
+#include "estimator/furnace_sites.h"
+
+#include <cmath>
+
+#include "films/film.h"
+
+namespace crescent {
+
+Surface furnace_surface(const Experiment& experiment, const Shape& shape, bool lobe_only) {
+    const Material& m = shape.material;
+    Surface surface{m.rho_d, m.rho_s, m.brdf, m.s ? *m.s : experiment.s(), m.alpha.value_or(0.0)};
+    if (lobe_only) surface.rho_d = {};
+    return surface;
+}
+
+Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
+    Sites sites;
+    sites.lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
+    sites.count = count;
+    const auto fill = [&](std::vector<float>& array, double value) { array.assign(count, static_cast<float>(value)); };
+    for (std::size_t i = 0; i < count; ++i) sites.pixel.push_back(static_cast<std::uint32_t>(i));
+    sites.shape.assign(count, 0);
+    fill(sites.wox, std::sqrt(1 - cos_o * cos_o)), fill(sites.woy, 0), fill(sites.woz, cos_o);
+    fill(sites.s, surface.s), fill(sites.alpha, surface.alpha);
+    fill(sites.diffuse, luminance(surface.rho_d)), fill(sites.rho_s, surface.rho_s);
+    for (auto* zero : {&sites.px, &sites.py, &sites.pz, &sites.ty, &sites.tz, &sites.bx, &sites.bz, &sites.nx, &sites.ny}) fill(*zero, 0);
+    for (auto* one : {&sites.tx, &sites.by, &sites.nz}) fill(*one, 1);
+    fill(sites.fill_d, luminance(surface.rho_d) / pi);
+    fill(sites.fill_s, surface.rho_s);
+    fill(sites.pivot, luminance(surface.rho_d));
+    sites.rho_d.assign(count, surface.rho_d);
+    sites.rho_s_exact.assign(count, surface.rho_s);
+    sites.pad();
+    return sites;
+}
+
+}  // namespace crescent

@@ -1,0 +1,14 @@
+// Sites in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless told otherwise.
+#pragma once
+
+#include "estimator/sites.h"
+
+namespace crescent {
+
+/// The material of a shape, with the experiment's own s where it has none; lobe_only drops rho_d.
+Surface furnace_surface(const Experiment& experiment, const Shape& shape, bool lobe_only);
+
+/// `count` alike sites, each with random numbers of its own. X = (cos/p) f.
+Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o = 1);
+
+}  // namespace crescent

@@ -1,0 +1,208 @@
+#include "estimator/reference.h"
+
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
+
+#include "estimator/disk_quadrature.h"
+#include "estimator/estimator.h"
+#include "estimator/lobe_albedo.h"
+#include "simd/random.h"
+
+namespace crescent {
+
+namespace {
+
+/// One table a lobe, made when first asked for.
+class Albedos {
+public:
+    const LobeAlbedo& of(const Surface& surface) {
+        const std::lock_guard guard(lock_);
+        const auto key = std::tuple(surface.brdf, surface.s, surface.alpha);
+        auto at = tables_.find(key);
+        if (at == tables_.end()) at = tables_.try_emplace(key, surface.brdf, surface.s, surface.alpha).first;
+        return at->second;
+    }
+
+private:
+    std::mutex lock_;
+    std::map<std::tuple<BrdfKind, double, double>, LobeAlbedo> tables_;
+};
+
+void store(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error) {
+    film.r[at] = static_cast<float>(radiance[0]);
+    film.g[at] = static_cast<float>(radiance[1]);
+    film.b[at] = static_cast<float>(radiance[2]);
+    film.y[at] = static_cast<float>(luminance(radiance));
+    film.error[at] = static_cast<float>(error);
+}
+
+/// The radiance of one pixel by quadrature, and the error of its Y.
+class Quadrature {
+public:
+    explicit Quadrature(const Scene& scene) : scene_(scene) {
+        for (std::size_t k = 0; k < scene.disks().size(); ++k) disks_.emplace_back(scene, k);
+    }
+
+    std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) {
+        const Rgb& fill = scene_.fill();
+        double albedo = 0, error = 0;
+        if (surface.rho_s > 0) {
+            const LobeAlbedo& table = albedos_.of(surface);
+            albedo = table(dot(hit.n, hit.wo));
+            error = surface.rho_s * luminance(fill) * table.error();
+        }
+        Rgb out{};
+        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * albedo);
+        for (std::size_t k = 0; k < disks_.size(); ++k) {
+            const DiskIntegral d = disks_[k](hit, surface);
+            Rgb part{};
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double step = scene_.disks()[k].radiance[c] - fill[c];
+                out[c] += step * (surface.rho_d[c] * d.diffuse + surface.rho_s * d.lobe);
+                part[c] = std::fabs(step) * (surface.rho_d[c] * d.diffuse_error + surface.rho_s * d.lobe_error);
+            }
+            error += luminance(part);
+        }
+        return {out, error};
+    }
+
+private:
+    const Scene& scene_;
+    std::vector<DiskQuadrature> disks_;
+    Albedos albedos_;
+};
+
+std::vector<Scene> scenes_at(const Experiment& experiment, const std::vector<double>& exponents) {
+    std::vector<Scene> scenes;
+    for (double s : exponents) scenes.emplace_back(s > 0 ? experiment.with_s(s) : experiment);
+    return scenes;
+}
+
+std::vector<ReferenceFilm> blank(const Experiment& experiment, const std::vector<double>& exponents) {
+    std::vector<ReferenceFilm> films;
+    for (double s : exponents) films.emplace_back(experiment.image.width, experiment.image.height, s);
+    return films;
+}
+
+/// The same sites with lights that turn X into the wanted part: the disk by itself, or the fill on the lobe alone.
+Sites only_disk(const Scene& scene, const Sites& all, std::size_t k) {
+    Sites sites = all;
+    const double over = luminance(scene.disks()[k].radiance) - luminance(scene.fill());
+    const double full = luminance(scene.disks()[k].radiance);
+    sites.disks = {all.disks[k]};
+    DiskArrays& disk = sites.disks[0];
+    disk.power = 1;
+    for (std::size_t i = 0; i < sites.pixel.size(); ++i) {
+        disk.d[i] -= sites.fill_d[i];  // L_key - L_fill: the disk stands in for the fill behind it
+        disk.s[i] = full > 0 ? static_cast<float>(static_cast<double>(disk.s[i]) * over / full) : -sites.fill_s[i];
+    }
+    for (auto* array : {&sites.fill_d, &sites.fill_s, &sites.pivot}) std::fill(array->begin(), array->end(), 0.0f);
+    return sites;
+}
+
+Sites only_lobe(const Sites& all) {
+    Sites sites = all;
+    sites.disks.clear();
+    for (auto* array : {&sites.fill_d, &sites.pivot}) std::fill(array->begin(), array->end(), 0.0f);
+    return sites;
+}
+
+double variance_of_mean(double sum, double square, double n) {
+    const double spread = square - sum * sum / n;
+    return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0;
+}
+
+/// The note's reference over one group of sites.
+class NotePixels {
+public:
+    NotePixels(const Scene& scene, const Sites& sites, const ReferencePlan& plan, const std::string& isa, Watch& watch) : scene_(scene), sites_(sites) {
+        if (sites.lobe >= 0) lobe_ = estimate_sites(only_lobe(sites), "phong", plan.lobe_spp, plan.seed, isa, &watch.stop);
+        lobe_n_ = static_cast<double>(plan.lobe_spp);
+        disk_n_ = static_cast<double>(plan.disk_spp);
+        for (std::size_t k = 0; k < scene.disks().size(); ++k)
+            disks_.push_back(estimate_sites(only_disk(scene, sites, k), "light-area", plan.disk_spp, seed_of(plan.seed, static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
+    }
+
+    void write(std::size_t i, ReferenceFilm& film) const {
+        const Rgb& fill = scene_.fill();
+        const double lobe = sites_.lobe >= 0 ? lobe_.g_lobe[i] / lobe_n_ : 0;
+        const double rho_s = sites_.rho_s_exact[i];
+        Rgb out{};
+        double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.g_lobe[i] * luminance(fill) * rho_s, lobe_.square[i], lobe_n_) : 0;
+        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (sites_.rho_d[i][c] + rho_s * lobe);
+        for (std::size_t k = 0; k < disks_.size(); ++k) {
+            Rgb part{};
+            for (std::size_t c = 0; c < 3; ++c) {
+                part[c] = (scene_.disks()[k].radiance[c] - fill[c]) * (sites_.rho_d[i][c] / pi * disks_[k].disk_g[0][i] + rho_s * disks_[k].disk_g_lobe[0][i]);
+                out[c] += part[c] / disk_n_;
+            }
+            variance += variance_of_mean(luminance(part), disks_[k].square[i], disk_n_);
+        }
+        store(film, sites_.pixel[i], out, std::sqrt(variance));
+    }
+
+private:
+    const Scene& scene_;
+    const Sites& sites_;
+    Moments lobe_;
+    std::vector<Moments> disks_;
+    double lobe_n_ = 1, disk_n_ = 1;
+};
+
+void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
+    to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at], to.error[at] = from.error[at];
+}
+
+}  // namespace
+
+std::vector<ReferenceFilm> quadrature_reference(const Experiment& experiment, const std::vector<double>& exponents, Watch& watch) {
+    const std::vector<Scene> scenes = scenes_at(experiment, exponents);
+    std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
+    std::vector<ReferenceFilm> films = blank(experiment, exponents);
+    const Image& image = experiment.image;
+    for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
+        for (int j = tile.y0; j < tile.y1; ++j) {
+            watch.check();
+            for (int i = tile.x0; i < tile.x1; ++i) {
+                const auto hit = scenes[0].primary(i, j);
+                if (!hit) continue;
+                const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i);
+                for (std::size_t e = 0; e < scenes.size(); ++e) {
+                    const Surface surface = scenes[e].surface(*hit);
+                    if (e > 0 && !(surface.rho_s > 0)) {  // no lobe, no exponent
+                        copy_pixel(films[0], films[e], at);
+                        continue;
+                    }
+                    const auto [radiance, error] = integrals[e](*hit, surface);
+                    store(films[e], at, radiance, error);
+                }
+            }
+        }
+        watch.advance((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
+    });
+    return films;
+}
+
+std::vector<ReferenceFilm> note_reference(const Experiment& experiment, const std::vector<double>& exponents, const std::string& isa, Watch& watch) {
+    const std::vector<Scene> scenes = scenes_at(experiment, exponents);
+    std::vector<ReferenceFilm> films = blank(experiment, exponents);
+    const Image& image = experiment.image;
+    for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
+        for (std::size_t e = 0; e < scenes.size(); ++e) {
+            for (const Sites& sites : sites_of(scenes[e], tile, nullptr)) {
+                if (e > 0 && sites.lobe < 0) {
+                    for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
+                    continue;
+                }
+                const NotePixels pixels(scenes[e], sites, experiment.reference, isa, watch);
+                for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
+            }
+        }
+        watch.advance((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
+    });
+    return films;
+}
+
+}  // namespace crescent

@@ -1,0 +1,88 @@
+#include "films/exr.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+
+#include <thread>
+
+#include "base/errors.h"
+
+namespace crescent {
+
+namespace {
+
+struct Channel {
+    const char* name;
+    Imf::PixelType type;
+    const void* plane;
+};
+
+std::vector<Channel> channels_of(const Film& f) {
+    return {{"R", Imf::FLOAT, f.r.data()},           {"G", Imf::FLOAT, f.g.data()},
+            {"B", Imf::FLOAT, f.b.data()},           {"luminance.Y", Imf::FLOAT, f.y.data()},
+            {"second_moment.Y", Imf::FLOAT, f.y2.data()}, {"variance.Y", Imf::FLOAT, f.var.data()},
+            {"largest.Y", Imf::FLOAT, f.largest.data()},  {"horizon.Y", Imf::UINT, f.horizon.data()},
+            {"hits.Y", Imf::UINT, f.hits.data()}};
+}
+
+std::vector<Channel> channels_of(const ReferenceFilm& f) {
+    return {{"R", Imf::FLOAT, f.r.data()}, {"G", Imf::FLOAT, f.g.data()}, {"B", Imf::FLOAT, f.b.data()},
+            {"luminance.Y", Imf::FLOAT, f.y.data()}, {"error.Y", Imf::FLOAT, f.error.data()}};
+}
+
+template <class AnyFilm> Imf::Header header_of(const std::string& name, const AnyFilm& film, const Attributes& attributes) {
+    Imf::Header header(film.width, film.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = 1;  // noise hardly compresses; speed counts
+    header.setName(name);
+    header.setType(Imf::SCANLINEIMAGE);
+    for (const Channel& c : channels_of(film)) header.channels().insert(c.name, Imf::Channel(c.type));
+    for (const auto& [key, text] : attributes) header.insert(key, Imf::StringAttribute(text));
+    return header;
+}
+
+/// Films run bottom-up: the last row comes first, strides run backwards.
+template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
+    Imf::FrameBuffer buffer;
+    const auto row = static_cast<std::ptrdiff_t>(film.width) * 4;
+    for (const Channel& c : channels_of(film)) {
+        char* top = static_cast<char*>(const_cast<void*>(c.plane)) + row * (film.height - 1);
+        buffer.insert(c.name, Imf::Slice(c.type, top, 4, static_cast<std::size_t>(-row)));
+    }
+    return buffer;
+}
+
+template <class AnyFilm>
+void write_parts(const std::string& path, const std::vector<std::pair<std::string, const AnyFilm*>>& parts, const Attributes& attributes) {
+    Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
+    std::vector<Imf::Header> headers;
+    for (const auto& [name, film] : parts) headers.push_back(header_of(name, *film, attributes));
+    try {
+        Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            Imf::OutputPart part(file, static_cast<int>(k));
+            part.setFrameBuffer(frame_buffer(*parts[k].second));
+            part.writePixels(parts[k].second->height);
+        }
+    } catch (const std::exception& error) {
+        throw OutputError("cannot write " + path + ": " + error.what());
+    }
+}
+
+}  // namespace
+
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const Film*>>& parts, const Attributes& attributes) {
+    write_parts(path, parts, attributes);
+}
+
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts, const Attributes& attributes) {
+    write_parts(path, parts, attributes);
+}
+
+}  // namespace crescent

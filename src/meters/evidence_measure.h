@@ -1,0 +1,14 @@
+// Measures what evidence.h holds.
+#pragma once
+
+#include <string>
+
+#include "base/watch.h"
+#include "meters/evidence.h"
+
+namespace crescent {
+
+/// Nothing (empty vectors) where the experiment has no Phong arm or no shape with a Phong lobe.
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, Watch& watch);
+
+}  // namespace crescent

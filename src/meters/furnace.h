@@ -1,0 +1,16 @@
+// White furnaces: L_i = 1 everywhere and R = n, so that the answer is known: rho_d + rho_s, or rho_s for the lobe alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "experiment/experiment.h"
+#include "experiment/published.h"
+#include "meters/metrics.h"
+
+namespace crescent {
+
+std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch);
+
+}  // namespace crescent

@@ -1,0 +1,193 @@
+#include "meters/meters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/errors.h"
+
+namespace crescent {
+
+namespace {
+
+std::size_t index_of(int i, int j, int width) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+}
+
+/// Mean of f(pixel) over a box, row by row.
+template <class Call> double box_mean(int width, const Box& box, Call&& f) {
+    double sum = 0;
+    for (int j = box.y0; j <= box.y1; ++j)
+        for (int i = box.x0; i <= box.x1; ++i) sum += f(index_of(i, j, width));
+    return sum / (static_cast<double>(box.width()) * box.height());
+}
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes) {
+    RunMeter run;
+    run.key = key;
+    run.bad = film.bad;
+    for (const Region& region : experiment.regions) {
+        RegionMeter m;
+        m.region = region.name;
+        m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
+        m.rmse = rms_difference(film.y, reference.y, film.width, region.box);
+        m.var = box_mean(film.width, region.box, [&](std::size_t at) { return static_cast<double>(film.var[at]); });
+        run.regions.push_back(m);
+    }
+    double y = 0, squares = 0, horizon = 0, geometry = 0;
+    for (std::size_t at = 0; at < film.size(); ++at) {
+        const double difference = static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
+        y += static_cast<double>(film.y[at]);
+        squares += difference * difference;
+        run.largest = std::max(run.largest, static_cast<double>(film.largest[at]));
+        if (shapes.shape[at] < 0) continue;
+        ++geometry;
+        horizon += film.horizon[at];
+        if (std::fabs(difference) > experiment.firefly_k * static_cast<double>(reference.y[at])) ++run.fireflies;
+    }
+    const double pixels = static_cast<double>(film.size());
+    run.y_mean = y / pixels;
+    run.rmse_frame = std::sqrt(squares / pixels);
+    run.horizon_frac = geometry > 0 ? horizon / (geometry * static_cast<double>(film.n)) : 0;
+    return run;
+}
+
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box) {
+    return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at]) - static_cast<double>(b[at])); }));
+}
+
+double rms(const std::vector<float>& a, int width, const Box& box) {
+    return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at])); }));
+}
+
+double meter_value(const RunMeter& run, const std::string& meter) {
+    if (meter == "fireflies") return static_cast<double>(run.fireflies);
+    if (meter == "horizon_frac") return run.horizon_frac;
+    if (meter == "y_mean") return run.y_mean;
+    if (meter == "rmse_frame") return run.rmse_frame;
+    const std::size_t dot = meter.find('.');
+    ensure(dot != std::string::npos, "a meter's name");
+    const RegionMeter* region = run.region(meter.substr(dot + 1));
+    ensure(region != nullptr, "a meter of a region that was measured");
+    return meter.starts_with("rmse.") ? region->rmse : region->var;
+}
+
+std::vector<std::string> meter_names(const Experiment& experiment) {
+    std::vector<std::string> names;
+    for (const char* kind : {"rmse.", "var."})
+        for (const Region& region : experiment.regions) names.push_back(kind + region.name);
+    for (const char* name : {"fireflies", "horizon_frac", "y_mean", "rmse_frame"}) names.emplace_back(name);
+    return names;
+}
+
+double quantile(std::vector<double> values, double q) {
+    ensure(!values.empty(), "a quantile of something");
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return std::nan("");
+    std::sort(values.begin(), values.end());
+    const double at = q * static_cast<double>(values.size() - 1);
+    const std::size_t below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    const double t = at - static_cast<double>(below);
+    return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
+}
+
+namespace {
+
+std::vector<double> over_seeds(const std::vector<RunMeter>& runs, const RunKey& key, const std::string& meter) {
+    std::vector<double> values;
+    for (const RunMeter& run : runs)
+        if (run.key.arm == key.arm && run.key.n == key.n && run.key.s == key.s) values.push_back(meter_value(run, meter));
+    return values;
+}
+
+/// RMSE and var read the second moment; where the tail of the samples is heavy it has no expectation.
+bool heavy(const RunMeter& run, const std::string& meter) {
+    const std::size_t dot = meter.find('.');
+    if (dot == std::string::npos) return false;
+    const RegionMeter* region = run.region(meter.substr(dot + 1));
+    return region && region->tail && region->tail->heavy();
+}
+
+}  // namespace
+
+std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published) {
+    std::vector<BandMeter> out;
+    for (const RunMeter& run : runs) {
+        if (run.key.seed != experiment.seed) continue;
+        for (const std::string& meter : meter_names(experiment)) {
+            const std::vector<double> values = over_seeds(runs, run.key, meter);
+            BandMeter b;
+            b.key = run.key;
+            b.meter = meter;
+            b.measured = meter_value(run, meter);
+            b.band = {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95), static_cast<int>(values.size()), heavy(run, meter)};
+            if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, meter);
+            if (b.published) {
+                const auto below = std::count_if(values.begin(), values.end(), [&](double v) { return v < *b.published; });
+                b.published_rank = static_cast<double>(below) / static_cast<double>(values.size());
+            }
+            out.push_back(std::move(b));
+        }
+    }
+    return out;
+}
+
+namespace {
+
+struct Line {
+    double slope = 0, half_width = 0;  // 90 % half width from the residuals, 0 where there are none
+};
+
+/// Least squares of log y on log x.
+Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y) {
+    const double count = static_cast<double>(n.size());
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t i = 0; i < n.size(); ++i) {
+        const double a = std::log(static_cast<double>(n[i])), b = std::log(y[i]);
+        sx += a, sy += b, sxx += a * a, sxy += a * b;
+    }
+    const double spread = sxx - sx * sx / count;
+    Line line{(sxy - sx * sy / count) / spread, 0};
+    if (n.size() < 3) return line;
+    double residual = 0;
+    for (std::size_t i = 0; i < n.size(); ++i)
+        residual += square(std::log(y[i]) - sy / count - line.slope * (std::log(static_cast<double>(n[i])) - sx / count));
+    line.half_width = 1.645 * std::sqrt(residual / (count - 2) / spread);  // normal 90 %
+    return line;
+}
+
+Ladder ladder(const std::vector<RunMeter>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
+    Ladder out{arm.name, region, s, arm.n, {}, 0, 0, 0, false};
+    std::map<std::uint32_t, std::vector<double>> by_seed;
+    for (const RunMeter& run : runs) {
+        if (run.key.arm != arm.name || run.key.s != s || std::find(arm.n.begin(), arm.n.end(), run.key.n) == arm.n.end()) continue;
+        by_seed[run.key.seed].push_back(run.region(region)->rmse);
+        if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
+    }
+    out.rmse = by_seed[seed];
+    const Line own = fit_power(out.n, out.rmse);
+    std::vector<double> slopes;
+    for (const auto& [_, values] : by_seed) slopes.push_back(fit_power(out.n, values).slope);
+    const bool many = slopes.size() > 1;
+    out.slope = many ? quantile(slopes, 0.5) : own.slope;
+    out.low = many ? quantile(slopes, 0.05) : own.slope - own.half_width;
+    out.high = many ? quantile(slopes, 0.95) : own.slope + own.half_width;
+    return out;
+}
+
+}  // namespace
+
+std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMeter>& runs) {
+    std::vector<Ladder> out;
+    for (const ArmPlan& arm : experiment.arms) {
+        if (arm.n.size() < 2) continue;
+        for (const Region& region : experiment.regions) out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
+    }
+    return out;
+}
+
+}  // namespace crescent

@@ -1,0 +1,33 @@
+// Films -> numbers. Every sum runs in double over pixels in storage order, so equal films give equal numbers.
+#pragma once
+
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "experiment/published.h"
+#include "films/film.h"
+#include "meters/metrics.h"
+
+namespace crescent {
+
+/// All meters of one film against the reference, tails apart.
+RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes);
+
+/// Root mean square of the difference of two Y planes over a box, and of one plane.
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
+double rms(const std::vector<float>& a, int width, const Box& box);
+
+/// The value of a meter by its name: rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame.
+double meter_value(const RunMeter& run, const std::string& meter);
+std::vector<std::string> meter_names(const Experiment& experiment);
+
+/// Quantile q of values by linear interpolation between order statistics (R type 7).
+double quantile(std::vector<double> values, double q);
+
+/// Spread over seeds of every meter of every run at the published seed.
+std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published);
+
+/// Ladders of RMSE for every arm with at least two rungs, in every region.
+std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMeter>& runs);
+
+}  // namespace crescent

@@ -1,0 +1,22 @@
+#include "meters/metrics.h"
+
+#include <algorithm>
+
+namespace crescent {
+
+const RegionMeter* RunMeter::region(const std::string& name) const {
+    const auto at = std::find_if(regions.begin(), regions.end(), [&](const RegionMeter& r) { return r.region == name; });
+    return at == regions.end() ? nullptr : &*at;
+}
+
+const RunMeter* Metrics::find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const {
+    const RunKey key{arm, n, s, seed};
+    const auto at = std::find_if(runs.begin(), runs.end(), [&](const RunMeter& r) { return r.key == key; });
+    return at == runs.end() ? nullptr : &*at;
+}
+
+bool Metrics::all_hold() const {
+    return std::all_of(assertions.begin(), assertions.end(), [](const AssertionResult& a) { return a.pass; });
+}
+
+}  // namespace crescent

@@ -1,0 +1,115 @@
+#include "meters/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.h"
+#include "meters/meters.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
+
+double of_run(const ParsedQuantity& q, const RunMeter* run) {
+    if (!run) return unmeasured;
+    if (q.word == "largest") return run->largest;
+    if (q.word == "bad") return static_cast<double>(run->bad);
+    if (q.region.empty()) return meter_value(*run, q.word);
+    const RegionMeter* region = run->region(q.region);
+    if (!region) return unmeasured;
+    if (q.word == "tail") return region->tail ? region->tail->k : unmeasured;
+    return meter_value(*run, q.word + "." + q.region);
+}
+
+double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
+    for (const FurnaceMeter& furnace : metrics.furnaces)
+        if (furnace.name == q.subject) return q.word == "furnace" ? furnace.measured : std::abs(furnace.measured - furnace.expected);
+    return unmeasured;
+}
+
+Subject subject_of(const std::string& word) {
+    for (const QuantityWord& known : quantity_words())
+        if (known.word == word) return known.subject;
+    throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
+}
+
+/// NaN where any value is.
+double median(const std::vector<double>& values) {
+    const bool whole = std::none_of(values.begin(), values.end(), [](double x) { return std::isnan(x); });
+    return whole ? quantile(values, 0.5) : unmeasured;
+}
+
+std::vector<std::uint32_t> seeds_of(const Metrics& metrics, std::uint32_t published) {
+    std::vector<std::uint32_t> seeds;
+    for (const RunMeter& run : metrics.runs)
+        if (!std::count(seeds.begin(), seeds.end(), run.key.seed)) seeds.push_back(run.key.seed);
+    return seeds.empty() ? std::vector{published} : seeds;
+}
+
+bool holds(double left, const std::string& op, double right) {
+    if (std::isnan(left) || std::isnan(right)) return false;
+    if (op == "<") return left < right;
+    if (op == "<=") return left <= right;
+    if (op == ">") return left > right;
+    if (op == ">=") return left >= right;
+    return op == "==" && left == right;
+}
+
+ParsedQuantity parsed(const std::string& text) {
+    std::string why;
+    const auto q = parse_quantity(text, why);
+    ensure(q.has_value(), "an assertion was checked when its experiment was read");
+    return *q;
+}
+
+}  // namespace
+
+double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
+                const std::map<std::string, std::size_t>& plate_bytes) {
+    if (q.number) return *q.number;
+    switch (subject_of(q.word)) {
+        case Subject::none: return static_cast<double>(metrics.geometry_pixels);
+        case Subject::run: return of_run(q, metrics.find(q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed));
+        case Subject::furnace: return of_furnace(q, metrics);
+        case Subject::shape: {
+            const auto it = metrics.shape_pixels.find(q.subject);
+            return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
+        }
+        case Subject::region: {
+            const Region* region = experiment.find_region(q.subject);
+            return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
+        }
+        case Subject::plate: {
+            const auto it = plate_bytes.find(q.subject);
+            return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
+        }
+    }
+    return unmeasured;
+}
+
+std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& metrics, const std::map<std::string, std::size_t>& plate_bytes) {
+    const std::vector<std::uint32_t> all = seeds_of(metrics, experiment.seed);
+    std::vector<AssertionResult> results;
+    for (const AssertionPlan& plan : experiment.assertions) {
+        const auto side = [&](const std::string& text) {
+            ParsedQuantity q = parsed(text);
+            (void)resolve_quantity(q, experiment);  // an experiment built in code may leave n out
+            std::vector<double> values;
+            for (const std::uint32_t seed : plan.median ? all : std::vector{experiment.seed})
+                values.push_back(quantity(q, metrics, experiment, seed, plate_bytes));
+            return median(values);
+        };
+        AssertionResult r;
+        r.name = plan.name, r.op = plan.op;
+        r.measured = side(plan.left), r.bound = side(plan.right);
+        r.pass = holds(r.measured, r.op, r.bound);
+        r.text = plan.left + " " + plan.op + " " + plan.right + (plan.median ? " (medians over seeds)" : "");
+        results.push_back(std::move(r));
+    }
+    return results;
+}
+
+}  // namespace crescent

@@ -1,0 +1,93 @@
+// Checks against made-up measurements whose right answers are plain.
+#include "meters/quantity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace crescent {
+namespace {
+
+Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
+    Experiment e;
+    e.seed = 5;
+    Shape ball;
+    ball.name = "ball", ball.material.s = 32, ball.material.rho_s = 0.1;
+    e.shapes = {ball};
+    e.arms = {{"a", "cosine", {4, 16}, {}}, {"b", "phong", {4}, {}}};
+    e.regions = {{"H", {2, 3, 5, 4}, {}}};
+    for (const auto& [text, median] : checks) {
+        std::string why;
+        const auto c = parse_comparison(text, why);
+        EXPECT_TRUE(c) << why;
+        e.assertions.push_back({text, to_string(c->left), c->op, to_string(c->right), median, {}});
+    }
+    return e;
+}
+
+RunMeter run(const std::string& arm, std::uint64_t n, std::uint32_t seed, double rmse) {
+    RunMeter r;
+    r.key = {arm, n, 32, seed};
+    r.regions = {{"H", rmse, rmse * rmse, 8, std::nullopt}};
+    r.fireflies = seed;
+    return r;
+}
+
+/// Three seeds; b is worse than a at seed 5 and better on the median.
+Metrics measured() {
+    Metrics m;
+    const double of_a[] = {2, 4, 9}, of_b[] = {3, 1, 1};
+    for (std::uint32_t i = 0; i < 3; ++i)
+        for (const std::uint64_t n : {4u, 16u}) m.runs.push_back(run("a", n, 5 + i, of_a[i] / static_cast<double>(n))), m.runs.push_back(run("b", n, 5 + i, of_b[i] / static_cast<double>(n)));
+    m.furnaces = {{"white", "a", "combined", 64, 0.27, 0.30, 0.01, std::nullopt, 0, std::nullopt}};
+    m.shape_pixels = {{"ball", 120}};
+    m.geometry_pixels = 500;
+    return m;
+}
+
+bool verdict(const std::string& check, bool median = false, const Metrics& m = measured()) {
+    return judge(two_arms({{check, median}}), m, {{"hero", 1000}}).at(0).pass;
+}
+
+TEST(Quantities, AreReadFromTheRunTheyName) {
+    EXPECT_TRUE(verdict("rmse.H(a, n=4) == 0.5"));
+    EXPECT_TRUE(verdict("rmse.H(a, n=16) == 0.125"));
+    EXPECT_TRUE(verdict("rmse.H(b) == 0.75")) << "b has one rung";
+    EXPECT_TRUE(verdict("rmse.H(a) == 0.125")) << "no n: the highest rung, as the experiment names none";
+    EXPECT_TRUE(verdict("var.H(a, n=4, s=32) == 0.25"));
+    EXPECT_TRUE(verdict("fireflies(a) == 5"));
+    EXPECT_TRUE(verdict("furnace(white) == 0.27"));
+    EXPECT_TRUE(verdict("furnace_error(white) <= 0.0300001"));
+    EXPECT_FALSE(verdict("furnace_error(white) < 0.0299"));
+    EXPECT_TRUE(verdict("shape_pixels(ball) == 120"));
+    EXPECT_TRUE(verdict("region_pixels(H) == 8"));
+    EXPECT_TRUE(verdict("geometry_pixels >= 500"));
+    EXPECT_TRUE(verdict("plate_bytes(hero) > 0"));
+    EXPECT_FALSE(verdict("plate_bytes(rose) > 0"));
+}
+
+TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
+    EXPECT_FALSE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)"));
+    EXPECT_TRUE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)", true));
+    const auto result = judge(two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}}), measured(), {}).at(0);
+    EXPECT_EQ(result.measured, 0.25);
+    EXPECT_EQ(result.bound, 1);
+    EXPECT_EQ(result.text, "rmse.H(b, n=4) < rmse.H(a, n=4) (medians over seeds)");
+}
+
+TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
+    Metrics m = measured();
+    m.runs[0].regions[0].rmse = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(verdict("rmse.H(a, n=4) < 1e9", false, m));
+    EXPECT_FALSE(verdict("rmse.H(a, n=4) > 0", true, m));
+    EXPECT_FALSE(verdict("rmse.H(a, n=5) > 0"));
+    EXPECT_FALSE(verdict("rmse.G(a, n=4) > 0"));
+    EXPECT_FALSE(verdict("furnace(black) > 0"));
+    EXPECT_FALSE(verdict("tail.H(a, n=4) < 1"));
+    m.runs[0].regions[0].tail = Tail{0.3, 0.1, 50};
+    EXPECT_TRUE(verdict("tail.H(a, n=4) < 1", false, m));
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,23 @@
+// How heavy is the tail? The generalised Pareto shape k of the largest samples: the variance is infinite from k = 1/2
+// on, the mean from k = 1 on. Zhang & Stephens 2009, "A New and Efficient Estimation Method for the Generalized Pareto
+// Distribution", Technometrics 51(3), with the threshold and the weak prior of Vehtari et al. 2024, "Pareto Smoothed
+// Importance Sampling", JMLR 25.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "meters/metrics.h"
+
+namespace crescent {
+
+/// How many of n samples count as tail: min(n/5, 3 sqrt(n)); 0 where fewer than 5 would.
+std::size_t tail_length(std::uint64_t n);
+
+/// k and its standard error (1 + k)/sqrt(M), from the M + 1 largest samples in falling order: the last of them is the
+/// threshold. Nothing where they are fewer than 6 or do not spread (every sample alike: no tail to speak of).
+std::optional<Tail> fit_tail(std::span<const float> largest);
+std::optional<Tail> fit_tail(std::span<const double> largest);
+
+}  // namespace crescent

@@ -1,0 +1,323 @@
+#include "run.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_group.h>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "base/files.h"
+#include "estimator/estimator.h"
+#include "estimator/reference.h"
+#include "experiment/published.h"
+#include "films/exr.h"
+#include "meters/evidence_measure.h"
+#include "meters/furnace.h"
+#include "meters/meters.h"
+#include "meters/quantity.h"
+#include "meters/tail.h"
+#include "plates/plates.h"
+#include "simd/random.h"
+
+namespace crescent {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// The CPU as an instrument.
+class Cpu : public Instrument {
+public:
+    explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
+    std::string name() const override { return "CPU"; }
+    std::vector<Film> films(const Experiment& experiment, const Job& job, Watch& watch) override {
+        return estimate_films(Scene(experiment.with_s(job.s)), job.arm->sampler, job.n, job.seed, isa_, watch);
+    }
+
+private:
+    std::string isa_;
+};
+
+/// Every pass of one seed: each arm at the experiment's own s, then the exponent control where it adds anything.
+std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
+    std::vector<Job> jobs;
+    const double own = experiment.s();
+    for (const ArmPlan& arm : experiment.arms) jobs.push_back({&arm, arm.n, own, seed});
+    if (!experiment.exponent) return jobs;
+    const ExponentControl& control = *experiment.exponent;
+    const auto arm = std::find_if(experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == control.arm; });
+    for (double s : control.s) {
+        const bool there = s == own && std::find(arm->n.begin(), arm->n.end(), control.n) != arm->n.end();
+        if (!there) jobs.push_back({&*arm, {control.n}, s, seed});
+    }
+    return jobs;
+}
+
+/// A run in the making: what is kept from one stage to the next.
+class Run {
+public:
+    Run(const Experiment& experiment, const RunOptions& options, Watch& watch)
+        : experiment_(experiment), options_(options), watch_(watch), isa_(kernels_for(options.isa).isa),
+          instrument_(options.instrument ? options.instrument : std::make_shared<Cpu>(isa_)),
+          threads_(options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency())),
+          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), published_(published_of(experiment)) {}
+
+    RunResult operator()() {
+        const auto start = Clock::now();
+        look();
+        Staging staging(options_.out);
+        stage("references", [&] { references(); });
+        stage("films", [&] { films(); });
+        timing_.estimating_s = seconds_since(start);
+        stage("tails", [&] { tails(); });
+        stage("furnaces", [&] { metrics_.furnaces = furnaces(experiment_, published(), isa_, watch_); });
+        stage("evidence", [&] { evidence_ = measure_evidence(experiment_, isa_, watch_); });
+        stage("meters", [&] { summarise(); });
+        provenance();
+        stage("plates and films on disk", [&] { draw_and_write(staging); });
+        judge_assertions();
+        stage("report", [&] { report(staging); });
+        timing_.total_s = seconds_since(start);
+        finish_timing();
+        staging.write("timing.json", timing_json(timing_, provenance_));
+        watch_.check();
+        staging.commit();
+        RunResult result{metrics_, timing_, provenance_, terminal_summary(inputs(), timing_, options_.out, false)};
+        return result;
+    }
+
+private:
+    static std::optional<Published> published_of(const Experiment& experiment) {
+        return experiment.published ? load_published(*experiment.published) : std::nullopt;
+    }
+    const Published* published() const { return published_ ? &*published_ : nullptr; }
+
+    template <class Work> void stage(const char* name, Work&& work) {
+        const auto start = Clock::now();
+        work();
+        watch_.check();
+        timing_.stages.emplace_back(name, seconds_since(start));
+    }
+
+    void look() {
+        const Scene scene(experiment_);
+        shapes_ = shape_map(scene);
+        for (const Shape& shape : experiment_.shapes) metrics_.shape_pixels[shape.name] = 0;
+        for (std::int16_t shape : shapes_.shape) {
+            if (shape < 0) continue;
+            ++metrics_.geometry_pixels;
+            ++metrics_.shape_pixels[experiment_.shapes[static_cast<std::size_t>(shape)].name];
+        }
+        if (metrics_.geometry_pixels == 0)
+            throw InputError(experiment_.place_of("camera"), "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+    }
+
+    void references() {
+        std::vector<double> exponents;
+        for (const Job& job : jobs_of(experiment_, experiment_.seed))
+            if (std::find(exponents.begin(), exponents.end(), job.s) == exponents.end()) exponents.push_back(job.s);
+        const double pixels = static_cast<double>(shapes_.shape.size());
+        watch_.begin("reference by quadrature", pixels);
+        quadrature_ = quadrature_reference(experiment_, exponents, watch_);
+        watch_.begin("the note's reference", pixels);
+        note_ = note_reference(experiment_, exponents, isa_, watch_);
+    }
+
+    const ReferenceFilm* find(const std::vector<ReferenceFilm>& films, double s) const {
+        for (const ReferenceFilm& film : films)
+            if (film.s == s) return &film;
+        return nullptr;
+    }
+    const ReferenceFilm& reference(double s) const {
+        return *find(experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_, s);
+    }
+
+    void films() {
+        for (int k = 0; k < experiment_.seeds; ++k) {
+            const std::uint32_t seed = seed_of(experiment_.seed, static_cast<std::uint32_t>(k));
+            const std::vector<Job> jobs = jobs_of(experiment_, seed);
+            double samples = 0;
+            for (const Job& job : jobs) samples += static_cast<double>(job.n.back()) * static_cast<double>(metrics_.geometry_pixels);
+            watch_.begin(fmt::format("seed {} of {}", k + 1, experiment_.seeds), samples);
+            for (const Job& job : jobs) run_job(job, k == 0);
+        }
+    }
+
+    void run_job(const Job& job, bool keep) {
+        const auto start = Clock::now();
+        std::vector<Film> films = instrument_->films(experiment_, job, watch_);
+        const std::uint64_t samples = metrics_.geometry_pixels * job.n.back();
+        timing_.arms.push_back({job.arm->name, job.n.back(), job.s, samples, seconds_since(start)});
+        for (std::size_t r = 0; r < job.n.size(); ++r) {
+            const RunKey key{job.arm->name, job.n[r], job.s, job.seed};
+            metrics_.runs.push_back(measure(experiment_, key, films[r], reference(job.s), shapes_));
+            if (keep) films_.emplace_back(key, std::move(films[r]));
+        }
+    }
+
+    /// The tail index of each region's samples, at most about four million a region, of the published seed.
+    void tails() {
+        for (RunMeter& run : metrics_.runs) {
+            if (run.key.seed != experiment_.seed) continue;
+            const auto arm = std::find_if(experiment_.arms.begin(), experiment_.arms.end(), [&](const ArmPlan& a) { return a.name == run.key.arm; });
+            const Scene scene(experiment_.with_s(run.key.s));
+            for (std::size_t r = 0; r < run.regions.size(); ++r) {
+                constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
+                const std::uint64_t fit = std::max<std::uint64_t>(most / run.regions[r].pixels, 1);
+                const std::uint64_t n = std::min({run.key.n, fit, most_a_pixel});
+                const std::size_t length = tail_length(run.regions[r].pixels * n);
+                std::uint64_t drawn = 0;
+                const std::vector<float> largest = largest_samples(scene, arm->sampler, n, run.key.seed, experiment_.regions[r].box, length + 1, isa_, watch_, drawn);
+                if (length > 0) run.regions[r].tail = fit_tail(std::span<const float>(largest));
+            }
+        }
+    }
+
+    void summarise() {
+        metrics_.bands = bands(experiment_, metrics_.runs, published());
+        metrics_.ladders = ladders(experiment_, metrics_.runs);
+        for (const auto& [key, film] : films_) metrics_.film_hashes[to_string(key)] = hash(film);
+        for (const ReferenceFilm& film : quadrature_) metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
+        for (const ReferenceFilm& film : note_) metrics_.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
+        for (const ReferenceFilm& q : quadrature_)
+            for (const Region& region : experiment_.regions) metrics_.references.push_back(compare(q, *find(note_, q.s), region));
+    }
+
+    ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region) const {
+        ReferenceMeter m;
+        m.s = q.s, m.region = region.name;
+        m.rms_difference = rms_difference(q.y, note.y, q.width, region.box);
+        m.rms_standard_error = rms(note.error, q.width, region.box);
+        m.quadrature_error = rms(q.error, q.width, region.box);
+        for (const auto& [key, film] : films_) {
+            if (key.s != q.s) continue;
+            const double a = rms_difference(film.y, q.y, q.width, region.box), b = rms_difference(film.y, note.y, q.width, region.box);
+            if (a > 0) m.rmse_unlike = std::max(m.rmse_unlike, std::fabs(b - a) / a);
+        }
+        return m;
+    }
+
+    void provenance() {
+        provenance_.version = CRESCENT_VERSION;
+        provenance_.commit = CRESCENT_COMMIT;
+        provenance_.compiler = CRESCENT_COMPILER;
+        provenance_.experiment_file = experiment_.file;
+        provenance_.experiment_hash = fmt::format("{:016x}", experiment_.hash);
+        provenance_.instrument = instrument_->name();
+        provenance_.command = options_.command.empty() ? "crescent run " + experiment_.file : options_.command;
+        for (int k = 0; k < experiment_.seeds; ++k) provenance_.seeds.push_back(seed_of(experiment_.seed, static_cast<std::uint32_t>(k)));
+    }
+
+    Attributes attributes() const {
+        return {{"crescent", provenance_.version + " " + provenance_.commit}, {"compiler", provenance_.compiler},
+                {"experiment", provenance_.experiment_file + " " + provenance_.experiment_hash},
+                {"command", provenance_.command}, {"instrument", provenance_.instrument}, {"seed", std::to_string(experiment_.seed)}};
+    }
+
+    void draw_and_write(Staging& staging) {
+        std::vector<std::string> where;
+        for (const PlatePlan& plan : experiment_.plates) where.push_back(staging.path("plates/" + plan.name + ".png"));
+        std::vector<std::vector<unsigned char>> bytes(experiment_.plates.size());
+        tbb::task_group group;
+        group.run([&] { write_films(staging); });
+        tbb::parallel_for(std::size_t{0}, experiment_.plates.size(), [&](std::size_t k) {
+            watch_.check();
+            bytes[k] = draw(experiment_.plates[k]);
+        });
+        group.wait();
+        for (std::size_t k = 0; k < bytes.size(); ++k) {
+            staging.write("plates/" + experiment_.plates[k].name + ".png", bytes[k]);
+            plates_[experiment_.plates[k].name] = std::move(bytes[k]);
+        }
+    }
+
+    std::vector<unsigned char> draw(const PlatePlan& plan) const {
+        const PlateInputs in{experiment_, metrics_, shapes_,
+                             [this](const RunKey& key) -> const Film* {
+                                 for (const auto& [k, film] : films_)
+                                     if (k == key) return &film;
+                                 return nullptr;
+                             },
+                             [this](double s) { return find(experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_, s); },
+                             instrument_->name()};
+        Attributes text = attributes();
+        text.emplace_back("plate", plan.name);
+        return encode_png(draw_plate(plan, in), text);
+    }
+
+    /// One file an arm and exponent, rungs as parts; and the two references.
+    void write_films(Staging& staging) {
+        std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
+        for (const auto& [key, film] : films_) {
+            const std::string name = key.s == experiment_.s() ? key.arm : fmt::format("{}-s{}", key.arm, key.s);
+            if (files.empty() || files.back().first != name) files.push_back({name, {}});
+            files.back().second.emplace_back(fmt::format("n={}", key.n), &film);
+        }
+        for (const auto& [name, parts] : files) {
+            write_exr(staging.path("films/" + name + ".exr"), parts, attributes());
+            watch_.check();
+        }
+        std::vector<std::pair<std::string, const ReferenceFilm*>> parts;
+        for (const ReferenceFilm& film : quadrature_) parts.emplace_back(fmt::format("quadrature s={}", film.s), &film);
+        for (const ReferenceFilm& film : note_) parts.emplace_back(fmt::format("note s={}", film.s), &film);
+        write_exr(staging.path("films/reference.exr"), parts, attributes());
+    }
+
+    void judge_assertions() {
+        std::map<std::string, std::size_t> plate_bytes;
+        for (const auto& [name, bytes] : plates_) plate_bytes[name] = bytes.size();
+        metrics_.assertions = judge(experiment_, metrics_, plate_bytes);
+        for (AssertionResult& a : instrument_->assertions()) metrics_.assertions.push_back(std::move(a));
+    }
+
+    ReportInputs inputs() const { return {experiment_, metrics_, evidence_, provenance_, plates_}; }
+
+    void report(Staging& staging) {
+        staging.write("metrics.json", metrics_json(inputs()));
+        staging.write("metrics.csv", metrics_csv(inputs()));
+        staging.write("junit.xml", junit_xml(inputs()));
+        staging.write("report.html", report_html(inputs()));
+    }
+
+    void finish_timing() {
+        timing_.threads = threads_;
+        timing_.isa = isa_;
+        timing_.date = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+        std::ifstream cpuinfo("/proc/cpuinfo");
+        for (std::string line; std::getline(cpuinfo, line);)
+            if (line.starts_with("model name") && line.find(": ") != std::string::npos) timing_.host_cpu = line.substr(line.find(": ") + 2);
+    }
+
+    const Experiment& experiment_;
+    const RunOptions& options_;
+    Watch& watch_;
+    std::string isa_;
+    std::shared_ptr<Instrument> instrument_;
+    int threads_;
+    tbb::global_control limit_;
+    std::optional<Published> published_;
+    ShapeMap shapes_;
+    std::vector<ReferenceFilm> quadrature_, note_;
+    std::vector<std::pair<RunKey, Film>> films_;
+    Metrics metrics_;
+    Evidence evidence_;
+    Timing timing_;
+    Provenance provenance_;
+    std::map<std::string, std::vector<unsigned char>> plates_;
+};
+
+}  // namespace
+
+RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch) { return Run(experiment, options, watch)(); }
+
+}  // namespace crescent
