@@ -81,6 +81,11 @@ void resolve_plate(Draft& draft, PlatePlan& plate) {
             for (const std::uint64_t n : arm->n) runs.push_back({run.arm, n, run.s});
             continue;
         }
+        const auto& control = draft.e.exponent;
+        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && draft.sound(own + ".s") && control && control->arm == run.arm) {
+            for (const double s : control->s) runs.push_back({run.arm, control->n, s});
+            continue;
+        }
         run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(draft, own + ".n", run.arm, run.n);
         if (draft.sound(own + ".n") && draft.sound(own + ".s")) check_s(draft, own + ".s", run);
         runs.push_back(run);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "experiment/names.h"
 #include "experiment/quantity_text.h"
@@ -28,13 +29,13 @@ std::string path_of(const Section& section, const std::string& parent) {
     return path;
 }
 
-/// Words set in lines of at most 80 columns, every line indented.
-std::string wrapped(std::string_view text, std::size_t indent) {
+/// Words set in lines of at most 80 columns, every line indented, the second and later ones by `hang` more.
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang = 0) {
     std::string out, line(indent, ' ');
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find(' ', at), text.size());
         const std::string_view word = text.substr(at, end - at);
-        if (line.size() > indent && line.size() + 1 + word.size() > columns) out += line + "\n", line.assign(indent, ' ');
+        if (line.size() > indent && line.size() + 1 + word.size() > columns) out += line + "\n", indent += std::exchange(hang, 0), line.assign(indent, ' ');
         if (line.size() > indent) line += ' ';
         line += word;
         at = end + 1;
@@ -49,8 +50,8 @@ std::string need_text(const Key& key) {
 
 std::string key_text(const Key& key) {
     std::string line = fmt::format("{}: {}; {}", key.name, expectation(key), need_text(key));
-    if (!key.kinds.empty()) line += fmt::format("; of {}", key.kinds);
-    return wrapped(line, 2) + wrapped(key.means, 6);
+    if (!key.kinds.empty()) line += fmt::format("; of a {}", key.kinds.find(' ') == std::string_view::npos ? std::string(key.kinds) : fmt::format("{} or {}", key.kinds.substr(0, key.kinds.find(' ')), key.kinds.substr(key.kinds.find(' ') + 1)));
+    return wrapped(line, 2, 2) + wrapped(key.means, 6);
 }
 
 void print(const Section& section, const std::string& parent, std::string& out) {

@@ -13,7 +13,6 @@ constexpr Range radiance_range{0, 1e9};          // its square and a thousandfol
 constexpr Range count_range{1, 16777216};        // 2^24 samples per pixel
 constexpr Range seed_range{0, 4294967295.0};     // 32 bits
 constexpr Range pixel_range{0, 16383};
-constexpr Range components{-1, 1};
 constexpr Range none{};
 
 constexpr Need required = Need::required, optional = Need::optional, defaulted = Need::defaulted;
@@ -29,7 +28,7 @@ Section camera() {
     return {"camera", Many::one, required, "A pinhole camera.", in<&Experiment::camera>,
             {{"eye", Type::point, free_range, "m", required, "", "Where it stands.", to<&Camera::eye>},
              {"target", Type::point, free_range, "m", required, "", "The point in the middle of the picture.", to<&Camera::target>},
-             {"up", Type::direction, components, "", defaulted, "[0, 1, 0]", "What is up in the picture; not parallel to the view.", to<&Camera::up>},
+             {"up", Type::direction, none, "", defaulted, "[0, 1, 0]", "What is up in the picture; not parallel to the view.", to<&Camera::up>},
              {"vfov_deg", Type::number, {0, 180, true, true}, "degrees", required, "", "Vertical field of view.", to<&Camera::vfov_deg>}},
             {}};
 }
@@ -45,7 +44,7 @@ std::vector<Key> geometry_keys() {
         {"edge_v", Type::point, free_range, "m", required, "", "Second edge; the face looks along edge_u x edge_v.", to<&Shape::edge_v>, {}, "quad panel"},
         {"depth", Type::number, length, "m", required, "", "How far the panel is set back behind its opening.", to<&Shape::depth>, {}, "panel"},
         {"point", Type::point, free_range, "m", required, "", "A point of the infinite plane.", to<&Shape::point>, {}, "plane"},
-        {"normal", Type::direction, components, "", required, "", "Where the face looks.", to<&Shape::normal>, {}, "plane disk"},
+        {"normal", Type::direction, none, "", required, "", "Where the face looks.", to<&Shape::normal>, {}, "plane disk"},
     };
 }
 
@@ -69,7 +68,7 @@ Section shapes() {
 Section disks() {
     return {"disks", Many::named, optional, "Disks that shine; sampled rays meet them, the camera does not see them.", in<&Experiment::disks>,
             {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
-             {"normal", Type::direction, components, "", required, "", "The side that shines.", to<&DiskLight::normal>},
+             {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
              {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
              {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.", to<&DiskLight::radiance>},
              {"two_sided", Type::flag, none, "", defaulted, "false", "Whether both sides shine.", to<&DiskLight::two_sided>}},
@@ -125,7 +124,7 @@ Section plates() {
             {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
              {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n; hero: the highest rung; ladder: every rung",
               "A rung of that arm.", to<&PlateRun::n>},
-             {"s", Type::number, exponent_range, "", optional, "the experiment's s", "An exponent of the exponent control.", to<&PlateRun::s>}},
+             {"s", Type::number, exponent_range, "", optional, "the experiment's s; exponent: every s of the control", "An exponent of the exponent control.", to<&PlateRun::s>}},
             {}};
     return {"plates", Many::named, optional, "The pictures; a plate's name is its file's name.", in<&Experiment::plates>,
             {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace crescent {
@@ -86,7 +87,7 @@ std::string describe(const Node& node) {
         case Node::Kind::text:
             return node.text.size() > 60 ? fmt::format("the text '{}...'", node.text.substr(0, 57)) : fmt::format("the text '{}'", node.text);
         case Node::Kind::integer: return fmt::format("{}", node.integer);
-        case Node::Kind::number: return fmt::format("{}", node.number);
+        case Node::Kind::number: return node.number == std::floor(node.number) ? fmt::format("{:.1f}", node.number) : fmt::format("{}", node.number);
         case Node::Kind::flag: return node.flag ? "true" : "false";
         case Node::Kind::date: return "a date or time";
     }

@@ -80,7 +80,8 @@ private:
         const bool whole = key_.type == Type::integer || key_.type == Type::integers || key_.type == Type::box;
         if (whole ? node.kind != Node::Kind::integer : !is_number(node)) return fail(node);
         if (!std::isfinite(node.number)) return fail(node, "; numbers are finite");
-        if (key_.type != Type::box && !key_.range.holds(node.number)) return fail(node, key_.type == Type::direction ? "; no component is outside [-1, 1]" : "");
+        const bool ranged = key_.type != Type::box && key_.type != Type::direction;  // these two are checked as a whole
+        if (ranged && !key_.range.holds(node.number)) return fail(node);
         to = node.number;
         return true;
     }

@@ -1,0 +1,222 @@
+// Good files: what-ifs in one line, inherited values, stable hashes, and a manual that agrees with the parser.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiment/experiment.h"
+#include "experiment/names.h"
+#include "experiment/published.h"
+#include "experiment/schema.h"
+
+namespace crescent {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string folder = std::string(CRESCENT_SOURCE_DIR) + "/experiments/";
+Experiment gallery(const std::vector<std::string>& overrides = {}) { return load(folder + "gallery.toml", overrides); }
+
+std::string complaint(const std::vector<std::string>& overrides) {
+    try {
+        (void)gallery(overrides);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Experiments, TheGalleryHoldsTheNote) {
+    const Experiment e = gallery();
+    EXPECT_EQ(e.image.width, 960);
+    EXPECT_EQ(e.seed, 329363537u);
+    EXPECT_EQ(e.reference.seed, 1374605335u);
+    EXPECT_EQ(e.plates.size(), 11u);
+    EXPECT_GE(e.assertions.size(), 24u);
+    EXPECT_EQ(e.furnaces.size(), 3u);
+    EXPECT_EQ(e.s(), 32);
+    EXPECT_THAT(e.find_arm("uniform")->n, ElementsAre(64u));
+    EXPECT_THAT(e.find_arm("phong")->n, ElementsAre(4u, 16u, 64u, 256u));
+    EXPECT_THAT(e.exponent->s, ElementsAre(8, 32, 128));
+    EXPECT_EQ(e.exponent->n, 64u);
+    EXPECT_EQ(to_string(e.place_of("shapes.sphere.radius")).substr(folder.size()), "gallery.toml:37:10");
+}
+
+TEST(Experiments, AllOfThemAreGood) {
+    for (const char* name : {"gallery", "two-lamps", "empty-room", "three-glosses"}) EXPECT_NO_THROW((void)load(folder + name + ".toml")) << name;
+}
+
+TEST(Experiments, ShapesStandInFileOrder) {
+    std::vector<std::string> names;
+    for (const Shape& shape : gallery().shapes) names.push_back(shape.name);
+    EXPECT_THAT(names, ElementsAre("sphere", "plinth", "foot", "floor", "wall", "canvas", "rail"));
+}
+
+TEST(WhatIfs, AreOneLineEach) {
+    EXPECT_EQ(gallery({"seed=7"}).seed, 7u);
+    EXPECT_EQ(gallery({"firefly_k=2.5"}).firefly_k, 2.5);
+    EXPECT_EQ(gallery({"key.radius=0.3"}).disks[0].radius, 0.3);
+    EXPECT_EQ(gallery({"sphere.rho_d=[0,0,0]"}).shapes[0].material.rho_d, (Rgb{0, 0, 0}));
+    EXPECT_EQ(gallery({"H.box=[500,390,560,440]"}).find_region("H")->box.x1, 560);
+    EXPECT_EQ(gallery({"fill.radiance.1=9"}).fill[1], 9);
+    EXPECT_EQ(gallery({"key.radiance[2]=9"}).disks[0].radiance[2], 9);
+    EXPECT_EQ(gallery({"reference.kind=note"}).reference.kind, ReferenceKind::note);
+    EXPECT_EQ(gallery({"title=hello there"}).title, "hello there");
+    EXPECT_EQ(gallery({"canvas.depth = 0.1"}).find_shape("canvas")->depth, 0.1);
+    EXPECT_EQ(gallery({"assertions.'region H has pixels'.over=median"}).assertions.size(), gallery().assertions.size());
+    EXPECT_THAT(gallery({"arms.second={sampler=\"cosine\", n=9}"}).find_arm("second")->n, ElementsAre(9u));
+}
+
+TEST(WhatIfs, OfTheExponentMoveEverySurfaceAndEveryRunThatNamesNone) {
+    const Experiment e = gallery({"sphere.s=64"});
+    EXPECT_EQ(e.s(), 64);
+    for (const Shape& shape : e.shapes) EXPECT_EQ(shape.material.s, 64) << shape.name;
+    EXPECT_EQ(e.plates[0].runs[0].s, 0);
+    EXPECT_EQ(e.assertions.back().left, "fireflies(phong, n=64)");
+}
+
+TEST(WhatIfs, OfNMoveEveryRunThatNamesNone) {
+    const Experiment e = gallery({"n=256"});
+    EXPECT_THAT(e.find_arm("uniform")->n, ElementsAre(256u));
+    EXPECT_EQ(e.assertions.back().left, "fireflies(phong, n=256)");
+    const Experiment ladder = gallery({"phong.n=[2,8]"});
+    EXPECT_EQ(ladder.assertions.back().left, "fireflies(phong, n=8)");
+    for (const PlatePlan& plate : ladder.plates) {
+        if (plate.name == "ladder-phong") {
+            EXPECT_EQ(plate.runs.size(), 2u);
+        }
+    }
+}
+
+TEST(WhatIfs, MeetTheChecksOfTheFile) {
+    EXPECT_THAT(complaint({"sphere.s=many"}), HasSubstr("--set sphere.s=many: shapes.sphere.s: expected a number above 0"));
+    EXPECT_THAT(complaint({"spere.s=3"}), HasSubstr("did you mean 'sphere'?"));
+    EXPECT_THAT(complaint({"shapes.spere.s=3"}), HasSubstr("did you mean 'sphere'?"));
+    EXPECT_THAT(complaint({"sphere.radis=3"}), HasSubstr("did you mean 'radius'?"));
+    EXPECT_THAT(complaint({"image.width=480"}), HasSubstr("x from 0 to 479"));
+    EXPECT_THAT(complaint({"key.normal=[0,-2,0]"}), HasSubstr("found length 2"));
+    EXPECT_THAT(complaint({"sphere.rho_d.3=1"}), HasSubstr("expected an index from 0 to 2"));
+    EXPECT_THAT(complaint({"sphere"}), HasSubstr("expected path=value"));
+    EXPECT_THAT(complaint({"sphere.s="}), HasSubstr("expected a value"));
+    EXPECT_THAT(complaint({"sphere.s=[1"}), HasSubstr("not TOML"));
+    EXPECT_THAT(complaint({"published=nowhere.json"}), HasSubstr("No such file"));
+    EXPECT_THAT(complaint({"seed.x=1"}), HasSubstr("no 'x' in 'seed'"));
+    EXPECT_THAT(complaint({"seed=-1", "sphere.s=0"}), testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
+}
+
+TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
+    const Experiment e = load(folder + "three-glosses.toml").with_s(7);
+    EXPECT_EQ(e.s(), 7);
+    EXPECT_EQ(e.find_shape("gloss")->material.s, 7);
+    EXPECT_EQ(e.find_shape("floor")->material.s, 7);
+    EXPECT_EQ(e.find_shape("lacquer")->material.s, 600);
+    EXPECT_EQ(load(folder + "empty-room.toml").s(), 16);
+}
+
+TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
+    const std::string room = "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n[fill]\nradiance = [1, 1, 1]\n"
+                             "[shapes.floor]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nrho_d = [0.5, 0.5, 0.5]\n";
+    EXPECT_EQ(parse(room + "[arms.cosine]\nn = 4\n", "room").s(), 0);
+    EXPECT_THROW((void)parse(room + "[arms.phong]\nn = 4\n", "room"), InputError);
+}
+
+TEST(Hashes, DependOnEffectiveValuesAlone) {
+    const std::string text = "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n"
+                             "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n";
+    const std::uint64_t hash = parse(text, "a.toml").hash;
+    EXPECT_EQ(hash, parse("# a comment\n\n" + text, "b.toml").hash);
+    EXPECT_EQ(hash, parse(text + "sampler = \"cosine\"\n", "a.toml").hash) << "a default written out";
+    EXPECT_EQ(hash, parse(text, "a.toml", {"cosine.n=[4]", "ball.radius=1.0", "seed=1"}).hash);
+    EXPECT_NE(hash, parse(text, "a.toml", {"cosine.n=5"}).hash);
+    EXPECT_NE(hash, parse(text, "a.toml", {"seed=2"}).hash);
+    EXPECT_NE(hash, parse(text, "a.toml", {"ball.radius=1.0000001"}).hash);
+}
+
+/// A good value of a key, as TOML.
+std::string example(const Key& key) {
+    const double x = key.range.low > 0 ? key.range.low : 1;
+    switch (key.type) {
+        case Type::text: return "\"text\"";
+        case Type::check: return "\"bad(cosine) == 0\"";
+        case Type::word: return '"' + key.words.front() + '"';
+        case Type::flag: return "true";
+        case Type::integer: return "1";
+        case Type::number: return fmt::format("{}", x);
+        case Type::point: case Type::color: return "[1, 1, 1]";
+        case Type::direction: return "[0, 0.6, 0.8]";
+        case Type::numbers: return "[1.5, 2]";
+        case Type::integers: return "[1, 2]";
+        case Type::box: return "[0, 0, 0, 0]";
+        case Type::sampler: return "\"cosine\"";
+        case Type::arm: return "\"nobody\"";
+        case Type::shape: return "\"nothing\"";
+    }
+    return "";
+}
+
+/// Sets every key of a section to a good value; the parser takes all of them. Returns how many there are.
+std::size_t take_every_key(const Section& section, const std::string& path) {
+    std::size_t count = section.keys.size();
+    const std::string prefix = path.empty() ? "" : path + ".";
+    for (const Key& key : section.keys) {
+        const std::string at = prefix + std::string(key.name), say = complaint({fmt::format("{}={}", at, example(key))});
+        EXPECT_THAT(say, testing::Not(HasSubstr("unknown key"))) << at;
+        EXPECT_THAT(say, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
+        EXPECT_FALSE(key.means.empty()) << at;
+        EXPECT_EQ(key.need == Need::required, key.fallback.empty()) << at;
+        EXPECT_THAT(schema_text(), HasSubstr(fmt::format("  {}: ", key.name)));
+    }
+    for (const Section& sub : section.sections) {
+        const std::string name(sub.name);
+        count += take_every_key(sub, prefix + (sub.many == Many::one ? name : sub.many == Many::list ? name + ".0" : name == "plates" ? "plates.hero" : name + ".probe"));
+    }
+    return count;
+}
+
+TEST(TheSchema, NamesTheKeysThatTheParserTakes) {
+    const std::size_t count = take_every_key(schema(), "");
+    const auto json = nlohmann::json::parse(schema_json());
+    EXPECT_EQ(json["keys"].size(), count);
+    EXPECT_EQ(json["samplers"].size(), sampler_names().size());
+    for (const auto& key : json["keys"]) EXPECT_EQ(key["required"].get<bool>(), key["default"].is_null()) << key;
+}
+
+TEST(TheSchema, FitsEightyColumns) {
+    std::size_t start = 0;
+    const std::string text = schema_text();
+    for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1) EXPECT_LE(end - start, 80u) << text.substr(start, end - start);
+}
+
+TEST(PublishedFigures, AreLookedUpByArmNSAndMeter) {
+    const auto published = load_published(folder + "published.json");
+    ASSERT_TRUE(published);
+    EXPECT_EQ(published->find("cosine", 64, 32, "rmse.H"), 7.65562);
+    EXPECT_EQ(published->find("phong", 256, 32, "rmse.S"), 1.75473);
+    EXPECT_EQ(published->find("phong", 64, 128, "fireflies"), 587);
+    EXPECT_EQ(published->find("phong", 65, 32, "rmse.H"), std::nullopt);
+    EXPECT_EQ(published->furnace("phong_combined"), 0.193);
+    EXPECT_FALSE(load_published(""));
+}
+
+TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
+    const auto say = [](const char* text) -> std::string {
+        try {
+            (void)parse_published(text, "p.json");
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(say("{\n  \"runs\": [}"), HasSubstr("p.json:2:12: not JSON"));
+    EXPECT_THAT(say("[]"), HasSubstr("expected an object"));
+    EXPECT_THAT(say("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
+    EXPECT_THAT(say("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
+    EXPECT_THAT(say("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"), HasSubstr("/runs/0/rmse.H: expected a number"));
+    EXPECT_THAT(say("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
+    EXPECT_THAT(say("{\"rums\": []}"), HasSubstr("/rums"));
+    EXPECT_EQ(say("{}"), "");
+}
+
+}  // namespace
+}  // namespace crescent
