@@ -177,7 +177,7 @@ std::string rejection_chart(const Evidence& evidence) {
     }
     Axis x = log_axis("exponent s", exponents);
     x.ticks = exponents;
-    Chart chart(600, 320, x, linear_axis("rejected", rates), "Share of correct runs that a t-test rejects, against s");
+    Chart chart(600, 320, x, linear_axis("share of runs rejected", rates), "Share of correct runs that a t-test rejects, against s");
     chart.rule(evidence.alpha, "dashed strong", fmt::format("what the test promises: {}", percent(evidence.alpha)));
     for (const FalseRejection& r : evidence.rejections) chart.bar(r.s, r.low, r.high, "c1");
     chart.dots(points, "c1");

@@ -39,6 +39,8 @@ std::string figures(double x, int digits) {
     return fmt::format("{:.{}f}", x, std::max(0, decimals));
 }
 
+std::string compact(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : shortest(x); }
+
 std::string figures_of(std::string_view meter, double x) {
     if (meter == "fireflies" && x == std::floor(x)) return fmt::format("{:.0f}", x);
     return figures(x);

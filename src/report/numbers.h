@@ -14,6 +14,9 @@ std::string shortest(double x);
 /// an exponent below it. NaN and infinities by name.
 std::string figures(double x, int digits = 4);
 
+/// At most six significant figures and no trailing zeros: "3", "1.99966".
+std::string compact(double x);
+
 /// As figures(), but a meter that counts (fireflies) stays a whole number.
 std::string figures_of(std::string_view meter, double x);
 

@@ -90,9 +90,10 @@ std::string Figures::plate(const std::string& name, const PlatePlan* plan) {
 std::string Figures::figure(const std::string& id, const std::string& picture, const std::string& caption,
                             const std::string& made) {
     ++count_;
-    return fmt::format("<figure id=\"{}\">\n{}\n<figcaption><b>Figure {}.</b> {}\n<span class=\"made\"><code>{}</code> → "
+    const char* narrow = picture.starts_with("<svg") ? " class=\"narrow\"" : "";  // one chart alone fits the column
+    return fmt::format("<figure id=\"{}\"{}>\n{}\n<figcaption><b>Figure {}.</b> {}\n<span class=\"made\"><code>{}</code> → "
                        "<code>{}</code></span></figcaption>\n</figure>\n",
-                       id, picture, count_, caption, escape(in_.provenance.command), escape(made));
+                       id, narrow, picture, count_, caption, escape(in_.provenance.command), escape(made));
 }
 
 std::string Page::colour(const std::string& arm) const {

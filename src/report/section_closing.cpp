@@ -134,8 +134,8 @@ Section assertions(Page& page) {
     html::Table table(fmt::format("{} assertions, {}", all.size(), failed == 0 ? "all hold" : std::to_string(failed) + " failed"),
                       {words("Assertion"), {"Measured", true}, words(""), {"Bound", true}, words("Result")});
     for (const AssertionResult& a : all)
-        table.row({html::heading(escape(a.name) + (a.text.empty() ? "" : "<small><code>" + escape(a.text) + "</code></small>")), html::figure(figures(a.measured, 6)),
-                   words(escape(a.op)), html::figure(figures(a.bound, 6)), words(a.pass ? "holds" : "<b class=\"bad\">FAILED</b>")});
+        table.row({html::heading(escape(a.name) + (a.text.empty() ? "" : "<small><code>" + escape(a.text) + "</code></small>")), html::figure(compact(a.measured)),
+                   words(escape(a.op)), html::figure(compact(a.bound)), words(a.pass ? "holds" : "<b class=\"bad\">FAILED</b>")});
     return {"assertions", "Assertions", table.str()};
 }
 

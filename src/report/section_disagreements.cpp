@@ -69,7 +69,7 @@ std::string exponent_remark(const Page& page, const std::string& meter) {
         if (const auto r = relative(page.find.band(control->arm, control->n, meter, s)))
             values += fmt::format("{}{} at <i>s</i> = {}", values.empty() ? "" : ", ", signed_percent(*r), shortest(s));
     if (values.empty()) return {};
-    return fmt::format("{} of {}: {}.", meter_html(meter), escape(control->arm), values);
+    return fmt::format("For {}, {}: {}.", escape(control->arm), meter_html(meter), values);
 }
 
 /// Largest departure of log RMSE from the -1/2 law, as a fraction.
@@ -141,7 +141,7 @@ std::string remarks(const Page& page) {
         if (!hot.empty()) all.push_back(highlight_remark(page, *broad, hot));
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
-                all.push_back(fmt::format("{} of {}: {}.", meter_html("rmse." + cold), escape(broad->name), signed_percent(*r)));
+                all.push_back(fmt::format("For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
         for (const char* meter : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, meter));
         if (!hot.empty()) all.push_back(smooth_ladder_remark(page, *narrow, hot));
         if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));

@@ -46,7 +46,7 @@ nav a { color: inherit; text-decoration: none; } nav a:hover, nav a:focus { text
 math { font-family: "STIX Two Math", "Latin Modern Math", "Cambria Math", "DejaVu Math TeX Gyre", math; }
 math[display="block"] { font-size: 1.12em; }
 figure, .table, .wide { margin: 2rem 0; }
-figure img, figure svg.chart { display: block; width: 100%; height: auto; } figure > svg.chart { max-width: 40rem; margin: 0 auto; }
+figure img, figure svg.chart { display: block; width: 100%; height: auto; }
 figure img { border-radius: 3px; background: #000; }
 figcaption, caption { font-size: 0.84rem; line-height: 1.5; color: var(--soft); text-align: left; }
 figcaption { margin-top: 0.6rem; } figcaption b, caption b { color: var(--ink); }
@@ -72,7 +72,7 @@ svg .rule { stroke: currentColor; stroke-width: 1.3; fill: none; } svg .dashed {
 svg .name { fill: currentColor; font-size: 11.5px; font-weight: 600; paint-order: stroke; stroke: var(--ground); stroke-width: 3px; }
 svg .c0 { color: var(--c0); } svg .c1 { color: var(--c1); } svg .c2 { color: var(--c2); } svg .c3 { color: var(--c3); } svg .c4 { color: var(--c4); } svg .c5 { color: var(--c5); }
 svg.strip { vertical-align: middle; } svg .reach { fill: var(--c1); opacity: 0.25; } svg .median { stroke: var(--c1); stroke-width: 2; } svg .meas { color: var(--c1); } svg .pub { color: var(--c2); }
-@media (min-width: 64rem) { figure, .wide, .table { width: 58rem; margin-left: calc((38rem - 58rem) / 2); } .wide .table { margin: 0; width: auto; } .table table { width: auto; min-width: 38rem; margin: 0 auto; } }
+@media (min-width: 64rem) { figure, .wide, .table { width: 58rem; margin-left: calc((38rem - 58rem) / 2); } figure.narrow { width: auto; margin-left: 0; } .wide .table { margin: 0; width: auto; } .table table { width: auto; min-width: 38rem; margin: 0 auto; } }
 @media (max-width: 40rem) { html { font-size: 16px; } nav ol { columns: 1; } .pair { grid-template-columns: 1fr; } h1 { font-size: 1.9rem; } }
 @media print {
   @page { size: A4; margin: 18mm 16mm; }

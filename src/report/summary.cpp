@@ -40,7 +40,7 @@ std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint)
     std::string out = paint(red, failures_line(failed, all.size())) + "\n";
     for (const AssertionResult* a : failed) {
         const std::string values =
-            fmt::format(": measured {}, must be {} {}", figures(a->measured, 6), a->op, figures(a->bound, 6));
+            fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound));
         out += "  " + clip(a->name, columns - 2 - width(values)) + values + "\n";
     }
     return out;
@@ -54,7 +54,7 @@ std::string table_row(const BandMeter& b, bool published) {
     if (b.band.seeds < 2) return row;
     row += " " + right(figures_of(b.meter, b.band.median), 10) + "  ";
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 19);
+    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 18);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {

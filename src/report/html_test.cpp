@@ -1,0 +1,174 @@
+// The page: well-formed whatever it is given, sections that need data they do not have left out, sentences that follow
+// the numbers.
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "report/charts.h"
+#include "report/sample_test.h"
+#include "report/wellformed_test.h"
+
+namespace crescent::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+bool has_section(const std::string& html, const std::string& id) { return html.find("<section id=\"" + id + "\"") != std::string::npos; }
+
+TEST(ReportHtml, IsWellFormed) { EXPECT_EQ(xml_complaint(Sample().html()), ""); }
+
+TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
+    Sample s;
+    const std::string bad = "<script>&\"'\x02\xff";
+    s.experiment.title = s.experiment.shapes[0].name = s.experiment.disks[0].name = s.experiment.plates[0].caption = bad;
+    s.experiment.arms[0].name = s.experiment.regions[0].name = s.experiment.exponent->shape = bad;
+    s.metrics.assertions[0].name = s.metrics.assertions[0].text = s.provenance.command = s.provenance.experiment_file = bad;
+    s.metrics.furnaces[0].name = s.metrics.references[0].region = s.evidence.furnace[0].arithmetic = bad;
+    for (RunMeter& run : s.metrics.runs) run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
+    for (BandMeter& b : s.metrics.bands) b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
+    for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
+    EXPECT_EQ(xml_complaint(s.html()), "");
+    EXPECT_THAT(s.html(), Not(HasSubstr("<script")));
+}
+
+TEST(ReportHtml, LoadsNothingFromElsewhere) {
+    const std::string html = Sample().html();
+    EXPECT_THAT(html, Not(HasSubstr("http")));
+    EXPECT_THAT(html, Not(HasSubstr("url(")));
+    EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,AQIDBA==\""));
+}
+
+TEST(ReportHtml, SectionsStandWhereTheirDataIs) {
+    const std::string html = Sample().html();
+    for (const char* id : {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b", "ladders", "exponent", "furnaces",
+                           "published", "reference", "wrong", "disagreements", "what-ifs", "limits", "assertions", "provenance"})
+        EXPECT_TRUE(has_section(html, id)) << id;
+}
+
+TEST(ReportHtml, SectionsVanishWithoutTheirData) {
+    Sample s;
+    s.experiment.exponent.reset();
+    s.experiment.regions.clear();
+    s.experiment.arms[0].sampler = "uniform";
+    s.metrics.ladders.clear();
+    s.metrics.furnaces.clear();
+    s.metrics.references.clear();
+    s.metrics.assertions.clear();
+    s.evidence = {};
+    for (BandMeter& b : s.metrics.bands) b.published.reset();
+    for (RunMeter& r : s.metrics.runs) r.regions.clear();
+    const std::string html = s.html();
+    EXPECT_EQ(xml_complaint(html), "");
+    for (const char* id : {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong", "disagreements", "assertions"}) {
+        EXPECT_FALSE(has_section(html, id)) << id;
+        EXPECT_THAT(html, Not(HasSubstr("href=\"#" + std::string(id) + "\""))) << id;
+    }
+    EXPECT_THAT(html, Not(HasSubstr("ublished value")));
+    EXPECT_TRUE(has_section(html, "results"));
+}
+
+TEST(ReportHtml, StandsWithAnEmptyRun) {
+    Sample s;
+    s.metrics = {};
+    s.evidence = {};
+    s.experiment = {};
+    s.plates.clear();
+    EXPECT_EQ(xml_complaint(s.html()), "");
+}
+
+TEST(ReportHtml, EachPointOfTheNoteNeedsItsMeasurement) {
+    Sample s;
+    s.evidence.lost.clear();
+    const std::string html = s.html();
+    EXPECT_THAT(html, HasSubstr("id=\"wrong-furnace\""));
+    EXPECT_THAT(html, Not(HasSubstr("id=\"wrong-support\"")));
+}
+
+TEST(ReportHtml, TheFurnaceSentenceFollowsTheArithmetic) {
+    Sample s;
+    EXPECT_THAT(s.html(), HasSubstr("precision is not what is missing"));
+    s.evidence.furnace[1].median = 0.299;
+    EXPECT_THAT(s.html(), HasSubstr("precision does explain the undershoot"));
+}
+
+TEST(ReportHtml, SentencesTurnRoundWithTheOrder) {
+    Sample s;
+    EXPECT_THAT(s.html(), HasSubstr("cosine’s RMSE<sub>H</sub> is <b>3.0 times</b> phong’s"));
+    EXPECT_THAT(s.html(), HasSubstr("The order is the same in 3 of 3 seeds"));
+    s.region("cosine", "H", 7).rmse = 1;
+    EXPECT_THAT(s.html(), HasSubstr("phong’s RMSE<sub>H</sub> is <b>2.0 times</b> cosine’s"));
+    EXPECT_THAT(s.html(), HasSubstr("The order is the same in 1 of 3 seeds"));
+    EXPECT_THAT(s.html(), HasSubstr("In this run the failure does not show"));
+}
+
+TEST(ReportHtml, OverlappingBandsAreNotRanked) {
+    Sample s;
+    EXPECT_THAT(s.html(), Not(HasSubstr("so the two are not ranked")));
+    s.band("phong", "rmse.H").band.q95 = 7;
+    EXPECT_THAT(s.html(), HasSubstr("bands overlap, so the two are not ranked"));
+}
+
+TEST(ReportHtml, HeavyTailReplacesTheInterval) {
+    Sample s;
+    s.band("phong", "rmse.H").band = {1.8888, 2, 2.2222, 3, true};
+    const std::string html = s.html();
+    EXPECT_THAT(html, Not(HasSubstr("1.889")));
+    EXPECT_THAT(html, Not(HasSubstr("2.222")));
+    EXPECT_THAT(html, HasSubstr("<span class=\"heavy\">heavy tail</span>"));
+    EXPECT_THAT(html, HasSubstr("inconclusive: heavy tail"));
+}
+
+TEST(ReportHtml, NumbersThatAreNoneDoNotBreakThePage) {
+    Sample s;
+    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    for (RunMeter& run : s.metrics.runs) run.regions[0].rmse = nan, run.regions[1].rmse = inf, run.bad = 5;
+    for (BandMeter& b : s.metrics.bands) b.measured = nan, b.band.median = inf;
+    for (Ladder& l : s.metrics.ladders) l.rmse = {nan, 0}, l.slope = nan;
+    const std::string html = s.html();
+    EXPECT_EQ(xml_complaint(html), "");
+    EXPECT_THAT(html, HasSubstr("30 samples"));
+    EXPECT_THAT(html, Not(HasSubstr("d=\"Mnan")));
+}
+
+TEST(ReportHtml, KeepsUnderItsWeightByLinkingTheLargestPlates) {
+    Sample s;
+    s.plates["hero"] = std::vector<unsigned char>(12'000'000);
+    s.plates["small"] = {1, 2, 3};
+    const std::string html = s.html();
+    EXPECT_LT(html.size(), 15'000'000u);
+    EXPECT_THAT(html, HasSubstr("src=\"plates/hero.png\""));
+    EXPECT_THAT(html, HasSubstr("base64,AQID\""));
+}
+
+TEST(ReportHtml, SaysOfEveryFigureWhichCommandMakesIt) {
+    EXPECT_THAT(Sample().html(), HasSubstr("<code>crescent run a.toml --seeds 3</code> → <code>plates/hero.png</code>"));
+}
+
+TEST(Charts, AxesHoldTheirValuesAndTicksLieOnThem) {
+    for (const Axis& axis : {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}), log_axis("x", {4, 256}),
+                             log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
+        ASSERT_LT(axis.low, axis.high);
+        ASSERT_FALSE(axis.ticks.empty());
+        for (const double tick : axis.ticks) {
+            EXPECT_GE(axis.share(tick), -1e-9);
+            EXPECT_LE(axis.share(tick), 1 + 1e-9);
+        }
+    }
+    const Axis axis = log_axis("x", {4, 256});
+    EXPECT_GE(axis.share(4), 0);
+    EXPECT_LE(axis.share(256), 1);
+    EXPECT_NEAR(axis.share(32) - axis.share(16), axis.share(8) - axis.share(4), 1e-12);
+}
+
+TEST(Charts, PointsThatALogAxisCannotShowAreLeftOut) {
+    Chart chart(300, 200, log_axis("x", {1, 10}), log_axis("y", {1, 10}), "t");
+    chart.dots({{1, 0}, {2, -1}, {3, 4}}, "c0");
+    const std::string svg = chart.str();
+    EXPECT_EQ(svg.find("<circle"), svg.rfind("<circle"));
+    EXPECT_EQ(xml_complaint(svg), "");
+}
+
+}  // namespace
+}  // namespace crescent::testing
