@@ -1,7 +1,5 @@
 #include "estimator/kernel.h"
 
-#include <array>
-
 #include "arms/all.h"
 #include "base/errors.h"
 
@@ -32,15 +30,27 @@ std::vector<std::string> isas() {
     return out;
 }
 
+namespace {
+
+// Each maker is compiled for its own instruction set, so only those that this machine has may be called.
+std::vector<KernelTable> tables_here() {
+    std::vector<KernelTable> tables;
+    for (const std::string& isa : isas()) {
+        tables.push_back(isa == "avx512" ? avx512_kernels() : isa == "avx2" ? avx2_kernels() : isa == "sse4" ? sse4_kernels() : scalar_kernels());
+    }
+    return tables;
+}
+
+}  // namespace
+
 const KernelTable& kernels_for(const std::string& isa) {
-    static const std::array<KernelTable, 4> tables = {scalar_kernels(), sse4_kernels(), avx2_kernels(), avx512_kernels()};
-    const std::vector<std::string> here = isas();
-    const std::string& wanted = isa.empty() ? here.back() : isa;
+    static const std::vector<KernelTable> tables = tables_here();
+    const std::string wanted = isa.empty() ? std::string(tables.back().isa) : isa;
     for (const KernelTable& table : tables) {
-        if (table.isa != wanted) continue;
-        for (const std::string& name : here)
-            if (name == wanted) return table;
-        throw InputError({"--isa", 0, 0}, "this machine has no " + wanted + "; it has " + here.back() + " at best");
+        if (table.isa == wanted) return table;
+    }
+    for (const char* known : {"scalar", "sse4", "avx2", "avx512"}) {
+        if (wanted == known) throw InputError({"--isa", 0, 0}, "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
     }
     const std::string near = nearest(wanted, {"scalar", "sse4", "avx2", "avx512"});
     throw InputError({"--isa", 0, 0}, "expected scalar, sse4, avx2 or avx512, not '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
