@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <tuple>
 
 #include "experiment/draft.h"
@@ -19,8 +19,10 @@ namespace {
 /// In file order; overrides come after the file, as given.
 void throw_if_any(std::vector<Complaint> all) {
     if (all.empty()) return;
-    const auto key = [](const Complaint& c) { return std::tuple(c.at.line == 0, c.at.line, c.at.column); };
-    std::stable_sort(all.begin(), all.end(), [&](const Complaint& a, const Complaint& b) { return key(a) < key(b); });
+    std::multimap<std::tuple<bool, unsigned, unsigned>, Complaint> sorted;  // equals keep their order
+    for (Complaint& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
+    all.clear();
+    for (auto& [key, complaint] : sorted) all.push_back(std::move(complaint));
     throw InputError(std::move(all));
 }
 

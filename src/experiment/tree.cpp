@@ -27,8 +27,8 @@ Node convert(const toml::node& from, const std::string& file, int depth);
 void convert_members(const toml::table& table, Node& to, const std::string& file, int depth) {
     for (const auto& [key, value] : table)
         to.members.push_back({std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
-    std::stable_sort(to.members.begin(), to.members.end(), [](const Member& a, const Member& b) {
-        return std::tie(a.at.line, a.at.column) < std::tie(b.at.line, b.at.column);
+    std::sort(to.members.begin(), to.members.end(), [](const Member& a, const Member& b) {
+        return std::tie(a.at.line, a.at.column, a.key) < std::tie(b.at.line, b.at.column, b.key);
     });
     if (to.at.line == 0 && !to.members.empty()) to.at = to.members.front().at;
 }
