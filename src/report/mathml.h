@@ -11,7 +11,10 @@ namespace crescent::mathml {
 using M = std::string;
 
 inline M wrap(std::string_view tag, const M& inside) {
-    return "<" + std::string(tag) + ">" + inside + "</" + std::string(tag) + ">";
+    M out;
+    for (const std::string_view part : {std::string_view("<"), tag, std::string_view(">"), std::string_view(inside), std::string_view("</"), tag, std::string_view(">")})
+        out += part;
+    return out;
 }
 inline M mi(std::string_view letter) { return wrap("mi", M(letter)); }
 inline M upright(std::string_view word) { return "<mi mathvariant=\"normal\">" + M(word) + "</mi>"; }

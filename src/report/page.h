@@ -51,32 +51,32 @@ struct Page {
     std::string colour(const std::string& arm) const;
 };
 
-struct Section {
+struct PageSection {
     std::string id, title, html;
 };
 
 // Theory.
-Section question(Page& page);
-Section estimator(Page& page);
-Section scene(Page& page);
-Section densities(Page& page);
+PageSection question(Page& page);
+PageSection estimator(Page& page);
+PageSection scene(Page& page);
+PageSection densities(Page& page);
 // What was measured.
-Section results(Page& page);
-Section failure_a(Page& page);
-Section failure_b(Page& page);
-Section ladders(Page& page);
-Section exponent(Page& page);
-Section furnaces(Page& page);
-Section published(Page& page);
-Section reference(Page& page);
+PageSection results(Page& page);
+PageSection failure_a(Page& page);
+PageSection failure_b(Page& page);
+PageSection ladders(Page& page);
+PageSection exponent(Page& page);
+PageSection furnaces(Page& page);
+PageSection published(Page& page);
+PageSection reference(Page& page);
 // What it means.
-Section where_wrong(Page& page);
-Section disagreements(Page& page);
-Section more_plates(Page& page);
-Section what_ifs(Page& page);
-Section limits(Page& page);
-Section assertions(Page& page);
-Section provenance(Page& page);
+PageSection where_wrong(Page& page);
+PageSection disagreements(Page& page);
+PageSection more_plates(Page& page);
+PageSection what_ifs(Page& page);
+PageSection limits(Page& page);
+PageSection assertions(Page& page);
+PageSection provenance(Page& page);
 
 // Parts that several sections share.
 

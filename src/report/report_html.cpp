@@ -42,12 +42,12 @@ constexpr const char* page_frame = R"(<!DOCTYPE html>
 </html>
 )";
 
-std::vector<Section> all_sections(Page& page) {
-    std::vector<Section> all{question(page), estimator(page), scene(page), densities(page), results(page), failure_a(page),
+std::vector<PageSection> all_sections(Page& page) {
+    std::vector<PageSection> all{question(page), estimator(page), scene(page), densities(page), results(page), failure_a(page),
                              failure_b(page), ladders(page), exponent(page), furnaces(page), published(page), reference(page),
                              where_wrong(page), disagreements(page), what_ifs(page), limits(page), more_plates(page),
                              assertions(page), provenance(page)};
-    std::erase_if(all, [](const Section& s) { return s.html.empty(); });
+    std::erase_if(all, [](const PageSection& s) { return s.html.empty(); });
     return all;
 }
 
@@ -90,7 +90,7 @@ std::string report_html(const ReportInputs& in) {
     const std::string hero = page.figures.plates(PlateKind::hero);
     std::string contents, sections;
     std::size_t number = 0;
-    for (const Section& s : all_sections(page)) {
+    for (const PageSection& s : all_sections(page)) {
         ++number;
         contents += fmt::format("<li>{}</li>\n", html::link(s.id, s.title));
         sections += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\"><span class=\"number\">{1}</span>"

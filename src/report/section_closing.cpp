@@ -108,12 +108,12 @@ std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
 
 }  // namespace
 
-Section more_plates(Page& page) {
+PageSection more_plates(Page& page) {
     const std::string rest = page.figures.rest();
-    return rest.empty() ? Section{} : Section{"plates", "More plates", rest};
+    return rest.empty() ? PageSection{} : PageSection{"plates", "More plates", rest};
 }
 
-Section what_ifs(Page& page) {
+PageSection what_ifs(Page& page) {
     std::vector<Row> rows;
     sampling_rows(page, rows);
     material_rows(page, rows);
@@ -125,9 +125,9 @@ Section what_ifs(Page& page) {
                                            "written for the experiment as it stands and may well fail here.") + "<dl class=\"what-if\">\n" + items + "</dl>\n"};
 }
 
-Section limits(Page& page) { return {"limits", "Limits", claims(page)}; }
+PageSection limits(Page& page) { return {"limits", "Limits", claims(page)}; }
 
-Section assertions(Page& page) {
+PageSection assertions(Page& page) {
     const auto& all = page.in.metrics.assertions;
     if (all.empty()) return {};
     const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return !a.pass; });
@@ -139,7 +139,7 @@ Section assertions(Page& page) {
     return {"assertions", "Assertions", table.str()};
 }
 
-Section provenance(Page& page) {
+PageSection provenance(Page& page) {
     const Provenance& p = page.in.provenance;
     html::Table table("Where this run came from. What varies between equal runs (date, seconds, threads, instruction set) is in timing.json",
                       {words("What"), words("Value")});

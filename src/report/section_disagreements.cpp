@@ -154,7 +154,7 @@ std::string remarks(const Page& page) {
 
 }  // namespace
 
-Section disagreements(Page& page) {
+PageSection disagreements(Page& page) {
     if (!page.find.anything_published()) return {};
     html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
                       {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true}, {"Median against published", true}});

@@ -35,7 +35,7 @@ std::string shortfall(const FurnaceMeter& f) {
 
 }  // namespace
 
-Section furnaces(Page& page) {
+PageSection furnaces(Page& page) {
     bool any_published = false;
     for (const FurnaceMeter& f : page.in.metrics.furnaces) any_published = any_published || f.published;
     std::vector<html::Cell> head{words("Furnace"), words("Arm"), words("BRDF"), {"<i>N</i>", true}, {"Expected <i>Y</i>", true},

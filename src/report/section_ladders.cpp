@@ -92,7 +92,7 @@ std::string slope_table(const Page& page) {
 
 }  // namespace
 
-Section ladders(Page& page) {
+PageSection ladders(Page& page) {
     std::string charts;
     for (const Region& region : page.in.experiment.regions)
         if (!ladders_in(page, region.name).empty()) charts += ladder_chart(page, region.name);
@@ -105,7 +105,7 @@ Section ladders(Page& page) {
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }
 
-Section exponent(Page& page) {
+PageSection exponent(Page& page) {
     const auto& control = page.in.experiment.exponent;
     if (!control) return {};
     std::vector<Column> columns;

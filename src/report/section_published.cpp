@@ -65,7 +65,7 @@ std::vector<std::string> meters_in_order(const Page& page) {
 
 }  // namespace
 
-Section published(Page& page) {
+PageSection published(Page& page) {
     const bool published = page.find.anything_published();
     const Experiment& e = page.in.experiment;
     html::Table table(published ? "Published beside measured" : "Every meter of every run", header(published));

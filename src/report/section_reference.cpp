@@ -30,7 +30,7 @@ std::string verdict(const std::vector<ReferenceMeter>& all) {
 
 }  // namespace
 
-Section reference(Page& page) {
+PageSection reference(Page& page) {
     const auto& all = page.in.metrics.references;
     const ReferencePlan& plan = page.in.experiment.reference;
     const std::string plates = page.figures.plates(PlateKind::reference);

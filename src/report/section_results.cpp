@@ -80,7 +80,7 @@ arm on trial is not told what it is shining on.</p>
 
 }  // namespace
 
-Section results(Page& page) {
+PageSection results(Page& page) {
     const std::uint64_t n = page.find.headline_n();
     if (n == 0) return {};
     std::string out = page.figures.plates(PlateKind::columns) + headline_table(page, n);
@@ -95,7 +95,7 @@ Section results(Page& page) {
     return {"results", "Results", out + page.figures.plates(PlateKind::heat) + frame_footnote(page, n)};
 }
 
-Section failure_a(Page& page) {
+PageSection failure_a(Page& page) {
     const Pair pair = pair_of(page);
     if (!pair || page.in.experiment.regions.empty() || page.in.experiment.disks.empty()) return {};
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
@@ -118,7 +118,7 @@ Section failure_a(Page& page) {
     return {"failure-a", "Failure A: " + escape(broad) + " fireflies the highlight", out};
 }
 
-Section failure_b(Page& page) {
+PageSection failure_b(Page& page) {
     const Pair pair = pair_of(page);
     if (!pair || page.in.experiment.regions.empty()) return {};
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;

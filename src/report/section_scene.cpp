@@ -80,7 +80,7 @@ std::string lights_table(const Experiment& e) {
 
 }  // namespace
 
-Section scene(Page& page) {
+PageSection scene(Page& page) {
     const Experiment& e = page.in.experiment;
     std::string out = html::p(fmt::format(
         "The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one primary ray through the "

@@ -100,7 +100,7 @@ std::string rungs(const ArmPlan& arm) {
 
 }  // namespace
 
-Section question(Page& page) {
+PageSection question(Page& page) {
     std::vector<std::string> names;
     for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
     return {"question", "The question",
@@ -108,7 +108,7 @@ Section question(Page& page) {
                         fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()), fmt::arg("seed", page.seed_name()))};
 }
 
-Section estimator(Page& page) {
+PageSection estimator(Page& page) {
     const Experiment& e = page.in.experiment;
     std::string out = fmt::format(
         estimator_prose, fmt::arg("integral", display(integral(), "the reflection integral over the upper hemisphere")),
@@ -127,7 +127,7 @@ Section estimator(Page& page) {
     return {"estimator", "The estimator", out};
 }
 
-Section densities(Page& page) {
+PageSection densities(Page& page) {
     using html::words;
     html::Table table("The densities, their inverse distribution functions and the rungs of <i>N</i> each arm ran",
                       {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});

@@ -75,7 +75,7 @@ std::string rejection_point(Page& page) {
 
 }  // namespace
 
-Section where_wrong(Page& page) {
+PageSection where_wrong(Page& page) {
     std::string points = furnace_point(page);  // one after the other: figures are numbered as they come
     points += lost_point(page);
     points += rejection_point(page);

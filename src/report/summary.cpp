@@ -41,18 +41,18 @@ std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint)
     for (const AssertionResult* a : failed) {
         const std::string values =
             fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound));
-        out += "  " + clip(a->name, columns - 2 - width(values)) + values + "\n";
+        out += fmt::format("  {}{}\n", clip(a->name, columns - 2 - width(values)), values);
     }
     return out;
 }
 
 std::string table_row(const BandMeter& b, bool published) {
     const std::string name = fmt::format("{} {}", b.meter, b.key.arm);
-    std::string row = "  " + left(name, published ? 25 : 36);
-    if (published) row += " " + right(b.published ? figures_of(b.meter, *b.published) : "-", 10);
-    row += " " + right(figures_of(b.meter, b.measured), 10);
+    std::string row = fmt::format("  {}", left(name, published ? 25 : 36));
+    if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.meter, *b.published) : "-", 10));
+    row += fmt::format(" {}", right(figures_of(b.meter, b.measured), 10));
     if (b.band.seeds < 2) return row;
-    row += " " + right(figures_of(b.meter, b.band.median), 10) + "  ";
+    row += fmt::format(" {}  ", right(figures_of(b.meter, b.band.median), 10));
     if (b.band.heavy) return row + "heavy tail";
     return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 18);
 }
@@ -70,16 +70,16 @@ std::string table(const ReportInputs& in, const Paint& paint) {
                 seeds = std::max(seeds, band->band.seeds);
             }
     if (rows.empty()) return {};
-    std::string head = "  " + left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 25 : 36);
+    std::string head = fmt::format("  {}", left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 25 : 36));
     if (published) head += "  published";
     head += "   measured";
     if (seeds > 1) head += fmt::format("     median  5-95 % of {} seeds", seeds);
-    return "\n" + paint(bold, head) + "\n" + rows;
+    return fmt::format("\n{}\n{}", paint(bold, head), rows);
 }
 
 std::string films(const std::map<std::string, std::string>& hashes, const Paint& paint) {
     if (hashes.empty()) return {};
-    std::string out = "\n" + paint(bold, "  films (XXH3-64)") + "\n";
+    std::string out = fmt::format("\n{}\n", paint(bold, "  films (XXH3-64)"));
     std::size_t longest = 0;
     for (const auto& [name, hash] : hashes) longest = std::max(longest, width(name) + width(hash));
     const std::size_t across = longest + 2 <= 38 ? 2 : 1;
@@ -87,8 +87,7 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
     std::size_t at = 0;
     for (const auto& [name, hash] : hashes) {
         const std::string digits = clip(hash, cell / 2);
-        std::string text = left(name, cell - 2 - width(digits)) + "  " + digits;
-        out += at % across == 0 ? "  " + text : "  " + text;
+        out += fmt::format("  {}  {}", left(name, cell - 2 - width(digits)), digits);
         if (++at % across == 0 || at == hashes.size()) out += "\n";
     }
     return out;
@@ -108,9 +107,10 @@ std::string speed(const Timing& t) {
 
 std::string where(const ReportInputs& in, const std::string& out_dir) {
     const std::string dir = out_dir.empty() ? "." : out_dir;
-    std::string out = "  look at  " + clip(dir + "/report.html", columns - 11) + "\n";
-    if (!in.plates.empty()) out += "  plates   " + clip(dir + "/plates/", columns - 11) + "\n";
-    return out + "  numbers  " + clip(dir + "/metrics.json", columns - 11) + "\n";
+    const auto line = [](const char* what, const std::string& path) { return fmt::format("  {:<9}{}\n", what, clip(path, columns - 11)); };
+    std::string out = line("look at", dir + "/report.html");
+    if (!in.plates.empty()) out += line("plates", dir + "/plates/");
+    return out + line("numbers", dir + "/metrics.json");
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ std::string terminal_summary(const ReportInputs& in, const Timing& timing, const
     const Paint paint{colour};
     std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(in.metrics.film_hashes, paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
-        out += "\n" + paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))) + "\n";
+        out += fmt::format("\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));
     return out + "\n" + speed(timing) + where(in, out_dir);
 }
 
