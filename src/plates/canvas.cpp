@@ -33,16 +33,17 @@ Description describe(double px, Weight weight) {
     return d;
 }
 
-void require_font(PangoContext* context) {
-    std::unique_ptr<PangoFont, Unref> font{pango_context_load_font(context, describe(18, Weight::regular).get())};
-    std::string found = "none";
-    if (font) {
-        Description d{pango_font_describe(font.get())};
-        found = pango_font_description_get_family(d.get());
-    }
-    if (found != family) {
-        throw OutputError(std::string("plates are set in the font ") + family + ", which is missing (found: " + found +
-                          "); install the package fonts-inter");
+// Asks by name: a font map hands out another family in silence, or ends the program where it has none at all.
+void require_font(PangoFontMap* map) {
+    PangoFontFamily** families = nullptr;
+    int count = 0;
+    pango_font_map_list_families(map, &families, &count);
+    bool found = false;
+    for (int i = 0; i < count; ++i) found |= std::strcmp(pango_font_family_get_name(families[i]), family) == 0;
+    g_free(families);
+    if (!found) {
+        throw OutputError(std::string("plates are set in the font ") + family +
+                          ", which this machine does not have: install the package fonts-inter");
     }
 }
 
@@ -65,6 +66,7 @@ struct Canvas::Surface {
     std::unique_ptr<PangoLayout, Unref> layout;
 
     Surface(int width, int height) {
+        require_font(pango_cairo_font_map_get_default());
         image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
         cr = cairo_create(image);
         layout.reset(pango_cairo_create_layout(cr));
@@ -111,7 +113,6 @@ struct Canvas::Surface {
 
 Canvas::Canvas(int width, int height, const Colour& ground)
     : width_(width), height_(height), surface_(std::make_unique<Surface>(width, height)) {
-    require_font(pango_layout_get_context(surface_->layout.get()));
     surface_->ink(ground);
     cairo_paint(surface_->cr);
 }

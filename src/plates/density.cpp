@@ -24,17 +24,23 @@ Site<double> site_of(const Experiment& e, double s, double tilt) {
     return site;
 }
 
+// An arm without one density (several techniques, each with its own) is left at 0.
+template <class Arm>
+constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
+
 }  // namespace
 
 Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
     : pdf_([](const Vec3d&) { return 0.0; }) {
     Site<double> site = site_of(e, s, tilt);
     for_each_arm(Arms{}, [&]<template <class> class A>() {
-        if (sampler != A<double>::name) return;
-        pdf_ = [arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
-            double p = arm.pdf(wo, wi).v;
-            return std::isfinite(p) ? p : 0.0;
-        };
+        if constexpr (has_pdf<A<double>>) {
+            if (sampler != A<double>::name) return;
+            pdf_ = [arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
+                double p = arm.pdf(wo, wi).v;
+                return std::isfinite(p) ? p : 0.0;
+            };
+        }
     });
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meters/meters.h"
 #include "plates/sheet.h"
 
 namespace crescent::plates {
@@ -33,16 +34,6 @@ std::vector<double> values(const Residual& r, const Box& box) {
     return v;
 }
 
-// Linear between order statistics.
-double quantile(std::vector<double> v, double q) {
-    std::erase_if(v, [](double x) { return !std::isfinite(x); });
-    if (v.empty()) return 0;
-    std::sort(v.begin(), v.end());
-    double at = q * double(v.size() - 1);
-    std::size_t low = std::min(static_cast<std::size_t>(at), v.size() - 1), high = std::min(low + 1, v.size() - 1);
-    return v[low] + (at - double(low)) * (v[high] - v[low]);
-}
-
 Box shown_box(const Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     View all;
@@ -55,18 +46,12 @@ bool within(const Box& b, const Box& box) {
     return b.x0 >= box.x0 && b.x1 <= box.x1 && b.y0 >= box.y0 && b.y1 <= box.y1;
 }
 
-double rmse(const std::vector<double>& v) {
-    double sum = 0;
-    for (double x : v) sum += x * x;
-    return std::sqrt(sum / double(v.size()));
-}
-
 // RMSE of each region that is wholly shown, and how much of the crop lies above the scale.
 std::string reading(const Residual& r, const Box& box, double top, const Experiment& e) {
     std::vector<std::string> parts;
     for (const Region& region : e.regions) {
         if (!within(region.box, box)) continue;
-        parts.push_back(fmt::format("RMSE<sub>{}</sub> {}", escaped(region.name), figure(rmse(values(r, region.box)))));
+        parts.push_back(fmt::format("RMSE<sub>{}</sub> {}", escaped(region.name), figure(rms_difference(r.film->y, r.reference->y, r.film->width, region.box))));
     }
     std::vector<double> v = values(r, box);
     auto above = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
@@ -129,10 +114,11 @@ void draw_heat(Sheet& sheet) {
     std::vector<double> pooled;
     for (const Residual& r : runs) {
         if (!r.there()) continue;
-        std::vector<double> v = values(r, box);
-        pooled.insert(pooled.end(), v.begin(), v.end());
+        for (double v : values(r, box)) {
+            if (std::isfinite(v)) pooled.push_back(v);
+        }
     }
-    double p98 = quantile(std::move(pooled), 0.98), top = p98 > 0 ? p98 : 1;
+    double p98 = pooled.empty() ? 0 : quantile(std::move(pooled), 0.98), top = p98 > 0 ? p98 : 1;
 
     Rect band = content_band;
     band.w -= bar_room;

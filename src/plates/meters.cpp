@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meters/meters.h"
 #include "plates/ladder_chart.h"
 #include "plates/sheet.h"
 
@@ -30,16 +31,6 @@ std::vector<Column> columns_of(const Experiment& e) {
     return c;
 }
 
-std::optional<double> measured(const RunMeter& r, const std::string& meter) {
-    if (meter == "fireflies") return double(r.fireflies);
-    if (meter == "horizon_frac") return r.horizon_frac;
-    if (meter == "y_mean") return r.y_mean;
-    bool rmse = meter.rfind("rmse.", 0) == 0;
-    const RegionMeter* region = r.region(meter.substr(meter.find('.') + 1));
-    if (!region) return {};
-    return rmse ? region->rmse : region->var;
-}
-
 const BandMeter* band_of(const Metrics& m, const RunKey& key, const std::string& meter) {
     for (const BandMeter& b : m.bands) {
         if (b.meter == meter && b.key.arm == key.arm && b.key.n == key.n && b.key.s == key.s) return &b;
@@ -58,38 +49,43 @@ std::string band_text(const std::string& meter, const Band& b) {
     return value(meter, b.q05) + " – " + value(meter, b.q95);
 }
 
-// The measured runs the plate shows: the plan's, else every one at the published seed.
+// The measured runs the plate shows: the plan's, else every arm at the n and s of the experiment.
 std::vector<const RunMeter*> rows_of(const Sheet& sheet) {
     const Experiment& e = sheet.experiment();
-    std::vector<const RunMeter*> rows;
-    for (const RunKey& k : keys_of(sheet.plan, e)) {
-        if (const RunMeter* r = sheet.in.metrics.find(k.arm, k.n, k.s, k.seed)) rows.push_back(r);
+    std::vector<RunKey> keys = keys_of(sheet.plan, e);
+    if (keys.empty()) {
+        for (const ArmPlan& a : e.arms) keys.push_back({a.name, e.n_of(a), e.s(), e.seed});
     }
-    if (!sheet.plan.runs.empty()) return rows;
-    for (const RunMeter& r : sheet.in.metrics.runs) {
-        if (r.key.seed == e.seed) rows.push_back(&r);
+    std::vector<const RunMeter*> rows;
+    for (const RunKey& k : keys) {
+        if (const RunMeter* r = sheet.in.metrics.find(k.arm, k.n, k.s, k.seed)) rows.push_back(r);
     }
     return rows;
 }
 
-// How much stands in each row: 3 lines (measured, published, band), 2 or 1, as the number of rows allows.
+// Under each measured value, as the number of rows allows: what was published, where anything was, and the band.
 struct Table {
     std::vector<const RunMeter*> rows;
     std::vector<Column> columns;
-    int lines = 3;
+    bool published = false, band = false;
     double row_h = 0, head_h = 32, name_w = 250;
-    double bottom = 0;
 };
+
+constexpr double value_h = 27, under_h = 19;
 
 Table plan_table(const Sheet& sheet) {
     Table t;
     t.rows = rows_of(sheet);
     t.columns = columns_of(sheet.experiment());
-    std::size_t n = t.rows.size();
-    t.lines = n <= 5 ? 3 : n <= 8 ? 2 : 1;
-    t.row_h = t.lines == 3 ? 78 : t.lines == 2 ? 58 : 30;
-    std::size_t room = static_cast<std::size_t>((content_band.h - t.head_h) / t.row_h);
-    if (n > room) t.rows.resize(room);
+    auto height = [&] { return value_h + under_h * (t.published + t.band) + (t.published || t.band ? 13 : 5); };
+    auto too_high = [&] { return double(t.rows.size()) * height() > content_band.h - t.head_h; };
+    t.band = true;
+    const auto& bands = sheet.in.metrics.bands;
+    t.published = std::any_of(bands.begin(), bands.end(), [](const BandMeter& b) { return b.published.has_value(); });
+    if (too_high()) t.published = false;
+    if (too_high()) t.band = false;
+    t.row_h = height();
+    t.rows.resize(std::min(t.rows.size(), static_cast<std::size_t>((content_band.h - t.head_h) / t.row_h)));
     return t;
 }
 
@@ -107,25 +103,34 @@ void draw_head(Sheet& sheet, const Table& t) {
     sheet.canvas.line(content_band.x, y, content_band.right(), y, muted, 1);
 }
 
+void draw_name(Sheet& sheet, const Table& t, const RunMeter& r, double y, int seeds) {
+    Rect line{content_band.x, y, t.name_w, value_h};
+    sheet.canvas.text(line, runs_label({r.key}, sheet.experiment()), with(with_px(body_text, 20), Weight::semibold));
+    line.y += value_h, line.h = under_h + 2;
+    if (t.published) {
+        sheet.canvas.text(line, "published", small_text);
+        line.y += under_h;
+    }
+    std::string say = seeds > 1 ? fmt::format("5–95 % of {} seeds", seeds) : "one seed, no band";
+    if (t.band) sheet.canvas.text(line, say, small_text);
+}
+
 void draw_row(Sheet& sheet, const Table& t, const RunMeter& r, double y, int seeds) {
-    const Experiment& e = sheet.experiment();
     Canvas& c = sheet.canvas;
     Text value_text = with(with(with_px(body_text, 20), Weight::medium), Align::right);
     Text under = with(small_text, Align::right);
-    double top = y + (t.lines == 1 ? 2 : 6);
-    c.text({content_band.x, top, t.name_w, 27}, runs_label({r.key}, e), with(with_px(body_text, 20), Weight::semibold));
-    if (t.lines > 1) c.text({content_band.x, top + 27, t.name_w, 20}, "published", small_text);
-    if (t.lines > 2) {
-        std::string say = seeds > 1 ? fmt::format("5–95 % of {} seeds", seeds) : "one seed, no band";
-        c.text({content_band.x, top + 46, t.name_w, 20}, say, small_text);
-    }
+    double top = y + (t.published || t.band ? 6 : 2);
+    draw_name(sheet, t, r, top, seeds);
     for (std::size_t k = 0; k < t.columns.size(); ++k) {
         const std::string& meter = t.columns[k].meter;
         const BandMeter* b = band_of(sheet.in.metrics, r.key, meter);
-        std::optional<double> v = measured(r, meter);
-        c.text(cell(t, k, top, 27), v ? value(meter, *v) : "–", value_text);
-        if (t.lines > 1) c.text(cell(t, k, top + 27, 20), b && b->published ? value(meter, *b->published) : "–", under);
-        if (t.lines > 2) c.text(cell(t, k, top + 46, 20), b ? band_text(meter, b->band) : "–", under);
+        c.text(cell(t, k, top, value_h), value(meter, meter_value(r, meter)), value_text);
+        double next = top + value_h;
+        if (t.published) {
+            c.text(cell(t, k, next, under_h + 2), b && b->published ? value(meter, *b->published) : "–", under);
+            next += under_h;
+        }
+        if (t.band) c.text(cell(t, k, next, under_h + 2), b ? band_text(meter, b->band) : "–", under);
     }
     c.line(content_band.x, y + t.row_h - 0.5, content_band.right(), y + t.row_h - 0.5, rule, 1);
 }

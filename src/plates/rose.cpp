@@ -145,7 +145,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
                       with(with_px(body_text, 17), muted));
     Rect dome{col.x, col.y + 62, col.w, 232};
     if (!(part.peak > 0)) {
-        paint_missing(sheet, dome, "no density in closed form");
+        paint_missing(sheet, dome, arm_name(part.key.arm, e) + " has no one density that needs no light");
         return;
     }
     draw_dome(sheet, part, dome, tilt);

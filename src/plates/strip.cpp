@@ -11,7 +11,7 @@ namespace crescent::plates {
 
 namespace {
 
-constexpr double words_height = 58, between = 12;
+constexpr double between = 12;  // frame and crop
 
 struct Varies {
     bool arm = false, n = false, s = false;
@@ -40,19 +40,28 @@ std::optional<Box> crop_of(const Sheet& sheet) {
     return sheet.plan.kind == PlateKind::surround ? regions.back().box : regions.front().box;
 }
 
-// Where everything goes, the same in every column.
+// Where everything goes, the same in every cell. Up to six runs stand in one row; more make a grid of crops.
 struct Layout {
+    std::size_t columns = 1, rows = 1;
     bool frames = true, crops = false;
-    double frame_h = 0, crop_h = 0, top = 0;
+    double words_h = 0, frame_h = 0, crop_h = 0, top = 0;  // top: of the pictures in their cell
     Fit frame, crop;
+    Rect cell(std::size_t i) const {
+        double h = (content_band.h - gap * double(rows - 1)) / double(rows);
+        Rect band{content_band.x, content_band.y + double(i / columns) * (h + gap), content_band.w, h};
+        return column(band, columns, i % columns);
+    }
 };
 
-Layout lay_out(const Sheet& sheet, std::size_t columns, const std::optional<Box>& crop) {
+Layout lay_out(const Sheet& sheet, std::size_t runs, const Varies& varies, const std::optional<Box>& crop) {
     const Image& image = sheet.experiment().image;
-    double w = column(content_band, columns, 0).w, room = content_band.h - words_height;
     Layout l;
+    l.columns = runs <= 6 ? runs : std::max<std::size_t>(6, std::size_t(std::ceil(std::sqrt(1.8 * double(runs)))));
+    l.rows = (runs + l.columns - 1) / l.columns;
+    l.words_h = l.rows > 1 || !(varies.arm || varies.s) ? 36 : 58;
+    double w = l.cell(0).w, room = l.cell(0).h - l.words_h;
     l.crops = crop.has_value();
-    l.frames = !l.crops || sheet.plan.kind != PlateKind::surround;
+    l.frames = !l.crops || (sheet.plan.kind != PlateKind::surround && l.rows == 1);
     if (l.frames) {
         l.frame = fit(image.width, image.height, std::floor(w), std::floor(l.crops ? room / 2 : room));
         l.frame_h = l.frame.out_h;
@@ -62,14 +71,14 @@ Layout lay_out(const Sheet& sheet, std::size_t columns, const std::optional<Box>
         l.crop = fit(crop->width(), crop->height(), std::floor(w), std::floor(left));
         l.crop_h = l.crop.out_h;
     }
-    double used = l.frame_h + l.crop_h + (l.frames && l.crops ? between : 0) + words_height;
-    l.top = content_band.y + std::floor((content_band.h - used) / 2);
+    double used = l.frame_h + l.crop_h + (l.frames && l.crops ? between : 0) + l.words_h;
+    l.top = std::floor((l.cell(0).h - used) / 2);
     return l;
 }
 
 void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l, const std::optional<Box>& crop) {
     const double exposure = sheet.experiment().exposure;
-    Rect slot{col.x, l.top, col.w, l.frame_h};
+    Rect slot{col.x, col.y + l.top, col.w, l.frame_h};
     Box all = whole(v);
     if (l.frames) {
         Rect r = paint_framed(sheet, photograph_block(v, all, l.frame, exposure), slot);
@@ -84,10 +93,11 @@ void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l
     sheet.not_finite += not_finite(v, l.frames ? all : *crop);
 }
 
-void draw_words(Sheet& sheet, const RunKey& run, const Varies& varies, const Rect& col, double y) {
+void draw_words(Sheet& sheet, const RunKey& run, const Varies& varies, const Layout& l, const Rect& col) {
     const Experiment& e = sheet.experiment();
+    double y = col.bottom() - l.top - l.words_h;
     sheet.canvas.text({col.x, y + 8, col.w, 28}, heading(run, varies, e), with(with_px(title_text, 22), Align::centre));
-    if (!varies.arm && !varies.s) return;
+    if (l.words_h < 58) return;
     std::string density = varies.s ? density_formula_at(run.arm, run.s, e) : density_formula(run.arm, e);
     sheet.canvas.text({col.x, y + 35, col.w, 23}, density, with(with(with_px(body_text, 17), muted), Align::centre));
 }
@@ -120,19 +130,17 @@ void draw_strip(Sheet& sheet) {
     any.width = e.image.width, any.height = e.image.height;
     std::optional<Box> crop = crop_of(sheet);
     if (crop) crop = inside(*crop, any);
-    Layout l = lay_out(sheet, runs.size(), crop);
     Varies varies(runs);
+    Layout l = lay_out(sheet, runs.size(), varies, crop);
     for (std::size_t i = 0; i < runs.size(); ++i) {
-        Rect col = column(content_band, runs.size(), i);
+        Rect col = l.cell(i);
         View v = view(sheet.in.film(runs[i]));
-        double height = content_band.bottom() - words_height - l.top;
-        double bottom = content_band.bottom() - words_height - (l.top - content_band.y);
         if (v.width > 0) {
             draw_pictures(sheet, v, col, l, crop);
         } else {
-            paint_missing(sheet, {col.x, l.top, col.w, height}, escaped(to_string(runs[i])) + " was not run");
+            paint_missing(sheet, {col.x, col.y + l.top, col.w, col.h - 2 * l.top - l.words_h}, escaped(to_string(runs[i])) + " was not run");
         }
-        draw_words(sheet, runs[i], varies, col, bottom);
+        draw_words(sheet, runs[i], varies, l, col);
     }
     add_notes(sheet, l, crop);
 }

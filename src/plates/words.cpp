@@ -14,11 +14,20 @@ namespace {
 struct Sampler {
     const char *word, *name, *axis, *formula;
 };
-// The note's three densities, in 1/sr; {s1} stands for s + 1 and {s} for s.
+// Densities in 1/sr, weights for the arms that combine two; {s1} stands for s + 1 and {s} for s.
 constexpr Sampler samplers[] = {
     {"uniform", "Uniform", "n", "p(ω) = 1/(2π)"},
     {"cosine", "Cosine", "n", "p(ω) = (n·ω)/π"},
     {"phong", "Phong-IS", "R", "p(ω) = {s1}/(2π) (ω·R)<sup>{s}</sup>"},
+    {"mixture", "Mixture", "", "p = q p<sub>phong</sub> + (1−q) p<sub>cosine</sub>"},
+    {"mis-balance", "MIS, balance", "", "w<sub>i</sub> = p<sub>i</sub> / (p<sub>1</sub> + p<sub>2</sub>)"},
+    {"mis-power", "MIS, power", "",
+     "w<sub>i</sub> = p<sub>i</sub><sup>2</sup> / (p<sub>1</sub><sup>2</sup> + p<sub>2</sub><sup>2</sup>)"},
+    {"light-solid-angle", "Light, solid angle", "", "p(ω) = 1/(2π (1 − cos β))"},
+    {"light-area", "Light, area", "", "p(ω) = |y − x|<sup>2</sup>/(π r<sup>2</sup> cos θ<sub>l</sub>)"},
+    {"blinn", "Blinn", "", "p(ω) = {s1}/(2π) (n·m)<sup>{s}</sup>/(4 ω<sub>o</sub>·m)"},
+    {"ggx-d", "GGX D", "", "p(ω) = D(m) (n·m)/(4 ω<sub>o</sub>·m)"},
+    {"ggx-vndf", "GGX VNDF", "", "p(ω) = G<sub>1</sub>(ω<sub>o</sub>) D(m)/(4 n·ω<sub>o</sub>)"},
 };
 
 const Sampler* find(const std::string& word) {
@@ -127,6 +136,7 @@ std::string number(double v, int digits) {
 std::string figure(double v, int digits) {
     if (!std::isfinite(v)) return not_finite_word(v);
     if (v == 0) return "0";
+    if (std::abs(v) >= std::pow(10.0, digits) && std::abs(v) < 1e7) return typeset(fmt::format("{:.0f}", v));
     std::string text = typeset(fmt::format("{:#.{}g}", v, digits));
     if (text.back() == '.') text.pop_back();
     return text;

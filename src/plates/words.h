@@ -22,7 +22,7 @@ std::string arm_name(const std::string& arm, const Experiment& e);
 std::string sampler_of(const std::string& arm, const Experiment& e);
 /// "n" or "R", what the arm's density is centred on; "" where that is not one of them.
 std::string axis_of(const std::string& arm, const Experiment& e);
-/// "p(ω) = (s+1)/(2π) (ω·R)ˢ"; for a sampler without a short form, its name.
+/// "p(ω) = (s+1)/(2π) (ω·R)<sup>s</sup>"; for a sampler without a short form, its name.
 std::string density_formula(const std::string& arm, const Experiment& e);
 /// The same density after `s` has been put in.
 std::string density_formula_at(const std::string& arm, double s, const Experiment& e);
@@ -35,7 +35,8 @@ std::string reference_words(const Experiment& e);
 
 /// At most `digits` significant digits, a true minus, ∞ and "not a number" in words; powers of ten set as such.
 std::string number(double v, int digits = 4);
-/// Exactly `digits` significant digits, trailing zeros kept, so that columns of a table align; 0 is "0".
+/// Exactly `digits` significant digits, trailing zeros kept, so that columns of a table align; 0 is "0", and what has
+/// more digits before the point keeps them up to 10^7.
 std::string figure(double v, int digits = 4);
 /// 12345678 -> "12 345 678" with thin spaces.
 std::string count(std::uint64_t v);
