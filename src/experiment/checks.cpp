@@ -26,7 +26,8 @@ void check_camera(Draft& draft) {
     const Camera& c = draft.e.camera;
     if (!draft.sound("camera") || !draft.sound("camera.eye") || !draft.sound("camera.target")) return;
     const Vec3d view = c.target - c.eye;
-    if (length(view) < 1e-9) return draft.complain("camera.target", "camera.target: expected a point other than camera.eye, found the same");
+    if (length(view) < 1e-9)
+        return draft.complain("camera.target", "camera.target: expected a point other than camera.eye, found the same");
     if (draft.sound("camera.up") && length(cross(view, c.up)) < parallel * length(view))
         draft.complain("camera.up", "camera.up: expected a direction that is not parallel to the view from eye to target");
 }
@@ -35,8 +36,9 @@ void check_box_on_image(Draft& draft, const std::string& path, const Box& box) {
     const Image& image = draft.e.image;
     if (!draft.sound(path) || !draft.sound("image") || !draft.sound("image.width") || !draft.sound("image.height")) return;
     if (box.x0 >= 0 && box.y0 >= 0 && box.x1 < image.width && box.y1 < image.height) return;
-    draft.complain(path, fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
-                                     image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
+    draft.complain(
+        path, fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
+                          image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
 }
 
 void check_shape(Draft& draft, const Shape& shape) {
@@ -47,13 +49,20 @@ void check_shape(Draft& draft, const Shape& shape) {
         const Vec3d size = shape.max - shape.min;
         const double sizes[] = {size.x, size.y, size.z};
         for (int i = 0; i < 3; ++i)
-            if (!(sizes[i] > 0)) return draft.complain(path + ".max", fmt::format("{}.max: expected a corner above min on every axis, found {} no higher on {}", path, "xyz"[i], "xyz"[i]));
+            if (!(sizes[i] > 0))
+                return draft.complain(
+                    path + ".max", fmt::format("{}.max: expected a corner above min on every axis, found {} no higher on {}",
+                                               path, "xyz"[i], "xyz"[i]));
     }
     if ((shape.kind == ShapeKind::quad || shape.kind == ShapeKind::panel) && sound("edge_u") && sound("edge_v")) {
         const double u = length(shape.edge_u), v = length(shape.edge_v);
-        if (!(u > 0) || !(v > 0)) return draft.complain(path + (u > 0 ? ".edge_v" : ".edge_u"), fmt::format("{}: expected an edge with a length, found the zero vector", path + (u > 0 ? ".edge_v" : ".edge_u")));
+        if (!(u > 0) || !(v > 0))
+            return draft.complain(path + (u > 0 ? ".edge_v" : ".edge_u"),
+                                  fmt::format("{}: expected an edge with a length, found the zero vector",
+                                              path + (u > 0 ? ".edge_v" : ".edge_u")));
         if (length(cross(shape.edge_u, shape.edge_v)) < parallel * u * v)
-            return draft.complain(path + ".edge_v", fmt::format("{}.edge_v: expected an edge that is not parallel to edge_u", path));
+            return draft.complain(path + ".edge_v",
+                                  fmt::format("{}.edge_v: expected an edge that is not parallel to edge_u", path));
     }
 }
 
@@ -62,14 +71,19 @@ void check_material(Draft& draft, const Shape& shape) {
     const Material& m = shape.material;
     if (!draft.sound(path + ".brdf") || !(m.rho_s > 0)) return;
     if (m.brdf == BrdfKind::ggx && !m.alpha && draft.sound(path + ".alpha"))
-        draft.complain(path + ".alpha", fmt::format("missing key 'alpha' in [{}]: expected the roughness of its ggx lobe, above 0, up to 1", path));
+        draft.complain(
+            path + ".alpha",
+            fmt::format("missing key 'alpha' in [{}]: expected the roughness of its ggx lobe, above 0, up to 1", path));
     if (m.brdf != BrdfKind::ggx && !m.s && draft.sound(path + ".s"))
-        draft.complain(path + ".s", fmt::format("missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
+        draft.complain(
+            path + ".s",
+            fmt::format("missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
 }
 
 void check_light(Draft& draft) {
     const Rgb& fill = draft.e.fill;
-    if (draft.e.disks.empty() && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
+    if (draft.e.disks.empty() && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") &&
+        fill[0] + fill[1] + fill[2] <= 0)
         draft.complain("fill.radiance", "no light: expected a disk, or a fill.radiance above 0");
 }
 
@@ -91,11 +105,14 @@ void check_names(Draft& draft) {
         const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
-        draft.complain(r.path, fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64), listed(valid, ", "), hint(r.name, valid)));
+        draft.complain(r.path, fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64),
+                                           listed(valid, ", "), hint(r.name, valid)));
     }
     for (const DiskLight& disk : draft.e.disks)
         if (const Shape* shape = draft.e.find_shape(disk.name))
-            draft.complain("disks." + disk.name, fmt::format("duplicate name '{}': expected a disk to be named unlike the shape at {}", disk.name, to_string(shape->at)));
+            draft.complain("disks." + disk.name,
+                           fmt::format("duplicate name '{}': expected a disk to be named unlike the shape at {}", disk.name,
+                                       to_string(shape->at)));
 }
 
 }  // namespace crescent

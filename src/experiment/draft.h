@@ -21,9 +21,9 @@ struct Reference {
 struct Draft {
     Experiment e;
     std::vector<Complaint> complaints;
-    std::set<std::string> broken;        // paths whose values cannot be used
+    std::set<std::string> broken;  // paths whose values cannot be used
     std::vector<Reference> references;
-    std::string canonical;               // "path=value" a line, defaults included, free of layout
+    std::string canonical;  // "path=value" a line, defaults included, free of layout
 
     void complain(const std::string& path, const std::string& say);
     void complain(const std::string& path, const Place& at, const std::string& say);

@@ -44,7 +44,8 @@ TEST(Experiments, TheGalleryHoldsTheNote) {
 }
 
 TEST(Experiments, AllOfThemAreGood) {
-    for (const char* name : {"gallery", "two-lamps", "empty-room", "three-glosses"}) EXPECT_NO_THROW((void)load(folder + name + ".toml")) << name;
+    for (const char* name : {"gallery", "two-lamps", "empty-room", "three-glosses"})
+        EXPECT_NO_THROW((void)load(folder + name + ".toml")) << name;
 }
 
 TEST(Experiments, ShapesStandInFileOrder) {
@@ -102,7 +103,8 @@ TEST(WhatIfs, MeetTheChecksOfTheFile) {
     EXPECT_THAT(complaint({"sphere.s=[1"}), HasSubstr("not TOML"));
     EXPECT_THAT(complaint({"published=nowhere.json"}), HasSubstr("No such file"));
     EXPECT_THAT(complaint({"seed.x=1"}), HasSubstr("no 'x' in 'seed'"));
-    EXPECT_THAT(complaint({"seed=-1", "sphere.s=0"}), testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
+    EXPECT_THAT(complaint({"seed=-1", "sphere.s=0"}),
+                testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
 }
 
 TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
@@ -115,15 +117,19 @@ TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
 }
 
 TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
-    const std::string room = "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n[fill]\nradiance = [1, 1, 1]\n"
-                             "[shapes.floor]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nrho_d = [0.5, 0.5, 0.5]\n";
+    const std::string room =
+        "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n[fill]\nradiance = "
+        "[1, 1, 1]\n"
+        "[shapes.floor]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nrho_d = [0.5, 0.5, 0.5]\n";
     EXPECT_EQ(parse(room + "[arms.cosine]\nn = 4\n", "room").s(), 0);
     EXPECT_THROW((void)parse(room + "[arms.phong]\nn = 4\n", "room"), InputError);
 }
 
 TEST(Hashes, DependOnEffectiveValuesAlone) {
-    const std::string text = "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n"
-                             "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n";
+    const std::string text =
+        "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n"
+        "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\nradiance = [1, "
+        "1, 1]\n[arms.cosine]\nn = 4\n";
     const std::uint64_t hash = parse(text, "a.toml").hash;
     EXPECT_EQ(hash, parse("# a comment\n\n" + text, "b.toml").hash);
     EXPECT_EQ(hash, parse(text + "sampler = \"cosine\"\n", "a.toml").hash) << "a default written out";
@@ -143,7 +149,8 @@ std::string example(const Key& key) {
         case Type::flag: return "true";
         case Type::integer: return "1";
         case Type::number: return fmt::format("{}", x);
-        case Type::point: case Type::color: return "[1, 1, 1]";
+        case Type::point:
+        case Type::color: return "[1, 1, 1]";
         case Type::direction: return "[0, 0.6, 0.8]";
         case Type::numbers: return "[1.5, 2]";
         case Type::integers: return "[1, 2]";
@@ -169,7 +176,10 @@ std::size_t take_every_key(const Section& section, const std::string& path) {
     }
     for (const Section& sub : section.sections) {
         const std::string name(sub.name);
-        count += take_every_key(sub, prefix + (sub.many == Many::one ? name : sub.many == Many::list ? name + ".0" : name == "plates" ? "plates.hero" : name + ".probe"));
+        count += take_every_key(sub, prefix + (sub.many == Many::one    ? name
+                                               : sub.many == Many::list ? name + ".0"
+                                               : name == "plates"       ? "plates.hero"
+                                                                        : name + ".probe"));
     }
     return count;
 }
@@ -185,7 +195,8 @@ TEST(TheSchema, NamesTheKeysThatTheParserTakes) {
 TEST(TheSchema, FitsEightyColumns) {
     std::size_t start = 0;
     const std::string text = schema_text();
-    for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1) EXPECT_LE(end - start, 80u) << text.substr(start, end - start);
+    for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
+        EXPECT_LE(end - start, 80u) << text.substr(start, end - start);
 }
 
 TEST(PublishedFigures, AreLookedUpByArmNSAndMeter) {
@@ -212,7 +223,8 @@ TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
     EXPECT_THAT(say("[]"), HasSubstr("expected an object"));
     EXPECT_THAT(say("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
     EXPECT_THAT(say("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
-    EXPECT_THAT(say("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"), HasSubstr("/runs/0/rmse.H: expected a number"));
+    EXPECT_THAT(say("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"),
+                HasSubstr("/runs/0/rmse.H: expected a number"));
     EXPECT_THAT(say("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
     EXPECT_THAT(say("{\"rums\": []}"), HasSubstr("/rums"));
     EXPECT_EQ(say("{}"), "");

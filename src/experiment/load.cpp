@@ -29,7 +29,7 @@ void throw_if_any(std::vector<Complaint> all) {
 Draft draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
     Draft draft;
     draft.e.file = name;
-    Node root = read_toml(text, name);
+    Node root = read_toml(text, name, &draft.complaints);
     apply_overrides(draft, root, overrides);
     read_tree(draft, root);
     check_geometry(draft);
@@ -66,15 +66,20 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
 std::string read_text(const std::string& path, std::string_view what) {
     constexpr std::streamsize most = (std::streamsize{4} << 20) + 1;
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) throw InputError({path, 0, 0}, fmt::format("expected {}, found a folder", what));
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError({path, 0, 0}, fmt::format("expected {}, found a folder", what));
     errno = 0;
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
+    if (!file)
+        throw InputError({path, 0, 0},
+                         fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
     std::string text(static_cast<std::size_t>(most), '\0');
     file.read(text.data(), most);
-    if (file.bad()) throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));
+    if (file.bad())
+        throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));
     text.resize(static_cast<std::size_t>(file.gcount()));
-    if (text.size() == static_cast<std::size_t>(most)) throw InputError({path, 0, 0}, fmt::format("expected {} of at most 4 MiB, found more", what));
+    if (text.size() == static_cast<std::size_t>(most))
+        throw InputError({path, 0, 0}, fmt::format("expected {} of at most 4 MiB, found more", what));
     return text;
 }
 

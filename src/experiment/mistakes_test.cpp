@@ -102,7 +102,7 @@ const Mistake keys_and_types[] = {
     {"radius = 0.5\n", "", 11, 9, "missing key 'radius' in [shapes.ball]: expected a number from 1e-06"},
     {"[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nup = [0, 1, 0]\nvfov_deg = 40\n", "", 1, 1, "missing a table [camera]"},
     {"seed = 5", "seed = 5\nseed = 6", 2, 8, "cannot redefine"},
-    {"[shapes.brick]", "[shapes.ball]", 18, 1, "not TOML"},
+    {"[shapes.brick]", "[shapes.ball]", 18, 1, "duplicate name"},
     {"width = 64", "width = 64.0", 4, 9, "expected an integer from 1 to 16384 (pixels), found 64.0"},
     {"width = 64", "width = \"64\"", 4, 9, "found the text '64'"},
     {"width = 64", "width = 1979-05-27", 4, 9, "found a date or time"},
@@ -218,6 +218,21 @@ TEST(Mistakes, AllAreReportedAtOnceInFileOrder) {
         std::vector<std::string> at;
         for (const Complaint& c : error.complaints()) at.push_back(to_string(c.at));
         EXPECT_THAT(at, testing::ElementsAre("x.toml:4:9", "x.toml:29:8", "x.toml:31:1", "x.toml:43:7", "--set seed=-1"));
+    }
+}
+
+TEST(Mistakes, ANameGivenTwiceDoesNotHideTheRest) {
+    std::string text = good;
+    text.replace(text.find("[shapes.board]"), 14, "[shapes.ball]");
+    text.replace(text.find("width = 64"), 10, "width = -4");
+    text.replace(text.find("vfov_deg = 40"), 13, "vfov_deg = 40\nvfov_deg = 41");
+    try {
+        (void)parse(text, "x.toml");
+        FAIL();
+    } catch (const InputError& error) {
+        std::vector<std::string> at;
+        for (const Complaint& c : error.complaints()) at.push_back(to_string(c.at));
+        EXPECT_THAT(at, testing::ElementsAre("x.toml:4:9", "x.toml:11:12", "x.toml:24:1")) << error.what();
     }
 }
 

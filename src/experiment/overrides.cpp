@@ -60,7 +60,8 @@ std::string name_of(const Member& member) {
 Member* step(Node& node, const std::string& segment) {
     if (node.is_table()) return node.find(segment);
     if (const auto index = index_of(segment)) return *index < node.members.size() ? &node.members[*index] : nullptr;
-    const auto named = std::find_if(node.members.begin(), node.members.end(), [&](const Member& m) { return name_of(m) == segment; });
+    const auto named =
+        std::find_if(node.members.begin(), node.members.end(), [&](const Member& m) { return name_of(m) == segment; });
     return named == node.members.end() ? nullptr : &*named;
 }
 
@@ -71,7 +72,8 @@ void move_to(Node& node, const Place& at) {
 
 class Override {
 public:
-    Override(Draft& draft, Node& root, const std::string& text) : draft_(draft), root_(root), place_{"--set " + text, 0, 0} {}
+    Override(Draft& draft, Node& root, const std::string& text)
+        : draft_(draft), root_(root), place_{"--set " + text, 0, 0} {}
 
     void apply(const std::string& text) {
         const std::size_t equals = text.find('=');
@@ -122,9 +124,14 @@ private:
             }
         }
         if (valid.size() > 1)
-            return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_, valid[1][0], written_)), false;
+            return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_,
+                                    valid[1][0], written_)),
+                   false;
         if (valid.empty() && !top && all.empty())
-            return fail(fmt::format("no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}", path[0], hint(path[0], words))), false;
+            return fail(fmt::format(
+                       "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}", path[0],
+                       hint(path[0], words))),
+                   false;
         if (!valid.empty()) path = valid[0];
         else if (!top) path = all[0];  // the reader says what is wrong with its key
         return true;
@@ -136,8 +143,12 @@ private:
             Member* next = node->is_table() || node->is_array() ? step(*node, path[i]) : nullptr;
             if (!next) {
                 if (!node->is_table())
-                    return fail(fmt::format("no '{}' in '{}': expected {}", path[i], listed(Segments(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i)), "."),
-                                            node->is_array() && !node->members.empty() ? fmt::format("an index from 0 to {}", node->members.size() - 1) : "no more keys after it"));
+                    return fail(
+                        fmt::format("no '{}' in '{}': expected {}", path[i],
+                                    listed(Segments(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i)), "."),
+                                    node->is_array() && !node->members.empty()
+                                        ? fmt::format("an index from 0 to {}", node->members.size() - 1)
+                                        : "no more keys after it"));
                 node->members.push_back({path[i], place_, Node{}});
                 next = &node->members.back();
                 next->value.at = place_;

@@ -17,7 +17,8 @@ using nlohmann::json;
 Place place_of_byte(std::string_view text, std::size_t byte, const std::string& file) {
     const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-    return {file, static_cast<unsigned>(std::count(before.begin(), before.end(), '\n') + 1), static_cast<unsigned>(before.size() - line_start + 1)};
+    return {file, static_cast<unsigned>(std::count(before.begin(), before.end(), '\n') + 1),
+            static_cast<unsigned>(before.size() - line_start + 1)};
 }
 
 class Reader {
@@ -28,7 +29,8 @@ public:
         Published all;
         if (!root.is_object()) fail("", "an object with 'runs' and 'furnaces'", root);
         for (const auto& [key, value] : root.items()) {
-            if (key == "source") all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
+            if (key == "source")
+                all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
             else if (key == "runs") runs(value, all);
             else if (key == "furnaces") furnaces(value, all);
             else fail("/" + key, "one of the keys source, runs, furnaces", key);
@@ -50,12 +52,17 @@ private:
 
     void run(const json& run, const std::string& at, Published& all) const {
         const auto arm = run.find("arm"), n = run.find("n"), s = run.find("s");
-        if (!run.is_object() || arm == run.end() || !arm->is_string() || n == run.end() || !n->is_number_unsigned() || s == run.end() || !s->is_number())
+        if (!run.is_object() || arm == run.end() || !arm->is_string() || n == run.end() || !n->is_number_unsigned() ||
+            s == run.end() || !s->is_number())
             fail(at, "an object with arm (text), n (integer) and s (number)", run);
         for (const auto& [key, value] : run.items()) {
             if (key == "arm" || key == "n" || key == "s") continue;
             if (!value.is_number()) fail(at + "/" + key, "a number", value);
-            const bool fresh = all.runs.emplace(std::tuple(arm->get<std::string>(), n->get<std::uint64_t>(), s->get<double>(), key), value.get<double>()).second;
+            const bool fresh =
+                all.runs
+                    .emplace(std::tuple(arm->get<std::string>(), n->get<std::uint64_t>(), s->get<double>(), key),
+                             value.get<double>())
+                    .second;
             if (!fresh) fail(at + "/" + key, "a figure that was not given before", value);
         }
     }

@@ -54,7 +54,8 @@ private:
     }
     bool fail(std::string_view expected) {
         blanks();
-        why_ = rest_.empty() ? fmt::format("expected {} at the end", expected) : fmt::format("expected {}, found '{}'", expected, rest_.substr(0, 40));
+        why_ = rest_.empty() ? fmt::format("expected {} at the end", expected)
+                             : fmt::format("expected {}, found '{}'", expected, rest_.substr(0, 40));
         return false;
     }
     bool end() {
@@ -80,7 +81,8 @@ private:
     bool side(ParsedQuantity& q) {
         blanks();
         if (rest_.empty()) return fail("a quantity or a number");
-        if (std::string_view("0123456789+-.").find(rest_.front()) != std::string_view::npos) return number(q.number.emplace());
+        if (std::string_view("0123456789+-.").find(rest_.front()) != std::string_view::npos)
+            return number(q.number.emplace());
         const std::string name = word();
         const std::size_t dot = name.find('.');
         q.word = name.substr(0, dot);
@@ -88,7 +90,8 @@ private:
         const auto& words = quantity_words();
         const auto known = std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
         if (known == words.end()) {
-            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(all_words(), ", "), hint(q.word, all_words()));
+            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(all_words(), ", "),
+                               hint(q.word, all_words()));
             return false;
         }
         if (known->of_region != !q.region.empty()) {
@@ -129,7 +132,8 @@ template <class T> std::string missing(const std::vector<T>& all, const char* wh
     std::vector<std::string> names;
     for (const T& one : all) names.push_back(one.name);
     if (std::count(names.begin(), names.end(), name)) return "";
-    return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64), names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
+    return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64),
+                       names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
 }
 
 std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
@@ -154,7 +158,8 @@ const std::vector<QuantityWord>& quantity_words() {
         {"y_mean", false, Subject::run, "mean Y of the whole frame"},
         {"rmse_frame", false, Subject::run, "root mean square error of Y over the whole frame"},
         {"largest", false, Subject::run, "largest single sample of the frame; the arm's highest rung unless n is said"},
-        {"bad", false, Subject::run, "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
+        {"bad", false, Subject::run,
+         "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
         {"furnace", false, Subject::furnace, "Y that a white furnace reads"},
         {"furnace_error", false, Subject::furnace, "how far it is from what is expected, without sign"},
         {"shape_pixels", false, Subject::shape, "pixels in which the camera sees a shape"},
@@ -167,11 +172,16 @@ const std::vector<QuantityWord>& quantity_words() {
 
 std::string form_of(const QuantityWord& word) {
     static constexpr std::string_view brackets[] = {"", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)"};
-    return fmt::format("{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
+    return fmt::format("{}{}{}", word.word, word.of_region ? ".REGION" : "",
+                       brackets[static_cast<std::size_t>(word.subject)]);
 }
 
-std::optional<ParsedQuantity> parse_quantity(std::string_view text, std::string& why) { return Parser(text, why).quantity(); }
-std::optional<Comparison> parse_comparison(std::string_view text, std::string& why) { return Parser(text, why).comparison(); }
+std::optional<ParsedQuantity> parse_quantity(std::string_view text, std::string& why) {
+    return Parser(text, why).quantity();
+}
+std::optional<Comparison> parse_comparison(std::string_view text, std::string& why) {
+    return Parser(text, why).comparison();
+}
 
 std::string to_string(const ParsedQuantity& q) {
     if (q.number) return fmt::format("{}", *q.number);

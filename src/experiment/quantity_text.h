@@ -19,7 +19,7 @@ enum class Subject { none, run, furnace, shape, region, plate };
 
 struct QuantityWord {
     std::string_view word;
-    bool of_region;   // word.REGION
+    bool of_region;  // word.REGION
     Subject subject;
     std::string_view means;
 };

@@ -19,10 +19,13 @@ bool file_safe(std::string_view name) {
 }
 
 bool one_line(std::string_view name) {
-    return !name.empty() && name.size() <= 200 && std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
+    return !name.empty() && name.size() <= 200 &&
+           std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
 }
 
-std::string join(const std::string& path, std::string_view name) { return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name); }
+std::string join(const std::string& path, std::string_view name) {
+    return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
+}
 
 std::string where(const std::string& path) { return path.empty() ? "the experiment" : "[" + path + "]"; }
 
@@ -30,8 +33,14 @@ std::string where(const std::string& path) { return path.empty() ? "the experime
 std::string canonical(const Key& key, const Value& value) {
     switch (key.type) {
         case Type::flag: return value.flag ? "true" : "false";
-        case Type::integer: case Type::number: return fmt::format("{}", value.number + 0.0);
-        case Type::text: case Type::check: case Type::word: case Type::sampler: case Type::arm: case Type::shape: return value.text;
+        case Type::integer:
+        case Type::number: return fmt::format("{}", value.number + 0.0);
+        case Type::text:
+        case Type::check:
+        case Type::word:
+        case Type::sampler:
+        case Type::arm:
+        case Type::shape: return value.text;
         default: return listed(value.numbers, ",");
     }
 }
@@ -69,9 +78,11 @@ private:
             if ((key && has_kind(*key, kind)) || section.find_section(member.key)) continue;
             if (section.many == Many::titled && member.key == "name") continue;
             const std::vector<std::string> valid = words_of(section, kind);
-            const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key) : fmt::format("unknown key '{}'", member.key.substr(0, 64));
-            draft_.complain(join(path, member.key), member.at,
-                            fmt::format("{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
+            const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
+                                          : fmt::format("unknown key '{}'", member.key.substr(0, 64));
+            draft_.complain(
+                join(path, member.key), member.at,
+                fmt::format("{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
         }
     }
 
@@ -123,13 +134,15 @@ private:
         draft_.e.places[path] = member->at;
         const bool listed = section.many == Many::list || section.many == Many::titled;
         if (!node.is_table() && !(listed && node.is_array()))
-            return draft_.complain(path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
+            return draft_.complain(path, node.at,
+                                   fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
         if (section.many == Many::list && node.is_table())
             return draft_.complain(path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
         if (section.many == Many::one)
             return table(section, node, path, member->at, section.add ? section.add(object, "", member->at) : object);
         if (section.need == Need::required && node.members.empty())
-            return draft_.complain(path, member->at, fmt::format("{}: expected at least one {}, found none", path, form(section, path)));
+            return draft_.complain(path, member->at,
+                                   fmt::format("{}: expected at least one {}, found none", path, form(section, path)));
         elements(section, node, path, object);
     }
 
@@ -142,14 +155,16 @@ private:
     void absent(const Section& section, const std::string& path, const Place& parent_at, void* object) {
         if (section.need == Need::required)
             return draft_.complain(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
-        const bool all_default = std::none_of(section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
+        const bool all_default =
+            std::none_of(section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
         if (section.many == Many::one && all_default)
             table(section, Node{}, path, parent_at, section.add ? section.add(object, "", parent_at) : object);
     }
 
     void elements(const Section& section, const Node& node, const std::string& path, void* object) {
         if (node.members.size() > most_elements)
-            return draft_.complain(path, node.at, fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
+            return draft_.complain(
+                path, node.at, fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
         std::vector<std::string> names;
         for (const Member& member : node.members) names.push_back(member.key);
         titles_.clear();
@@ -162,17 +177,22 @@ private:
         siblings.clear();
     }
 
-    void element(const Section& section, const Node& node, const Member& member, const std::string& path, std::size_t index, void* object) {
+    void element(const Section& section, const Node& node, const Member& member, const std::string& path, std::size_t index,
+                 void* object) {
         if (!member.value.is_table())
-            return draft_.complain(join(path, member.key), member.at, fmt::format("{}: expected {}, found {}", join(path, member.key),
-                                                                      section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
+            return draft_.complain(
+                join(path, member.key), member.at,
+                fmt::format("{}: expected {}, found {}", join(path, member.key),
+                            section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
         std::string name = member.key;
         Place at = member.at;
         if (section.many == Many::titled && node.is_array() && !title(member, path, index, name, at)) return;
         const std::string own = section.many == Many::list ? fmt::format("{}.{}", path, index) : join(path, name);
         if (section.many == Many::named && !file_safe(name))
-            draft_.complain(own, at, fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a letter, digit or '_' first: names become file names",
-                                                 name.substr(0, 64), where(path)));
+            draft_.complain(own, at,
+                            fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
+                                        "letter, digit or '_' first: names become file names",
+                                        name.substr(0, 64), where(path)));
         if (section.many == Many::titled && !one_line(name))
             draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
         draft_.e.places[own] = at;
@@ -184,9 +204,10 @@ private:
         const Member* own = member.value.find("name");
         at = member.value.at;
         if (!own || own->value.kind != Node::Kind::text) {
-            draft_.complain(fmt::format("{}.{}", path, index), own ? own->value.at : at,
-                            fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'", path,
-                                        own ? ", found " + describe(own->value) : ""));
+            draft_.complain(
+                fmt::format("{}.{}", path, index), own ? own->value.at : at,
+                fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'", path,
+                            own ? ", found " + describe(own->value) : ""));
             return false;
         }
         name = own->value.text;
@@ -194,7 +215,8 @@ private:
         const auto [first, fresh] = titles_.emplace(name, at);
         if (!fresh)
             draft_.complain(fmt::format("{}.{}", path, index), at,
-                            fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path, to_string(first->second)));
+                            fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name,
+                                        path, to_string(first->second)));
         return fresh;
     }
 

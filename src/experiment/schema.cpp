@@ -11,8 +11,12 @@ namespace {
 
 std::string bounds(const Key& key) {
     switch (key.type) {
-        case Type::integer: case Type::number: case Type::point: case Type::color: case Type::numbers: case Type::integers:
-            return to_string(key.range);
+        case Type::integer:
+        case Type::number:
+        case Type::point:
+        case Type::color:
+        case Type::numbers:
+        case Type::integers: return to_string(key.range);
         default: return "";
     }
 }

@@ -14,10 +14,10 @@
 namespace crescent {
 
 enum class Type {
-    text,       // any text on one line
-    check,      // a comparison of quantities, see experiment/quantity_text.h
-    word,       // one of Key::words
-    flag,       // true or false
+    text,   // any text on one line
+    check,  // a comparison of quantities, see experiment/quantity_text.h
+    word,   // one of Key::words
+    flag,   // true or false
     integer,
     number,
     point,      // 3 numbers x, y, z
@@ -26,7 +26,9 @@ enum class Type {
     numbers,    // ascending, a bare number is a list of one
     integers,   // ascending, a bare integer is a list of one
     box,        // pixels x0, y0, x1, y1, both ends inclusive, origin bottom-left
-    sampler, arm, shape  // the name of one
+    sampler,
+    arm,
+    shape  // the name of one
 };
 
 /// Bounds of a number or of every number in a list.
@@ -42,8 +44,8 @@ enum class Need { required, optional, defaulted };
 /// A checked value on its way from the file into an Experiment; which field counts follows from the type.
 struct Value {
     bool flag = false;
-    int word = 0;                     // index into Key::words; flag is set where it is not the first
-    double number = 0;                // integer as well: exact up to 2^53
+    int word = 0;       // index into Key::words; flag is set where it is not the first
+    double number = 0;  // integer as well: exact up to 2^53
     std::vector<double> numbers;
     std::string text;
 };
@@ -62,10 +64,10 @@ struct Key {
 };
 
 enum class Many {
-    one,    // [camera]
-    named,  // [shapes.NAME]; names are file-safe
-    titled, // [assertions."any text"], or a list whose tables have a key 'name'
-    list,   // [[plates.NAME.runs]] or runs = [{...}]
+    one,     // [camera]
+    named,   // [shapes.NAME]; names are file-safe
+    titled,  // [assertions."any text"], or a list whose tables have a key 'name'
+    list,    // [[plates.NAME.runs]] or runs = [{...}]
 };
 
 /// A table of the file, or a family of tables under names of the user's choice.
@@ -121,7 +123,9 @@ template <class T> requires std::is_enum_v<T> void assign(T& to, const Value& v)
 template <class T> void assign(std::optional<T>& to, const Value& v) { assign(to.emplace(), v); }
 
 template <class T> struct OwnerOf;
-template <class T, class C> struct OwnerOf<T C::*> { using type = C; };
+template <class T, class C> struct OwnerOf<T C::*> {
+    using type = C;
+};
 
 /// Stores into a member, or a member of a member: to<&Shape::material, &Material::rho_s>.
 template <auto First, auto... Rest> void to(void* object, const Value& value) {

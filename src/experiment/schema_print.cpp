@@ -15,12 +15,15 @@ namespace {
 constexpr std::size_t columns = 80;
 
 std::string type_name(Type type) {
-    static constexpr const char* names[] = {"text", "check", "word", "flag", "integer", "number", "point", "direction", "color",
-                                            "numbers", "integers", "box", "sampler", "arm", "shape"};
+    static constexpr const char* names[] = {"text",     "check", "word",      "flag",  "integer",
+                                            "number",   "point", "direction", "color", "numbers",
+                                            "integers", "box",   "sampler",   "arm",   "shape"};
     return names[static_cast<std::size_t>(type)];
 }
 
-std::string join(const std::string& path, std::string_view name) { return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name); }
+std::string join(const std::string& path, std::string_view name) {
+    return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
+}
 
 std::string path_of(const Section& section, const std::string& parent) {
     std::string path = join(parent, section.name);
@@ -35,7 +38,8 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang 
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find(' ', at), text.size());
         const std::string_view word = text.substr(at, end - at);
-        if (line.size() > indent && line.size() + 1 + word.size() > columns) out += line + "\n", indent += std::exchange(hang, 0), line.assign(indent, ' ');
+        if (line.size() > indent && line.size() + 1 + word.size() > columns)
+            out += line + "\n", indent += std::exchange(hang, 0), line.assign(indent, ' ');
         if (line.size() > indent) line += ' ';
         line += word;
         at = end + 1;
@@ -48,9 +52,16 @@ std::string need_text(const Key& key) {
     return fmt::format("default {}", key.fallback);
 }
 
+/// "sphere disk" -> "sphere or disk".
+std::string alternatives(std::string_view kinds) {
+    const std::size_t blank = kinds.find(' ');
+    if (blank == std::string_view::npos) return std::string(kinds);
+    return fmt::format("{} or {}", kinds.substr(0, blank), kinds.substr(blank + 1));
+}
+
 std::string key_text(const Key& key) {
     std::string line = fmt::format("{}: {}; {}", key.name, expectation(key), need_text(key));
-    if (!key.kinds.empty()) line += fmt::format("; of a {}", key.kinds.find(' ') == std::string_view::npos ? std::string(key.kinds) : fmt::format("{} or {}", key.kinds.substr(0, key.kinds.find(' ')), key.kinds.substr(key.kinds.find(' ') + 1)));
+    if (!key.kinds.empty()) line += "; of a " + alternatives(key.kinds);
     return wrapped(line, 2, 2) + wrapped(key.means, 6);
 }
 
@@ -78,8 +89,11 @@ void collect(const Section& section, const std::string& parent, ordered_json& ke
                         {"type", type_name(key.type)},
                         {"expects", expectation(key)},
                         {"unit", key.unit},
-                        {"range", {{"low", number_or_null(key.range.low, ranged)}, {"low_open", key.range.low_open},
-                                   {"high", number_or_null(key.range.high, ranged)}, {"high_open", key.range.high_open}}},
+                        {"range",
+                         {{"low", number_or_null(key.range.low, ranged)},
+                          {"low_open", key.range.low_open},
+                          {"high", number_or_null(key.range.high, ranged)},
+                          {"high_open", key.range.high_open}}},
                         {"required", key.need == Need::required},
                         {"default", key.need == Need::required ? ordered_json(nullptr) : ordered_json(key.fallback)},
                         {"words", key.words},
@@ -101,9 +115,13 @@ std::string schema_text() {
 }
 
 std::string schema_json() {
-    ordered_json root = {{"keys", ordered_json::array()}, {"sections", ordered_json::array()}, {"samplers", sampler_names()}, {"quantities", ordered_json::array()}};
+    ordered_json root = {{"keys", ordered_json::array()},
+                         {"sections", ordered_json::array()},
+                         {"samplers", sampler_names()},
+                         {"quantities", ordered_json::array()}};
     collect(schema(), "", root["keys"], root["sections"]);
-    for (const QuantityWord& word : quantity_words()) root["quantities"].push_back({{"form", form_of(word)}, {"means", word.means}});
+    for (const QuantityWord& word : quantity_words())
+        root["quantities"].push_back({{"form", form_of(word)}, {"means", word.means}});
     return root.dump(2) + "\n";
 }
 

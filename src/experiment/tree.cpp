@@ -16,6 +16,8 @@ namespace {
 constexpr int deepest = 8;
 // The parser builds one table per dot of a key and takes them down by recursion: this bounds the stack it needs.
 constexpr int most_dots = 32;
+constexpr int most_duplicates = 64;
+constexpr std::string_view dropped = "\\u0001duplicate", dropped_key = "\1duplicate";  // as written, as read
 constexpr std::size_t most_bytes = std::size_t{4} << 20;
 
 Place place_of(const toml::source_region& region, const std::string& file) {
@@ -26,7 +28,8 @@ Node convert(const toml::node& from, const std::string& file, int depth);
 
 void convert_members(const toml::table& table, Node& to, const std::string& file, int depth) {
     for (const auto& [key, value] : table)
-        to.members.push_back({std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
+        if (!key.str().starts_with(dropped_key))
+            to.members.push_back({std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
     std::sort(to.members.begin(), to.members.end(), [](const Member& a, const Member& b) {
         return std::tie(a.at.line, a.at.column, a.key) < std::tie(b.at.line, b.at.column, b.key);
     });
@@ -41,7 +44,8 @@ Node convert(const toml::node& from, const std::string& file, int depth) {
     } else if (const auto* array = from.as_array()) {
         to.kind = Node::Kind::array;
         if (depth < deepest)
-            for (const auto& item : *array) to.members.push_back({"", place_of(item.source(), file), convert(item, file, depth + 1)});
+            for (const auto& item : *array)
+                to.members.push_back({"", place_of(item.source(), file), convert(item, file, depth + 1)});
     } else if (const auto* text = from.as_string()) {
         to.kind = Node::Kind::text, to.text = text->get();
     } else if (const auto* integer = from.as_integer()) {
@@ -59,17 +63,41 @@ Node convert(const toml::node& from, const std::string& file, int depth) {
 /// Refuses what the parser could only take with an unbounded stack or unbounded time.
 void refuse_junk(std::string_view text, const std::string& file) {
     if (text.size() > most_bytes)
-        throw InputError({file, 0, 0}, fmt::format("expected an experiment of at most {} MiB, found more", most_bytes >> 20));
+        throw InputError({file, 0, 0},
+                         fmt::format("expected an experiment of at most {} MiB, found more", most_bytes >> 20));
     unsigned line = 1, column = 1;
     int dots = 0;
     for (const char c : text) {
         if (c == '.' && ++dots > most_dots)
-            throw InputError({file, line, column},
-                             fmt::format("expected a key of at most 5 names, found more than {} dots in one run", most_dots));
+            throw InputError(
+                {file, line, column},
+                fmt::format("expected a key of at most 5 names, found more than {} dots in one run", most_dots));
         if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) dots = 0;
         if (c == '\n') ++line, column = 0;
         ++column;
     }
+}
+
+/// Takes a second use of a name out of the text: a header gets a name that is dropped, a key is commented out. False
+/// where that would take more than the one line.
+bool pass_over(std::string& text, unsigned line, int count) {
+    std::size_t begin = 0;
+    for (unsigned i = 1; i < line && begin != std::string::npos; ++i) {
+        begin = text.find('\n', begin);
+        if (begin != std::string::npos) ++begin;
+    }
+    if (begin == std::string::npos) return false;
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string old = text.substr(begin, end - begin);
+    const std::size_t first = old.find_first_not_of(" \t");
+    if (first == std::string::npos) return false;
+    const bool header = old[first] == '[';
+    const auto balanced = std::count(old.begin(), old.end(), '[') == std::count(old.begin(), old.end(), ']');
+    const bool plain = balanced && old.find('=') != std::string::npos && old.find('{') == std::string::npos &&
+                       old.find("\"\"\"") == std::string::npos && old.find("'''") == std::string::npos;
+    if (!header && !plain) return false;
+    text.replace(begin, end - begin, header ? fmt::format("[\"{}{}\"]", dropped, count) : "#");
+    return true;
 }
 
 }  // namespace
@@ -85,22 +113,34 @@ std::string describe(const Node& node) {
         case Node::Kind::table: return "a table";
         case Node::Kind::array: return fmt::format("a list of {}", node.members.size());
         case Node::Kind::text:
-            return node.text.size() > 60 ? fmt::format("the text '{}...'", node.text.substr(0, 57)) : fmt::format("the text '{}'", node.text);
+            return node.text.size() > 60 ? fmt::format("the text '{}...'", node.text.substr(0, 57))
+                                         : fmt::format("the text '{}'", node.text);
         case Node::Kind::integer: return fmt::format("{}", node.integer);
-        case Node::Kind::number: return node.number == std::floor(node.number) ? fmt::format("{:.1f}", node.number) : fmt::format("{}", node.number);
+        case Node::Kind::number:
+            return node.number == std::floor(node.number) ? fmt::format("{:.1f}", node.number)
+                                                          : fmt::format("{}", node.number);
         case Node::Kind::flag: return node.flag ? "true" : "false";
         case Node::Kind::date: return "a date or time";
     }
     return "";
 }
 
-Node read_toml(std::string_view text, const std::string& file) {
+Node read_toml(std::string_view text, const std::string& file, std::vector<Complaint>* duplicates) {
     refuse_junk(text, file);
-    try {
-        const toml::table table = toml::parse(text, std::string_view(file));
-        return convert(table, file, 0);
-    } catch (const toml::parse_error& error) {
-        throw InputError(place_of(error.source(), file), fmt::format("not TOML: {}", error.description()));
+    std::string left(text);
+    for (int tries = 0;; ++tries) {
+        try {
+            const toml::table table = toml::parse(left, std::string_view(file));
+            return convert(table, file, 0);
+        } catch (const toml::parse_error& error) {
+            const Place at = place_of(error.source(), file);
+            const bool twice = error.description().find("cannot redefine") != std::string_view::npos;
+            std::vector<Complaint> all = duplicates ? *duplicates : std::vector<Complaint>{};
+            all.push_back({at, fmt::format("{}{}", twice ? "duplicate name; expected each to be given once: " : "not TOML: ",
+                                           error.description())});
+            if (!twice || !duplicates || tries == most_duplicates || !pass_over(left, at.line, tries)) throw InputError(all);
+            *duplicates = std::move(all);
+        }
     }
 }
 

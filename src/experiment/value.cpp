@@ -29,21 +29,29 @@ public:
 
     bool read(const Node& node) {
         switch (key_.type) {
-            case Type::text: case Type::check: case Type::sampler: case Type::arm: case Type::shape: return text(node);
+            case Type::text:
+            case Type::check:
+            case Type::sampler:
+            case Type::arm:
+            case Type::shape: return text(node);
             case Type::word: return word(node);
             case Type::flag: return flag(node);
-            case Type::integer: case Type::number: return scalar(node, value_.number);
+            case Type::integer:
+            case Type::number: return scalar(node, value_.number);
             case Type::direction: return list(node) && unit();
             case Type::box: return list(node) && box();
-            case Type::numbers: case Type::integers: return list(node) && ascending(node);
-            case Type::point: case Type::color: return list(node);
+            case Type::numbers:
+            case Type::integers: return list(node) && ascending(node);
+            case Type::point:
+            case Type::color: return list(node);
         }
         return false;
     }
 
 private:
     bool fail(const Node& node, const std::string& more = "") {
-        draft_.complain(path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
+        draft_.complain(path_, node.at,
+                        fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
         return false;
     }
     bool fail(const std::string& say) {
@@ -53,8 +61,10 @@ private:
 
     bool text(const Node& node) {
         if (node.kind != Node::Kind::text) return fail(node);
-        if (node.text.size() > longest_text) return fail(fmt::format("expected at most {} bytes, found {}", longest_text, node.text.size()));
-        const bool control = std::any_of(node.text.begin(), node.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+        if (node.text.size() > longest_text)
+            return fail(fmt::format("expected at most {} bytes, found {}", longest_text, node.text.size()));
+        const bool control =
+            std::any_of(node.text.begin(), node.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
         if (control) return fail("expected one line of text without control characters");
         value_.text = node.text;
         return true;
@@ -96,7 +106,8 @@ private:
         if (node.members.size() > longest_list) return fail(node, fmt::format("; at most {} are taken", longest_list));
         value_.numbers.resize(node.members.size());
         bool good = true;
-        for (std::size_t i = 0; i < value_.numbers.size(); ++i) good = scalar(node.members[i].value, value_.numbers[i]) && good;
+        for (std::size_t i = 0; i < value_.numbers.size(); ++i)
+            good = scalar(node.members[i].value, value_.numbers[i]) && good;
         return good;
     }
 
@@ -117,8 +128,9 @@ private:
         const double length = std::hypot(v[0], v[1], v[2]);
         if (length == 0) return fail("expected a unit vector, found the zero vector");
         if (std::abs(length - 1) > unit_tolerance)
-            return fail(fmt::format("expected a unit vector, found length {:.6g}; the unit vector is [{:.6g}, {:.6g}, {:.6g}]", length,
-                                    v[0] / length, v[1] / length, v[2] / length));
+            return fail(
+                fmt::format("expected a unit vector, found length {:.6g}; the unit vector is [{:.6g}, {:.6g}, {:.6g}]",
+                            length, v[0] / length, v[1] / length, v[2] / length));
         for (double& x : v) x /= length;
         return true;
     }
@@ -128,8 +140,9 @@ private:
         for (int axis = 0; axis < 2; ++axis) {
             const auto low = static_cast<std::size_t>(axis), high = low + 2;
             if (v[high] < v[low])
-                return fail(fmt::format("expected [x0, y0, x1, y1] with {0}0 <= {0}1, found {0}0 = {1} and {0}1 = {2}: {3}", axis ? 'y' : 'x', v[low],
-                                        v[high], v[high] + 1 == v[low] ? "an empty box" : "an inverted box"));
+                return fail(fmt::format("expected [x0, y0, x1, y1] with {0}0 <= {0}1, found {0}0 = {1} and {0}1 = {2}: {3}",
+                                        axis ? 'y' : 'x', v[low], v[high],
+                                        v[high] + 1 == v[low] ? "an empty box" : "an inverted box"));
         }
         return true;
     }

@@ -26,7 +26,8 @@ double of_run(const ParsedQuantity& q, const RunMeter* run) {
 
 double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
     for (const FurnaceMeter& furnace : metrics.furnaces)
-        if (furnace.name == q.subject) return q.word == "furnace" ? furnace.measured : std::abs(furnace.measured - furnace.expected);
+        if (furnace.name == q.subject)
+            return q.word == "furnace" ? furnace.measured : std::abs(furnace.measured - furnace.expected);
     return unmeasured;
 }
 
@@ -90,7 +91,8 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
     return unmeasured;
 }
 
-std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& metrics, const std::map<std::string, std::size_t>& plate_bytes) {
+std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& metrics,
+                                   const std::map<std::string, std::size_t>& plate_bytes) {
     const std::vector<std::uint32_t> all = seeds_of(metrics, experiment.seed);
     std::vector<AssertionResult> results;
     for (const AssertionPlan& plan : experiment.assertions) {

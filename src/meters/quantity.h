@@ -19,6 +19,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 
 /// One result for each assertion, in the experiment's order. over = "median" compares the median of each side over all
 /// seeds that were run (an even count: the mean of the middle two). A NaN on either side, at any of these seeds, fails.
-std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& metrics, const std::map<std::string, std::size_t>& plate_bytes);
+std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& metrics,
+                                   const std::map<std::string, std::size_t>& plate_bytes);
 
 }  // namespace crescent
