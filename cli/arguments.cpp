@@ -1,0 +1,128 @@
+// The one file that knows the command line's grammar, and the manual that --help prints.
+#include "arguments.h"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+#include "crescent.h"
+
+namespace crescent::cli {
+
+namespace {
+
+using Work = std::function<int()>;
+
+constexpr const char* footer = R"(Exit codes: 0 all holds; 1 an assertion fails; 2 wrong command line or
+experiment file; 3 an output cannot be written or a part is missing;
+4 inconclusive (check); 130 interrupted.
+
+  crescent run experiments/gallery.toml      the published experiment
+  crescent run experiments/gallery.toml --set shapes.sphere.s=64 --set seed=7
+  crescent list                              what an experiment can name
+  crescent schema                            every key of an experiment file)";
+
+constexpr const char* run_footer = R"(FILE is an experiment (`crescent schema` has its keys). --set takes the path of
+any key, with the same checks as the file: --set shapes.sphere.s=64 --set seed=7.
+Films are the same bits for any --threads and any --isa.
+
+Written under DIR: report.html, metrics.json, metrics.csv, junit.xml, timing.json,
+plates/, films/. Each file appears whole or not at all.)";
+
+/// A command that fills in Flags and then runs `perform`.
+template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* name, const char* means, int (*perform)(const Flags&), std::shared_ptr<Flags>& flags) {
+    flags = std::make_shared<Flags>();
+    CLI::App* sub = app.add_subcommand(name, means);
+    sub->callback([&work, flags, perform] { work = [flags, perform] { return perform(*flags); }; });
+    return sub;
+}
+
+void add_run(CLI::App& app, Work& work) {
+    std::shared_ptr<RunFlags> f;
+    CLI::App* c = command(app, work, "run", "Run an experiment: films, meters, plates, report.", run, f);
+    c->footer(run_footer);
+    c->add_option("FILE", f->file, "the experiment, a TOML file")->required()->type_name("");
+    c->add_option("--out", f->out, "where the outputs go; default: out/ and FILE's name")->type_name("DIR");
+    c->add_option("--set", f->overrides, "another value for a key; may be given again")->type_name("PATH=VALUE")->take_all()->expected(1)->allow_extra_args(false);
+    c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
+    c->add_option("--threads", f->threads, "default: as many as the machine has")->type_name("N")->check(CLI::Range(1, 4096));
+    c->add_option("--isa", f->isa, "scalar, sse4, avx2, avx512; default: this machine's best")->type_name("NAME");
+    c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
+    c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
+}
+
+void add_list(CLI::App& app, Work& work) {
+    std::shared_ptr<ListFlags> f;
+    CLI::App* c = command(app, work, "list", "What an experiment can name.", list, f);
+    c->add_option("WHAT", f->what, "arms, shapes, brdfs, plates, meters or isas; without it, all")->type_name("");
+}
+
+void add_schema(CLI::App& app, Work& work) {
+    std::shared_ptr<SchemaFlags> f;
+    CLI::App* c = command(app, work, "schema", "Every key of an experiment file: type, unit, range, default, meaning.", schema, f);
+    c->add_flag("--json", f->json, "as a JSON Schema");
+}
+
+void add_version(CLI::App& app, Work& work) {
+    std::shared_ptr<VersionFlags> f;
+    command(app, work, "version", "Version, commit and compiler.", version, f);
+    app.add_flag_callback("--version", [] { throw CLI::CallForVersion("", 0); }, "Version, commit and compiler.");
+}
+
+/// Commands where none was chosen, else the flags of the chosen one.
+std::vector<std::string> words(const CLI::App& command) {
+    std::vector<std::string> out;
+    for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; })) out.push_back(sub->get_name());
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) out.push_back("--" + name);
+    return out;
+}
+
+/// The parser's complaint in two lines, with the nearest valid word where a word is unknown.
+std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
+    const auto used = app.get_subcommands();
+    const CLI::App& command = used.empty() ? app : *used.front();
+    const std::string name = used.empty() ? "crescent" : "crescent " + command.get_name();
+    std::string text = name + ": " + error.what();
+    const std::vector<std::string> extra = app.remaining(true);
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extra.empty()) {
+        const std::string near = nearest(extra.front().substr(0, extra.front().find('=')), words(command));
+        text = name + ": no '" + extra.front() + "' here" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+    }
+    return text + "\n`" + name + " --help` says what it takes\n";
+}
+
+Work answer(std::FILE* to, const std::string& text, int code) {
+    return [=] {
+        if (to == stdout) print(text);
+        else std::fputs(text.c_str(), to);
+        return code;
+    };
+}
+
+}  // namespace
+
+std::function<int()> parse(int argc, char** argv) {
+    CLI::App app("A bench for importance samplers: it shows where the noise goes.", "crescent");
+    app.footer(footer);
+    app.get_formatter()->column_width(28);
+    app.require_subcommand(0, 1);
+    Work work;
+    add_run(app, work);
+    add_list(app, work);
+    add_schema(app, work);
+    add_version(app, work);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return answer(stdout, app.help(), held);
+    } catch (const CLI::CallForVersion&) {
+        return [] { return version({}); };
+    } catch (const CLI::ParseError& e) {
+        return answer(stderr, misuse(app, e), misused);
+    }
+    return work ? work : answer(stderr, app.help(), misused);
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,48 @@
+// The commands of the program: what each takes, and the exit codes that all of them return.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crescent::cli {
+
+/// What the program returns to its caller; the same for every command.
+enum Exit : int {
+    held = 0,          // done, and everything asserted holds (check: right)
+    failed = 1,        // done, and an assertion fails (check: wrong)
+    misused = 2,       // the command line or the experiment file is wrong; nothing was written
+    unwritable = 3,    // an output could not be written, or a needed part is missing
+    inconclusive = 4,  // check: neither right nor wrong
+    bug = 70,          // a claim of our own did not hold (EX_SOFTWARE of sysexits.h)
+    interrupted = 130  // SIGINT or SIGTERM
+};
+
+struct RunFlags {
+    std::string file;
+    std::vector<std::string> overrides;  // PATH=VALUE
+    std::string out, isa;                // "": the default
+    std::string instrument = "cpu";
+    int seeds = 0, threads = 0;          // 0: the file's; as many as the machine has
+    bool quiet = false;
+};
+int run(const RunFlags& flags);
+
+struct ListFlags {
+    std::string what;  // "": all
+};
+int list(const ListFlags& flags);
+
+struct SchemaFlags {
+    bool json = false;
+};
+int schema(const SchemaFlags& flags);
+
+struct VersionFlags {};
+int version(const VersionFlags& flags);
+
+/// Writes to stdout and makes sure that it arrived. A reader who went away (closed pipe) is no error;
+/// anything else throws OutputError.
+void print(const std::string& text);
+
+}  // namespace crescent::cli

@@ -1,0 +1,87 @@
+// crescent list: the words that an experiment and the command line can name. Everything comes from the tables that
+// read, compute and draw; nothing is listed by hand here.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "crescent.h"
+
+namespace crescent::cli {
+
+namespace {
+
+struct Word {
+    std::string word, means;
+};
+
+/// The words that a key of a section takes.
+std::vector<Word> words_of_key(const char* section, const char* key) {
+    std::vector<Word> out;
+    for (const std::string& word : crescent::schema().find_section(section)->find_key(key)->words) out.push_back({word, ""});
+    return out;
+}
+
+std::vector<Word> arms() {
+    std::vector<Word> out;
+    for_each_arm(Arms{}, [&]<template <class> class A>() { out.push_back({std::string(A<float>::name), ""}); });
+    return out;
+}
+
+std::vector<Word> meters() {
+    std::vector<Word> out;
+    for (const QuantityWord& word : quantity_words()) out.push_back({form_of(word), std::string(word.means)});
+    return out;
+}
+
+std::vector<Word> instruction_sets() {
+    std::vector<Word> out;
+    for (const std::string& isa : isas()) out.push_back({isa, ""});
+    return out;
+}
+
+struct Topic {
+    std::string name, means;
+    std::vector<Word> (*words)();
+};
+const std::vector<Topic>& topics() {
+    static const std::vector<Topic> all = {
+        {"arms", "samplers on trial", arms},
+        {"shapes", "kinds of shape", [] { return words_of_key("shapes", "kind"); }},
+        {"brdfs", "lobes beside the Lambert term", [] { return words_of_key("shapes", "brdf"); }},
+        {"plates", "kinds of picture", [] { return words_of_key("plates", "kind"); }},
+        {"meters", "quantities that a check can name", meters},
+        {"isas", "instruction sets that this machine has, the best last", instruction_sets},
+    };
+    return all;
+}
+
+std::string lines(const std::vector<Word>& words, const char* indent) {
+    std::string out;
+    for (const Word& w : words) out += indent + (w.means.empty() ? w.word : fmt::format("{:<32}  {}", w.word, w.means)) + "\n";
+    return out;
+}
+
+[[noreturn]] void unknown(const std::string& what) {
+    std::vector<std::string> names;
+    std::string all;
+    for (const Topic& topic : topics()) {
+        names.push_back(topic.name);
+        all += (all.empty() ? "" : ", ") + topic.name;
+    }
+    const std::string near = nearest(what, names);
+    throw InputError({"crescent list", 0, 0}, "expected one of " + all + ", not '" + what + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+}  // namespace
+
+int list(const ListFlags& flags) {
+    std::string out;
+    for (const Topic& topic : topics()) {
+        if (flags.what.empty()) out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" + lines(topic.words(), "  ");
+        if (flags.what == topic.name) out = lines(topic.words(), "");
+    }
+    if (out.empty()) unknown(flags.what);
+    print(out);
+    return held;
+}
+
+}  // namespace crescent::cli

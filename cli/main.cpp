@@ -1,0 +1,59 @@
+// The program `crescent`: runs what the command line asks for and turns what happened into an exit code.
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "arguments.h"
+#include "commands.h"
+#include "crescent.h"
+
+namespace crescent::cli {
+
+void print(const std::string& text) {
+    errno = 0;
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!written && errno != EPIPE) throw OutputError(std::string("cannot write to stdout: ") + std::strerror(errno));
+}
+
+namespace {
+
+/// A closed descriptor 0, 1 or 2 would be given to the first file that is opened.
+void open_standard_streams() {
+    for (int fd = 0; fd <= 2; ++fd)
+        if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF) static_cast<void>(::open("/dev/null", O_RDWR));
+}
+
+int complain(int code, const std::string& text) {
+    std::fprintf(stderr, "%s\n", text.c_str());
+    return code;
+}
+
+int perform(int argc, char** argv) {
+    try {
+        return parse(argc, argv)();
+    } catch (const InputError& e) {
+        return complain(misused, e.what());
+    } catch (const OutputError& e) {
+        return complain(unwritable, std::string("crescent: ") + e.what());
+    } catch (const Interrupted&) {
+        return complain(interrupted, "crescent: interrupted; what was there before is untouched");
+    } catch (const std::bad_alloc&) {
+        return complain(unwritable, "crescent: out of memory");
+    } catch (const std::exception& e) {
+        return complain(bug, std::string("crescent: a bug of its own: ") + e.what());
+    }
+}
+
+}  // namespace
+}  // namespace crescent::cli
+
+int main(int argc, char** argv) {
+    crescent::cli::open_standard_streams();
+    std::signal(SIGPIPE, SIG_IGN);
+    return crescent::cli::perform(argc, argv);
+}

@@ -1,0 +1,54 @@
+// crescent run: an experiment file -> films, meters, plates, report.
+#include <filesystem>
+
+#include "commands.h"
+#include "crescent.h"
+#include "instruments.h"
+#include "progress.h"
+#include "signals.h"
+
+namespace crescent::cli {
+
+namespace {
+
+std::string quoted(const std::string& word) {
+    const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") == std::string::npos;
+    if (plain && !word.empty()) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+/// The command that makes the outputs again. Where they go, threads and instruction set do not change them and are
+/// left out, so that equal runs state equal commands.
+std::string command_of(const RunFlags& flags) {
+    std::string command = "crescent run " + quoted(flags.file);
+    for (const std::string& text : flags.overrides) command += " --set " + quoted(text);
+    if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
+    if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
+    return command;
+}
+
+}  // namespace
+
+int run(const RunFlags& flags) {
+    std::vector<std::string> overrides = flags.overrides;
+    if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
+    const Experiment experiment = load(flags.file, overrides);
+
+    RunOptions options;
+    options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
+    options.threads = flags.threads;
+    options.isa = flags.isa;
+    options.command = command_of(flags);
+    options.instrument = instrument(flags.instrument);
+
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    const RunResult result = crescent::run(experiment, options, progress);
+    progress.clear();
+    print(result.summary);
+    return result.metrics.all_hold() ? held : failed;
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,20 @@
+// Ctrl-C and SIGTERM.
+#pragma once
+
+namespace crescent {
+class Watch;
+}
+
+namespace crescent::cli {
+
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP sets watch.stop; 0.8 s later, or on a second signal, the process
+/// ends at once with 130. Outputs appear by renaming, so ending at once leaves none half-written.
+class StopOnSignal {
+public:
+    explicit StopOnSignal(Watch& watch);
+    ~StopOnSignal();
+    StopOnSignal(const StopOnSignal&) = delete;
+    StopOnSignal& operator=(const StopOnSignal&) = delete;
+};
+
+}  // namespace crescent::cli

@@ -1,0 +1,29 @@
+// The public face of crescent. Doors and programs of others include this file and nothing else of src/.
+//
+//   load, parse       an experiment file or text -> Experiment; InputError names every mistake with its place
+//   Scene             an Experiment -> what a pixel sees: surface point, normal, BRDF, lights, what blocks them
+//   Arms              the samplers on trial as a list of types; for_each_arm walks it
+//   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
+//   run               an Experiment -> films, meters, plates and report under one folder
+//
+// Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
+// reader's mistake, OutputError something missing or not writable, Interrupted a stop that was asked for, Bug ours.
+#pragma once
+
+#include "arms/all.h"
+#include "base/errors.h"
+#include "base/watch.h"
+#include "estimator/estimator.h"
+#include "estimator/kernel.h"
+#include "experiment/experiment.h"
+#include "experiment/names.h"
+#include "experiment/quantity_text.h"
+#include "experiment/schema.h"
+#include "films/film.h"
+#include "meters/evidence.h"
+#include "meters/metrics.h"
+#include "plates/plates.h"
+#include "report/report.h"
+#include "run.h"
+#include "scene/scene.h"
+#include "version.h"

@@ -1,0 +1,12 @@
+// Which crescent this is.
+#pragma once
+
+#include <string>
+
+namespace crescent {
+
+std::string version();   // "0.1.0"
+std::string commit();    // as `git describe` says it, or "unknown"
+std::string compiler();  // "GNU 12.2.0"
+
+}  // namespace crescent

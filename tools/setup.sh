@@ -1,0 +1,99 @@
+# Shell functions behind ./run and ./test: packages, configuration, build. Sourced, with `root` set to the repository.
+# What each step prints goes to build/log/; the terminal sees one line a step, and the log's end where a step fails.
+
+log_dir="$root/build/log"
+mkdir -p "$log_dir" 2>/dev/null || { echo "cannot write to $root/build" >&2; exit 3; }
+
+say() { printf '%s\n' "$*" >&2; }
+
+# fail CODE LOG MESSAGE: what went wrong, the end of its log, where all of it is.
+fail() {
+    local code=$1 log=$2
+    shift 2
+    [ -s "$log" ] && { tail -n 40 "$log" >&2; say "the whole log: $log"; }
+    say "$*"
+    exit "$code"
+}
+
+# packages_of GROUP...: the names listed under these groups.
+packages_of() {
+    local group
+    for group in "$@"; do awk -v group="$group" '$1 == group { print $2 }' "$root/tools/packages.txt"; done
+}
+
+# missing PACKAGE...: those that are not installed.
+missing() {
+    dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "$@" 2>/dev/null |
+        awk 'NR == FNR { if ($1 == "ii") have[$2] = 1; next } !($1 in have)' - <(printf '%s\n' "$@")
+}
+
+apt() {
+    local as=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || { echo "neither root nor sudo"; return 1; }
+        as=(sudo)
+    fi
+    "${as[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 "$@"
+}
+
+# need_packages GROUP...: installs what is missing of these groups, and of `optional` once.
+# Touches neither apt nor the network where nothing is missing.
+need_packages() {
+    command -v dpkg-query >/dev/null || { say "no dpkg here: taking the needed packages as installed"; return; }
+    local log="$log_dir/packages.log" tried="$root/build/optional-packages-tried"
+    local needed=() optional=()
+    mapfile -t needed < <(missing $(packages_of "$@"))
+    # A package that could not be had is not asked for again until the list changes.
+    [ "$tried" -nt "$root/tools/packages.txt" ] || mapfile -t optional < <(missing $(packages_of optional))
+    if [ ${#needed[@]} -gt 0 ] || [ ${#optional[@]} -gt 0 ]; then
+        say "installing packages: ${needed[*]} ${optional[*]}"
+        apt update >"$log" 2>&1
+    fi
+    if [ ${#needed[@]} -gt 0 ]; then
+        apt install --no-install-recommends "${needed[@]}" >>"$log" 2>&1
+        mapfile -t needed < <(missing "${needed[@]}")
+        [ ${#needed[@]} -eq 0 ] || fail 3 "$log" "needed and not to be had through apt: ${needed[*]}"
+    fi
+    if [ ${#optional[@]} -gt 0 ]; then
+        apt install --no-install-recommends "${optional[@]}" >>"$log" 2>&1 ||
+            for package in "${optional[@]}"; do apt install --no-install-recommends "$package" >>"$log" 2>&1; done
+        mapfile -t optional < <(missing "${optional[@]}")
+        [ ${#optional[@]} -eq 0 ] || say "going on without: ${optional[*]}"
+    fi
+    touch "$tried"
+}
+
+# binary_dir PRESET: where CMakePresets.json builds it.
+binary_dir() {
+    [ "$1" = release ] && echo "$root/build" || echo "$root/build-$1"
+}
+
+# follow NAME: copies ninja's lines to stdout (the log) and its progress to the terminal.
+follow() {
+    local line
+    while IFS= read -r line; do
+        printf '%s\n' "$line"
+        [ -t 2 ] && [[ $line =~ ^\[([0-9]+/[0-9]+)\] ]] && printf '\r\e[K%s %s' "$1" "${BASH_REMATCH[1]}" >&2
+    done
+    [ -t 2 ] && printf '\r\e[K' >&2
+    return 0
+}
+
+# build PRESET [TARGET...]: configures where it has not been, then brings the targets (default: all) up to date.
+build() {
+    local preset=$1 dir log start=$SECONDS
+    shift
+    dir=$(binary_dir "$preset")
+    log="$log_dir/$preset.log"
+    if [ ! -f "$dir/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$dir/build.ninja" ]; then
+        say "configuring $preset"
+        (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || fail 3 "$log" "cmake --preset $preset failed"
+    fi
+    # With nothing to do this takes a fraction of a second and says nothing.
+    if ! ninja -C "$dir" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
+        say "building $preset (log: ${log#"$root"/})"
+    fi
+    ninja -C "$dir" "$@" 2>&1 | follow "$preset" >>"$log"
+    [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building $preset failed"
+    [ $((SECONDS - start)) -lt 2 ] || say "built $preset in $((SECONDS - start)) s"
+}
