@@ -1,0 +1,97 @@
+// A built-in arm as a subject: draws in float as it renders, densities in double for quadrature; the surface is
+// f = rho_d/pi + rho_s lobe.
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "arms/all.h"
+#include "scene/brdf.h"
+#include "verdicts/subject.h"
+
+namespace crescent {
+
+enum class LobeKind { none, phong, blinn_phong, ggx };
+
+struct SurfaceSetup {
+    LobeKind lobe = LobeKind::none;
+    double rho_d = 0, rho_s = 0;
+    double s = 32, alpha = 0.3;
+};
+
+double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
+
+template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
+template <class F> Vec3d widen(Vec3<F> v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
+
+/// The site of an arm in number type F; `disk` must outlive it.
+template <class F> Site<F> site_of(const SurfaceSetup& surface, Vec3d wo, const LocalDisk<F>& disk, bool lit) {
+    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d), static_cast<F>(surface.rho_s), &disk, lit ? 1 : 0};
+}
+template <class F> LocalDisk<F> disk_of(const TrialLight& light) {
+    return {as<F>(light.center), as<F>(light.normal), static_cast<F>(light.radius), F(0), F(1)};
+}
+
+/// A is an arm template; planted faults are arms too.
+template <template <class> class A> class BuiltIn : public Subject {
+public:
+    BuiltIn(const SurfaceSetup& surface, Vec3d wo, const TrialLight& light)
+        : surface_(surface), disk_single_(disk_of<float>(light)), disk_double_(disk_of<double>(light)),
+          single_(site_of<float>(surface, wo, disk_single_, light.has_disk())), double_(site_of<double>(surface, wo, disk_double_, light.has_disk())) {}
+    BuiltIn(const BuiltIn&) = delete;
+    BuiltIn& operator=(const BuiltIn&) = delete;
+
+    std::string name() const override { return std::string(A<float>::name); }
+    int techniques() const override {
+        if constexpr (paired) return A<float>::techniques;
+        else return 1;
+    }
+    void sample(int technique, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+        const Vec3<float> o = as<float>(wo);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const Drawn<float> d = draw(technique, o, {static_cast<float>(u[i].x), static_cast<float>(u[i].y)});
+            out[i] = {widen(d.wi), static_cast<double>(d.pdf.v), {}};
+        }
+    }
+    void pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = static_cast<double>(density(single_, technique, as<float>(at[i].wo), as<float>(at[i].wi)));
+    }
+    void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = density(double_, technique, at[i].wo, at[i].wi);
+    }
+    void mis_weight(int technique, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            out[i] = 1;
+            if constexpr (paired) {
+                const Vec3<float> o = as<float>(at[i].wo), w = as<float>(at[i].wi);
+                const float own = density(single_, technique, o, w);
+                const Drawn<float> d{w, {own}};
+                out[i] = static_cast<double>(technique == 0 ? single_.template weight<0>(o, d) : single_.template weight<1>(o, d));
+            }
+        }
+    }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    }
+
+protected:
+    static constexpr bool paired = requires { A<float>::techniques; };
+
+    Drawn<float> draw(int technique, Vec3<float> wo, Vec2<float> u) const {
+        if constexpr (paired) return technique == 0 ? single_.template sample_technique<0>(wo, u) : single_.template sample_technique<1>(wo, u);
+        else return single_.sample(wo, u);
+    }
+    template <class F> static F density(const A<F>& arm, int technique, Vec3<F> wo, Vec3<F> wi) {
+        if constexpr (paired) return technique == 0 ? arm.template pdf_technique<0>(wo, wi).v : arm.template pdf_technique<1>(wo, wi).v;
+        else return arm.pdf(wo, wi).v;
+    }
+
+    SurfaceSetup surface_;
+    LocalDisk<float> disk_single_;
+    LocalDisk<double> disk_double_;
+    A<float> single_;
+    A<double> double_;
+};
+
+}  // namespace crescent

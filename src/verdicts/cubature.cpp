@@ -1,0 +1,221 @@
+#include "verdicts/cell.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "simd/scalar.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr int points = rule_size;
+
+/// The rule's points in [-1, 1]^2: centre, +-l2 and +-l3 on the axes, +-l4 and +-l5 on the diagonals.
+std::array<Vec2d, points> rule_points() {
+    const double l2 = std::sqrt(9.0 / 70), l3 = std::sqrt(0.9), l5 = std::sqrt(9.0 / 19);
+    std::array<Vec2d, points> p{};
+    int i = 1;
+    for (double l : {l2, l3}) {
+        for (double sign : {-l, l}) p[i++] = {sign, 0};
+        for (double sign : {-l, l}) p[i++] = {0, sign};
+    }
+    for (double l : {l3, l5})
+        for (double x : {-l, l})
+            for (double y : {-l, l}) p[i++] = {x, y};
+    return p;
+}
+
+double sum(std::span<const double> g, int first, int count) {
+    double s = 0;
+    for (int i = first; i < first + count; ++i) s += g[i];
+    return s;
+}
+
+void apply_rule(Cell& cell, std::span<const double> g) {
+    const Rect& r = cell.rect;
+    const double area = (r.a1 - r.a0) * (r.b1 - r.b0);
+    const double s2 = sum(g, 1, 4), s3 = sum(g, 5, 4), s4 = sum(g, 9, 4), s5 = sum(g, 13, 4);
+    const double w1 = (12824 - 9120 * 2 + 400 * 4) / 19683.0, w3 = (1820 - 400 * 2) / 19683.0;
+    const double seven = w1 * g[0] + 980.0 / 6561 * s2 + w3 * s3 + 200.0 / 19683 * s4 + 6859.0 / 19683 / 4 * s5;
+    const double five = (729 - 950 * 2 + 50 * 4) / 729.0 * g[0] + 245.0 / 486 * s2 + (265 - 100 * 2) / 1458.0 * s3 + 25.0 / 729 * s4;
+    cell.value = area * seven;
+    cell.error = area * std::fabs(seven - five);
+    const auto [low, high] = std::minmax_element(g.begin(), g.end());
+    cell.low = *low;
+    cell.high = *high;
+    const double ratio = (9.0 / 70) / 0.9;  // fourth differences along either axis choose the side to halve
+    const double along_a = std::fabs(g[1] + g[2] - 2 * g[0] - ratio * (g[5] + g[6] - 2 * g[0]));
+    const double along_b = std::fabs(g[3] + g[4] - 2 * g[0] - ratio * (g[7] + g[8] - 2 * g[0]));
+    cell.split_a = along_a > along_b || (along_a == along_b && (r.a1 - r.a0) > 2 * (r.b1 - r.b0));
+}
+
+void evaluate(std::span<Cell> cells, const Batch& g) {
+    static const std::array<Vec2d, points> rule = rule_points();
+    std::vector<Vec2d> at(cells.size() * points);
+    std::vector<double> values(at.size());
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const Rect& r = cells[c].rect;
+        for (int i = 0; i < points; ++i)
+            at[c * points + i] = {0.5 * (r.a0 + r.a1) + 0.5 * (r.a1 - r.a0) * rule[i].x, 0.5 * (r.b0 + r.b1) + 0.5 * (r.b1 - r.b0) * rule[i].y};
+    }
+    g(at, values);
+    for (std::size_t c = 0; c < cells.size(); ++c) apply_rule(cells[c], std::span(values).subspan(c * points, points));
+}
+
+/// What the draws say of a cell, where it differs from its integral by more than chance allows: six standard deviations.
+double disagreement(const Cell& cell, double total) {
+    constexpr int patience = 14;  // halvings; a density that is wrong never comes to agree
+    if (total <= 0 || cell.suspected > patience) return 0;
+    const double seen = static_cast<double>(cell.inside.size()), due = cell.value * total;
+    return std::fabs(seen - due) > 6 * std::sqrt(std::max(due, 0.0)) + 2 ? std::fabs(seen - due) / total : 0;
+}
+
+std::array<Cell, 2> halve(Cell& cell, double total) {
+    Rect lower = cell.rect, upper = cell.rect;
+    if (cell.split_a) lower.a1 = upper.a0 = 0.5 * (cell.rect.a0 + cell.rect.a1);
+    else lower.b1 = upper.b0 = 0.5 * (cell.rect.b0 + cell.rect.b1);
+    const int suspected = cell.suspected + (disagreement(cell, total) > 0);
+    std::array<Cell, 2> out = {Cell(lower, suspected), Cell(upper, suspected)};
+    for (Vec2d at : cell.inside) out[(cell.split_a ? at.x < lower.a1 : at.y < lower.b1) ? 0 : 1].inside.push_back(at);
+    return out;
+}
+
+std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const Witnesses* witnesses) {
+    std::vector<Cell> cells;
+    std::vector<std::vector<std::size_t>> of_bin(static_cast<std::size_t>(bins));
+    for (const Rect& r : start) {
+        of_bin[static_cast<std::size_t>(r.bin)].push_back(cells.size());
+        cells.emplace_back(r, 0);
+    }
+    for (std::size_t b = 0; witnesses && b < of_bin.size(); ++b)
+        for (Vec2d at : witnesses->bins[b])
+            for (std::size_t c : of_bin[b]) {
+                const Rect& r = cells[c].rect;
+                if (at.x < r.a0 || at.x > r.a1 || at.y < r.b0 || at.y > r.b1) continue;
+                cells[c].inside.push_back(at);
+                break;
+            }
+    return cells;
+}
+
+}  // namespace
+
+Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
+    const double total = witnesses ? witnesses->total : 0;
+    std::vector<Cell> cells = start_cells(start, bins, witnesses);
+    evaluate(cells, g);
+    Integral out;
+    out.evaluations = cells.size() * points;
+    bool edges = false;
+    for (;;) {
+        double error = 0, all = 0;
+        std::vector<std::pair<double, std::size_t>> order;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const bool at_edge = cells[i].rough() && cells[i].area() * cells[i].high < effort.edge_mass;
+            const double urge = std::max(at_edge ? 0 : cells[i].error, disagreement(cells[i], total));
+            edges = edges || at_edge;
+            error += cells[i].error;
+            all += urge;
+            order.emplace_back(urge, i);
+        }
+        out.error = error;
+        if (!(all > effort.tolerance)) break;
+        if (out.evaluations >= effort.most_evaluations) {
+            out.settled = false;
+            break;
+        }
+        std::sort(order.begin(), order.end(), std::greater<>());
+        const std::size_t room = (effort.most_evaluations - out.evaluations) / (2 * points) + 1;
+        double covered = 0;  // the largest errors, to nine tenths of the whole
+        std::vector<Cell> fresh;
+        std::size_t count = 0;
+        for (; count < order.size() && count < room && covered < 0.9 * all; ++count) {
+            covered += order[count].first;
+            for (Cell& half : halve(cells[order[count].second], total)) fresh.push_back(std::move(half));
+        }
+        evaluate(fresh, g);
+        out.evaluations += fresh.size() * points;
+        for (std::size_t k = 0; k < count; ++k) {
+            Cell& parent = cells[order[k].second];
+            // Both halves answer for what they differ by from the whole: a rule may be blind to a spike, two seldom are.
+            const double surprise = std::fabs(parent.value - fresh[2 * k].value - fresh[2 * k + 1].value) / 16;
+            for (Cell* half : {&fresh[2 * k], &fresh[2 * k + 1]}) half->error = std::max(half->error, surprise);
+            parent = std::move(fresh[2 * k]);
+            cells.push_back(std::move(fresh[2 * k + 1]));
+        }
+    }
+    if (edges) {
+        out.evaluations += cut_along_jumps(cells, g);
+        out.error = 0;
+        for (const Cell& c : cells) out.error = c.cut ? std::hypot(out.error, c.error) : out.error + c.error;
+    }
+    out.bins.assign(static_cast<std::size_t>(bins), 0.0);
+    for (const Cell& c : cells) out.bins[static_cast<std::size_t>(c.rect.bin)] += c.value;
+    for (double v : out.bins) out.value += v;
+    return out;
+}
+
+Vec3d SphereMap::direction(Vec2d at) const {
+    const double sin = std::sqrt(std::max(at.x * (2 - at.x), 0.0)), phi = 2 * pi * at.y;
+    return frame.to_world({sin * std::cos(phi), sin * std::sin(phi), 1 - at.x});
+}
+
+Vec2d SphereMap::coordinates(Vec3d w) const {
+    const Vec3d off = w - frame.n, local = frame.to_local(w);
+    const double near = 0.5 * dot(off, off);  // 1 - cos for unit w, without cancellation near the axis
+    const double turns = std::atan2(local.y, local.x) / (2 * pi);
+    return {near < 0.5 ? near : 1 - local.z, turns < 0 ? turns + 1 : turns};
+}
+
+std::vector<Rect> graded_cells(double a_end) {
+    const double edges[] = {0, 1e-6, 1e-4, 1e-2, 0.1, 0.4, 1, 1.6, 2};
+    std::vector<Rect> out;
+    for (std::size_t i = 0; i + 1 < std::size(edges) && edges[i] < a_end; ++i)
+        for (int k = 0; k < 6; ++k) out.push_back({edges[i], std::min(edges[i + 1], a_end), k / 6.0, (k + 1) / 6.0, 0});
+    return out;
+}
+
+namespace {
+
+struct Node {
+    Rect rect;
+    std::vector<Vec2d> inside;
+    int depth = 0;
+};
+
+void split(const Node& n, std::vector<Node>& stack) {
+    const Rect& r = n.rect;
+    const double mid = 0.5 * (r.a0 + r.a1), sin = std::sqrt(std::max(mid * (2 - mid), 1e-12));
+    const bool along_a = (r.a1 - r.a0) / sin > 2 * pi * (r.b1 - r.b0) * sin;  // the longer side, in radians
+    Node lower{r, {}, n.depth + 1}, upper{r, {}, n.depth + 1};
+    if (along_a) lower.rect.a1 = upper.rect.a0 = mid;
+    else lower.rect.b1 = upper.rect.b0 = 0.5 * (r.b0 + r.b1);
+    for (Vec2d at : n.inside) ((along_a ? at.x < lower.rect.a1 : at.y < lower.rect.b1) ? lower : upper).inside.push_back(at);
+    stack.push_back(std::move(lower));
+    stack.push_back(std::move(upper));
+}
+
+}  // namespace
+
+std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> guides) {
+    std::vector<Node> stack;
+    for (const Rect& r : cells) stack.push_back({r, {}, 0});
+    for (Vec3d w : guides) {
+        const Vec2d at = map.coordinates(w);
+        for (Node& n : stack)
+            if (at.x >= n.rect.a0 && at.x < n.rect.a1 && at.y >= n.rect.b0 && at.y < n.rect.b1) n.inside.push_back(at);
+    }
+    const std::size_t crowd = std::max<std::size_t>(guides.size() / 500, 3);
+    std::vector<Rect> out;
+    while (!stack.empty()) {
+        const Node n = std::move(stack.back());
+        stack.pop_back();
+        if (n.inside.size() <= crowd || n.depth > 60) out.push_back(n.rect);
+        else split(n, stack);
+    }
+    return out;
+}
+
+}  // namespace crescent

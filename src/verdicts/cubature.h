@@ -1,0 +1,58 @@
+// Integrals over the sphere and over disks by adaptive cubature: Genz & Malik 1980, "Remarks on algorithm 006: An adaptive
+// algorithm for numerical integration over an N-dimensional rectangular region", degree 7 with an embedded degree 5,
+// 17 points a cell. Cells are halved in waves, so that a wave is one batch of questions.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "scene/frame.h"
+#include "verdicts/subject.h"
+
+namespace crescent {
+
+/// A rectangle in the two coordinates, and the bin its integral counts for.
+struct Rect {
+    double a0, a1, b0, b1;
+    int bin = 0;
+};
+
+/// Values of the integrand at points (a, b), many at once.
+using Batch = std::function<void(std::span<const Vec2d> at, std::span<double> out)>;
+
+struct Integral {
+    std::vector<double> bins;   // one a bin
+    double value = 0, error = 0;  // sum over bins and its estimated error
+    std::size_t evaluations = 0;
+    bool settled = true;          // the tolerance was reached
+};
+
+struct Effort {
+    double tolerance = 5e-6;           // absolute, of the sum
+    std::size_t most_evaluations = 400000;
+    double edge_mass = 1e-4;           // cells cut by a jump of the integrand are halved down to this, then cut along it
+};
+
+/// Where draws of a density fell: a cell that 17 points find empty and draws do not is halved until both agree.
+struct Witnesses {
+    std::vector<std::vector<Vec2d>> bins;  // by bin
+    double total = 0;                      // draws, those in no bin included
+};
+
+Integral integrate(std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses = nullptr);
+
+/// Sphere coordinates about an axis: a = 1 - cos of the angle to it, b = turns about it. dw = 2 pi da db.
+struct SphereMap {
+    Frame<double> frame;
+    explicit SphereMap(Vec3d axis) : frame(frame_about(axis)) {}
+    Vec3d direction(Vec2d at) const;
+    Vec2d coordinates(Vec3d w) const;
+};
+
+/// Rings that narrow towards the axis, six sectors each, up to a = a_end.
+std::vector<Rect> graded_cells(double a_end = 2);
+/// The same cells halved wherever `guides` crowd, so that no sharp lobe is overlooked; bins are kept.
+std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> guides);
+
+}  // namespace crescent

@@ -1,0 +1,196 @@
+// normalised: p integrates to one. density: the draws follow p, by Pearson's chi-square over bins whose expected counts
+// come from adaptive cubature in double; bins are pooled along their ring, then outwards, until 5 are expected in each.
+#include <algorithm>
+#include <boost/math/distributions/poisson.hpp>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+struct Pearson {
+    double statistic = 0, degrees = -1;  // one degree goes to the total
+    double p = 1;
+    std::size_t pools = 0, empty = 0;    // pools tested; bins with an expectation below 1e-6
+    double empty_observed = 0, empty_expected = 0;
+};
+
+/// Pools neighbours until 5 are expected. What cannot reach 5 in the end joins the last pool.
+Pearson pearson(const std::vector<double>& observed, const std::vector<double>& expected) {
+    std::vector<std::pair<double, double>> pools;  // observed, expected
+    double o = 0, e = 0;
+    Pearson out;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (expected[i] < 1e-6) {
+            ++out.empty;
+            out.empty_observed += observed[i];
+            out.empty_expected += std::max(expected[i], 0.0);
+        }
+        o += observed[i];
+        e += std::max(expected[i], 0.0);
+        if (e >= 5) {
+            pools.emplace_back(o, e);
+            o = e = 0;
+        }
+    }
+    if (pools.empty()) return out;
+    pools.back().first += o;
+    pools.back().second += e;
+    for (const auto& [seen, due] : pools) out.statistic += sqr(seen - due) / due;
+    out.pools = pools.size();
+    out.degrees = static_cast<double>(pools.size()) - 1;
+    out.p = chi_squared_p(out.statistic, out.degrees);
+    return out;
+}
+
+struct Fit {
+    Pearson joint, rings, sectors;
+    double outside_p = 1;  // of as many draws where p integrates to next to nothing
+    std::vector<double> observed, expected;
+    double p() const { return std::min({joint.p, rings.p, sectors.p, outside_p}); }
+};
+
+std::vector<double> count(const Density& d, const Batchful& b, double& nothing) {
+    std::vector<double> bins(d.mass.bins.size());
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        if (is_nothing(b.draws[i], b.pdf[i])) {
+            ++nothing;
+            continue;
+        }
+        ++bins[d.bin_of(d.map.coordinates(b.draws[i].wi))];
+    }
+    return bins;
+}
+
+Fit fit(const Density& d, const Batchful& b) {
+    Fit out;
+    double nothing = 0;
+    out.observed = count(d, b, nothing);
+    const double n = static_cast<double>(b.draws.size());
+    const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = d.rings.size() - 1;
+    // Left by p: what draws nothing. Scaled to the share that was drawn, so that the normalisation is not judged twice.
+    const double scale = n * (1 - d.nothing) / d.mass.value;
+    std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors);
+    for (std::size_t i = 0; i < d.mass.bins.size(); ++i) {
+        const double due = scale * d.mass.bins[i];
+        out.expected.push_back(due);
+        by_ring[i / sectors] += out.observed[i];
+        by_sector[i % sectors] += out.observed[i];
+        due_ring[i / sectors] += due;
+        due_sector[i % sectors] += due;
+    }
+    std::vector<double> observed = out.observed, expected = out.expected;
+    if (n * d.nothing >= 5) {  // nothing drawn is one more bin
+        observed.insert(observed.begin(), nothing);
+        expected.insert(expected.begin(), n * d.nothing);
+    }
+    out.joint = pearson(observed, expected);
+    out.rings = pearson(by_ring, due_ring);
+    out.sectors = pearson(by_sector, due_sector);
+    double seen = 0, due = 0;  // rings that expect less than one draw: the Poisson law; the quadrature's own error is granted
+    for (std::size_t i = 0; i < rings; ++i)
+        if (due_ring[i] < 1) {
+            seen += by_ring[i];
+            due += due_ring[i];
+        }
+    if (seen > 0) out.outside_p = boost::math::cdf(boost::math::complement(boost::math::poisson(due + n * (1e-5 + d.mass.error)), seen - 1));
+    return out;
+}
+
+std::string coordinates(const Density& d) {
+    return d.about_n ? "cos theta x phi about n" : "rings x turns about the lobe";
+}
+
+}  // namespace
+
+Verdict judge_normalised(const Work& work) {
+    Verdict v = work.verdict("normalised", State::right, "");
+    for (int t = 0; t < work.subject.techniques(); ++t) {
+        const Density& d = work.density(t);
+        const double sum = d.mass.value + d.nothing, off = std::fabs(sum - 1);
+        constexpr double allowed = 1e-4;
+        const double doubt = d.mass.settled ? d.mass.error : 2 * d.mass.error;
+        const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
+        v.evidence["integral" + tag] = d.mass.value;
+        v.evidence["quadrature_error" + tag] = d.mass.error;
+        v.evidence["evaluations" + tag] = d.mass.evaluations;
+        v.evidence["drawn_nothing" + tag] = d.nothing;
+        v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
+        const std::string told = d.nothing > 0 ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}", d.mass.value, d.nothing, sum)
+                                               : fmt::format("p integrates to {:.6f} over the sphere", d.mass.value);
+        const double excess = std::max(off - allowed - doubt, 0.0);
+        bool wrong = !std::isfinite(sum) || (excess > 0 && d.nothing_se == 0 && work.subject.draws_at_will() && d.nothing == 0);
+        if (!wrong && excess > 0 && d.nothing > 0) {  // the share that draws nothing is itself an estimate
+            const double n = static_cast<double>(work.first(t).draws.size());
+            const double se = work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7) : std::sqrt(d.nothing * (1 - d.nothing) / n);
+            wrong = student_p(excess / se, 15) < work.rigour.screen * work.rigour.confirm;
+        } else if (!wrong && excess > 0) {
+            wrong = true;
+        }
+        ++work.tally.tests;
+        if (wrong) {
+            v.state = State::wrong;
+            v.say = told + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
+            return v;
+        }
+        if (!d.mass.settled && d.mass.error > allowed && v.state == State::right) {
+            v.state = State::inconclusive;
+            v.say = told + fmt::format(", but the quadrature itself is only good to {:.2g}.", d.mass.error);
+        }
+        if (v.state == State::right) v.say = told + ": one, as a density must.";
+    }
+    return v;
+}
+
+Verdict judge_density(Work& work) {
+    Verdict v = work.verdict("density", State::right, "");
+    for (int t = 0; t < work.subject.techniques(); ++t) {
+        const Density& d = work.density(t);
+        const Fit f = fit(d, work.first(t));
+        const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
+        v.evidence["coordinates" + tag] = coordinates(d);
+        v.evidence["chi2" + tag] = f.joint.statistic;
+        v.evidence["degrees" + tag] = f.joint.degrees;
+        v.evidence["p" + tag] = f.joint.p;
+        v.evidence["p_rings" + tag] = f.rings.p;
+        v.evidence["p_sectors" + tag] = f.sectors.p;
+        v.evidence["p_outside" + tag] = f.outside_p;
+        v.evidence["draws" + tag] = work.first(t).draws.size();
+        v.evidence["pools" + tag] = f.joint.pools;
+        v.evidence["empty_bins" + tag] = f.joint.empty;
+        v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
+        if (work.rigour.pictures && t == 0)
+            work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d), static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected});
+        if (!(d.mass.value > 0)) return work.verdict("density", State::skipped, "p integrates to 0: there is nothing to compare draws with.");
+        std::optional<Fit> fresh;
+        const auto of = [&](auto which) {
+            return work.fails(which(f), [&](int round) {
+                if (!fresh) fresh = fit(d, work.draw(t, round));
+                return which(*fresh);
+            });
+        };
+        std::string fault;
+        if (of([](const Fit& x) { return x.joint.p; })) fault = "over the whole sphere";
+        if (of([](const Fit& x) { return x.rings.p; })) fault = "along the angle from the axis";
+        if (of([](const Fit& x) { return x.sectors.p; })) fault = "around the axis";
+        if (of([](const Fit& x) { return x.outside_p; })) fault = "where p integrates to next to nothing";
+        if (!fault.empty()) {
+            v.state = State::wrong;
+            v.say = fmt::format("The draws do not follow p {}: chi-square {:.4g} on {:g} degrees ({}), and again on a fresh seed with more draws.", fault, f.joint.statistic,
+                                f.joint.degrees, coordinates(d));
+            return v;
+        }
+        v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).", work.first(t).draws.size(), f.joint.statistic, f.joint.degrees, f.joint.p,
+                            coordinates(d));
+        if (f.joint.pools < 2) {
+            v.state = State::inconclusive;
+            v.say = "Fewer than two bins expect 5 draws: too few draws for a chi-square test.";
+        }
+    }
+    return v;
+}
+
+}  // namespace crescent

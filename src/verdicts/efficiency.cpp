@@ -1,0 +1,91 @@
+// efficiency: variance of X times the time of one sample, beside every other arm on the same surface, light and w_o. Two arms
+// whose intervals (two standard errors, in the logarithm) overlap are not ranked.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/judge.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+std::string company_of(const Trial& t) {
+    std::string key = fmt::format("{:g} {:g} {} {}", t.theta_deg, t.azimuth_deg, t.brdf, t.lighting);
+    for (const auto& [name, value] : t.parameters) key += fmt::format(" {}={:g}", name, value);
+    return key;
+}
+
+}  // namespace
+
+double Efficiency::low() const { return value() * std::exp(-2 * std::hypot(relative_se, cost_se)); }
+double Efficiency::high() const { return value() * std::exp(2 * std::hypot(relative_se, cost_se)); }
+
+Efficiency measure_efficiency(const Work& work, std::size_t trial) {
+    Efficiency e;
+    e.trial = trial;
+    const std::vector<double> x = first_weights(work, false);
+    const Spread s = spread(x);
+    double m4 = 0;
+    for (double v : x) m4 += sqr(sqr(v - s.mean)) / s.n;
+    e.variance = sqr(s.sd);
+    e.relative_se = e.variance > 0 ? std::sqrt(std::max(m4 / sqr(e.variance) - 1, 0.0) / s.n) : 0;
+    e.heavy = !mean_is_testable(s, tail_of(x), work.trial.theory);
+    if (!work.subject.draws_at_will()) return e;
+    constexpr int repeats = 7;
+    const std::size_t n = std::min<std::size_t>(x.size(), 2048);
+    std::vector<double> times;
+    std::vector<Draw> draws(n);
+    for (int k = 0; k < repeats; ++k) {
+        const auto start = std::chrono::steady_clock::now();
+        for (int t = 0; t < work.subject.techniques(); ++t) work.subject.sample(t, work.trial.wo, std::span(work.first(t).u).first(n), draws);
+        times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(n));
+    }
+    std::sort(times.begin(), times.end());
+    e.nanoseconds = times[repeats / 2];
+    e.cost_se = 0.5 * (times[repeats - 2] - times[1]) / e.nanoseconds;
+    return e;
+}
+
+std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all) {
+    std::vector<Verdict> out(trials.size());
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        out[i].arm = trials[i].arm;
+        out[i].trial = trials[i].text();
+        out[i].name = "efficiency";
+        out[i].state = State::skipped;
+        out[i].say = "There are no weights to take a variance of.";
+    }
+    for (const Efficiency& e : all) {
+        Verdict& v = out[e.trial];
+        v.evidence["variance"] = e.variance;
+        v.evidence["variance_relative_se"] = e.relative_se;
+        v.evidence["nanoseconds"] = e.nanoseconds;
+        v.evidence["variance_x_cost"] = e.value();
+        v.evidence["low"] = e.low();
+        v.evidence["high"] = e.high();
+        if (e.heavy) {
+            v.state = State::inconclusive;
+            v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
+            continue;
+        }
+        std::vector<std::string> better, worse, level;
+        for (const Efficiency& o : all) {
+            if (o.trial == e.trial || company_of(trials[o.trial]) != company_of(trials[e.trial])) continue;
+            const std::string& name = trials[o.trial].arm;
+            if (o.heavy || (o.low() <= e.high() && e.low() <= o.high())) level.push_back(name);
+            else (e.high() < o.low() ? better : worse).push_back(name);
+        }
+        v.state = State::right;
+        v.say = fmt::format("Variance {:.4g} (+- {:.1f} %) x {:.3g} ns a sample", e.variance, 100 * e.relative_se, e.nanoseconds);
+        if (!better.empty()) v.say += fmt::format("; better than {}", fmt::join(better, ", "));
+        if (!worse.empty()) v.say += fmt::format("; worse than {}", fmt::join(worse, ", "));
+        if (!level.empty()) v.say += fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(level, ", "));
+        v.say += ".";
+    }
+    return out;
+}
+
+}  // namespace crescent

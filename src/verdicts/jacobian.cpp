@@ -1,0 +1,96 @@
+// |Jacobian| x p without knowing the warp: central differences of sample(wo, u). Where a warp is one to one, p |J| = 1; where
+// several u reach one direction p is the sum of 1/|J| over them, so p |J| >= 1 everywhere. p |J| < 1 is a wrong density
+// in any case, whatever the sampler. Seams and kinks of a warp are told from smooth ground by comparing two step sizes.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "simd/math.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr double step = 0x1p-8;
+constexpr double tiny_step = 0x1p-19;
+constexpr int stencil = 11;  // centre, +-h, +-h/2 along each side, and a tiny move along each
+
+std::array<Vec2d, stencil> stencil_at(Vec2d u) {
+    const double h = step, k = step / 2;
+    return {{u, {u.x + h, u.y}, {u.x - h, u.y}, {u.x, u.y + h}, {u.x, u.y - h}, {u.x + k, u.y}, {u.x - k, u.y}, {u.x, u.y + k}, {u.x, u.y - k},
+             {u.x + tiny_step, u.y}, {u.x, u.y + tiny_step}}};
+}
+
+struct Derivative {
+    double j = 0;        // |d w / d u1 x d w / d u2|
+    double error = 0;    // relative
+    bool usable = false;
+    double along[2] = {};  // |d w / d u|
+};
+
+double area(Vec3d a, Vec3d b) { return length(cross(a, b)); }
+
+Derivative derivative(std::span<const Draw> w, double grain) {
+    Derivative out;
+    for (const Draw& d : w)
+        if (!(d.pdf > 0)) return out;
+    const Vec3d c = w[0].wi;
+    const auto central = [&](int plus, int minus, double h) { return (w[plus].wi - w[minus].wi) * (0.5 / h); };
+    const double h = step, k = step / 2;
+    const Vec3d x1 = central(1, 2, h), y1 = central(3, 4, h), x2 = central(5, 6, k), y2 = central(7, 8, k);
+    const double j1 = area(x1, y1), j2 = area(x2, y2);
+    if (!(j2 > 0)) return out;
+    out.j = (4 * j2 - j1) / 3;  // Richardson
+    const double lx = length(x2), ly = length(y2);
+    const double noise = grain * (1 / lx + 1 / ly) * (lx * ly / j2) / k;
+    const auto sided = [&](int px, int py, double s) { return area((w[px].wi - c) * (1 / s), (w[py].wi - c) * (1 / s)); };
+    const double wide = std::fabs(sided(1, 3, h) - sided(2, 4, h)), narrow = std::fabs(sided(5, 7, k) - sided(6, 8, k));
+    out.error = std::fabs(j2 - j1) / j2 / 3 + noise;
+    out.usable = out.error < 0.05 && narrow < 0.7 * wide + 4 * noise * j2 + 1e-3 * j2;  // a kink does not halve with the step
+    out.along[0] = lx;
+    out.along[1] = ly;
+    return out;
+}
+
+}  // namespace
+
+WarpFinding study_warp(const Work& work, int technique) {
+    WarpFinding out;
+    if (!work.subject.draws_at_will()) return out;
+    const Batchful& b = work.first(technique);
+    const std::size_t wanted = work.rigour.full ? 8192 : 1024;
+    std::vector<Vec2d> u;
+    for (std::size_t i = 0; i < b.u.size() && u.size() < wanted * stencil; ++i) {
+        const Vec2d c = b.u[i];
+        if (std::min({c.x, c.y, 1 - c.x, 1 - c.y}) < 2 * step) continue;
+        for (Vec2d v : stencil_at(c)) u.push_back(v);
+    }
+    std::vector<Draw> w(u.size());
+    work.subject.sample(technique, work.trial.wo, u, w);
+    std::size_t one = 0;
+    for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
+        const Derivative d = derivative(std::span(w).subspan(i, stencil), work.grain());
+        if (!d.usable) continue;
+        ++out.usable;
+        const double pj = w[i].pdf * d.j, allowed = 5e-4 + 2 * d.error;
+        if (pj < 1 - allowed) {
+            ++out.below;
+            if (pj < out.smallest) {
+                out.smallest = pj;
+                out.at = u[i];
+            }
+        }
+        if (std::fabs(pj - 1) <= allowed) ++one;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double due = d.along[axis] * tiny_step;
+            if (due < 24 * work.grain()) continue;
+            ++out.steps_tried;
+            if (length(w[i + 9 + static_cast<std::size_t>(axis)].wi - w[i].wi) < 0.2 * due) ++out.stuck;
+        }
+    }
+    out.one_to_one = out.usable ? static_cast<double>(one) / static_cast<double>(out.usable) : 0;
+    return out;
+}
+
+}  // namespace crescent

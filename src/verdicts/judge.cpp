@@ -1,0 +1,151 @@
+#include "verdicts/judge.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <mutex>
+#include <oneapi/tbb/parallel_for.h>
+
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+struct Outcome {
+    std::vector<Verdict> verdicts;
+    std::vector<BinMap> maps;
+    std::vector<WeightPicture> pictures;
+    std::optional<Efficiency> efficiency;
+};
+
+Verdict skipped(const Trial& trial, std::string_view name, std::string say) {
+    Verdict v;
+    v.arm = trial.arm;
+    v.trial = trial.text();
+    v.name = name;
+    v.state = State::skipped;
+    v.say = std::move(say);
+    return v;
+}
+
+void skip_rest(const Trial& trial, Outcome& out, const std::string& why) {
+    while (out.verdicts.size() + 1 < verdict_names.size()) out.verdicts.push_back(skipped(trial, verdict_names[out.verdicts.size()], why));
+}
+
+void expect(const Trial& trial, Verdict& v) {
+    const bool may_doubt = v.name == "tail" || v.name == "mean" || v.name == "efficiency";
+    const bool must_be_wrong = trial.theory.wrong && *trial.theory.wrong == v.name;
+    const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= 0.5;
+    if (must_be_wrong) {
+        v.expected = v.state == State::wrong;
+        v.why_expected = trial.theory.why;
+    } else if (infinite && (v.name == "tail" || v.name == "mean")) {
+        v.expected = v.state == State::inconclusive;
+        v.why_expected = trial.theory.why;
+    } else {
+        v.expected = v.state == State::right || v.state == State::skipped || (may_doubt && v.state == State::inconclusive);
+    }
+}
+
+Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally, Watch& watch) {
+    Outcome out;
+    try {
+        Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        out.verdicts.push_back(judge_valid(work));
+        if (out.verdicts[0].state == State::wrong) {
+            skip_rest(trial, out, "The sampler is not valid here.");
+        } else {
+            work.measure_density();
+            watch.check();
+            out.verdicts.push_back(judge_support(work));
+            out.verdicts.push_back(judge_normalised(work));
+            out.verdicts.push_back(judge_density(work));
+            watch.check();
+            out.verdicts.push_back(judge_identity(work));
+            out.verdicts.push_back(judge_physics(work));
+            out.verdicts.push_back(judge_tail(work));
+            out.verdicts.push_back(judge_mean(work));
+            if (trial.subject->has_f()) out.efficiency = measure_efficiency(work, index);
+        }
+        out.maps = std::move(work.maps);
+        out.pictures = std::move(work.pictures);
+    } catch (const SubjectFault& fault) {
+        out.verdicts.clear();
+        Verdict v = skipped(trial, "valid", fault.what());
+        v.state = State::wrong;
+        v.evidence["first_fault"] = fault.what();
+        out.verdicts.push_back(v);
+        skip_rest(trial, out, "The sampler stopped answering as agreed.");
+    }
+    return out;
+}
+
+void settle(Judgement& j) {
+    bool wrong = false, doubt = false;
+    for (const Verdict& v : j.verdicts) {
+        wrong = wrong || v.state == State::wrong;
+        doubt = doubt || v.state == State::inconclusive;
+        j.as_expected = j.as_expected && v.expected;
+    }
+    j.state = wrong ? State::wrong : doubt ? State::inconclusive : State::right;
+}
+
+}  // namespace
+
+std::string_view word(State state) {
+    switch (state) {
+        case State::right: return "right";
+        case State::wrong: return "wrong";
+        case State::inconclusive: return "inconclusive";
+        case State::skipped: return "skipped";
+    }
+    return "";
+}
+
+/// Per technique four p-values of the density and one of the share that draws nothing; then the furnace and the mean.
+std::uint64_t count_tests(std::span<const Trial> trials) {
+    std::uint64_t tests = 0;
+    for (const Trial& t : trials) tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0);
+    return tests;
+}
+
+Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch) {
+    Rigour rigour = given;
+    rigour.share(count_tests(trials));
+    Tally tally;
+    std::vector<Outcome> outcomes(trials.size());
+    watch.begin("verdicts", static_cast<double>(trials.size()));
+    const auto one = [&](std::size_t i) {
+        watch.check();
+        outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
+        watch.advance(1);
+    };
+    const bool serial = std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); });
+    if (serial) {
+        for (std::size_t i = 0; i < trials.size(); ++i) one(i);
+    } else {
+        oneapi::tbb::parallel_for(std::size_t{0}, trials.size(), one);
+    }
+    Judgement out;
+    out.alpha = rigour.alpha;
+    out.tests = tally.tests;
+    out.screened = tally.screened;
+    out.confirmed = tally.confirmed;
+    std::vector<Efficiency> efficiencies;
+    for (const Outcome& o : outcomes)
+        if (o.efficiency) efficiencies.push_back(*o.efficiency);
+    std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        outcomes[i].verdicts.push_back(std::move(ranks[i]));
+        for (Verdict& v : outcomes[i].verdicts) {
+            expect(trials[i], v);
+            out.verdicts.push_back(std::move(v));
+        }
+        std::move(outcomes[i].maps.begin(), outcomes[i].maps.end(), std::back_inserter(out.maps));
+        std::move(outcomes[i].pictures.begin(), outcomes[i].pictures.end(), std::back_inserter(out.weights));
+    }
+    settle(out);
+    return out;
+}
+
+}  // namespace crescent

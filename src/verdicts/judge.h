@@ -1,0 +1,34 @@
+// Trials in, ordered verdicts out: the levels are shared over every test of the call, trials run on all cores.
+#pragma once
+
+#include <span>
+
+#include "verdicts/work.h"
+
+namespace crescent {
+
+/// The sampler cannot be talked with any more: what happened, at which request.
+struct SubjectFault : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Throws Interrupted when the watch says stop.
+Judgement judge(std::span<const Trial> trials, const Rigour& rigour, Watch& watch);
+/// How many statistical tests the trials ask for.
+std::uint64_t count_tests(std::span<const Trial> trials);
+
+/// Variance times cost of one trial, with what it is known to.
+struct Efficiency {
+    std::size_t trial = 0;
+    double variance = 0, relative_se = 0;  // of the variance
+    double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error
+    bool heavy = false;
+    double value() const { return variance * nanoseconds; }
+    double low() const;
+    double high() const;
+};
+Efficiency measure_efficiency(const Work& work, std::size_t trial);
+/// Ranks trials that differ by the arm alone.
+std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
+
+}  // namespace crescent

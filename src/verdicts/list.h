@@ -1,0 +1,31 @@
+// What the list's arms are tried on, and which verdicts the list expects of them.
+#pragma once
+
+#include <map>
+
+#include "verdicts/builtin.h"
+#include "verdicts/work.h"
+
+namespace crescent {
+
+/// Values given with --set: "s", "alpha", "rho_d", "rho_s".
+using Settings = std::map<std::string, double>;
+
+std::vector<std::string> arm_names();
+/// Directions from the normal to 89 deg, each at its own azimuth: (theta, azimuth) in degrees.
+std::vector<std::pair<double, double>> wo_grid(bool full);
+/// Every trial of one arm, or of all where the name is empty. Throws InputError for an unknown name.
+std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full);
+
+/// One surface and light to try an arm on.
+struct Stage {
+    SurfaceSetup surface;
+    TrialLight light;
+    std::string brdf, lighting;
+    bool tells_s = false, tells_alpha = false;
+};
+Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);
+/// The trial of `subject` on a stage at one w_o, theory not yet filled in.
+Trial trial_on(const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const Subject> subject);
+
+}  // namespace crescent

@@ -1,0 +1,47 @@
+// The verdicts in their order, each from one trial's work; a verdict that builds on one that failed is skipped.
+#pragma once
+
+#include "meters/tail.h"
+#include "verdicts/work.h"
+
+namespace crescent {
+
+Verdict judge_valid(const Work& work);
+Verdict judge_support(const Work& work);
+Verdict judge_normalised(const Work& work);
+Verdict judge_density(Work& work);
+Verdict judge_identity(const Work& work);
+Verdict judge_physics(const Work& work);
+Verdict judge_tail(Work& work);
+Verdict judge_mean(const Work& work);
+
+struct Spread {
+    double n = 0, mean = 0, sd = 0, skew = 0;
+};
+Spread spread(std::span<const double> x);
+/// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken out.
+double johnson_t(const Spread& s, double expected);
+/// X of the screening draws; even: L = 1.
+std::vector<double> first_weights(const Work& work, bool even);
+std::optional<Tail> tail_of(std::span<const double> x);
+/// The normal law is near enough for a test: k-hat surely below 1/2, and |skew| / sqrt(n) below 0.1.
+bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory);
+/// Two-sided p-value of the mean, the quadrature's own error granted; and the two-stage test.
+double mean_p(const Spread& s, const Integral& expected);
+bool mean_fails(const Work& work, double p, const Integral& expected, bool even);
+
+/// How far the sampler's p may move when wo and wi move by their own rounding: the largest change over twelve nudges.
+double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
+double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f);
+
+/// What the warp's derivatives say; see jacobian.cpp.
+struct WarpFinding {
+    std::size_t usable = 0, below = 0;   // points with a trusted |J|, and those with p |J| < 1
+    double smallest = 1;                 // p |J|
+    Vec2d at{};
+    double one_to_one = 0;               // share of usable points with p |J| = 1
+    std::size_t steps_tried = 0, stuck = 0;  // moves of u by 2^-19 that ought to show, and those that do not
+};
+WarpFinding study_warp(const Work& work, int technique);
+
+}  // namespace crescent

@@ -1,0 +1,31 @@
+#include "verdicts/subject.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "simd/scalar.h"
+
+namespace crescent {
+
+bool TrialLight::on_disk(Vec3d wi) const {
+    const double c = dot(center, normal), v = dot(wi, normal);
+    if (!(v < 0 && c < 0)) return false;
+    const Vec3d off = wi * c - center * v;
+    return dot(off, off) <= sqr(radius * v);
+}
+
+std::string Trial::text() const {
+    std::string s = fmt::format("w_o {:g} deg", theta_deg);
+    if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
+    for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
+    for (const std::string& part : {brdf, lighting})
+        if (!part.empty()) s += ", " + part;
+    return s;
+}
+
+Vec3d tilt(double theta_deg, double azimuth_deg) {
+    const double t = theta_deg * pi / 180, a = azimuth_deg * pi / 180;
+    return {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
+}
+
+}  // namespace crescent

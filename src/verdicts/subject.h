@@ -1,0 +1,95 @@
+// A sampler on trial, whatever it is written in: built-in arm, planted fault, a user's struct, a file, a pipe.
+// Local frame, n = +z, wo given, wi drawn, both leave the surface; pdf in 1/sr; f without the cosine, in 1/sr.
+// Calls come in batches, so that a pipe can be kept full.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace crescent {
+
+using Vec2d = Vec2<double>;
+
+/// A direction and the density it came with; pdf 0: nothing drawn. weight: f cos / p where the sampler itself says it.
+struct Draw {
+    Vec3d wi{};
+    double pdf = 0;
+    std::optional<double> weight;
+};
+
+/// wo and wi of one question.
+struct Pair {
+    Vec3d wo, wi;
+};
+
+/// One density with its draws, or two where a pair of samples is weighed by MIS. Thread-safe unless `serial()`.
+class Subject {
+public:
+    virtual ~Subject() = default;
+    virtual std::string name() const = 0;
+    virtual int techniques() const { return 1; }
+    virtual void sample(int technique, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const = 0;
+    virtual void pdf(int technique, std::span<const Pair> at, std::span<double> out) const = 0;
+    /// The same density in double where the sampler has one, for quadrature.
+    virtual void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const { pdf(technique, at, out); }
+    /// MIS weight of a direction drawn by `technique`.
+    virtual void mis_weight(int /*technique*/, std::span<const Pair> at, std::span<double> out) const {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = 1;
+    }
+    virtual bool has_f() const { return false; }
+    virtual void f(std::span<const Pair> /*at*/, std::span<double> out) const {
+        for (double& v : out) v = 0;
+    }
+    /// What f ought to be where that is known apart from f; the same as f elsewhere.
+    virtual void true_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
+    /// Whether the sampler can be asked for draws at any u, not only listed ones.
+    virtual bool draws_at_will() const { return true; }
+    /// Only one thread may call.
+    virtual bool serial() const { return false; }
+};
+
+/// What shines on the surface: an even fill of the upper hemisphere and at most one disk that hides it.
+struct TrialLight {
+    double fill = 1;      // radiance
+    double radiance = 0;  // of the disk; 0: none
+    Vec3d center{}, normal{};
+    double radius = 0;
+    bool has_disk() const { return radiance > 0; }
+    bool on_disk(Vec3d wi) const;
+    double operator()(Vec3d wi) const { return wi.z <= 0 ? 0 : has_disk() && on_disk(wi) ? radiance : fill; }
+};
+
+/// Named parameter values, in the order in which they are told.
+using Parameters = std::vector<std::pair<std::string, double>>;
+
+/// What a known theory says of a trial.
+struct Theory {
+    std::optional<double> lost;        // fraction of the diffuse part that p cannot reach
+    double lost_of = 0;                // that part's albedo
+    std::optional<double> tail_k;      // Pareto index of f L cos / p
+    bool bounded = false;              // the weight has a finite maximum
+    std::optional<std::string> wrong;  // the verdict that the list expects to be wrong
+    std::string why;
+};
+
+/// One sampler at one w_o with one BRDF under one light.
+struct Trial {
+    std::string arm, brdf, lighting;
+    Vec3d wo{};
+    double theta_deg = 0, azimuth_deg = 0;
+    Parameters parameters;
+    TrialLight light;
+    Theory theory;
+    std::shared_ptr<const Subject> subject;
+    std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"
+};
+
+/// The direction theta from n, phi from x, in degrees.
+Vec3d tilt(double theta_deg, double azimuth_deg = 0);
+
+}  // namespace crescent

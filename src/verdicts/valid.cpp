@@ -1,0 +1,104 @@
+// valid: what comes back can be used at all. support: p reaches wherever f L cos is not 0.
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+std::string told(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
+std::string told(Vec2d u) { return fmt::format("u = ({:.9g}, {:.9g})", u.x, u.y); }
+
+/// What is wrong with one draw, "" if nothing.
+std::string fault_of(const Draw& d, double pdf_there) {
+    if (std::isnan(d.pdf)) return "pdf is NaN";
+    if (d.pdf < 0) return fmt::format("pdf is {:.9g}, negative", d.pdf);
+    if (std::isinf(d.pdf)) return "pdf is infinite";
+    if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
+    if (d.pdf == 0) return "";
+    const double length2 = dot(d.wi, d.wi);
+    if (!std::isfinite(length2)) return "the direction is infinite";
+    if (std::fabs(std::sqrt(length2) - 1) > 1e-5) return fmt::format("the direction {} has length {:.9g}, not 1", told(d.wi), std::sqrt(length2));
+    if (!std::isfinite(pdf_there) || pdf_there < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(d.wi), pdf_there);
+    if (d.weight && !std::isfinite(*d.weight)) return fmt::format("the weight at {} is not finite", told(d.wi));
+    return "";
+}
+
+std::string fault_of(const Work& work, int technique, const Batchful& b) {
+    std::vector<Vec3d> wi;
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        const std::string fault = fault_of(b.draws[i], b.pdf[i]);
+        if (!fault.empty()) return fmt::format("at {}{}: {}", told(b.u[i]), work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
+        wi.push_back(b.draws[i].pdf > 0 ? b.draws[i].wi : Vec3d{0, 0, 1});
+    }
+    if (!work.subject.has_f()) return "";
+    const std::vector<double> f = work.f(wi);
+    for (std::size_t i = 0; i < f.size(); ++i) {
+        if (!(b.draws[i].pdf > 0) || wi[i].z <= 0) continue;
+        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {:.9g}", told(wi[i]), f[i]);
+        if (!std::isfinite(f[i] * wi[i].z / b.draws[i].pdf)) return fmt::format("the weight f cos / p at {} is not finite", told(wi[i]));
+    }
+    return "";
+}
+
+/// The corners of the unit square and a few lines through it, where samplers divide by 0.
+Batchful corners(const Work& work, int technique) {
+    Batchful b;
+    const double ends[] = {0, 0x1p-24, 0.25, 0.5, 0.75, 1 - 0x1p-24};
+    for (double x : ends)
+        for (double y : ends) b.u.push_back({x, y});
+    b.draws.resize(b.u.size());
+    work.subject.sample(technique, work.trial.wo, b.u, b.draws);
+    b.pdf = work.pdf_of_drawn(technique, b.draws);
+    return b;
+}
+
+}  // namespace
+
+Verdict judge_valid(const Work& work) {
+    std::uint64_t draws = 0, drawn = 0;
+    for (int t = 0; t < work.subject.techniques(); ++t) {
+        std::string fault = work.subject.draws_at_will() ? fault_of(work, t, corners(work, t)) : "";
+        if (fault.empty()) fault = fault_of(work, t, work.first(t));
+        if (!fault.empty()) {
+            Verdict v = work.verdict("valid", State::wrong, "What the sampler returns cannot be used: " + fault + ".");
+            v.evidence["first_fault"] = fault;
+            return v;
+        }
+        draws += work.first(t).draws.size();
+        for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0;
+    }
+    if (drawn == 0) return work.verdict("valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws));
+    Verdict v = work.verdict("valid", State::right, fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of u and over {} draws.", draws));
+    v.evidence["draws"] = draws;
+    v.evidence["direction_grain"] = work.grain();
+    return v;
+}
+
+Verdict judge_support(const Work& work) {
+    if (!work.subject.has_f()) return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
+    const Integral all = work.incoming(Work::Where::everywhere, false);
+    const Integral lost = work.incoming(Work::Where::lost, false);
+    if (!(all.value > 0)) return work.verdict("support", State::skipped, "f L cos is 0 everywhere: nothing can be lost.");
+    const double fraction = lost.value / all.value;
+    constexpr double negligible = 1e-6;  // below what a float estimate of the mean can show
+    const bool wrong = fraction > negligible;
+    std::string say = wrong ? fmt::format("p is 0 over directions that carry {:.4g} % of f L cos: no number of samples ever finds it.", 100 * fraction)
+                            : "Wherever f L cos is not 0, p is not 0 either: no light is out of reach.";
+    const Theory& theory = work.trial.theory;
+    if (wrong && theory.lost)
+        say += fmt::format(" Theory: {:.4g} % of the diffuse part, (1 - cos theta_R)/2; measured: {:.4g} %.", 100 * *theory.lost, 100 * lost.value / theory.lost_of);
+    Verdict v = work.verdict("support", wrong ? State::wrong : State::right, say);
+    v.evidence["lost_fraction"] = fraction;
+    v.evidence["quadrature_error"] = (lost.error + all.error * fraction) / all.value;
+    v.evidence["integral_f_L_cos"] = all.value;
+    if (theory.lost) {
+        v.evidence["lost_of_diffuse"] = lost.value / theory.lost_of;
+        v.evidence["theory_lost_of_diffuse"] = *theory.lost;
+    }
+    return v;
+}
+
+}  // namespace crescent

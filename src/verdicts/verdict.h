@@ -1,0 +1,54 @@
+// The ordered verdicts and what goes with each: a sentence, and the numbers behind it.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace crescent {
+
+enum class State { right, wrong, inconclusive, skipped };
+std::string_view word(State state);
+
+inline constexpr std::array<std::string_view, 9> verdict_names = {"valid",   "support", "normalised", "density",   "identity",
+                                                                  "physics", "tail",    "mean",       "efficiency"};
+
+struct Verdict {
+    std::string arm;
+    std::string trial;  // w_o and parameters
+    std::string name;   // one of verdict_names
+    State state = State::right;
+    std::string say;    // one sentence for the reader
+    nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
+    bool expected = true;     // the list expects this state
+    std::string why_expected;  // said where a wrong one is expected
+};
+
+/// Bins of one density test, for the maps of the HTML page.
+struct BinMap {
+    std::string arm, trial, coordinates;
+    int rings = 0, sectors = 0;
+    std::vector<double> observed, expected;  // ring-major
+};
+
+/// The largest weights, a histogram of all, and p against f L cos along a grid of directions.
+struct WeightPicture {
+    std::string arm, trial;
+    std::vector<double> log10_edges, counts;  // histogram of log10 X
+    double zeros = 0, k = 0;
+    std::vector<double> rose_p, rose_f;       // plane of incidence, from -90 to 90 deg of wi
+};
+
+struct Judgement {
+    std::vector<Verdict> verdicts;
+    std::vector<BinMap> maps;
+    std::vector<WeightPicture> weights;
+    double alpha = 0;
+    std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
+    State state = State::right;  // of everything as drawn
+    bool as_expected = true;     // of everything beside what the list expects
+};
+
+}  // namespace crescent

@@ -1,0 +1,168 @@
+// tail: how heavy the weights X = f L cos / p are. mean: whether their mean is the integral, where the tail allows the question.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "meters/tail.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+WeightPicture picture(const Work& work, const std::vector<double>& x, const std::optional<Tail>& tail) {
+    WeightPicture out;
+    out.arm = work.trial.arm;
+    out.trial = work.trial.text();
+    double low = 1e300, high = 0;
+    for (double v : x) {
+        if (v > 0) low = std::min(low, v), high = std::max(high, v);
+        else ++out.zeros;
+    }
+    if (high > 0) {
+        const double from = std::log10(low) - 0.05, to = std::log10(high) + 0.05;
+        constexpr int bins = 48;
+        for (int i = 0; i <= bins; ++i) out.log10_edges.push_back(from + (to - from) * i / bins);
+        out.counts.assign(bins, 0);
+        for (double v : x)
+            if (v > 0) ++out.counts[static_cast<std::size_t>(std::clamp((std::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
+    }
+    out.k = tail ? tail->k : 0;
+    std::vector<Vec3d> wi;
+    const double azimuth = std::atan2(work.trial.wo.y, work.trial.wo.x) * 180 / pi;
+    for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));
+    out.rose_p = work.any_pdf(wi);
+    const std::vector<double> f = work.f(wi, true);
+    for (std::size_t i = 0; i < wi.size(); ++i) out.rose_f.push_back(f[i] * wi[i].z * work.trial.light(wi[i]));
+    return out;
+}
+
+std::string samples_for(double sd, double mean) {
+    const double n = sqr(sd / mean) / 1e-4;
+    return fmt::format("{:.3g}", std::max(n, 1.0));
+}
+
+}  // namespace
+
+Spread spread(std::span<const double> x) {
+    Spread s;
+    s.n = static_cast<double>(x.size());
+    for (double v : x) s.mean += v / s.n;
+    double m2 = 0, m3 = 0;
+    for (double v : x) {
+        const double d = v - s.mean;
+        m2 += d * d;
+        m3 += d * d * d;
+    }
+    s.sd = std::sqrt(m2 / std::max(s.n - 1, 1.0));
+    s.skew = s.sd > 0 ? m3 / s.n / (s.sd * s.sd * s.sd) : 0;
+    return s;
+}
+
+double johnson_t(const Spread& s, double expected) {
+    const double d = s.mean - expected;
+    if (!(s.sd > 1e-7 * std::fabs(expected))) return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // every sample alike
+    const double corrected = d + s.skew * s.sd / (6 * s.n) + s.skew / (3 * s.sd) * d * d;
+    return corrected * std::sqrt(s.n) / s.sd;
+}
+
+std::optional<Tail> tail_of(std::span<const double> x) {
+    const std::size_t length = std::min(tail_length(x.size()) + 1, x.size());
+    std::vector<double> largest(x.begin(), x.end());
+    std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
+    return fit_tail(std::span<const double>(largest).first(length));
+}
+
+bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory) {
+    const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
+    return !infinite && (!tail || tail->k + 2 * tail->se < 0.5) && std::fabs(s.skew) / std::sqrt(s.n) < 0.1;
+}
+
+double mean_p(const Spread& s, const Integral& expected) {
+    const double doubt = expected.error + 1e-6 * std::fabs(expected.value);  // quadrature's own, and float rounding of f and p
+    const double z = std::fabs(johnson_t(s, expected.value)) - doubt / std::max(s.sd / std::sqrt(s.n), 1e-300);
+    return normal_p(std::max(z, 0.0));
+}
+
+std::vector<double> first_weights(const Work& work, bool even) {
+    std::vector<Batchful> b;
+    for (int t = 0; t < work.subject.techniques(); ++t) b.push_back(work.first(t));
+    return work.weights(b, even);
+}
+
+bool mean_fails(const Work& work, double p, const Integral& expected, bool even) {
+    return work.fails(p, [&](int round) {
+        std::vector<Batchful> fresh;
+        for (int t = 0; t < work.subject.techniques(); ++t) fresh.push_back(work.draw(t, round));
+        return mean_p(spread(work.weights(fresh, even)), expected);
+    });
+}
+
+Verdict judge_tail(Work& work) {
+    if (!work.subject.has_f()) return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
+    std::vector<double> x = first_weights(work, false);
+    const Spread s = spread(x);
+    const std::optional<Tail> tail = tail_of(x);
+    const double highest = *std::max_element(x.begin(), x.end());
+    const Theory& theory = work.trial.theory;
+    Verdict v = work.verdict("tail", State::right, "");
+    if (work.rigour.pictures) work.pictures.push_back(picture(work, x, tail));
+    v.evidence["relative_sd"] = s.mean > 0 ? s.sd / s.mean : 0;
+    v.evidence["largest_over_mean"] = s.mean > 0 ? highest / s.mean : 0;
+    if (theory.bounded) v.evidence["theory"] = "bounded";
+    if (theory.tail_k) v.evidence["theory_k"] = *theory.tail_k;
+    const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
+    if (!tail) {
+        v.say = "The largest weights are all alike: no tail to speak of.";
+    } else {
+        v.evidence["k"] = tail->k;
+        v.evidence["se"] = tail->se;
+        v.evidence["exceedances"] = tail->exceedances;
+        v.say = fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", tail->k, tail->se, tail->exceedances);
+        if (theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *theory.tail_k);
+        v.say += ". ";
+    }
+    if (infinite || (tail && tail->k - 2 * tail->se >= 0.5)) {
+        v.state = State::inconclusive;
+        v.evidence["samples_for_1_percent"] = "no finite answer";
+        v.say += infinite || !theory.bounded
+                     ? "Heavy tail: the variance is infinite or looks so, no number of samples gives 1 %, and no interval means anything."
+                     : "Heavy tail at this number of samples; the weight is bounded, so the variance is finite, but it is not seen yet.";
+    } else if (tail && tail->k + 2 * tail->se >= 0.5) {
+        v.state = State::inconclusive;
+        v.evidence["samples_for_1_percent"] = "not known";
+        v.say += "Too close to 1/2 to tell whether the variance is finite.";
+    } else {
+        v.evidence["samples_for_1_percent"] = std::stod(samples_for(s.sd, s.mean > 0 ? s.mean : 1));
+        v.say += fmt::format("The variance is finite: about {} samples give 1 %.", samples_for(s.sd, s.mean > 0 ? s.mean : 1));
+    }
+    return v;
+}
+
+Verdict judge_mean(const Work& work) {
+    if (!work.subject.has_f()) return work.verdict("mean", State::skipped, "There is no BRDF, hence no integral to compare the mean with.");
+    Verdict v = work.verdict("mean", State::right, "");
+    const Integral expected = work.incoming(Work::Where::reached, false);
+    const std::vector<double> x = first_weights(work, false);
+    const Spread s = spread(x);
+    v.evidence["mean"] = s.mean;
+    v.evidence["standard_error"] = s.sd / std::sqrt(s.n);
+    v.evidence["quadrature"] = expected.value;
+    v.evidence["quadrature_error"] = expected.error;
+    v.evidence["skewness"] = s.skew;
+    if (!mean_is_testable(s, tail_of(x), work.trial.theory)) {
+        v.state = State::inconclusive;
+        v.say = fmt::format("inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a right sampler as readily as a wrong one.", x.size(), s.mean, expected.value);
+        return v;
+    }
+    const double z = johnson_t(s, expected.value), p = mean_p(s, expected);
+    v.evidence["z"] = z;
+    v.evidence["p"] = p;
+    const bool wrong = mean_fails(work, p, expected, false);
+    v.state = wrong ? State::wrong : State::right;
+    v.say = wrong ? fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, and again on a fresh seed. The estimator is biased.", s.mean, expected.value, z)
+                  : fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, p = {:.3g}.", s.mean, expected.value, z, p);
+    return v;
+}
+
+}  // namespace crescent

@@ -1,0 +1,122 @@
+// One trial under way: its draws, its grain, its guides and its integrals, made once and shared by the verdicts.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "base/watch.h"
+#include "verdicts/cubature.h"
+#include "verdicts/subject.h"
+#include "verdicts/verdict.h"
+
+namespace crescent {
+
+/// How hard the bench looks, and where it draws the line.
+struct Rigour {
+    bool full = false;
+    double alpha = 1e-3;  // family-wise, for everything tested in one call
+    std::uint32_t seed = 1;
+    std::uint64_t draws = std::uint64_t{1} << 15;  // per trial and technique
+    int rings = 20, sectors = 16;
+    std::size_t evaluations = 80000;  // of one integral, at most
+    bool pictures = false;             // keep maps and weights for the HTML page
+    // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
+    double screen = 1e-3, confirm = 1e-4;
+    static Rigour quick() { return {}; }
+    static Rigour thorough();
+    /// Levels for `tests` statistical tests: screen * confirm = 1 - (1 - alpha)^(1/tests) (Sidak), confirm = screen / 10.
+    void share(std::uint64_t tests);
+};
+
+/// Counted over a whole call, from many threads.
+struct Tally {
+    std::atomic<std::uint64_t> tests{0}, screened{0}, confirmed{0};
+};
+
+/// Draws of one technique on one seed.
+struct Batchful {
+    std::vector<Vec2d> u;
+    std::vector<Draw> draws;
+    std::vector<double> pdf;  // pdf(w) asked afterwards, as the sampler's own arithmetic says it
+    std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0
+};
+
+/// Nothing drawn: pdf 0, or a direction under the horizon that pdf(w) does not own up to.
+inline bool is_nothing(const Draw& d, double pdf_there) { return !(d.pdf > 0) || (d.wi.z <= 0 && !(pdf_there > 0)); }
+
+/// The bins of one technique's density and their expected mass.
+struct Density {
+    SphereMap map{Vec3d{0, 0, 1}};
+    bool about_n = true;
+    std::vector<double> rings;  // ascending edges of a = 1 - cos, first 0, last 2
+    int sectors = 0;
+    Integral mass;
+    double nothing = 0, nothing_se = 0;  // share of draws that draw nothing, randomised lattice
+    std::size_t bin_of(Vec2d at) const;
+};
+
+class Work {
+public:
+    Work(const Trial& trial, const Rigour& rigour, Tally& tally, std::uint32_t index);
+
+    const Trial& trial;
+    const Rigour& rigour;
+    Tally& tally;
+    const Subject& subject;
+
+    Batchful draw(int technique, int round) const;  // round 0: the screening seed, 1: the confirming one
+    const Batchful& first(int technique) const { return first_[static_cast<std::size_t>(technique)]; }
+    const Density& density(int technique) const { return density_[static_cast<std::size_t>(technique)]; }
+    /// Rounding of the directions that come back: 2^-24 for floats, 2^-52 for doubles, or that of short decimals.
+    double grain() const { return grain_; }
+    std::span<const Vec3d> guides() const { return guides_; }
+
+    std::vector<double> pdf_of_drawn(int technique, std::span<const Draw> draws) const;
+    std::vector<double> pdf(int technique, std::span<const Vec3d> wi, bool exact = false) const;
+    /// Sum over techniques.
+    std::vector<double> any_pdf(std::span<const Vec3d> wi) const;
+    std::vector<double> f(std::span<const Vec3d> wi, bool truth = false) const;
+
+    /// X = sum over techniques of w f L cos / p, sample by sample; even: L = 1 in place of the light.
+    std::vector<double> weights(std::span<const Batchful> pair, bool even) const;
+    /// int f L cos over the hemisphere, or only where any_pdf is (not) positive.
+    enum class Where { everywhere, reached, lost };
+    const Integral& incoming(Where where, bool even) const;
+
+    Verdict verdict(std::string_view name, State state, std::string say) const;
+    /// Both stages of a statistical test: p(round) is its p-value on that round's draws.
+    template <class P> bool fails(double p_first, P&& p_of_round) const {
+        ++tally.tests;
+        if (!(p_first < rigour.screen)) return false;
+        ++tally.screened;
+        if (!(p_of_round(1) < rigour.confirm)) return false;
+        ++tally.confirmed;
+        return true;
+    }
+
+    std::vector<BinMap> maps;
+    std::vector<WeightPicture> pictures;
+    void measure_density();  // fills density(); apart, since an invalid sampler has none
+
+private:
+    std::uint32_t index_;
+    std::vector<Batchful> first_;
+    std::vector<Density> density_;
+    std::vector<Vec3d> guides_;
+    double grain_ = 0;
+    mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
+    Integral integrate_incoming(Where where, bool even) const;
+    void find_guides();
+    Witnesses witnesses_of(int technique, const Density& d) const;
+    Density density_about(int technique, Vec3d axis, bool about_n) const;
+    void find_nothing(int technique, Density& d) const;
+};
+
+/// p-values.
+double chi_squared_p(double statistic, double degrees);
+double normal_p(double z);  // two-sided
+double student_p(double t, double degrees);
+
+}  // namespace crescent
