@@ -23,12 +23,13 @@ experiment file; 3 an output cannot be written or a part is missing;
   crescent list                              what an experiment can name
   crescent schema                            every key of an experiment file)";
 
-constexpr const char* run_footer = R"(FILE is an experiment (`crescent schema` has its keys). --set takes the path of
-any key, with the same checks as the file: --set shapes.sphere.s=64 --set seed=7.
+constexpr const char* run_footer = R"(FILE is an experiment (`crescent schema` has its keys). --set takes the path
+of any key, with the same checks as the file:
+  --set shapes.sphere.s=64 --set seed=7
 Films are the same bits for any --threads and any --isa.
 
-Written under DIR: report.html, metrics.json, metrics.csv, junit.xml, timing.json,
-plates/, films/. Each file appears whole or not at all.)";
+Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,
+timing.json, plates/, films/. Each file appears whole or not at all.)";
 
 /// A command that fills in Flags and then runs `perform`.
 template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* name, const char* means, int (*perform)(const Flags&), std::shared_ptr<Flags>& flags) {
@@ -47,7 +48,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--set", f->overrides, "another value for a key; may be given again")->type_name("PATH=VALUE")->take_all()->expected(1)->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
     c->add_option("--threads", f->threads, "default: as many as the machine has")->type_name("N")->check(CLI::Range(1, 4096));
-    c->add_option("--isa", f->isa, "scalar, sse4, avx2, avx512; default: this machine's best")->type_name("NAME");
+    c->add_option("--isa", f->isa, "scalar, sse4, avx2, avx512; default: the best here")->type_name("NAME");
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }

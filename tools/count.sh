@@ -1,0 +1,60 @@
+# Shell functions behind ./test: runs tests and counts them into `passed` and `failures`. Sourced after setup.sh.
+
+passed=0 failures=0
+
+add() { passed=$((passed + $1)) failures=$((failures + $2)); }
+
+# sum NAME FILE...: the sum of an attribute over the opening <testsuites> of GoogleTest's XML.
+sum() {
+    local name=$1
+    shift
+    awk -v name="$name" '/<testsuites / { if (match($0, " " name "=\"[0-9]+\"")) total += substr($0, RSTART + length(name) + 3, RLENGTH - length(name) - 4) } END { print total + 0 }' "$@"
+}
+
+# check PRESET: ctest on its build. A unit program counts as its test cases, a script as one.
+check() {
+    local dir log xml start=$SECONDS before=$passed broken=$failures
+    dir=$(binary_dir "$1")
+    log="$log_dir/$1-tests.log"
+    rm -rf "$dir/results"
+    mkdir -p "$dir/results"
+    say "testing $1 (log: ${log#"$root"/})"
+    ctest --test-dir "$dir" -j "$(nproc)" --output-on-failure >"$log" 2>&1
+    # Lines such as " 3/12 Test  #5: unit-1 .......   Passed    0.41 sec".
+    while read -r name outcome; do
+        xml="$dir/results/$name.xml"
+        if [[ $name == unit-* ]] && [ -f "$xml" ]; then
+            local all bad
+            all=$(sum tests "$xml") bad=$(($(sum failures "$xml") + $(sum errors "$xml")))
+            # A program that ends badly after its last test has failed too.
+            [ "$outcome" != passed ] && [ "$bad" -eq 0 ] && bad=1
+            add $((all - bad)) "$bad"
+        elif [ "$outcome" = passed ]; then add 1 0
+        elif [ "$outcome" = failed ]; then add 0 1
+        else say "  skipped: $name"
+        fi
+    done < <(sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +([^ ]+) .*(Passed|Skipped|Failed|Timeout|Exception|Not Run).*/\1 \2/p' "$log" |
+        sed -E 's/Passed$/passed/; s/Skipped$/skipped/; s/(Failed|Timeout|Exception|Not Run)$/failed/')
+    # A suite that never ran is a failure of its own.
+    [ $((passed - before + failures - broken)) -gt 0 ] || add 0 1
+    say "  $((passed - before)) passed, $((failures - broken)) failed in $((SECONDS - start)) s"
+    [ "$failures" -eq "$broken" ] || sed -n '/\*\*\*/p; /FAILED/p; /Failure$/,+6p' "$log" | head -n 60 >&2
+}
+
+# fuzz PRESET TARGET SECONDS: no finding in that time counts as one test.
+fuzz() {
+    local target log found
+    target="$(binary_dir "$1")/laws/fuzz/$2"
+    log="$log_dir/$2.log"
+    [ -x "$target" ] || { say "  skipped: $2"; return; }
+    found="$(binary_dir "$1")/laws/fuzz/found"
+    mkdir -p "$found"
+    say "fuzzing $2 for $3 s"
+    if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" -dict="$root/laws/fuzz/experiment.dict" \
+        "$found" "$root/laws/fuzz/corpus" "$root/experiments" >"$log" 2>&1; then
+        add 1 0
+    else
+        add 0 1
+        tail -n 30 "$log" >&2
+    fi
+}
