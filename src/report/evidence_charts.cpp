@@ -155,15 +155,18 @@ std::string lost_chart(const Evidence& evidence) {
 }
 
 std::string lost_sentence(const Evidence& evidence) {
-    std::string values;
+    std::vector<const LostSupport*> tilted;
     double worst = 0;
     for (const LostSupport& l : evidence.lost) {
-        if (l.theta_R_deg > 0)
-            values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(l.measured)), shortest(l.theta_R_deg));
+        if (l.theta_R_deg > 0) tilted.push_back(&l);
         if (l.se > 0) worst = std::max(worst, std::fabs(l.measured - l.theory) / l.se);
     }
+    const std::size_t stride = std::max<std::size_t>(1, (tilted.size() + 4) / 5);  // at most five of them in a sentence
+    std::string values;
+    for (std::size_t i = stride - 1; i < tilted.size(); i += stride)
+        values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(tilted[i]->measured)), shortest(tilted[i]->theta_R_deg));
     return html::p(fmt::format("Measured by drawing from the cosine and asking the Phong density whether it could have drawn the same: {}. "
-                               "The largest departure from theory is {:.1f} standard errors{}.", values, worst,
+                               "The largest departure from theory is {:.1f} standard errors{}.", values.empty() ? "nothing" : values, worst,
                                worst <= 4 ? "" : ", more than chance allows: theory and measurement disagree here"));
 }
 
@@ -194,11 +197,19 @@ std::string rejection_table(const Evidence& evidence) {
 }
 
 std::string rejection_sentence(const Evidence& evidence) {
-    const auto above = std::count_if(evidence.rejections.begin(), evidence.rejections.end(), [&](const FalseRejection& r) { return r.low > evidence.alpha; });
-    const auto worst = std::max_element(evidence.rejections.begin(), evidence.rejections.end(), [](const FalseRejection& a, const FalseRejection& b) { return a.low < b.low; });
-    std::string out = fmt::format("At {} of {} exponents the whole interval of the measured rate lies above {}.", above, evidence.rejections.size(), percent(evidence.alpha));
-    if (above > 0) out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s), html::value(share_text(*worst)));
-    else out += " So this run shows no false alarms beyond what the test promises.";
+    int heavy = 0, heavy_above = 0, light = 0, light_above = 0;
+    const FalseRejection* worst = nullptr;
+    for (const FalseRejection& r : evidence.rejections) {
+        const bool infinite = r.k > 0.5, above = r.low > evidence.alpha;
+        (infinite ? heavy : light) += 1;
+        (infinite ? heavy_above : light_above) += above;
+        if (infinite && above && (!worst || r.low > worst->low)) worst = &r;
+    }
+    const auto exponents = [](int count) { return plural(static_cast<std::uint64_t>(count), "exponent"); };
+    std::string out;
+    if (heavy > 0) out += fmt::format("Of {} with <i>k</i> above 1/2, the arm is rejected more often than promised, interval included, at {}.", exponents(heavy), heavy_above);
+    if (worst) out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s), html::value(share_text(*worst)));
+    if (light > 0) out += fmt::format(" Of {} with <i>k</i> up to 1/2, at {}.", exponents(light), light_above);
     return html::p(out);
 }
 

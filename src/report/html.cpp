@@ -60,7 +60,7 @@ std::string Table::str() const {
     std::string head;
     for (const Cell& c : head_) head += cell(c, "col");
     const std::string end = grouped_ || rows_ > 0 ? "</tbody>" : "";
-    return fmt::format("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"table\"><table>\n"
+    return fmt::format("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"table, may scroll sideways\"><table>\n"
                        "<caption>{}</caption>\n<thead><tr>{}</tr></thead>\n{}{}</table></div>\n",
                        caption_, head, body_, end);
 }

@@ -82,8 +82,8 @@ void sampling_rows(const Page& page, std::vector<Row>& rows) {
 
 std::string claims(const Page& page) {
     const Experiment& e = page.in.experiment;
-    std::vector<std::string> can{"For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold; the same experiment gives the same films, "
-                                 "bit for bit, on any number of threads and any instruction set.",
+    std::vector<std::string> can{"For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. The films can be made again, bit for "
+                                 "bit: their hashes stand at the end.",
                                  "Arms differ in their density alone: same directions of view, same light, same random numbers."};
     if (e.seeds > 1) can.push_back(fmt::format("Bands span {} seeds. An order of arms whose bands do not overlap is no accident of the seed.", e.seeds));
     std::vector<std::string> cannot{"One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a renderer.",
@@ -149,7 +149,7 @@ PageSection provenance(Page& page) {
     add("crescent", escape(p.version) + ", commit " + html::code(p.commit));
     add("Compiler", escape(p.compiler));
     add("Instrument", escape(p.instrument));
-    add("Seeds", html::value(seeds_text(p.seeds)));
+    add("Seeds", seeds_text(p.seeds));
     html::Table films("Hashes (XXH3-64) of the float films at the first seed; equal films have equal hashes", {words("Film"), words("Hash")});
     for (const auto& [name, hash] : page.in.metrics.film_hashes) films.row({html::heading(escape(name)), words(html::code(hash))});
     return {"provenance", "Provenance", table.str() + (films.empty() ? "" : films.str())};

@@ -12,7 +12,10 @@ namespace {
 
 using html::words;
 
-std::string signed_percent(double fraction) { return html::value(fmt::format("{:+.1f} %", 100 * fraction)); }
+std::string signed_percent(double fraction) {
+    const double tenths = std::round(1000 * fraction);
+    return html::value(tenths == 0 ? "0.0 %" : fmt::format("{:+.1f} %", tenths / 10));
+}
 
 std::optional<double> relative(const BandMeter* b) {
     if (!b || !b->published || *b->published == 0) return {};

@@ -63,20 +63,25 @@ bool larger_in(const Page& page, const std::string& a, const std::string& b, std
 constexpr const char* a_prose = R"(
 <p>A small bright disk fills little of the hemisphere. A density that spreads its rays over all of it meets the disk seldom;
 when one ray does, it carries the light of all those that missed. On a glossy highlight that one ray also meets the lobe at
-its height, which the density knows nothing of, so its weight is enormous: the largest single sample of {broad} at
-<i>N</i> = {n} weighs {largest_broad}, that of {narrow} {largest_narrow}. Most pixels come out too dark, a few far too bright.
-Those few are fireflies: {fireflies_broad} pixels with {broad}, {fireflies_narrow} with {narrow}.</p>
+its height, which the density knows nothing of, so one sample can weigh as much as {largest} with {broad}, in a picture whose
+mean is {mean}. Most pixels come out too dark, a few far too bright. Counted as fireflies at <i>N</i> = {n} are
+{fireflies_broad} pixels with {broad} and {fireflies_narrow} with {narrow}.</p>
 )";
 
 constexpr const char* b_prose = R"(
 <p>A lobe about the mirror direction sends nearly all rays where the lobe is. A matt surface gathers light from the whole
 hemisphere, and what comes from the sides is left to the few rays that stray there. Each of those stands for many that were
-never sent. The pixel is dark until one arrives, and then it sparkles. The mean of the frame tells it at a glance: all
-arms estimate the same integral, yet at <i>N</i> = {n} <i>Y</i><sub>mean</sub> reads {mean_narrow} with {narrow} and
-{mean_broad} with {broad}.</p>
+never sent: the largest weighs {largest} with {narrow}. The pixel is dark until one arrives, and then it sparkles. The mean
+of the frame tells it at a glance: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub> reads {mean_narrow} with
+{narrow} and {mean_broad} with {broad}.{lost}</p>
 <p>On a surface without a gloss of its own the arm still aims about the mirror direction with the scene’s <i>s</i>, because an
 arm on trial is not told what it is shining on.</p>
 )";
+
+std::string lost_words(const Page& page) {
+    if (page.in.evidence.lost.empty()) return {};
+    return " Off the normal there is also light that it " + html::link("wrong-support", "can never find") + ".";
+}
 
 }  // namespace
 
@@ -108,8 +113,8 @@ PageSection failure_a(Page& page) {
     else
         out = not_seen(pair, broad, narrow);
     out += fmt::format(a_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
-                       fmt::arg("largest_broad", html::value(figures(of_broad->largest))),
-                       fmt::arg("largest_narrow", html::value(figures(of_narrow->largest))),
+                       fmt::arg("largest", html::value(figures(of_broad->largest))),
+                       fmt::arg("mean", html::value(figures(of_broad->y_mean))),
                        fmt::arg("fireflies_broad", of_broad->fireflies), fmt::arg("fireflies_narrow", of_narrow->fireflies));
     const auto shows = [](const std::string& arm) {
         return [arm](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; };
@@ -131,7 +136,8 @@ PageSection failure_b(Page& page) {
         out = not_seen(pair, narrow, broad);
     out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
                        fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
-                       fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))));
+                       fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))),
+                       fmt::arg("largest", html::value(figures(of_narrow->largest))), fmt::arg("lost", lost_words(page)));
     return {"failure-b", "Failure B: " + escape(narrow) + " starves the surround", out + page.figures.plates(PlateKind::surround)};
 }
 

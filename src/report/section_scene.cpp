@@ -9,11 +9,11 @@ namespace {
 using html::words;
 
 std::string vec(const Vec3d& v) {
-    return html::value(fmt::format("({}, {}, {})", shortest(v.x), shortest(v.y), shortest(v.z)));
+    return html::value(fmt::format("({}, {}, {})", compact(v.x), compact(v.y), compact(v.z)));
 }
 std::string rgb(const Rgb& c) {
     if (c[0] == c[1] && c[1] == c[2]) return shortest(c[0]);
-    return html::value(fmt::format("({}, {}, {})", shortest(c[0]), shortest(c[1]), shortest(c[2])));
+    return html::value(fmt::format("({}, {}, {})", compact(c[0]), compact(c[1]), compact(c[2])));
 }
 
 const char* kind_name(ShapeKind kind) {

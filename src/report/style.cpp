@@ -42,7 +42,7 @@ nav h2 { font-size: 0.8rem; letter-spacing: 0.09em; text-transform: uppercase; c
 nav ol { columns: 2; column-gap: 2.5rem; margin: 0; padding-left: 1.7rem; font-size: 0.94rem; } nav li { margin-bottom: 0.2rem; }
 nav li::marker { color: var(--soft); font-variant-numeric: tabular-nums; }
 nav a { color: inherit; text-decoration: none; } nav a:hover, nav a:focus { text-decoration: underline; }
-.equation { overflow-x: auto; margin: 1.2rem 0; padding: 0.1rem 0; }
+.equation { overflow-x: auto; overflow-y: hidden; margin: 1.2rem 0; padding: 0.1rem 0; }
 math { font-family: "STIX Two Math", "Latin Modern Math", "Cambria Math", "DejaVu Math TeX Gyre", math; }
 math[display="block"] { font-size: 1.12em; }
 figure, .table, .wide { margin: 2rem 0; }
@@ -82,7 +82,7 @@ svg.strip { vertical-align: middle; } svg .reach { fill: var(--c1); opacity: 0.2
   figure, .wide, .table { width: auto; margin-left: 0; } .table { overflow: visible; } table { font-size: 7.4pt; } th, td { padding-right: 0.45rem; }
   td.n, td.n .v { white-space: normal; } svg.strip { width: 86px; }
   h2, h3 { break-after: avoid; } h2 { margin-top: 2.2rem; } figure, tr, .equation, dd { break-inside: avoid; } thead { display: table-header-group; } tr.group { break-after: avoid; }
-  a { color: inherit; } img { max-height: 120mm; object-fit: contain; background: none; }
+  a { color: inherit; } .equation { overflow: visible; } figure.narrow svg { max-width: 130mm; margin: 0 auto; }
 }
 )css";
 
