@@ -40,8 +40,8 @@ class Cpu : public Instrument {
 public:
     explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
     std::string name() const override { return "CPU"; }
-    std::vector<Film> films(const Experiment& experiment, const Job& job, Watch& watch) override {
-        return estimate_films(Scene(experiment.with_s(job.s)), job.arm->sampler, job.n, job.seed, isa_, watch);
+    std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch) override {
+        return estimate_films(scene, job.arm->sampler, job.n, job.seed, isa_, watch);
     }
 
 private:
@@ -70,7 +70,7 @@ public:
         : experiment_(experiment), options_(options), watch_(watch), isa_(kernels_for(options.isa).isa),
           instrument_(options.instrument ? options.instrument : std::make_shared<Cpu>(isa_)),
           threads_(options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency())),
-          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), published_(published_of(experiment)) {}
+          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), published_(published_of(experiment)), scene_(experiment) {}
 
     RunResult operator()() {
         const auto start = Clock::now();
@@ -110,8 +110,8 @@ private:
     }
 
     void look() {
-        const Scene scene(experiment_);
-        shapes_ = shape_map(scene);
+        scene_.remember_primaries();
+        shapes_ = shape_map(scene_);
         for (const Shape& shape : experiment_.shapes) metrics_.shape_pixels[shape.name] = 0;
         for (std::int16_t shape : shapes_.shape) {
             if (shape < 0) continue;
@@ -128,9 +128,9 @@ private:
             if (std::find(exponents.begin(), exponents.end(), job.s) == exponents.end()) exponents.push_back(job.s);
         const double pixels = static_cast<double>(shapes_.shape.size());
         watch_.begin("reference by quadrature", pixels);
-        quadrature_ = quadrature_reference(experiment_, exponents, watch_);
+        quadrature_ = quadrature_reference(scene_, exponents, watch_);
         watch_.begin("the note's reference", pixels);
-        note_ = note_reference(experiment_, exponents, isa_, watch_);
+        note_ = note_reference(scene_, exponents, isa_, watch_);
     }
 
     const ReferenceFilm* find(const std::vector<ReferenceFilm>& films, double s) const {
@@ -155,7 +155,7 @@ private:
 
     void run_job(const Job& job, bool keep) {
         const auto start = Clock::now();
-        std::vector<Film> films = instrument_->films(experiment_, job, watch_);
+        std::vector<Film> films = instrument_->films(scene_.with_s(job.s), job, watch_);
         const std::uint64_t samples = metrics_.geometry_pixels * job.n.back();
         timing_.arms.push_back({job.arm->name, job.n.back(), job.s, samples, seconds_since(start)});
         for (std::size_t r = 0; r < job.n.size(); ++r) {
@@ -170,7 +170,7 @@ private:
         for (RunMeter& run : metrics_.runs) {
             if (run.key.seed != experiment_.seed) continue;
             const auto arm = std::find_if(experiment_.arms.begin(), experiment_.arms.end(), [&](const ArmPlan& a) { return a.name == run.key.arm; });
-            const Scene scene(experiment_.with_s(run.key.s));
+            const Scene scene = scene_.with_s(run.key.s);
             for (std::size_t r = 0; r < run.regions.size(); ++r) {
                 constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
                 const std::uint64_t fit = std::max<std::uint64_t>(most / run.regions[r].pixels, 1);
@@ -225,8 +225,6 @@ private:
     }
 
     void draw_and_write(Staging& staging) {
-        std::vector<std::string> where;
-        for (const PlatePlan& plan : experiment_.plates) where.push_back(staging.path("plates/" + plan.name + ".png"));
         std::vector<std::vector<unsigned char>> bytes(experiment_.plates.size());
         tbb::task_group group;
         group.run([&] { write_films(staging); });
@@ -306,6 +304,7 @@ private:
     int threads_;
     tbb::global_control limit_;
     std::optional<Published> published_;
+    Scene scene_;
     ShapeMap shapes_;
     std::vector<ReferenceFilm> quadrature_, note_;
     std::vector<std::pair<RunKey, Film>> films_;

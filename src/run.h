@@ -11,6 +11,7 @@
 #include "films/film.h"
 #include "meters/metrics.h"
 #include "report/report.h"
+#include "scene/scene.h"
 
 namespace crescent {
 
@@ -27,8 +28,8 @@ class Instrument {
 public:
     virtual ~Instrument() = default;
     virtual std::string name() const = 0;  // for provenance and plates
-    /// One film per rung, in order.
-    virtual std::vector<Film> films(const Experiment& experiment, const Job& job, Watch& watch) = 0;
+    /// One film per rung, in order. The scene already has the job's s.
+    virtual std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch) = 0;
     /// Claims of its own that join the assertions ("framebuffer is RGBA32F").
     virtual std::vector<AssertionResult> assertions() const { return {}; }
 };

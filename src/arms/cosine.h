@@ -10,13 +10,13 @@ template <class F> struct Cosine {
     static constexpr std::string_view name = "cosine";
     explicit Cosine(const Site<F>&) {}
 
-    Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
+    [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F sin = sqrt(number<F>(1) - u.x);
         const SinCos<F> phi = sincos_turns(u.y);
         const Vec3<F> wi = {sin * phi.cos, sin * phi.sin, sqrt(u.x)};
         return {wi, pdf(wo, wi)};
     }
-    PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
         return {select(wi.z > number<F>(0), wi.z * number<F>(1 / pi), number<F>(0))};
     }
 };

@@ -13,7 +13,7 @@ template <class F> struct LightArea {
     int count;
     explicit LightArea(const Site<F>& site) : disks(site.disks), count(site.disk_count) {}
 
-    Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
+    [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
         Drawn<F> drawn = {{zero, zero, one}, {zero}};
         F below = zero;
@@ -30,7 +30,7 @@ template <class F> struct LightArea {
         return drawn;
     }
 
-    PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
         F sum = number<F>(0);
         for (int k = 0; k < count; ++k) {
             const LocalDisk<F>& d = disks[k];
@@ -45,12 +45,12 @@ template <class F> struct LightArea {
 
 private:
     /// The surface stands before the emitting side.
-    static auto faces(const LocalDisk<F>& d, F c) { return (c < number<F>(0)) | ((c > number<F>(0)) & (d.two_sided > number<F>(0))); }
-    static PerSr<F> density(const LocalDisk<F>& d, F r2, F cos_light) {
+    [[gnu::always_inline]] static auto faces(const LocalDisk<F>& d, F c) { return (c < number<F>(0)) | ((c > number<F>(0)) & (d.two_sided > number<F>(0))); }
+    [[gnu::always_inline]] static PerSr<F> density(const LocalDisk<F>& d, F r2, F cos_light) {
         return per_sr(PerM2<F>{number<F>(1 / pi) / sqr(d.radius)}, r2, cos_light);
     }
 
-    static Drawn<F> on_disk(const LocalDisk<F>& d, Vec2<F> u) {
+    [[gnu::always_inline]] static Drawn<F> on_disk(const LocalDisk<F>& d, Vec2<F> u) {
         const F r = d.radius * sqrt(u.x);
         const SinCos<F> phi = sincos_turns(u.y);
         const Frame<F> about = frame_about(d.normal);

@@ -14,16 +14,16 @@ template <class F> struct Phong {
     explicit Phong(const Site<F>& site)
         : s(site.s), inverse(number<F>(1) / (site.s + number<F>(1))), scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
 
-    Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
-        const Power<F> root = power(u.x, inverse);
-        const F cos = root.value;
-        const F sin = sqrt(root.one_minus * (number<F>(1) + cos));
+    [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
+        const Power<F> lobe = root(u.x, inverse);
+        const F cos = lobe.value;
+        const F sin = sqrt(lobe.one_minus * (number<F>(1) + cos));
         const SinCos<F> phi = sincos_turns(u.y);
         const Frame<F> about = frame_about(mirror(wo));
         const F p = scale * (u.x / cos);
         return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {select(u.x > number<F>(0), p, number<F>(0))}};
     }
-    PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return {scale * cosine_power(wi, mirror(wo), s)}; }
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return {scale * cosine_power(wi, mirror(wo), s)}; }
 };
 
 }  // namespace crescent

@@ -9,7 +9,7 @@ namespace crescent {
 
 /// Distance along w to the disk's plane where w meets the emitting side inside the radius, else 0. With k = c.n and
 /// v = w.n the ray meets the plane at (k/v) w, so |k w - v c| <= r |v| needs no division.
-template <class F> MaskOf<F> meets_disk(const LocalDisk<F>& disk, Vec3<F> w, F& v, F& k) {
+template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const LocalDisk<F>& disk, Vec3<F> w, F& v, F& k) {
     k = dot(disk.to_center, disk.normal);
     v = dot(w, disk.normal);
     const Vec3<F> off = w * k - disk.to_center * v;

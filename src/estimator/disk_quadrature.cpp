@@ -83,22 +83,40 @@ const std::vector<PolarRule>& polar_rules() {
 
 DiskIntegral result(Pair value, Pair error) { return {value.real(), value.imag(), std::abs(error.real()), std::abs(error.imag())}; }
 
-/// The whole disk is above the horizon and open: polar rules of rising order until two agree.
+/// The whole disk is above the horizon and open, Lambert: integral of cos(theta_i) dw / pi in closed form. The light's
+/// vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view factors, elements
+/// parallel and perpendicular to a disk), written without cancellation.
+double whole_disk_diffuse(const Point& point, const DiskLight& disk) {
+    const Vec3d d = disk.center - point.x;
+    const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
+    const Vec3d axis = along < 0 ? -disk.normal : disk.normal;
+    const Vec3d aside = d - h * axis;
+    const double p2 = dot(aside, aside), a = p2 + h * h + r2;
+    const double root = std::sqrt(a * a - 4 * r2 * p2);
+    const double parallel = r2 * (1 - 2 * p2 / (a + root)) / root;
+    return dot(point.frame.n, axis) * parallel + dot(point.frame.n, aside) * (2 * h * r2 / (root * (a + root)));
+}
+
+/// The same for the lobe: polar rules of rising order until two agree.
 DiskIntegral whole_disk(const Point& point, const DiskLight& disk, const Frame<double>& frame) {
+    DiskIntegral out;
+    out.diffuse = whole_disk_diffuse(point, disk);
+    if (!(point.surface.rho_s > 0)) return out;
     const auto apply = [&](const PolarRule& rule) {
-        Pair sum = 0;
-        for (const auto& n : rule.nodes) sum += n.weight * point(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
+        double sum = 0;
+        for (const auto& n : rule.nodes) sum += n.weight * point(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y)).imag();
         return sum * sqr(disk.radius);
     };
     constexpr double good = 1e-7;  // relative, between two rules; the finer one is much better still
     const auto& rules = polar_rules();
-    Pair coarse = apply(rules[0]), fine = coarse;
+    double coarse = apply(rules[0]);
     for (std::size_t k = 1; k < rules.size(); ++k) {
-        fine = apply(rules[k]);
-        if (point.weigh(fine - coarse) <= good * point.weigh(fine)) break;
-        if (k + 1 < rules.size()) coarse = fine;
+        out.lobe = apply(rules[k]);
+        out.lobe_error = std::fabs(out.lobe - coarse);
+        if (point.weigh({0, out.lobe_error}) <= good * point.weigh({out.diffuse, out.lobe})) break;
+        coarse = out.lobe;
     }
-    return result(fine, fine - coarse);
+    return out;
 }
 
 template <unsigned n> Pair along(const Point& point, Vec3d y0, Vec3d y1, Interval part) {
@@ -107,6 +125,7 @@ template <unsigned n> Pair along(const Point& point, Vec3d y0, Vec3d y1, Interva
 }
 
 Pair along(const Point& point, Vec3d y0, Vec3d y1, Interval part, double sharpness) {
+    if (sharpness == 0) return along<5>(point, y0, y1, part);
     if (sharpness < 1) return along<10>(point, y0, y1, part);
     if (sharpness < 4) return along<20>(point, y0, y1, part);
     return along<60>(point, y0, y1, part);
@@ -125,14 +144,15 @@ DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k)
 
 namespace {
 
-/// Can the body's bounding sphere reach into the cone from x around the disk's bounding sphere?
-bool may_hide(const Bound& bound, Vec3d x, Vec3d center, double radius) {
-    const Vec3d to_body = bound.center - x, to_disk = center - x;
-    const double body = length(to_body), disk = length(to_disk);
-    if (body <= bound.radius || disk <= radius) return true;
-    if (body - bound.radius > disk + radius) return false;
-    const double between = std::acos(std::clamp(dot(to_body, to_disk) / (body * disk), -1.0, 1.0));
-    return between < std::asin(bound.radius / body) + std::asin(radius / disk);
+/// Does one body hide the whole disk? Its shadow on the disk's plane is convex: if two opposite sides of the square
+/// around the disk lie in it, so does all between them.
+bool hides_all(const Occluder& body, Vec3d x, const DiskLight& disk, const Frame<double>& frame) {
+    const Vec3d side = disk.radius * frame.t, up = disk.radius * frame.b;
+    const auto whole = [&](Vec3d middle) {
+        const Interval part = hidden(body, x, middle - side, middle + side);
+        return part.lo <= 0 && part.hi >= 1;
+    };
+    return whole(disk.center + up) && whole(disk.center - up);
 }
 
 /// Chord by chord: on each, the exact open parts; across them, adaptive Gauss-Kronrod, which finds the kinks.
@@ -153,7 +173,7 @@ DiskIntegral chord_by_chord(const Point& point, const DiskLight& disk, const Fra
         return sum * (2 * half * half);  // chord length x R cos(phi)
     };
     double error = 0;
-    const Pair value = boost::math::quadrature::gauss_kronrod<double, 15>::integrate(chord, -pi / 2, pi / 2, 7, 1e-6, &error);
+    const Pair value = boost::math::quadrature::gauss_kronrod<double, 15>::integrate(chord, -pi / 2, pi / 2, 7, 1e-5, &error);
     return result(value, Pair(error, error));
 }
 
@@ -173,6 +193,8 @@ DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) 
         const bool light_from_behind = body.shape == -2 && dot(body.a - hit.x, body.b) >= 0;
         if (body.shape != hit.shape && !light_from_behind && may_hide(bounds_[k], hit.x, disk_.center, disk_.radius)) near.push_back(&body);
     }
+    for (const Occluder* body : near)
+        if (hides_all(*body, hit.x, disk_, frame_)) return {};
     if (near.empty() && height - reach > 0) return whole_disk(point, disk_, frame_);
     return chord_by_chord(point, disk_, frame_, near);
 }

@@ -22,13 +22,30 @@ template <class F> Vec3<F> load_lanes(const std::vector<float>& x, const std::ve
     return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
 }
 
-/// What one pack of pixels has gathered in the current block.
-template <class F> struct Partial {
+/// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
+/// only samples that meet a disk touch, so that it can live in registers.
+template <class F> struct Gathered {
     F g = number<F>(0), g_lobe = number<F>(0), square = number<F>(0);
-    F disk_g[most_disks], disk_g_lobe[most_disks];
+    F largest = number<F>(0);
+    UintOf<F> horizon{0u}, bad{0u};
 };
 
-/// One pack of pixels: its constants, its sums, and the step that takes one sample.
+/// The part that samples which meet a disk add to.
+template <class F> struct Met {
+    F disk_g[most_disks], disk_g_lobe[most_disks];
+    UintOf<F> hits{0u};
+    bool any = false;  // in the current block
+};
+
+/// A pack's constants that every sample reads. A copy of its own, because the compiler must take whatever `meet` can
+/// reach for changed after each call, and would redo all that follows from it.
+template <class F> struct Constants {
+    Vec3<F> wo;
+    F fill_d, fill_s, pivot;
+    UintOf<F> pixel;
+};
+
+/// One pack of pixels: its lights and the step that takes one sample.
 template <class A, class L, class F> struct Lane {
     using U = UintOf<F>;
     const Sites& sites;
@@ -36,23 +53,20 @@ template <class A, class L, class F> struct Lane {
     std::size_t disk_count;
     LocalDisk<F> disks[most_disks];
     Site<F> site;
-    F fill_d, fill_s, pivot;
-    Partial<F> partial;
-    F largest = number<F>(0);
-    U horizon{0u}, hits{0u}, bad{0u};
-    bool met = false;  // some sample of this block met a disk
+    Met<F> met;
 
     Lane(const Sites& all, std::size_t first) : sites(all), at(first), disk_count(all.disks.size()) {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const DiskArrays& d = sites.disks[k];
             disks[k] = {load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power)};
-            partial.disk_g[k] = partial.disk_g_lobe[k] = number<F>(0);
+            met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
         }
         site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at), load_lanes<F>(sites.alpha, at),
                 load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks, static_cast<int>(disk_count)};
-        fill_d = load_lanes<F>(sites.fill_d, at);
-        fill_s = load_lanes<F>(sites.fill_s, at);
-        pivot = load_lanes<F>(sites.pivot, at);
+    }
+
+    Constants<F> constants() const {
+        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pivot, at), load_lanes<F>(sites.pixel, at)};
     }
 
     /// Samples that met a disk: nearest disk first, then what stands before it. Returns X where one was met.
@@ -80,58 +94,58 @@ template <class A, class L, class F> struct Lane {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
             const F gk = select(this_one, g, number<F>(0));
-            partial.disk_g[k] = partial.disk_g[k] + gk;
-            partial.disk_g_lobe[k] = partial.disk_g_lobe[k] + gk * lobe;
+            met.disk_g[k] = met.disk_g[k] + gk;
+            met.disk_g_lobe[k] = met.disk_g_lobe[k] + gk * lobe;
             const F xk = g * (load_lanes<F>(sites.disks[k].d, at) + lobe * load_lanes<F>(sites.disks[k].s, at));
             x = select(this_one, xk, x);
         }
-        hits = hits + select(seen > number<F>(0), U(1u), U(0u));
-        met = true;
+        met.hits = met.hits + select(seen > number<F>(0), U(1u), U(0u));
+        met.any = true;
         return x;
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
-    [[gnu::always_inline]] F carry(const L& brdf, const Drawn<F>& drawn, F weight) {
+    [[gnu::always_inline]] F carry(Gathered<F>& to, const Constants<F>& c, const L& brdf, const Drawn<F>& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
         const auto up = !(down | (drawn.pdf.v == zero));
-        horizon = horizon + select(down, U(1u), U(0u));
+        to.horizon = to.horizon + select(down, U(1u), U(0u));
         const F g = select(up, weight * (cos / drawn.pdf.v), zero);
-        const F lobe = select(up, brdf(site.wo, drawn.wi), zero);
-        F x = g * fill_d;
-        partial.g = partial.g + g;
+        const F lobe = select(up, brdf(c.wo, drawn.wi), zero);
+        F x = g * c.fill_d;
+        to.g = to.g + g;
         if constexpr (L::present) {
-            partial.g_lobe = partial.g_lobe + g * lobe;
-            x = g * (fill_d + lobe * fill_s);
+            to.g_lobe = to.g_lobe + g * lobe;
+            x = g * (c.fill_d + lobe * c.fill_s);
         }
         auto hit = zero > zero;
         for (std::size_t k = 0; k < disk_count; ++k) {
-            F v, c;
-            hit = hit | (meets_disk(disks[k], drawn.wi, v, c) & up);
+            F v, h;
+            hit = hit | (meets_disk(disks[k], drawn.wi, v, h) & up);
         }
         if (any(hit)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
         return x;
     }
 
-    [[gnu::always_inline]] void step(const A& arm, const L& brdf, const Vec4u<U>& h, bool odd, std::uint64_t j, std::uint32_t seed, U pixel, float* samples,
-                                     std::uint64_t n) {
+    [[gnu::always_inline]] void step(Gathered<F>& to, const Constants<F>& c, const A& arm, const L& brdf, const Vec4u<U>& h, bool odd, std::uint64_t j,
+                                     const KernelCall& call) {
         const Vec2<F> u = odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
         F x;
         if constexpr (requires { A::techniques; }) {
-            const Vec4u<U> second = draws<U>(pixel, static_cast<std::uint32_t>(j >> 1), 1, seed);
+            const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
             const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)} : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
-            const Drawn<F> a = arm.template sample_technique<0>(site.wo, u), b = arm.template sample_technique<1>(site.wo, v);
-            x = carry(brdf, a, arm.template weight<0>(site.wo, a)) + carry(brdf, b, arm.template weight<1>(site.wo, b));
+            const Drawn<F> a = arm.template sample_technique<0>(c.wo, u), b = arm.template sample_technique<1>(c.wo, v);
+            x = carry(to, c, brdf, a, arm.template weight<0>(c.wo, a)) + carry(to, c, brdf, b, arm.template weight<1>(c.wo, b));
         } else {
-            x = carry(brdf, arm.sample(site.wo, u), number<F>(1));
+            x = carry(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
         }
-        const F off = x - pivot;
-        partial.square = partial.square + off * off;
-        largest = larger(x, largest);
+        const F off = x - c.pivot;
+        to.square = to.square + off * off;
+        to.largest = larger(x, to.largest);
         // NaN, infinite and negative numbers alone have bits from 0x7f800000 up (-0 counts as 0: x + 0 clears its sign).
-        bad = bad + select(bits(x + number<F>(0)) > U(0x7f7fffffu), U(1u), U(0u));
-        if (samples) keep(x, samples, j, n);
+        to.bad = to.bad + select(bits(x + number<F>(0)) > U(0x7f7fffffu), U(1u), U(0u));
+        if (call.samples) keep(x, call.samples, j, call.rungs.back());
     }
 
     void keep(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
@@ -158,67 +172,64 @@ template <class F> struct Totals {
         for (std::size_t k = 0; k < disks; ++k)
             for (std::size_t l = 0; l < count; ++l) disk_g[k][l] = disk_g_lobe[k][l] = 0;
     }
-    void add(const Partial<F>& p, std::size_t disks, bool met) {
+    /// Takes the block's sums over and clears them.
+    void take(Gathered<F>& p, Met<F>& met, std::size_t disks) {
         add_lanes(p.g, g, g);
         add_lanes(p.g_lobe, g_lobe, g_lobe);
         add_lanes(p.square, square, square);
-        for (std::size_t k = 0; met && k < disks; ++k) {
-            add_lanes(p.disk_g[k], disk_g[k], disk_g[k]);
-            add_lanes(p.disk_g_lobe[k], disk_g_lobe[k], disk_g_lobe[k]);
+        p.g = p.g_lobe = p.square = number<F>(0);
+        for (std::size_t k = 0; met.any && k < disks; ++k) {
+            add_lanes(met.disk_g[k], disk_g[k], disk_g[k]);
+            add_lanes(met.disk_g_lobe[k], disk_g_lobe[k], disk_g_lobe[k]);
+            met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
         }
+        met.any = false;
     }
 };
 
-template <class A, class L, class F> void write_rung(const Lane<A, L, F>& lane, const Totals<F>& totals, Moments& out) {
+template <class A, class L, class F> void write_rung(const Lane<A, L, F>& lane, const Gathered<F>& p, const Totals<F>& totals, Moments& out) {
     const std::size_t at = lane.at;
-    const Partial<F>& p = lane.partial;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
     add_lanes(p.square, totals.square, out.square.data() + at);
     for (std::size_t k = 0; k < lane.disk_count; ++k) {
-        add_lanes(p.disk_g[k], totals.disk_g[k], out.disk_g[k].data() + at);
-        add_lanes(p.disk_g_lobe[k], totals.disk_g_lobe[k], out.disk_g_lobe[k].data() + at);
+        add_lanes(lane.met.disk_g[k], totals.disk_g[k], out.disk_g[k].data() + at);
+        add_lanes(lane.met.disk_g_lobe[k], totals.disk_g_lobe[k], out.disk_g_lobe[k].data() + at);
     }
-    store(lane.largest, out.largest.data() + at);
-    store(lane.horizon, out.horizon.data() + at);
-    store(lane.hits, out.hits.data() + at);
-    store(lane.bad, out.bad.data() + at);
-}
-
-template <class F> void clear(Partial<F>& p, std::size_t disks, bool met) {
-    p.g = p.g_lobe = p.square = number<F>(0);
-    for (std::size_t k = 0; met && k < disks; ++k) p.disk_g[k] = p.disk_g_lobe[k] = number<F>(0);
+    store(p.largest, out.largest.data() + at);
+    store(p.horizon, out.horizon.data() + at);
+    store(lane.met.hits, out.hits.data() + at);
+    store(p.bad, out.bad.data() + at);
 }
 
 /// One pack of pixels through all its samples.
 template <class A, class L, class F> void estimate_pack(const KernelCall& call, std::size_t at) {
     using U = UintOf<F>;
     Lane<A, L, F> lane(*call.sites, at);
+    Gathered<F> gathered;
     Totals<F> totals(lane.disk_count);
     const A arm(lane.site);
     const L brdf(lane.site.s, lane.site.alpha);
-    const U pixel = load_lanes<F>(call.sites->pixel, at);
+    const Constants<F> c = lane.constants();
     const std::uint64_t n = call.rungs.back();
     std::size_t rung = 0;
     for (std::uint64_t j = 0; j < n;) {
         const std::uint64_t block_end = (j / block_length + 1) * block_length;
         const std::uint64_t end = block_end < call.rungs[rung] ? block_end : call.rungs[rung];
         while (j < end) {
-            const Vec4u<U> h = draws<U>(pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
+            const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
             if (!(j & 1)) {
-                lane.step(arm, brdf, h, false, j, call.seed, pixel, call.samples, n);
+                lane.step(gathered, c, arm, brdf, h, false, j, call);
                 if (++j == end) break;
             }
-            lane.step(arm, brdf, h, true, j, call.seed, pixel, call.samples, n);
+            lane.step(gathered, c, arm, brdf, h, true, j, call);
             ++j;
         }
         if (j == block_end) {
-            totals.add(lane.partial, lane.disk_count, lane.met);
-            clear(lane.partial, lane.disk_count, lane.met);
-            lane.met = false;
+            totals.take(gathered, lane.met, lane.disk_count);
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
         }
-        if (j == call.rungs[rung]) write_rung(lane, totals, call.out[rung++]);
+        if (j == call.rungs[rung]) write_rung(lane, gathered, totals, call.out[rung++]);
     }
 }
 

@@ -74,9 +74,9 @@ private:
     Albedos albedos_;
 };
 
-std::vector<Scene> scenes_at(const Experiment& experiment, const std::vector<double>& exponents) {
+std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& exponents) {
     std::vector<Scene> scenes;
-    for (double s : exponents) scenes.emplace_back(s > 0 ? experiment.with_s(s) : experiment);
+    for (double s : exponents) scenes.push_back(scene.with_s(s));
     return scenes;
 }
 
@@ -157,8 +157,9 @@ void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
 
 }  // namespace
 
-std::vector<ReferenceFilm> quadrature_reference(const Experiment& experiment, const std::vector<double>& exponents, Watch& watch) {
-    const std::vector<Scene> scenes = scenes_at(experiment, exponents);
+std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch) {
+    const Experiment& experiment = scene.experiment();
+    const std::vector<Scene> scenes = scenes_at(scene, exponents);
     std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
     std::vector<ReferenceFilm> films = blank(experiment, exponents);
     const Image& image = experiment.image;
@@ -185,8 +186,9 @@ std::vector<ReferenceFilm> quadrature_reference(const Experiment& experiment, co
     return films;
 }
 
-std::vector<ReferenceFilm> note_reference(const Experiment& experiment, const std::vector<double>& exponents, const std::string& isa, Watch& watch) {
-    const std::vector<Scene> scenes = scenes_at(experiment, exponents);
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch) {
+    const Experiment& experiment = scene.experiment();
+    const std::vector<Scene> scenes = scenes_at(scene, exponents);
     std::vector<ReferenceFilm> films = blank(experiment, exponents);
     const Image& image = experiment.image;
     for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "base/watch.h"
-#include "experiment/experiment.h"
+#include "scene/scene.h"
 #include "films/film.h"
 
 namespace crescent {
 
 /// One film per exponent, in order.
-std::vector<ReferenceFilm> quadrature_reference(const Experiment& experiment, const std::vector<double>& exponents, Watch& watch);
-std::vector<ReferenceFilm> note_reference(const Experiment& experiment, const std::vector<double>& exponents, const std::string& isa, Watch& watch);
+std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch);
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch);
 
 }  // namespace crescent

@@ -10,7 +10,7 @@
 
 namespace crescent {
 
-inline constexpr std::size_t widest_pack = 16;  // AVX-512
+inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 
 /// A rectangle of pixels, x1 and y1 exclusive.
 struct TileBox {

@@ -25,7 +25,7 @@ template <class F> struct PhongLobe {
     static constexpr bool present = true;
     F s, scale;
     PhongLobe(F s_, F) : s(s_), scale((s_ + number<F>(2)) * number<F>(0.5 / pi)) {}
-    F operator()(Vec3<F> wo, Vec3<F> wi) const { return scale * cosine_power(wi, mirror(wo), s); }
+    [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const { return scale * cosine_power(wi, mirror(wo), s); }
 };
 
 template <class F> struct BlinnPhongLobe {
@@ -35,7 +35,7 @@ template <class F> struct BlinnPhongLobe {
     BlinnPhongLobe(F s_, F)
         : s(s_), scale((s_ + number<F>(2)) * (s_ + number<F>(4)) /
                        (number<F>(8 * pi) * (exp2(number<F>(-0.5) * s_) + s_))) {}
-    F operator()(Vec3<F> wo, Vec3<F> wi) const {
+    [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {
         const F f = scale * cosine_power(normalize(wo + wi), Vec3<F>{number<F>(0), number<F>(0), number<F>(1)}, s);
         return select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), f, number<F>(0));
     }
@@ -60,7 +60,7 @@ template <class F> struct GgxLobe {
     static constexpr bool present = true;
     Ggx<F> ggx;
     GgxLobe(F, F alpha) : ggx{alpha} {}
-    F operator()(Vec3<F> wo, Vec3<F> wi) const {  // (20)
+    [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {  // (20)
         const F f = ggx.D(normalize(wo + wi)) * ggx.G1(wo) * ggx.G1(wi) / (number<F>(4) * wo.z * wi.z);
         return select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), f, number<F>(0));
     }

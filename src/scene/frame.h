@@ -8,12 +8,12 @@ namespace crescent {
 
 template <class F> struct Frame {
     Vec3<F> t, b, n;
-    Vec3<F> to_world(Vec3<F> w) const { return t * w.x + b * w.y + n * w.z; }
+    [[gnu::always_inline]] Vec3<F> to_world(Vec3<F> w) const { return t * w.x + b * w.y + n * w.z; }
     Vec3<F> to_local(Vec3<F> w) const { return {dot(w, t), dot(w, b), dot(w, n)}; }
 };
 
 /// A frame about the unit vector n without a pole: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-template <class F> Frame<F> frame_about(Vec3<F> n) {
+template <class F> CRESCENT_INLINE Frame<F> frame_about(Vec3<F> n) {
     const F one = number<F>(1);
     const F sign = select(n.z >= number<F>(0), one, -one);
     const F a = -one / (sign + n.z);
@@ -22,6 +22,6 @@ template <class F> Frame<F> frame_about(Vec3<F> n) {
 }
 
 /// R = reflect(-wo, n) in the local frame.
-template <class F> Vec3<F> mirror(Vec3<F> wo) { return {-wo.x, -wo.y, wo.z}; }
+template <class F> CRESCENT_INLINE Vec3<F> mirror(Vec3<F> wo) { return {-wo.x, -wo.y, wo.z}; }
 
 }  // namespace crescent

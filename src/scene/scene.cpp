@@ -46,7 +46,28 @@ Scene::Scene(const Experiment& experiment) : experiment_(experiment) {
         if (experiment_.shapes[k].occludes) add_occluders(experiment_.shapes[k], static_cast<int>(k), occluders_);
 }
 
+void Scene::remember_primaries() {
+    const std::size_t width = static_cast<std::size_t>(experiment_.image.width), height = static_cast<std::size_t>(experiment_.image.height);
+    if (width * height > std::size_t{1} << 20) return;
+    auto all = std::make_shared<std::vector<Hit>>(width * height);
+    for (std::size_t at = 0; at < all->size(); ++at)
+        if (const auto hit = trace(static_cast<int>(at % width), static_cast<int>(at / width))) (*all)[at] = *hit;
+    primaries_ = std::move(all);
+}
+
+Scene Scene::with_s(double s) const {
+    Scene other(experiment_.with_s(s));
+    other.primaries_ = primaries_;
+    return other;
+}
+
 std::optional<Hit> Scene::primary(int i, int j) const {
+    if (!primaries_) return trace(i, j);
+    const Hit& hit = (*primaries_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment_.image.width) + static_cast<std::size_t>(i)];
+    return hit.shape < 0 ? std::nullopt : std::optional<Hit>(hit);
+}
+
+std::optional<Hit> Scene::trace(int i, int j) const {
     const Image& image = experiment_.image;
     const Vec3d d = normalize(forward_ + (i + 0.5 - 0.5 * image.width) * right_ + (j + 0.5 - 0.5 * image.height) * up_);
     const Vec3d eye = experiment_.camera.eye;

@@ -2,6 +2,7 @@
 // Double precision; lengths in m. Lights are seen by sampled rays only, never by the camera.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,11 @@ public:
 
     /// The ray through the centre of pixel (i, j), counted from the bottom-left.
     std::optional<Hit> primary(int i, int j) const;
+    /// Traces every pixel once and remembers it, for as long as the scene and its copies live; does nothing for images
+    /// of more than 2^20 pixels, which are traced tile by tile whenever they are asked for.
+    void remember_primaries();
+    /// The same view with another exponent; what was remembered is shared.
+    Scene with_s(double s) const;
     Surface surface(const Hit& hit) const;
 
     const std::vector<Occluder>& occluders() const { return occluders_; }
@@ -48,10 +54,12 @@ public:
     const Experiment& experiment() const { return experiment_; }
 
 private:
+    std::optional<Hit> trace(int i, int j) const;
     Experiment experiment_;  // a copy: a scene outlives the experiment it was made from
     Vec3d forward_{}, right_{}, up_{};  // right and up scaled to one pixel
     double s_ = 0;
     std::vector<Occluder> occluders_;
+    std::shared_ptr<const std::vector<Hit>> primaries_;  // shape -1: nothing met
 };
 
 /// Does the open segment from x to y meet the body?

@@ -92,26 +92,29 @@ Interval box(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
     struct Corner {
         double a, b;
     };
-    std::vector<Corner> polygon = {{0, 0}, {1, 0}, {0, 1}}, next;
+    std::array<Corner, 16> polygon = {{{0, 0}, {1, 0}, {0, 1}}}, next;  // a triangle and at most one corner more a cut
+    std::size_t size = 3;
     const auto cut = [&](double h0, double ha, double hb) {  // keep h0 + a ha + b hb >= 0
-        next.clear();
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const Corner p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const Corner p = polygon[i], q = polygon[i + 1 < size ? i + 1 : 0];
             const double hp = h0 + p.a * ha + p.b * hb, hq = h0 + q.a * ha + q.b * hb;
-            if (hp >= 0) next.push_back(p);
+            if (hp >= 0) next[kept++] = p;
             if ((hp >= 0) != (hq >= 0)) {
                 const double t = hp / (hp - hq);
-                next.push_back({p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)});
+                next[kept++] = {p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)};
             }
         }
-        polygon.swap(next);
+        polygon = next;
+        size = kept;
     };
     const Vec3d d0 = y0 - x, d1 = y1 - x;
     cut(x.x - o.a.x, d0.x, d1.x), cut(o.b.x - x.x, -d0.x, -d1.x);
     cut(x.y - o.a.y, d0.y, d1.y), cut(o.b.y - x.y, -d0.y, -d1.y);
     cut(x.z - o.a.z, d0.z, d1.z), cut(o.b.z - x.z, -d0.z, -d1.z);
     Interval out{infinity, -infinity};
-    for (const Corner& c : polygon) {
+    for (std::size_t i = 0; i < size; ++i) {
+        const Corner& c = polygon[i];
         if (!(c.a + c.b > 0)) return {};  // x itself lies in the box
         const double v = c.b / (c.a + c.b);
         out = {std::min(out.lo, v), std::max(out.hi, v)};
@@ -133,14 +136,34 @@ Interval hidden(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
 }
 
 Bound bound_of(const Occluder& o) {
+    const Vec3d everywhere = {infinity, infinity, infinity};
+    const auto around = [](Vec3d c, Vec3d half) { return Bound{c - half, c + half}; };
+    const auto each = [](Vec3d v) { return Vec3d{std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; };
     switch (o.kind) {
-        case Occluder::Kind::sphere: return {o.a, o.radius};
-        case Occluder::Kind::box: return {0.5 * (o.a + o.b), 0.5 * length(o.b - o.a)};
-        case Occluder::Kind::quad: return {o.a + 0.5 * (o.b + o.c), 0.5 * std::max(length(o.b + o.c), length(o.b - o.c))};
-        case Occluder::Kind::disk: return {o.a, o.radius};
-        case Occluder::Kind::plane: return {o.a, infinity};
+        case Occluder::Kind::box: return {o.a, o.b};
+        case Occluder::Kind::quad: return around(o.a + 0.5 * (o.b + o.c), 0.5 * (each(o.b) + each(o.c)));
+        case Occluder::Kind::sphere:
+        case Occluder::Kind::disk: return around(o.a, {o.radius, o.radius, o.radius});
+        case Occluder::Kind::plane: return {-everywhere, everywhere};
     }
     return {};
+}
+
+bool may_hide(const Bound& bound, Vec3d x, Vec3d center, double radius) {
+    double near = 0, far = 1;
+    const auto slab = [&](double lo, double hi, double from, double to) {
+        if (from == to) {
+            if (from < lo - radius || from > hi + radius) far = -1;
+            return;
+        }
+        const double t0 = (lo - radius - from) / (to - from), t1 = (hi + radius - from) / (to - from);
+        near = std::max(near, std::min(t0, t1));
+        far = std::min(far, std::max(t0, t1));
+    };
+    slab(bound.min.x, bound.max.x, x.x, center.x);
+    slab(bound.min.y, bound.max.y, x.y, center.y);
+    slab(bound.min.z, bound.max.z, x.z, center.z);
+    return near <= far;
 }
 
 std::vector<Interval> open_parts(std::vector<Interval> parts) {

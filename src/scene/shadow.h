@@ -18,12 +18,15 @@ struct Interval {
 /// The v for which the segment from x to y(v) crosses the body.
 Interval hidden(const Occluder& body, Vec3d x, Vec3d y0, Vec3d y1);
 
-/// A sphere around the body; radius infinite for a plane.
+/// The body's extent along x, y and z; infinite for a plane.
 struct Bound {
-    Vec3d center{};
-    double radius = 0;
+    Vec3d min{}, max{};
 };
 Bound bound_of(const Occluder& body);
+
+/// Could the body stand between x and any point within `radius` of `center`? Never false where it does: the cone of
+/// lines is nowhere wider than `radius`, so the segment to the centre must come within `radius` of the body's extent.
+bool may_hide(const Bound& bound, Vec3d x, Vec3d center, double radius);
 
 /// [0, 1] less the given intervals, in order.
 std::vector<Interval> open_parts(std::vector<Interval> hidden_parts);

@@ -3,6 +3,7 @@
 //   function        range                          error (largest seen, see math_test.cpp)
 //   sincos_turns    u in [0, 1]                    1.2e-7 absolute
 //   exp2            x in [-126, 127]               1.5 ULP; 0 below -126
+//   root            u in [2^-24, 1], y <= 1/2      2 + y |log2 u| ULP
 //   pow             x in [0, 1], y in (0, 2^17]    3 ULP where the result > 2^-24, 12 ULP above 2^-126, else 0
 //
 // On double the same names forward to the C library, for quadrature and verdicts.
@@ -21,7 +22,7 @@ template <class F> struct SinCos {
 inline constexpr double round_magic = 12582912.0;
 
 /// sin and cos of 2 pi u. Quarter turns are split off exactly; minimax polynomials on an eighth of a turn either way.
-template <class F> SinCos<F> sincos_turns(F u) {
+template <class F> CRESCENT_INLINE SinCos<F> sincos_turns(F u) {
     using U = UintOf<F>;
     const F magic = number<F>(round_magic);
     const F a = number<F>(4) * u;
@@ -45,7 +46,7 @@ template <class F> struct Power {
 };
 
 /// 2^(k + r) for r in [-1/2, 1/2] and the integer k in the low bits of `shifted` (k + 1.5 * 2^23 as a float).
-template <class F> Power<F> exp2_split(F shifted, F r) {
+template <class F> CRESCENT_INLINE Power<F> exp2_split(F shifted, F r) {
     using U = UintOf<F>;
     const F one = number<F>(1);
     const F q = r * (number<F>(6.9314718803e-01) +
@@ -56,7 +57,7 @@ template <class F> Power<F> exp2_split(F shifted, F r) {
     return {value, select(shifted == number<F>(round_magic), -q, one - value)};
 }
 
-template <class F> F exp2(F x) {
+template <class F> CRESCENT_INLINE F exp2(F x) {
     const F magic = number<F>(round_magic);
     const F inside = larger(x, number<F>(-126));
     const F shifted = inside + magic;
@@ -67,12 +68,12 @@ template <class F> F exp2(F x) {
 template <class F> struct Split {
     F hi, lo;
 };
-template <class F> F upper_half(F x) { return from_bits<F>(bits(x) & UintOf<F>(0xfffff000u)); }
+template <class F> CRESCENT_INLINE F upper_half(F x) { return from_bits<F>(bits(x) & UintOf<F>(0xfffff000u)); }
 
 /// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute; `near` is x - 1, used where x is close to 1, so that
 /// who knows it better than x says it can pass it. After FreeBSD's e_log2f.c (log(1+f) by
 /// atanh-like series in f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
-template <class F> Split<F> log2_split(F x, F near) {
+template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F near) {
     using U = UintOf<F>;
     const U t = bits(x) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
     const F e = to_float<F>(shift_right<23>(t)) - number<F>(127);
@@ -98,7 +99,7 @@ template <class F> Split<F> log2_split(F x, F near) {
 
 /// x^y and 1 - x^y for x in [0, 1], y > 0, given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
 /// result under 2^-126.
-template <class F> Power<F> power(F x, F near, F y) {
+template <class F> CRESCENT_INLINE Power<F> power(F x, F near, F y) {
     const F none = number<F>(0);
     const F tiny = number<F>(1.17549435e-38);  // smallest normal
     const auto positive = x > tiny;
@@ -113,12 +114,33 @@ template <class F> Power<F> power(F x, F near, F y) {
     const Power<F> p = exp2_split(shifted, (h - (shifted - magic)) + rest);
     return {select(in_range, p.value, none), select(in_range, p.one_minus, number<F>(1))};
 }
-template <class F> F pow(F x, F y) { return power(x, x - number<F>(1), y).value; }
+template <class F> CRESCENT_INLINE F pow(F x, F y) { return power(x, x - number<F>(1), y).value; }
 /// x^y and 1 - x^y.
-template <class F> Power<F> power(F x, F y) { return power(x, x - number<F>(1), y); }
+template <class F> CRESCENT_INLINE Power<F> power(F x, F y) { return power(x, x - number<F>(1), y); }
+
+/// u^y and 1 - u^y for u in [2^-24, 1] and 0 < y <= 1/2, the inverse of a lobe's distribution. A plain log2 is enough
+/// where a small y scales its error down: (2 + y |log2 u|) ULP.
+template <class F> CRESCENT_INLINE Power<F> root(F u, F y) {
+    using U = UintOf<F>;
+    const U t = bits(u) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
+    const F e = to_float<F>(shift_right<23>(t)) - number<F>(127);
+    const F f = from_bits<F>((t & U(0x007fffffu)) + U(0x3f3504f3u)) - number<F>(1);
+    const F s = f / (number<F>(2) + f);
+    const F z = s * s;
+    const F R = z * (number<F>(0.66666662693) + z * (number<F>(0.40000972152) + z * (number<F>(0.28498786688) + z * number<F>(0.24279078841))));
+    const F square = number<F>(0.5) * f * f;
+    const F l = f - (square - s * (square + R));  // FreeBSD e_logf.c
+    const F x = y * (e + l * number<F>(1.44269504));
+    const F shifted = x + number<F>(round_magic);
+    return exp2_split(shifted, x - (shifted - number<F>(round_magic)));
+}
+inline Power<double> root(double u, double y) {
+    const double l = y * std::log(u);
+    return {std::exp(l), -std::expm1(l)};
+}
 
 /// (a.b)_+^s for unit a and b, through 1 - a.b = |a - b|^2 / 2, which loses nothing where a sharp lobe peaks.
-template <class F> F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
+template <class F> CRESCENT_INLINE F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
     const Vec3<F> d = a - b;
     const F near = number<F>(-0.5) * dot(d, d);
     return power(number<F>(1) + near, near, s).value;
@@ -141,10 +163,10 @@ inline double cosine_power(Vec3<double> a, Vec3<double> b, double s) {
     return near > -1 ? std::exp(s * std::log1p(near)) : 0.0;
 }
 
-template <class F> Vec3<F> normalize(Vec3<F> a) {
+template <class F> CRESCENT_INLINE Vec3<F> normalize(Vec3<F> a) {
     const F inverse = number<F>(1) / sqrt(dot(a, a));
     return {a.x * inverse, a.y * inverse, a.z * inverse};
 }
-template <class F> F length(Vec3<F> a) { return sqrt(dot(a, a)); }
+template <class F> CRESCENT_INLINE F length(Vec3<F> a) { return sqrt(dot(a, a)); }
 
 }  // namespace crescent

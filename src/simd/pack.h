@@ -1,6 +1,9 @@
 // Packs of floats over Highway's static target: the only intrinsics of crescent. The file that includes this one is
 // compiled with one instruction set's flags and names it in CRESCENT_ISA (sse4, avx2, avx512), which becomes the
 // namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
+//
+// A pack is two vectors side by side: a sample is one long chain of dependent operations, and a second chain beside it
+// fills the time that each step of the first one waits.
 #pragma once
 
 #ifndef CRESCENT_ISA
@@ -13,69 +16,80 @@
 
 #include "simd/scalar.h"
 
-#define CRESCENT_INLINE inline __attribute__((always_inline))
-
 namespace crescent {
 namespace CRESCENT_ISA {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using FloatTag = hn::ScalableTag<float>;
 using UintTag = hn::RebindToUnsigned<FloatTag>;
+using FloatVec = hn::Vec<FloatTag>;
+using UintVec = hn::Vec<UintTag>;
+inline constexpr std::size_t half_lanes = HWY_MAX_BYTES / sizeof(float);
 
+/// One truth value a lane.
 struct Mask {
-    hn::Mask<FloatTag> m;
+    hn::Mask<FloatTag> a, b;
 };
-CRESCENT_INLINE Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
-CRESCENT_INLINE Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
-CRESCENT_INLINE Mask operator!(Mask a) { return {hn::Not(a.m)}; }
-CRESCENT_INLINE bool any(Mask a) { return !hn::AllFalse(FloatTag{}, a.m); }
+CRESCENT_INLINE Mask operator&(Mask x, Mask y) { return {hn::And(x.a, y.a), hn::And(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator|(Mask x, Mask y) { return {hn::Or(x.a, y.a), hn::Or(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator!(Mask x) { return {hn::Not(x.a), hn::Not(x.b)}; }
+CRESCENT_INLINE bool any(Mask x) { return !hn::AllFalse(FloatTag{}, hn::Or(x.a, x.b)); }
 
 /// 32-bit unsigned integers, one a lane, modulo 2^32.
 struct Uint {
-    hn::Vec<UintTag> v;
+    UintVec a, b;
     Uint() = default;
-    CRESCENT_INLINE Uint(hn::Vec<UintTag> x) : v(x) {}
-    CRESCENT_INLINE Uint(std::uint32_t x) : v(hn::Set(UintTag{}, x)) {}
+    CRESCENT_INLINE Uint(UintVec x, UintVec y) : a(x), b(y) {}
+    CRESCENT_INLINE Uint(std::uint32_t x) : a(hn::Set(UintTag{}, x)), b(a) {}
 };
-CRESCENT_INLINE Uint operator+(Uint a, Uint b) { return hn::Add(a.v, b.v); }
-CRESCENT_INLINE Uint operator*(Uint a, Uint b) { return hn::Mul(a.v, b.v); }
-CRESCENT_INLINE Uint operator^(Uint a, Uint b) { return hn::Xor(a.v, b.v); }
-CRESCENT_INLINE Uint operator&(Uint a, Uint b) { return hn::And(a.v, b.v); }
-CRESCENT_INLINE Uint operator|(Uint a, Uint b) { return hn::Or(a.v, b.v); }
-CRESCENT_INLINE Uint operator-(Uint a, Uint b) { return hn::Sub(a.v, b.v); }
-CRESCENT_INLINE Mask operator>(Uint a, Uint b) { return {hn::RebindMask(FloatTag{}, hn::Gt(a.v, b.v))}; }
-CRESCENT_INLINE Mask operator==(Uint a, Uint b) { return {hn::RebindMask(FloatTag{}, hn::Eq(a.v, b.v))}; }
-template <int n> CRESCENT_INLINE Uint shift_right(Uint a) { return hn::ShiftRight<n>(a.v); }
-template <int n> CRESCENT_INLINE Uint shift_left(Uint a) { return hn::ShiftLeft<n>(a.v); }
+CRESCENT_INLINE Mask mask_of(hn::Mask<UintTag> a, hn::Mask<UintTag> b) {
+    return {hn::RebindMask(FloatTag{}, a), hn::RebindMask(FloatTag{}, b)};
+}
+CRESCENT_INLINE Uint operator+(Uint x, Uint y) { return {hn::Add(x.a, y.a), hn::Add(x.b, y.b)}; }
+CRESCENT_INLINE Uint operator-(Uint x, Uint y) { return {hn::Sub(x.a, y.a), hn::Sub(x.b, y.b)}; }
+CRESCENT_INLINE Uint operator*(Uint x, Uint y) { return {hn::Mul(x.a, y.a), hn::Mul(x.b, y.b)}; }
+CRESCENT_INLINE Uint operator^(Uint x, Uint y) { return {hn::Xor(x.a, y.a), hn::Xor(x.b, y.b)}; }
+CRESCENT_INLINE Uint operator&(Uint x, Uint y) { return {hn::And(x.a, y.a), hn::And(x.b, y.b)}; }
+CRESCENT_INLINE Uint operator|(Uint x, Uint y) { return {hn::Or(x.a, y.a), hn::Or(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator>(Uint x, Uint y) { return mask_of(hn::Gt(x.a, y.a), hn::Gt(x.b, y.b)); }
+CRESCENT_INLINE Mask operator==(Uint x, Uint y) { return mask_of(hn::Eq(x.a, y.a), hn::Eq(x.b, y.b)); }
+template <int n> CRESCENT_INLINE Uint shift_right(Uint x) { return {hn::ShiftRight<n>(x.a), hn::ShiftRight<n>(x.b)}; }
+template <int n> CRESCENT_INLINE Uint shift_left(Uint x) { return {hn::ShiftLeft<n>(x.a), hn::ShiftLeft<n>(x.b)}; }
 
 /// IEEE 754 single precision, one number a lane.
 struct Pack {
-    hn::Vec<FloatTag> v;
+    FloatVec a, b;
     Pack() = default;
-    CRESCENT_INLINE Pack(hn::Vec<FloatTag> x) : v(x) {}
-    CRESCENT_INLINE Pack(float x) : v(hn::Set(FloatTag{}, x)) {}
-    static constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
+    CRESCENT_INLINE Pack(FloatVec x, FloatVec y) : a(x), b(y) {}
+    CRESCENT_INLINE Pack(float x) : a(hn::Set(FloatTag{}, x)), b(a) {}
+    static constexpr std::size_t lanes = 2 * half_lanes;
 };
-CRESCENT_INLINE Pack operator+(Pack a, Pack b) { return hn::Add(a.v, b.v); }
-CRESCENT_INLINE Pack operator-(Pack a, Pack b) { return hn::Sub(a.v, b.v); }
-CRESCENT_INLINE Pack operator*(Pack a, Pack b) { return hn::Mul(a.v, b.v); }
-CRESCENT_INLINE Pack operator/(Pack a, Pack b) { return hn::Div(a.v, b.v); }
-CRESCENT_INLINE Pack operator-(Pack a) { return hn::Neg(a.v); }
-CRESCENT_INLINE Mask operator<(Pack a, Pack b) { return {hn::Lt(a.v, b.v)}; }
-CRESCENT_INLINE Mask operator>(Pack a, Pack b) { return {hn::Gt(a.v, b.v)}; }
-CRESCENT_INLINE Mask operator<=(Pack a, Pack b) { return {hn::Le(a.v, b.v)}; }
-CRESCENT_INLINE Mask operator>=(Pack a, Pack b) { return {hn::Ge(a.v, b.v)}; }
-CRESCENT_INLINE Mask operator==(Pack a, Pack b) { return {hn::Eq(a.v, b.v)}; }
+CRESCENT_INLINE Pack operator+(Pack x, Pack y) { return {hn::Add(x.a, y.a), hn::Add(x.b, y.b)}; }
+CRESCENT_INLINE Pack operator-(Pack x, Pack y) { return {hn::Sub(x.a, y.a), hn::Sub(x.b, y.b)}; }
+CRESCENT_INLINE Pack operator*(Pack x, Pack y) { return {hn::Mul(x.a, y.a), hn::Mul(x.b, y.b)}; }
+CRESCENT_INLINE Pack operator/(Pack x, Pack y) { return {hn::Div(x.a, y.a), hn::Div(x.b, y.b)}; }
+CRESCENT_INLINE Pack operator-(Pack x) { return {hn::Neg(x.a), hn::Neg(x.b)}; }
+CRESCENT_INLINE Mask operator<(Pack x, Pack y) { return {hn::Lt(x.a, y.a), hn::Lt(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator>(Pack x, Pack y) { return {hn::Gt(x.a, y.a), hn::Gt(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator<=(Pack x, Pack y) { return {hn::Le(x.a, y.a), hn::Le(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator>=(Pack x, Pack y) { return {hn::Ge(x.a, y.a), hn::Ge(x.b, y.b)}; }
+CRESCENT_INLINE Mask operator==(Pack x, Pack y) { return {hn::Eq(x.a, y.a), hn::Eq(x.b, y.b)}; }
 
-CRESCENT_INLINE Pack select(Mask m, Pack a, Pack b) { return hn::IfThenElse(m.m, a.v, b.v); }
-CRESCENT_INLINE Uint select(Mask m, Uint a, Uint b) {
-    return hn::IfThenElse(hn::RebindMask(UintTag{}, m.m), a.v, b.v);
+CRESCENT_INLINE Pack select(Mask m, Pack x, Pack y) { return {hn::IfThenElse(m.a, x.a, y.a), hn::IfThenElse(m.b, x.b, y.b)}; }
+CRESCENT_INLINE Uint select(Mask m, Uint x, Uint y) {
+    return {hn::IfThenElse(hn::RebindMask(UintTag{}, m.a), x.a, y.a), hn::IfThenElse(hn::RebindMask(UintTag{}, m.b), x.b, y.b)};
 }
-CRESCENT_INLINE Pack sqrt(Pack a) { return hn::Sqrt(a.v); }
-CRESCENT_INLINE Pack abs(Pack a) { return hn::Abs(a.v); }
-CRESCENT_INLINE Uint bits(Pack a) { return hn::BitCast(UintTag{}, a.v); }
-CRESCENT_INLINE void store(Pack a, float* p) { hn::StoreU(a.v, FloatTag{}, p); }
-CRESCENT_INLINE void store(Uint a, std::uint32_t* p) { hn::StoreU(a.v, UintTag{}, p); }
+CRESCENT_INLINE Pack sqrt(Pack x) { return {hn::Sqrt(x.a), hn::Sqrt(x.b)}; }
+CRESCENT_INLINE Pack abs(Pack x) { return {hn::Abs(x.a), hn::Abs(x.b)}; }
+CRESCENT_INLINE Uint bits(Pack x) { return {hn::BitCast(UintTag{}, x.a), hn::BitCast(UintTag{}, x.b)}; }
+CRESCENT_INLINE void store(Pack x, float* p) {
+    hn::StoreU(x.a, FloatTag{}, p);
+    hn::StoreU(x.b, FloatTag{}, p + half_lanes);
+}
+CRESCENT_INLINE void store(Uint x, std::uint32_t* p) {
+    hn::StoreU(x.a, UintTag{}, p);
+    hn::StoreU(x.b, UintTag{}, p + half_lanes);
+}
 
 }  // namespace CRESCENT_ISA
 
@@ -85,19 +99,21 @@ template <> struct Lanes<CRESCENT_ISA::Pack> {
     static constexpr std::size_t count = CRESCENT_ISA::Pack::lanes;
 };
 template <> CRESCENT_INLINE CRESCENT_ISA::Pack from_bits<CRESCENT_ISA::Pack>(CRESCENT_ISA::Uint u) {
-    return CRESCENT_ISA::hn::BitCast(CRESCENT_ISA::FloatTag{}, u.v);
+    using namespace CRESCENT_ISA;
+    return {hn::BitCast(FloatTag{}, u.a), hn::BitCast(FloatTag{}, u.b)};
 }
 template <> CRESCENT_INLINE CRESCENT_ISA::Pack to_float<CRESCENT_ISA::Pack>(CRESCENT_ISA::Uint u) {
-    namespace hn = CRESCENT_ISA::hn;
-    const hn::RebindToSigned<CRESCENT_ISA::FloatTag> signed_tag;
-    return hn::ConvertTo(CRESCENT_ISA::FloatTag{}, hn::BitCast(signed_tag, u.v));
+    using namespace CRESCENT_ISA;
+    const hn::RebindToSigned<FloatTag> tag;
+    return {hn::ConvertTo(FloatTag{}, hn::BitCast(tag, u.a)), hn::ConvertTo(FloatTag{}, hn::BitCast(tag, u.b))};
 }
-
 template <> CRESCENT_INLINE CRESCENT_ISA::Pack load_as<CRESCENT_ISA::Pack>(const float* p) {
-    return CRESCENT_ISA::hn::LoadU(CRESCENT_ISA::FloatTag{}, p);
+    using namespace CRESCENT_ISA;
+    return {hn::LoadU(FloatTag{}, p), hn::LoadU(FloatTag{}, p + half_lanes)};
 }
 template <> CRESCENT_INLINE CRESCENT_ISA::Uint load_as<CRESCENT_ISA::Uint>(const std::uint32_t* p) {
-    return CRESCENT_ISA::hn::LoadU(CRESCENT_ISA::UintTag{}, p);
+    using namespace CRESCENT_ISA;
+    return {hn::LoadU(UintTag{}, p), hn::LoadU(UintTag{}, p + half_lanes)};
 }
 
 }  // namespace crescent

@@ -14,7 +14,7 @@ template <class U> struct Vec4u {
     U x, y, z, w;
 };
 
-template <class U> Vec4u<U> pcg4d(Vec4u<U> v) {
+template <class U> CRESCENT_INLINE Vec4u<U> pcg4d(Vec4u<U> v) {
     const U a(1664525u), c(1013904223u);
     v = {v.x * a + c, v.y * a + c, v.z * a + c, v.w * a + c};
     v.x = v.x + v.y * v.w;
@@ -30,11 +30,11 @@ template <class U> Vec4u<U> pcg4d(Vec4u<U> v) {
 }
 
 /// u = (2k + 1) / 2^24 from the upper 23 bits: centred, so that neither 0 nor 1 is ever drawn. Smallest u: 2^-24.
-template <class F> F unit_float(UintOf<F> h) { return to_float<F>(shift_right<8>(h) | UintOf<F>(1u)) * number<F>(0x1p-24); }
+template <class F> CRESCENT_INLINE F unit_float(UintOf<F> h) { return to_float<F>(shift_right<8>(h) | UintOf<F>(1u)) * number<F>(0x1p-24); }
 
 /// The four integers behind samples 2 `pair` and 2 `pair` + 1: (x, y) for the even one, (z, w) for the odd one.
 /// `block` counts pairs of dimensions: dimensions 0 and 1 are block 0, 2 and 3 block 1.
-template <class U> Vec4u<U> draws(U pixel, std::uint32_t pair, std::uint32_t block, std::uint32_t seed) {
+template <class U> CRESCENT_INLINE Vec4u<U> draws(U pixel, std::uint32_t pair, std::uint32_t block, std::uint32_t seed) {
     return pcg4d(Vec4u<U>{pixel, U(pair), U(block), U(seed)});
 }
 

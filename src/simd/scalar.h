@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
+/// For what stands inside the sample loop: a call there costs more than the work.
+#define CRESCENT_INLINE inline __attribute__((always_inline))
+
 namespace crescent {
 
 /// What belongs to a number type F: its mask and, for single precision, its 32-bit integers.
@@ -42,12 +45,12 @@ template <int n> constexpr std::uint32_t shift_right(std::uint32_t u) { return u
 template <int n> constexpr std::uint32_t shift_left(std::uint32_t u) { return u << n; }
 
 /// b where either is NaN, as maxps has it.
-template <class F> F larger(F a, F b) { return select(a > b, a, b); }
-template <class F> F smaller(F a, F b) { return select(a < b, a, b); }
+template <class F> CRESCENT_INLINE F larger(F a, F b) { return select(a > b, a, b); }
+template <class F> CRESCENT_INLINE F smaller(F a, F b) { return select(a < b, a, b); }
 
 inline constexpr double pi = 3.14159265358979323846;
 /// A constant in the number type at hand.
-template <class F> F number(double x) { return F(static_cast<float>(x)); }
+template <class F> CRESCENT_INLINE F number(double x) { return F(static_cast<float>(x)); }
 template <> inline double number<double>(double x) { return x; }
 template <> inline float number<float>(double x) { return static_cast<float>(x); }
 
