@@ -7,17 +7,31 @@
 
 namespace crescent {
 
-/// Distance along w to the disk's plane where w meets the emitting side inside the radius, else 0. With k = c.n and
-/// v = w.n the ray meets the plane at (k/v) w, so |k w - v c| <= r |v| needs no division.
-template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const LocalDisk<F>& disk, Vec3<F> w, F& v, F& k) {
-    k = dot(disk.to_center, disk.normal);
-    v = dot(w, disk.normal);
-    const Vec3<F> off = w * k - disk.to_center * v;
-    const F zero = number<F>(0);
-    const auto inside = dot(off, off) <= sqr(disk.radius * v);
-    const auto front = (v < zero) & (k < zero);
-    const auto back = (v > zero) & (k > zero) & (disk.two_sided > zero);
-    return inside & (front | back);
+/// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where no emitting side does,
+/// r2 < 0 and nothing meets it.
+template <class F> struct FacingDisk {
+    Vec3<F> c, n;  // from the surface to the centre; the normal
+    F k, r2;       // c.n; radius squared
+
+    FacingDisk() = default;
+    explicit FacingDisk(const LocalDisk<F>& disk) {
+        const F zero = number<F>(0), along = dot(disk.to_center, disk.normal);
+        const auto behind = along > zero;
+        const F sign = select(behind, number<F>(-1), number<F>(1));
+        const auto emits = (along < zero) | (behind & (disk.two_sided > zero));
+        c = disk.to_center;
+        n = disk.normal * sign;
+        k = along * sign;
+        r2 = select(emits, sqr(disk.radius), number<F>(-1));
+    }
+};
+
+/// Does w meet the disk? With v = w.n the ray meets its plane at (k/v) w, so |k w - v c| <= r |v| needs no division;
+/// the distance, where it does, is k/v.
+template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, Vec3<F> w, F& v) {
+    v = dot(w, disk.n);
+    const Vec3<F> off = w * disk.k - disk.c * v;
+    return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
 }
 
 template <class F> Vec3<F> broadcast(const std::array<float, 3>& a) { return {F(a[0]), F(a[1]), F(a[2])}; }

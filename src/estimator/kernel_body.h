@@ -43,6 +43,7 @@ template <class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s, pivot;
     UintOf<F> pixel;
+    FacingDisk<F> first;  // the first disk; most scenes have but one
 };
 
 /// One pack of pixels: its lights and the step that takes one sample.
@@ -52,6 +53,7 @@ template <class A, class L, class F> struct Lane {
     std::size_t at;
     std::size_t disk_count;
     LocalDisk<F> disks[most_disks];
+    FacingDisk<F> facing[most_disks];
     Site<F> site;
     Met<F> met;
 
@@ -59,6 +61,7 @@ template <class A, class L, class F> struct Lane {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const DiskArrays& d = sites.disks[k];
             disks[k] = {load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power)};
+            facing[k] = FacingDisk<F>(disks[k]);
             met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
         }
         site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at), load_lanes<F>(sites.alpha, at),
@@ -66,7 +69,8 @@ template <class A, class L, class F> struct Lane {
     }
 
     Constants<F> constants() const {
-        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pivot, at), load_lanes<F>(sites.pixel, at)};
+        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pivot, at), load_lanes<F>(sites.pixel, at),
+                disk_count > 0 ? facing[0] : FacingDisk<F>{}};
     }
 
     /// Samples that met a disk: nearest disk first, then what stands before it. Returns X where one was met.
@@ -75,9 +79,9 @@ template <class A, class L, class F> struct Lane {
         F nearest = far;
         F index = number<F>(-1);
         for (std::size_t k = 0; k < disk_count; ++k) {
-            F v, c;
-            const auto hit = meets_disk(disks[k], wi, v, c);
-            const F t = select(hit, c / select(hit, v, number<F>(1)), far);
+            F v;
+            const auto hit = meets_disk(facing[k], wi, v);
+            const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), far);
             index = select(t < nearest, F(static_cast<float>(k)), index);
             nearest = smaller(t, nearest);
         }
@@ -119,12 +123,11 @@ template <class A, class L, class F> struct Lane {
             to.g_lobe = to.g_lobe + g * lobe;
             x = g * (c.fill_d + lobe * c.fill_s);
         }
-        auto hit = zero > zero;
-        for (std::size_t k = 0; k < disk_count; ++k) {
-            F v, h;
-            hit = hit | (meets_disk(disks[k], drawn.wi, v, h) & up);
-        }
-        if (any(hit)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
+        if (disk_count == 0) return x;
+        F v;
+        auto hit = meets_disk(c.first, drawn.wi, v);
+        for (std::size_t k = 1; k < disk_count; ++k) hit = hit | meets_disk(facing[k], drawn.wi, v);
+        if (any(hit & up)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
         return x;
     }
 

@@ -49,10 +49,11 @@ template <class F> struct Power {
 template <class F> CRESCENT_INLINE Power<F> exp2_split(F shifted, F r) {
     using U = UintOf<F>;
     const F one = number<F>(1);
-    const F q = r * (number<F>(6.9314718803e-01) +
-                     r * (number<F>(2.4022651084e-01) +
-                          r * (number<F>(5.5503571055e-02) +
-                               r * (number<F>(9.6180308269e-03) + r * (number<F>(1.3390866863e-03) + r * number<F>(1.5469717178e-04))))));
+    const F r2 = r * r;  // Estrin's scheme: a sample is one long chain, and this shortens it
+    const F low = number<F>(6.9314718803e-01) + r * number<F>(2.4022651084e-01);
+    const F middle = number<F>(5.5503571055e-02) + r * number<F>(9.6180308269e-03);
+    const F high = number<F>(1.3390866863e-03) + r * number<F>(1.5469717178e-04);
+    const F q = r * (low + r2 * (middle + r2 * high));
     const F value = (one + q) * from_bits<F>(shift_left<23>(bits(shifted) + U(127u)));
     return {value, select(shifted == number<F>(round_magic), -q, one - value)};
 }
@@ -62,6 +63,12 @@ template <class F> CRESCENT_INLINE F exp2(F x) {
     const F inside = larger(x, number<F>(-126));
     const F shifted = inside + magic;
     return select(x >= number<F>(-126), exp2_split(shifted, inside - (shifted - magic)).value, number<F>(0));
+}
+
+/// (log((1+s)/(1-s)) - 2s)/s for z = s^2 <= 0.03, from FreeBSD's e_logf.c (Remez, 2^-34).
+template <class F> CRESCENT_INLINE F atanh_series(F z) {
+    const F w = z * z;
+    return z * (number<F>(0.66666662693) + w * number<F>(0.28498786688)) + w * (number<F>(0.40000972152) + w * number<F>(0.24279078841));
 }
 
 /// A number kept in two floats, hi with at most 12 significant bits.
@@ -81,7 +88,7 @@ template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F near) {
     const F f = select(e == number<F>(0), near, m - number<F>(1));
     const F s = f / (number<F>(2) + f);
     const F z = s * s;
-    const F R = z * (number<F>(0.66666662693) + z * (number<F>(0.40000972152) + z * (number<F>(0.28498786688) + z * number<F>(0.24279078841))));
+    const F R = atanh_series(z);
     const F fh = upper_half(f);
     const F half = number<F>(0.5);
     const F square_hi = half * fh * fh;
@@ -127,7 +134,7 @@ template <class F> CRESCENT_INLINE Power<F> root(F u, F y) {
     const F f = from_bits<F>((t & U(0x007fffffu)) + U(0x3f3504f3u)) - number<F>(1);
     const F s = f / (number<F>(2) + f);
     const F z = s * s;
-    const F R = z * (number<F>(0.66666662693) + z * (number<F>(0.40000972152) + z * (number<F>(0.28498786688) + z * number<F>(0.24279078841))));
+    const F R = atanh_series(z);
     const F square = number<F>(0.5) * f * f;
     const F l = f - (square - s * (square + R));  // FreeBSD e_logf.c
     const F x = y * (e + l * number<F>(1.44269504));
