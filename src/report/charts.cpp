@@ -136,8 +136,22 @@ void Chart::rule(double y, std::string_view css, std::string_view name) {
 
 void Chart::name(Point at, std::string_view text, std::string_view css) {
     if (!drawable(at.x, at.y)) return;
-    body_ += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", css, px(at.x) + 8, py(at.y) + 4,
-                         escape(text));
+    names_.push_back({px(at.x) + 8, py(at.y) + 4, escape(text), std::string(css)});
+}
+
+std::string Chart::names() const {
+    constexpr double apart = 13;
+    std::vector<Name> all = names_;
+    std::sort(all.begin(), all.end(), [](const Name& a, const Name& b) { return a.y < b.y; });
+    for (std::size_t i = 1; i < all.size(); ++i) all[i].y = std::max(all[i].y, all[i - 1].y + apart);
+    double limit = height_ - bottom_margin + 4;
+    std::string out;
+    for (auto it = all.rbegin(); it != all.rend(); ++it) {
+        it->y = std::min(it->y, limit);
+        limit = it->y - apart;
+        out += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", it->css, it->x, it->y, it->text);
+    }
+    return out;
 }
 
 std::string Chart::axes() const {
@@ -161,7 +175,7 @@ std::string Chart::axes() const {
 
 std::string Chart::str() const {
     return fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n",
-                       width_, height_, escape(title_), escape(title_), axes(), body_);
+                       width_, height_, escape(title_), escape(title_), axes(), body_ + names());
 }
 
 std::string strip_svg(const Strip& s) {

@@ -43,7 +43,7 @@ public:
     void bar(double x, double low, double high, std::string_view css);
     /// A horizontal line at y, named at its right end inside the frame.
     void rule(double y, std::string_view css, std::string_view name);
-    /// Words at a data point, shifted right by a few pixels; for the end of a line.
+    /// Words at a data point, shifted right by a few pixels; for the end of a line. Names that would overlap move apart.
     void name(Point at, std::string_view text, std::string_view css);
     std::string str() const;
 
@@ -52,10 +52,16 @@ private:
     double py(double y) const;
     bool drawable(double x, double y) const;
     std::string axes() const;
+    std::string names() const;
 
     int width_, height_;
     Axis x_, y_;
     std::string title_, body_;
+    struct Name {
+        double x = 0, y = 0;
+        std::string text, css;
+    };
+    std::vector<Name> names_;
 };
 
 /// A strip: 5-95 % as a bar, the median as a tick, the measured value as a dot, the published one as a diamond.

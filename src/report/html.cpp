@@ -27,6 +27,13 @@ std::string list(const std::vector<std::string>& html_items) {
     return element("ul", "\n" + items) + "\n";
 }
 
+std::string join(const std::vector<std::string>& html_items) {
+    std::string out;
+    for (std::size_t i = 0; i < html_items.size(); ++i)
+        out += (i == 0 ? "" : i + 1 == html_items.size() ? " and " : ", ") + html_items[i];
+    return out;
+}
+
 std::string number(std::string_view text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {

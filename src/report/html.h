@@ -23,6 +23,8 @@ inline std::string link(std::string_view id, std::string_view html) {
 }
 std::string list(const std::vector<std::string>& html_items);
 
+/// "a, b and c".
+std::string join(const std::vector<std::string>& html_items);
 /// Escaped, with a true minus sign before digits.
 std::string number(std::string_view text);
 /// A number in a sentence keeps its digits together and in tabular figures.

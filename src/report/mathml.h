@@ -60,6 +60,16 @@ M density_phong();
 M inverse_uniform();
 M inverse_cosine();
 M inverse_phong();
+M density_mixture();
+M density_mis();
+M density_light_area();
+M density_light_cap();
+M density_blinn();
+M density_ggx_d();
+M density_ggx_vndf();
+M inverse_cap();
+M inverse_blinn();
+M inverse_ggx();
 M pareto_index();  // k = (s-1)/(s+1)
 M lost_share();    // (1 - cos theta_R)/2
 M capped_mean();   // rho_s + rho_d (1 - 2^(-b(1-k)))

@@ -80,6 +80,13 @@ void sampling_rows(const Page& page, std::vector<Row>& rows) {
                         "Films stay as they are; only what is read off them changes."});
 }
 
+/// Whether an arm samples lights or joins several densities.
+bool remedies(const Experiment& e) {
+    return std::any_of(e.arms.begin(), e.arms.end(), [](const ArmPlan& arm) {
+        return arm.sampler == "mixture" || arm.sampler.starts_with("mis-") || arm.sampler.starts_with("light-");
+    });
+}
+
 std::string claims(const Page& page) {
     const Experiment& e = page.in.experiment;
     std::vector<std::string> can{"For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. The films can be made again, bit for "
@@ -88,8 +95,8 @@ std::string claims(const Page& page) {
     if (e.seeds > 1) can.push_back(fmt::format("Bands span {} seeds. An order of arms whose bands do not overlap is no accident of the seed.", e.seeds));
     std::vector<std::string> cannot{"One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a renderer.",
                                     "Arms are compared at equal <i>N</i>. Nothing here says which is faster, or which belongs in production.",
-                                    "No arm aims at the lights and none is combined with another; how well either remedy works is not asked.",
                                     "Photographs are tone-mapped and cut off at white. Read no error off them."};
+    if (!remedies(e)) cannot.push_back("No arm aims at the lights and none is combined with another; how well either remedy works is not asked.");
     if (e.seeds < 2) cannot.push_back("A single seed ran. There are no bands, so no arm is ranked above another.");
     else if (e.seeds < 20) cannot.push_back(fmt::format("With {} seeds the ends of a 5–95 % band rest on the outermost one or two draws.", e.seeds));
     const auto& bands = page.in.metrics.bands;

@@ -1,4 +1,4 @@
-// The question, the estimator with its meters, and the densities of the arms.
+// The question, and the estimator with its meters.
 #include <fmt/format.h>
 
 #include "report/page.h"
@@ -50,21 +50,9 @@ samples that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean 
 mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
 )";
 
-constexpr const char* densities_prose = R"(
-<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in [0, 1) into a direction. The azimuth is
-2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over the axis it is measured from.</p>
-)";
-
 std::string spelled(std::size_t count) {
     static const char* words[] = {"no arms", "one arm", "two arms", "three arms", "four arms", "five arms", "six arms"};
     return count < 7 ? words[count] : fmt::format("{} arms", count);
-}
-
-std::string join(const std::vector<std::string>& names) {
-    std::string out;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-    return out;
 }
 
 std::string regions_sentence(const Experiment& e) {
@@ -72,7 +60,7 @@ std::string regions_sentence(const Experiment& e) {
     std::vector<std::string> names;
     for (const Region& r : e.regions)
         names.push_back(fmt::format("<b>{}</b> ({} × {} pixels)", escape(r.name), r.box.width(), r.box.height()));
-    return fmt::format(" Errors are read in {}, {}.", e.regions.size() == 1 ? "one region" : "regions that behave differently", join(names));
+    return fmt::format(" Errors are read in {}, {}.", e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
 }
 
 bool any_phong_lobe(const Experiment& e) {
@@ -81,30 +69,13 @@ bool any_phong_lobe(const Experiment& e) {
     return false;
 }
 
-struct Known {
-    M density, inverse;
-    std::string axis;
-};
-std::optional<Known> known(const std::string& sampler) {
-    if (sampler == "uniform") return Known{density_uniform(), inverse_uniform(), "the normal <i>n</i>"};
-    if (sampler == "cosine") return Known{density_cosine(), inverse_cosine(), "the normal <i>n</i>"};
-    if (sampler == "phong") return Known{density_phong(), inverse_phong(), "the mirror direction <i>R</i>"};
-    return {};
-}
-
-std::string rungs(const ArmPlan& arm) {
-    std::vector<std::string> all;
-    for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
-    return join(all);
-}
-
 }  // namespace
 
 PageSection question(Page& page) {
     std::vector<std::string> names;
     for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
     return {"question", "The question",
-            fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", join(names)),
+            fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", html::join(names)),
                         fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()), fmt::arg("seed", page.seed_name()))};
 }
 
@@ -125,22 +96,6 @@ PageSection estimator(Page& page) {
                        fmt::arg("variance", display(variance(), "sample variance over N")),
                        fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
     return {"estimator", "The estimator", out};
-}
-
-PageSection densities(Page& page) {
-    using html::words;
-    html::Table table("The densities, their inverse distribution functions and the rungs of <i>N</i> each arm ran",
-                      {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
-    for (const ArmPlan& arm : page.in.experiment.arms) {
-        const auto it = known(arm.sampler);
-        const std::string other = "sampler " + html::code(arm.sampler);
-        table.row({html::heading(escape(arm.name)), words(it ? in_cell(it->density) : other),
-                   words(it ? in_cell(it->inverse) : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
-    }
-    if (table.empty()) return {};
-    const std::size_t count = page.in.experiment.arms.size();
-    return {"densities", count == 3 ? "Three densities" : "The densities",
-            densities_prose + table.str() + page.figures.plates(PlateKind::rose)};
 }
 
 }  // namespace crescent
