@@ -98,14 +98,14 @@ private:
             why_ = fmt::format("expected {}, found '{}'", form_of(*known), name.substr(0, 64));
             return false;
         }
-        return known->subject == Subject::none || brackets(q, *known);
+        return known->subject == QuantityOf::none || brackets(q, *known);
     }
 
     bool brackets(ParsedQuantity& q, const QuantityWord& known) {
         if (!take('(')) return fail(fmt::format("'(' as in {}", form_of(known)));
         q.subject = word();
         if (q.subject.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
-        while (known.subject == Subject::run && take(','))
+        while (known.subject == QuantityOf::run && take(','))
             if (!argument(q)) return false;
         return take(')') || fail("')'");
     }
@@ -150,22 +150,22 @@ std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
 
 const std::vector<QuantityWord>& quantity_words() {
     static const std::vector<QuantityWord> words = {
-        {"rmse", true, Subject::run, "root mean square error of Y against the reference over a region"},
-        {"var", true, Subject::run, "mean over a region of the variance of the mean of Y"},
-        {"tail", true, Subject::run, "Pareto index k of a region's samples, at the experiment's seed"},
-        {"fireflies", false, Subject::run, "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"},
-        {"horizon_frac", false, Subject::run, "part of the samples of geometry pixels that fall under the horizon"},
-        {"y_mean", false, Subject::run, "mean Y of the whole frame"},
-        {"rmse_frame", false, Subject::run, "root mean square error of Y over the whole frame"},
-        {"largest", false, Subject::run, "largest single sample of the frame; the arm's highest rung unless n is said"},
-        {"bad", false, Subject::run,
+        {"rmse", true, QuantityOf::run, "root mean square error of Y against the reference over a region"},
+        {"var", true, QuantityOf::run, "mean over a region of the variance of the mean of Y"},
+        {"tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
+        {"fireflies", false, QuantityOf::run, "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"},
+        {"horizon_frac", false, QuantityOf::run, "part of the samples of geometry pixels that fall under the horizon"},
+        {"y_mean", false, QuantityOf::run, "mean Y of the whole frame"},
+        {"rmse_frame", false, QuantityOf::run, "root mean square error of Y over the whole frame"},
+        {"largest", false, QuantityOf::run, "largest single sample of the frame; the arm's highest rung unless n is said"},
+        {"bad", false, QuantityOf::run,
          "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
-        {"furnace", false, Subject::furnace, "Y that a white furnace reads"},
-        {"furnace_error", false, Subject::furnace, "how far it is from what is expected, without sign"},
-        {"shape_pixels", false, Subject::shape, "pixels in which the camera sees a shape"},
-        {"region_pixels", false, Subject::region, "pixels of a region's box"},
-        {"geometry_pixels", false, Subject::none, "pixels in which the camera sees any shape"},
-        {"plate_bytes", false, Subject::plate, "size of a plate's PNG file"},
+        {"furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
+        {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
+        {"shape_pixels", false, QuantityOf::shape, "pixels in which the camera sees a shape"},
+        {"region_pixels", false, QuantityOf::region, "pixels of a region's box"},
+        {"geometry_pixels", false, QuantityOf::none, "pixels in which the camera sees any shape"},
+        {"plate_bytes", false, QuantityOf::plate, "size of a plate's PNG file"},
     };
     return words;
 }
@@ -200,13 +200,13 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
         if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
     const auto& words = quantity_words();
     const auto known = std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
-    switch (known == words.end() ? Subject::none : known->subject) {
-        case Subject::none: return "";
-        case Subject::run: return resolve_run(q, e);
-        case Subject::furnace: return missing(e.furnaces, "furnace", q.subject);
-        case Subject::shape: return missing(e.shapes, "shape", q.subject);
-        case Subject::region: return missing(e.regions, "region", q.subject);
-        case Subject::plate: return missing(e.plates, "plate", q.subject);
+    switch (known == words.end() ? QuantityOf::none : known->subject) {
+        case QuantityOf::none: return "";
+        case QuantityOf::run: return resolve_run(q, e);
+        case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.subject);
+        case QuantityOf::shape: return missing(e.shapes, "shape", q.subject);
+        case QuantityOf::region: return missing(e.regions, "region", q.subject);
+        case QuantityOf::plate: return missing(e.plates, "plate", q.subject);
     }
     return "";
 }

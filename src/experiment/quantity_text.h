@@ -15,12 +15,12 @@ namespace crescent {
 struct Experiment;
 
 /// What stands in the brackets of a quantity.
-enum class Subject { none, run, furnace, shape, region, plate };
+enum class QuantityOf { none, run, furnace, shape, region, plate };
 
 struct QuantityWord {
     std::string_view word;
     bool of_region;  // word.REGION
-    Subject subject;
+    QuantityOf subject;
     std::string_view means;
 };
 /// Every quantity that a check can name.

@@ -19,7 +19,7 @@ namespace crescent {
 namespace {
 
 /// What the heavy tail is shown on: the control shape's material as luminances, seen straight from above.
-struct Subject {
+struct FurnaceSubject {
     Surface surface;
     double s = 0, rho_d = 0, rho_s = 0;
     std::uint32_t seed = 0;
@@ -40,7 +40,7 @@ FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, co
     return {std::move(arithmetic), bits, n, quantile(means, 0.05), quantile(means, 0.25), quantile(means, 0.5), quantile(means, 0.75), quantile(means, 0.95)};
 }
 
-void float_furnace(const Subject& subject, const std::string& isa, Watch& watch, Evidence& out) {
+void float_furnace(const FurnaceSubject& subject, const std::string& isa, Watch& watch, Evidence& out) {
     const Sites sites = furnace_sites(subject.surface, replicates);
     for (std::uint64_t n : furnace_rungs) {
         const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
@@ -54,7 +54,7 @@ void float_furnace(const Subject& subject, const std::string& isa, Watch& watch,
 /// u as an odd multiple of 2^-bits, from 64 random bits.
 double unit_double(std::uint64_t h, int bits) { return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits); }
 
-void double_furnace(const Subject& subject, int bits, Watch& watch, Evidence& out) {
+void double_furnace(const FurnaceSubject& subject, int bits, Watch& watch, Evidence& out) {
     std::vector<std::vector<double>> means(furnace_rungs.size(), std::vector<double>(replicates));
     tbb::parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
         double sum = 0;
@@ -71,7 +71,7 @@ void double_furnace(const Subject& subject, int bits, Watch& watch, Evidence& ou
 }
 
 /// Draws by the cosine arm, asks the Phong arm for its density: where it is 0, Lambert's light is lost.
-LostSupport lost_support(const Subject& subject, double theta_deg) {
+LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
     constexpr std::uint64_t n = 100'000;
     const double theta = theta_deg * pi / 180;
     Site<double> site{};
@@ -90,7 +90,7 @@ LostSupport lost_support(const Subject& subject, double theta_deg) {
 }
 
 /// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
-FalseRejection false_rejection(const Subject& subject, double s, double alpha, const std::string& isa, Watch& watch) {
+FalseRejection false_rejection(const FurnaceSubject& subject, double s, double alpha, const std::string& isa, Watch& watch) {
     constexpr std::uint64_t n = 100'000;
     constexpr int runs = 128;
     Surface lambert = subject.surface;
@@ -132,7 +132,7 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     const bool phong = std::any_of(experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
     const Shape* shape = subject_shape(experiment);
     if (!phong || !shape || shape->material.brdf != BrdfKind::phong || !(shape->material.rho_s > 0)) return out;
-    Subject subject;
+    FurnaceSubject subject;
     subject.surface = furnace_surface(experiment, *shape, false);
     subject.s = out.s = subject.surface.s;
     subject.rho_d = out.rho_d = luminance(subject.surface.rho_d);

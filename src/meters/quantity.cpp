@@ -31,7 +31,7 @@ double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
     return unmeasured;
 }
 
-Subject subject_of(const std::string& word) {
+QuantityOf subject_of(const std::string& word) {
     for (const QuantityWord& known : quantity_words())
         if (known.word == word) return known.subject;
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
@@ -72,18 +72,18 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
                 const std::map<std::string, std::size_t>& plate_bytes) {
     if (q.number) return *q.number;
     switch (subject_of(q.word)) {
-        case Subject::none: return static_cast<double>(metrics.geometry_pixels);
-        case Subject::run: return of_run(q, metrics.find(q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed));
-        case Subject::furnace: return of_furnace(q, metrics);
-        case Subject::shape: {
+        case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
+        case QuantityOf::run: return of_run(q, metrics.find(q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed));
+        case QuantityOf::furnace: return of_furnace(q, metrics);
+        case QuantityOf::shape: {
             const auto it = metrics.shape_pixels.find(q.subject);
             return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
         }
-        case Subject::region: {
+        case QuantityOf::region: {
             const Region* region = experiment.find_region(q.subject);
             return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
         }
-        case Subject::plate: {
+        case QuantityOf::plate: {
             const auto it = plate_bytes.find(q.subject);
             return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
         }

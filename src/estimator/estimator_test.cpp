@@ -1,0 +1,154 @@
+#include "estimator/estimator.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cmath>
+#include <limits>
+
+#include "estimator/furnace_sites.h"
+#include "estimator/reference.h"
+#include "estimator/test_scene.h"
+
+namespace crescent {
+namespace {
+
+std::vector<std::string> all_arms() {
+    std::vector<std::string> names;
+    for_each_arm(Arms{}, [&]<template <class> class A>() { names.emplace_back(A<float>::name); });
+    return names;
+}
+
+std::vector<std::string> hashes(const std::vector<Film>& films) {
+    std::vector<std::string> out;
+    for (const Film& film : films) out.push_back(hash(film));
+    return out;
+}
+
+TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    for (const std::string& arm : all_arms()) {
+        const auto scalar = hashes(estimate_films(scene, arm, {1, 7, 20}, 3, "scalar", watch));
+        for (const std::string& isa : isas()) EXPECT_EQ(hashes(estimate_films(scene, arm, {1, 7, 20}, 3, isa, watch)), scalar) << arm << " on " << isa;
+    }
+}
+
+TEST(SameBitsLaw, AnyNumberOfThreadsGivesTheSameFilms) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    const auto want = hashes(estimate_films(scene, "phong", {33}, 3, "", watch));
+    for (std::size_t threads : {1u, 2u, 3u, 16u}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        EXPECT_EQ(hashes(estimate_films(scene, "phong", {33}, 3, "", watch)), want) << threads << " threads";
+    }
+}
+
+TEST(SameBitsLaw, NoticesAnotherSeedAndAnotherSampleCount) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    const auto want = hashes(estimate_films(scene, "cosine", {32}, 3, "", watch));
+    EXPECT_NE(hashes(estimate_films(scene, "cosine", {32}, 4, "", watch)), want);
+    EXPECT_NE(hashes(estimate_films(scene, "cosine", {31}, 3, "", watch)), want);
+}
+
+TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    const auto many = estimate_films(scene, "phong", {1, 3, 16, 37, 64}, 9, "", watch);
+    for (const Film& film : many) EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", watch)[0]), hash(film)) << "n = " << film.n;
+}
+
+/// Samples of every site of the test scene beside the moments that the kernel made of them.
+TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
+    const Scene scene(test::small_scene());
+    constexpr std::uint64_t n = 65536;
+    for (Sites sites : sites_of(scene, {30, 20, 34, 23}, nullptr)) {
+        std::vector<float> x(sites.count * n);
+        const Moments m = estimate_sites(sites, "cosine", n, 5, "", nullptr, x.data());
+        for (std::size_t i = 0; i < sites.count; ++i) {
+            long double square = 0;
+            float largest = 0;
+            const long double pivot = sites.pivot[i];
+            for (std::uint64_t j = 0; j < n; ++j) {
+                square += (x[i * n + j] - pivot) * (x[i * n + j] - pivot);
+                largest = std::max(largest, x[i * n + j]);
+            }
+            EXPECT_NEAR(m.square[i] / static_cast<double>(square), 1, 1e-6);
+            EXPECT_EQ(m.largest[i], largest);
+        }
+    }
+}
+
+TEST(BadSamples, APlantedNaNIsCountedInEverySampleAndReachesTheFilm) {
+    Surface surface{{0.5, 0.5, 0.5}, 0.1, BrdfKind::phong, std::numeric_limits<double>::quiet_NaN(), 0};
+    for (const std::string& isa : isas()) {
+        const Moments m = estimate_sites(furnace_sites(surface, 3), "phong", 100, 1, isa, nullptr);
+        EXPECT_EQ(m.bad[0], 100u) << isa;
+        EXPECT_TRUE(std::isnan(m.g[0])) << isa;
+    }
+    surface.s = 32;
+    EXPECT_EQ(estimate_sites(furnace_sites(surface, 3), "phong", 100, 1, "", nullptr).bad[0], 0u);
+}
+
+TEST(BadSamples, ANegativeWeightIsCounted) {
+    const Surface surface{{-0.5, -0.5, -0.5}, 0, BrdfKind::phong, 0, 0};
+    EXPECT_EQ(estimate_sites(furnace_sites(surface, 1), "cosine", 50, 1, "", nullptr).bad[0], 50u);
+}
+
+TEST(Furnace, CosineOnLambertHasNoVarianceAndLosesNothing) {
+    const Surface surface{{0.5, 0.5, 0.5}, 0, BrdfKind::phong, 0, 0};
+    const Moments m = estimate_sites(furnace_sites(surface, 1), "cosine", 1000, 1, "", nullptr);
+    EXPECT_NEAR(m.g[0] / 1000 / pi, 1, 1e-6);
+    EXPECT_NEAR(m.square[0] / 1000, 0, 1e-12);
+    EXPECT_EQ(m.horizon[0], 0u);
+}
+
+/// Arms that reach everything agree with the quadrature within their own standard error, over the whole image.
+TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
+    const Experiment experiment = test::small_scene();
+    const Scene scene(experiment);
+    Watch watch;
+    const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, watch)[0];
+    for (const char* arm : {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {
+        const Film film = estimate_films(scene, arm, {1024}, 17, "", watch)[0];
+        double difference = 0, variance = 0;
+        for (std::size_t at = 0; at < film.size(); ++at) {
+            difference += static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
+            variance += static_cast<double>(film.var[at]);
+        }
+        EXPECT_LT(std::fabs(difference), 4 * std::sqrt(variance)) << arm;
+    }
+}
+
+TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
+    const Experiment experiment = test::small_scene();
+    const Scene scene(experiment);
+    Watch watch;
+    const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0], note = note_reference(scene, {experiment.s()}, "", watch)[0];
+    double difference = 0, variance = 0;
+    for (std::size_t at = 0; at < q.size(); ++at) {
+        difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
+        variance += static_cast<double>(note.error[at]) * static_cast<double>(note.error[at]);
+    }
+    EXPECT_LT(std::fabs(difference), 4 * std::sqrt(variance));
+}
+
+TEST(Estimator, StopsWhenAsked) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    watch.stop = true;
+    EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", watch), Interrupted);
+}
+
+TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {
+    try {
+        kernels_for("avx3");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("avx2"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimator/disk_quadrature.h"
+#include "estimator/lobe_albedo.h"
+#include "estimator/test_scene.h"
+#include "scene/brdf.h"
+#include "simd/random.h"
+
+namespace crescent {
+namespace {
+
+bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
+    const Vec3d d = y - hit.x;
+    for (const Occluder& o : scene.occluders()) {
+        if (o.shape == hit.shape) continue;
+        const Interval part = hidden(o, hit.x, y, y + 1e-9 * frame_about(d).t);
+        if (!part.empty()) return true;
+    }
+    return false;
+}
+
+/// The same integral by a million points, with no cleverness at all.
+DiskIntegral brute_force(const Scene& scene, const DiskLight& disk, const Hit& hit, const Surface& surface) {
+    const Frame<double> light = frame_about(disk.normal), local = frame_about(hit.n);
+    constexpr int rings = 400, spokes = 400;
+    DiskIntegral sum;
+    for (int i = 0; i < rings; ++i) {
+        for (int k = 0; k < spokes; ++k) {
+            const double r = disk.radius * std::sqrt((i + 0.5) / rings), phi = 2 * pi * (k + 0.5) / spokes;
+            const Vec3d y = disk.center + light.t * (r * std::cos(phi)) + light.b * (r * std::sin(phi)), d = y - hit.x;
+            const double r2 = dot(d, d);
+            const Vec3d w = d * (1 / std::sqrt(r2)), wi = local.to_local(w);
+            const double emits = -dot(w, disk.normal);
+            if (wi.z <= 0 || (emits <= 0 && !disk.two_sided) || blocked(scene, hit, y)) continue;
+            const double g = wi.z * std::fabs(emits) / r2 * pi * sqr(disk.radius) / (rings * spokes);
+            sum.diffuse += g / pi;
+            if (surface.rho_s > 0) sum.lobe += g * PhongLobe<double>(surface.s, 0)(local.to_local(hit.wo), wi);
+        }
+    }
+    return sum;
+}
+
+TEST(DiskQuadrature, AgreesWithBruteForceInLightPenumbraAndShadow) {
+    const Scene scene(test::small_scene());
+    int lit = 0;
+    for (std::size_t k = 0; k < scene.disks().size(); ++k) {
+        const DiskQuadrature quadrature(scene, k);
+        for (std::uint32_t n = 0; n < 60; ++n) {
+            const Vec2<float> u = draw(3, n, 0);
+            const auto hit = scene.primary(static_cast<int>(u.x * 67), static_cast<int>(u.y * 45));
+            if (!hit) continue;
+            const Surface surface = scene.surface(*hit);
+            const DiskIntegral got = quadrature(*hit, surface), want = brute_force(scene, scene.disks()[k], *hit, surface);
+            EXPECT_NEAR(got.diffuse, want.diffuse, 2e-3 * want.diffuse + 2e-6);
+            EXPECT_NEAR(got.lobe, want.lobe, 3e-3 * want.lobe + 2e-5);
+            lit += got.diffuse > 0;
+        }
+    }
+    EXPECT_GT(lit, 20);
+}
+
+TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
+    const Experiment experiment = test::small_scene();
+    const Scene scene(experiment);
+    Experiment bare = experiment;
+    for (Shape& shape : bare.shapes) shape.occludes = false;
+    const Scene open(bare);
+    const DiskQuadrature shadowed(scene, 0), unshadowed(open, 0);
+    int half = 0, dark = 0;
+    for (int j = 0; j < 45; ++j)
+        for (int i = 0; i < 67; ++i) {
+            const auto hit = scene.primary(i, j);
+            if (!hit) continue;
+            const double all = unshadowed(*hit, scene.surface(*hit)).diffuse, got = shadowed(*hit, scene.surface(*hit)).diffuse;
+            EXPECT_LE(got, all * (1 + 1e-6) + 1e-12);
+            half += got > 0.2 * all && got < 0.8 * all;
+            dark += all > 0 && got == 0;
+        }
+    EXPECT_GT(half, 5);
+    EXPECT_GT(dark, 50);
+}
+
+TEST(LobeAlbedo, IsOneForPhongFromAboveAndInterpolatesToItsStatedError) {
+    for (double s : {1.0, 8.0, 32.0, 128.0, 5000.0}) EXPECT_NEAR(lobe_albedo(BrdfKind::phong, s, 0, 1.0), 1, 1e-8) << s;
+    const LobeAlbedo table(BrdfKind::phong, 32, 0);
+    EXPECT_LT(table.error(), 1e-7);
+    for (double c = 0.01; c < 1; c += 0.0173) EXPECT_NEAR(table(c), lobe_albedo(BrdfKind::phong, 32, 0, c), 2e-7) << c;
+}
+
+TEST(LobeAlbedo, NeverReflectsMoreThanArrives) {
+    for (double c = 0.05; c <= 1; c += 0.19) {
+        EXPECT_LE(lobe_albedo(BrdfKind::phong, 32, 0, c), 1 + 1e-8);
+        EXPECT_LE(lobe_albedo(BrdfKind::ggx, 0, 0.3, c), 1 + 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace crescent

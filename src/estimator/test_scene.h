@@ -1,0 +1,64 @@
+// A small scene for tests: a glossy ball on a box before a wall, two lamps, penumbrae in view.
+#pragma once
+
+#include "experiment/experiment.h"
+
+namespace crescent::test {
+
+inline Experiment small_scene() {
+    return parse(R"(
+title = "test"
+seed = 11
+[image]
+width = 67
+height = 45
+[camera]
+eye = [0.0, 1.0, 4.0]
+target = [0.0, 0.6, 0.0]
+up = [0.0, 1.0, 0.0]
+vfov_deg = 40.0
+[fill]
+radiance = [0.5, 0.6, 0.7]
+[shapes.ball]
+kind = "sphere"
+center = [0.0, 0.9, 0.0]
+radius = 0.6
+rho_d = [0.3, 0.2, 0.1]
+rho_s = 0.2
+s = 24.0
+occludes = true
+[shapes.block]
+kind = "box"
+min = [-0.7, 0.0, -0.7]
+max = [0.7, 0.3, 0.7]
+rho_d = [0.4, 0.4, 0.4]
+occludes = true
+[shapes.ground]
+kind = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+rho_d = [0.5, 0.5, 0.5]
+[disks.left]
+center = [-1.5, 2.5, 1.0]
+normal = [0.0, -1.0, 0.0]
+radius = 0.4
+radiance = [20.0, 18.0, 15.0]
+[disks.right]
+center = [2.0, 2.0, 2.0]
+normal = [-0.6, -0.8, 0.0]
+radius = 0.2
+radiance = [30.0, 40.0, 50.0]
+two_sided = true
+[arms.uniform]
+n = [64]
+[arms.cosine]
+n = [4, 64]
+[arms.phong]
+n = [4, 64]
+[regions.all]
+box = [0, 0, 66, 44]
+)",
+                 "test.toml");
+}
+
+}  // namespace crescent::test

@@ -1,0 +1,124 @@
+#include "meters/meters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "estimator/test_scene.h"
+#include "meters/evidence_measure.h"
+#include "meters/tail.h"
+#include "simd/random.h"
+
+namespace crescent {
+namespace {
+
+/// The tail of n Pareto samples u^-k.
+std::optional<Tail> pareto_tail(double k, std::uint32_t seed, std::uint64_t n = 20000) {
+    std::vector<double> x;
+    for (std::uint64_t j = 0; j < n; ++j) x.push_back(std::pow(static_cast<double>(draw(seed, 0, j).x), -k));
+    std::sort(x.begin(), x.end(), std::greater<>());
+    x.resize(tail_length(n) + 1);
+    return fit_tail(std::span<const double>(x));
+}
+
+TEST(TailIndex, RecoversTheExponentOfAParetoWithinItsStandardError) {
+    for (double k : {0.2, 0.5, 0.778, 0.939}) {
+        int outside = 0;
+        for (std::uint32_t seed = 0; seed < 40; ++seed) {
+            const Tail tail = *pareto_tail(k, seed);
+            outside += std::fabs(tail.k - k) > 2 * tail.se;
+        }
+        EXPECT_LE(outside, 8) << k;  // about 2 of 40 are expected
+    }
+}
+
+TEST(TailIndex, CallsABoundedDistributionLightAndAConstantNoTailAtAll) {
+    std::vector<float> x;
+    for (std::uint64_t j = 0; j < 20000; ++j) x.push_back(draw(1, 0, j).x);
+    std::sort(x.begin(), x.end(), std::greater<>());
+    x.resize(tail_length(20000) + 1);
+    EXPECT_LT(fit_tail(std::span<const float>(x))->k, 0);
+    EXPECT_FALSE(fit_tail(std::span<const float>(x))->heavy());
+    EXPECT_FALSE(fit_tail(std::span<const float>(std::vector<float>(100, 3.0f))).has_value());
+    EXPECT_FALSE(fit_tail(std::span<const float>(std::vector<float>(3, 3.0f))).has_value());
+}
+
+TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
+    EXPECT_EQ(tail_length(10), 0u);
+    EXPECT_EQ(tail_length(100), 20u);
+    EXPECT_EQ(tail_length(10000), 300u);
+}
+
+TEST(Quantiles, InterpolateBetweenOrderStatistics) {
+    EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
+    EXPECT_DOUBLE_EQ(quantile({5}, 0.95), 5);
+    EXPECT_TRUE(std::isnan(quantile({1, std::nan("")}, 0.5)));
+}
+
+/// A film of 4 x 2 pixels, one of them a miss, with known numbers in it.
+struct Known {
+    Film film{4, 2, 10};
+    ReferenceFilm reference{4, 2, 32};
+    ShapeMap shapes{4, 2, {0, 0, 0, 0, 0, 0, 0, -1}};
+    Experiment experiment;
+    Known() {
+        experiment.regions = {{"left", {0, 0, 1, 1}, {}}};
+        for (std::size_t at = 0; at < 7; ++at) film.y[at] = reference.y[at] = 1;
+        film.y[0] = 3;    // residual 2: no firefly at k = 4
+        film.y[2] = 5.5;  // residual 4.5: a firefly
+        film.var[0] = 0.8f;
+        film.horizon[3] = 7;
+    }
+};
+
+TEST(Meters, ReadEveryNumberOffTheFloatFilm) {
+    const Known k;
+    const RunMeter run = measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes);
+    EXPECT_DOUBLE_EQ(run.region("left")->rmse, 1);  // sqrt(4 / 4)
+    EXPECT_NEAR(run.region("left")->var, 0.2, 1e-7);
+    EXPECT_EQ(run.region("left")->pixels, 4u);
+    EXPECT_EQ(run.fireflies, 1u);
+    EXPECT_DOUBLE_EQ(run.horizon_frac, 7.0 / 70);
+    EXPECT_DOUBLE_EQ(run.y_mean, (3 + 5.5 + 5) / 8);
+    EXPECT_DOUBLE_EQ(run.rmse_frame, std::sqrt((4 + 4.5 * 4.5) / 8));
+}
+
+TEST(Meters, ANaNInTheFilmShowsInTheNumber) {
+    Known k;
+    k.film.y[1] = std::nanf("");
+    EXPECT_TRUE(std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
+}
+
+TEST(Ladders, FitTheSlopeOfAPowerLaw) {
+    Experiment e;
+    e.seed = 1;
+    e.arms = {{"a", "cosine", {4, 16, 64}, {}}};
+    e.regions = {{"r", {0, 0, 1, 1}, {}}};
+    std::vector<RunMeter> runs;
+    for (std::uint64_t n : e.arms[0].n) {
+        RunMeter run;
+        run.key = {"a", n, e.s(), 1};
+        run.regions = {{"r", 8 / std::sqrt(static_cast<double>(n)), 0, 4, {}}};
+        runs.push_back(run);
+    }
+    const Ladder ladder = ladders(e, runs)[0];
+    EXPECT_NEAR(ladder.slope, -0.5, 1e-12);
+    EXPECT_NEAR(ladder.high - ladder.low, 0, 1e-6);
+}
+
+TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
+    Watch watch;
+    const Evidence e = measure_evidence(test::small_scene(), "", watch);
+    ASSERT_FALSE(e.lost.empty());
+    for (const LostSupport& l : e.lost) EXPECT_NEAR(l.measured, l.theory, 4 * l.se + 1e-9) << l.theta_R_deg;
+    for (const FalseRejection& r : e.rejections) {
+        if (r.s == 1) EXPECT_LT(r.low, 0.01);  // a light tail keeps the level
+        if (r.s == 32) EXPECT_GT(r.low, 0.5);  // a heavy one is rejected more often than not
+    }
+    for (const FurnaceQuantiles& q : e.furnace) EXPECT_LT(q.median, e.expected) << q.arithmetic << " " << q.n;
+}
+
+}  // namespace
+}  // namespace crescent
