@@ -139,7 +139,8 @@ template <class A, class L, class F> struct Lane {
             const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
             const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)} : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
             const Drawn<F> a = arm.template sample_technique<0>(c.wo, u), b = arm.template sample_technique<1>(c.wo, v);
-            x = carry(to, c, brdf, a, arm.template weight<0>(c.wo, a)) + carry(to, c, brdf, b, arm.template weight<1>(c.wo, b));
+            x = carry(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
+            x = x + carry(to, c, brdf, b, arm.template weight<1>(c.wo, b));
         } else {
             x = carry(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
         }

@@ -146,7 +146,7 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - std::exp2(-bits * (1 - k)))});
     }
     for (double theta = 0; theta <= 75; theta += 7.5) out.lost.push_back(lost_support(subject, theta));
-    for (double s : {1.0, 3.0, 8.0, 32.0, 128.0}) out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));
+    for (double s : {2.0, 3.0, 8.0, 32.0, 128.0}) out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));
     watch.check();
     return out;
 }
