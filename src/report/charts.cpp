@@ -92,7 +92,7 @@ void Chart::line(const std::vector<Point>& points, std::string_view css) {
     std::string path;
     for (const Point& p : points)
         if (drawable(p.x, p.y)) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", px(p.x), py(p.y));
-    if (!path.empty()) body_ += fmt::format("<path class=\"line {}\" d=\"{}\" />\n", css, path);
+    if (!path.empty()) inside_ += fmt::format("<path class=\"line {}\" d=\"{}\" />\n", css, path);
 }
 
 void Chart::dots(const std::vector<Point>& points, std::string_view css) {
@@ -116,7 +116,7 @@ void Chart::band(const std::vector<double>& x, const std::vector<double>& low, c
         there += fmt::format("{}{:.1f} {:.1f}", there.empty() ? "M" : " L", px(x[i]), py(high[i]));
         back = fmt::format(" L{:.1f} {:.1f}", px(x[i]), py(low[i])) + back;
     }
-    if (!there.empty()) body_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, there, back);
+    if (!there.empty()) inside_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, there, back);
 }
 
 void Chart::bar(double x, double low, double high, std::string_view css) {
@@ -173,9 +173,15 @@ std::string Chart::axes() const {
                              middle, escape(y_.label));
 }
 
+std::string Chart::framed() const {  // an inner svg hides what leaves it
+    const double w = width_ - left_margin - right_margin, h = height_ - top_margin - bottom_margin;
+    return fmt::format("<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left_margin, top_margin, w, h,
+                       inside_);
+}
+
 std::string Chart::str() const {
     return fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n",
-                       width_, height_, escape(title_), escape(title_), axes(), body_ + names());
+                       width_, height_, escape(title_), escape(title_), axes(), framed() + body_ + names());
 }
 
 std::string strip_svg(const Strip& s) {

@@ -52,11 +52,12 @@ private:
     double py(double y) const;
     bool drawable(double x, double y) const;
     std::string axes() const;
+    std::string framed() const;
     std::string names() const;
 
     int width_, height_;
     Axis x_, y_;
-    std::string title_, body_;
+    std::string title_, inside_, body_;  // inside_ is cut off at the frame
     struct Name {
         double x = 0, y = 0;
         std::string text, css;

@@ -1,4 +1,4 @@
-// What everything is measured against, and how much it would matter to use the note's Monte Carlo reference instead.
+// What everything is measured against, and how much it would matter to use the Monte Carlo reference of the note instead.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@ namespace {
 using html::words;
 
 constexpr const char* prose = R"(
-<p>Two references are computed. The note’s adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn
+<p>Two references are computed. The Monte Carlo one adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn
 from it, and each disk by {disk} on its surface, on a seed of its own ({seed}); it is close, and random. The quadrature
 integrates the same terms to convergence and has no seed. The meters of this run use the <b>{used}</b>. The table shows how
 far the two lie apart, what the random one claims as its standard error, and by how much the RMSE of any arm would change if
@@ -36,8 +36,8 @@ PageSection reference(Page& page) {
     const std::string plates = page.figures.plates(PlateKind::reference);
     if (all.empty() && plates.empty()) return {};
     std::string out = fmt::format(prose, fmt::arg("lobe", plural(plan.lobe_spp, "sample")), fmt::arg("disk", plural(plan.disk_spp, "sample")),
-                                  fmt::arg("seed", plan.seed), fmt::arg("used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "note’s reference"));
-    html::Table table("The note’s reference against the quadrature, root mean square over a region, in <i>Y</i>",
+                                  fmt::arg("seed", plan.seed), fmt::arg("used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "Monte Carlo reference"));
+    html::Table table("The Monte Carlo reference against the quadrature, root mean square over a region, in <i>Y</i>",
                       {words("Region"), {"<i>s</i>", true}, {"Apart by", true}, {"Its standard error", true}, {"Quadrature’s error", true},
                        {"Largest change of an RMSE", true}});
     for (const ReferenceMeter& r : all)

@@ -39,6 +39,14 @@ constexpr const char* rejection_prose = R"(
 variance, and a heavy tail has none to estimate. What it rejects is the tail.</p>
 )";
 
+std::string intro(const Page& page) {
+    const char* whose = page.find.anything_published() ? "The note explains some of its figures."
+                                                       : "This bench began with a note on a gallery lit by a spotlight, which explains some of its figures.";
+    return fmt::format("{} Three of the explanations can be put to a measurement of their own, and below they are, with <i>ρ</i><sub>d</sub> = {}, "
+                       "<i>ρ</i><sub>s</sub> = {} and <i>s</i> = {}.", whose, html::value(figures(page.in.evidence.rho_d)),
+                       html::value(figures(page.in.evidence.rho_s)), shortest(page.in.evidence.s));
+}
+
 std::string furnace_point(Page& page) {
     const Evidence& e = page.in.evidence;
     if (e.furnace.empty()) return {};
@@ -81,7 +89,7 @@ PageSection where_wrong(Page& page) {
     points += rejection_point(page);
     if (points.empty()) return {};
     return {"wrong", "Where the note is wrong",
-            html::p("What the note measured and what it makes of it are two things. Each explanation below was put to a measurement of its own in this run.") + points};
+            html::p(intro(page)) + points};
 }
 
 }  // namespace crescent

@@ -48,13 +48,13 @@ std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint)
 
 std::string table_row(const BandMeter& b, bool published) {
     const std::string name = fmt::format("{} {}", b.meter, b.key.arm);
-    std::string row = fmt::format("  {}", left(name, published ? 25 : 36));
+    std::string row = fmt::format("  {}", left(name, published ? 23 : 34));
     if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.meter, *b.published) : "-", 10));
     row += fmt::format(" {}", right(figures_of(b.meter, b.measured), 10));
     if (b.band.seeds < 2) return row;
     row += fmt::format(" {}  ", right(figures_of(b.meter, b.band.median), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 18);
+    return row + clip(figures_of(b.meter, b.band.q05) + " .. " + figures_of(b.meter, b.band.q95), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {
@@ -70,7 +70,7 @@ std::string table(const ReportInputs& in, const Paint& paint) {
                 seeds = std::max(seeds, band->band.seeds);
             }
     if (rows.empty()) return {};
-    std::string head = fmt::format("  {}", left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 25 : 36));
+    std::string head = fmt::format("  {}", left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 23 : 34));
     if (published) head += "  published";
     head += "   measured";
     if (seeds > 1) head += fmt::format("     median  5-95 % of {} seeds", seeds);
