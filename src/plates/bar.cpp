@@ -1,4 +1,5 @@
 // The colour bar of turbo scales.
+#include <algorithm>
 #include <cmath>
 
 #include "display/turbo.h"
@@ -23,7 +24,7 @@ void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended) {
         c.text({x0 + w + 11, y - 12, 80, 24}, text, how);
     };
     tick(top, (open_ended ? "≥ " : "") + number(top, 3));
-    double step = round_step(top, 5);
+    double step = round_step(top, std::clamp(h / 36, 1, 5));
     for (int k = 0; k * step < top; ++k) {
         if (h * (1 - k * step / top) >= 24) tick(k * step, number(k * step, 3));
     }

@@ -1,5 +1,6 @@
 #include "plates/canvas.h"
 
+#include <fmt/format.h>
 #include <pango/pangocairo.h>
 
 #include <algorithm>
@@ -45,6 +46,23 @@ void require_font(PangoFontMap* map) {
         throw OutputError(std::string("plates are set in the font ") + family +
                           ", which this machine does not have: install the package fonts-inter");
     }
+}
+
+void replace_all(std::string& text, std::string_view what, const std::string& by) {
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+        text.replace(at, what.size(), by);
+    }
+}
+
+// <sup> and <sub> as plain spans of a size and a rise: Pango's own forms leave their scale behind when text is
+// ellipsized within them. Tabular figures throughout.
+std::string spans(std::string markup, double px) {
+    auto open = [&](double rise) { return fmt::format("<span size='70%' rise='{}'>", std::lround(rise * px * PANGO_SCALE)); };
+    replace_all(markup, "<sup>", open(0.36));
+    replace_all(markup, "<sub>", open(-0.16));
+    replace_all(markup, "</sup>", "</span>");
+    replace_all(markup, "</sub>", "</span>");
+    return "<span font_features='tnum=1'>" + markup + "</span>";
 }
 
 PangoAlignment to_pango(Align a) {
@@ -101,9 +119,8 @@ struct Canvas::Surface {
         pango_layout_set_wrap(l, PANGO_WRAP_WORD);
         pango_layout_set_alignment(l, to_pango(how.align));
         pango_layout_set_line_spacing(l, how.lines > 1 ? 1.12f : 0.0f);
-        // Tabular figures, and Inter's slashed-free contextual alternates as they come.
-        std::string features = "<span font_features='tnum=1'>" + markup + "</span>";
-        pango_layout_set_markup(l, features.c_str(), static_cast<int>(features.size()));
+        std::string text = spans(markup, px);
+        pango_layout_set_markup(l, text.c_str(), static_cast<int>(text.size()));
         PangoRectangle r;
         pango_layout_get_extents(l, nullptr, &r);
         return {double(r.x) / PANGO_SCALE, double(r.y) / PANGO_SCALE, double(r.width) / PANGO_SCALE,

@@ -66,32 +66,45 @@ void draw_axes(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& la
     c.line(a.plot.x, a.plot.bottom(), a.plot.right(), a.plot.bottom(), muted, 1.5);
 }
 
+std::string signed_number(double v) { return fmt::format("{}{:.2f}", v < 0 ? "−" : "", std::abs(v)); }
+
 std::string slope_text(const Ladder& l, const Experiment& e) {
     std::string name = arm_name(l.arm, e);
-    if (l.heavy) return name + ": heavy tail";
-    return fmt::format("{}: N<sup> {}{:.2f}</sup>", name, l.slope < 0 ? "−" : "", std::abs(l.slope));
+    return l.heavy ? name + ": heavy tail" : fmt::format("{}: N<sup> {}</sup>", name, signed_number(l.slope));
 }
 
-// Names at the right end of the lines, pushed apart where lines end close together.
-void draw_names(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& ladders) {
-    struct Name {
-        double y;
-        std::size_t i;
-    };
-    std::vector<Name> names;
+// Where the names stand: at the ends of their lines, pushed apart to `pitch` and kept beside the plot.
+std::vector<double> name_places(const Axes& a, const std::vector<const Ladder*>& ladders, double pitch) {
+    std::vector<std::pair<double, std::size_t>> ends;
     for (std::size_t i = 0; i < ladders.size(); ++i) {
         double v = ladders[i]->rmse.back();
-        names.push_back({drawable(v) ? a.y(v) : a.plot.y, i});
+        ends.push_back({drawable(v) ? a.y(v) : a.plot.y, i});
     }
-    std::sort(names.begin(), names.end(), [](const Name& p, const Name& q) { return p.y < q.y; });
-    constexpr double pitch = 23;
-    double floor = a.plot.y - 4;
-    for (Name& n : names) n.y = floor = std::max(n.y, floor + pitch);
-    double ceiling = a.plot.bottom() + pitch;
-    for (auto n = names.rbegin(); n != names.rend(); ++n) n->y = ceiling = std::min(n->y, ceiling - pitch);
-    for (const Name& n : names) {
-        sheet.canvas.text({a.plot.right() + 10, n.y - 12, 178, 24}, slope_text(*ladders[n.i], sheet.experiment()),
-                          with(with(with_px(body_text, 17), series[n.i % series_count]), Vertical::middle));
+    std::sort(ends.begin(), ends.end());
+    double floor = a.plot.y - 30;
+    for (auto& e : ends) e.first = floor = std::max(e.first, floor + pitch);
+    double ceiling = a.plot.bottom() + 12 + pitch / 2;
+    for (auto e = ends.rbegin(); e != ends.rend(); ++e) e->first = ceiling = std::min(e->first, ceiling - pitch);
+    std::vector<double> y(ladders.size());
+    for (const auto& [place, i] : ends) y[i] = place;
+    return y;
+}
+
+// Each name with its slope, and under it the slope's interval where there is room for two lines.
+void draw_names(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& ladders) {
+    double pitch = std::min(44.0, (a.plot.h + 30) / double(ladders.size()));
+    bool two = pitch >= 40;
+    double h = two ? 22 : std::min(24.0, pitch);
+    std::vector<double> places = name_places(a, ladders, two ? 44 : std::min(pitch, 24.0));
+    for (std::size_t i = 0; i < ladders.size(); ++i) {
+        const Ladder& l = *ladders[i];
+        Rect line{a.plot.right() + 10, places[i] - h / 2, 178, h};
+        Text how = with(with(with_px(body_text, 17), series[i % series_count]), Vertical::middle);
+        how.least = 9;
+        sheet.canvas.text(line, slope_text(l, sheet.experiment()), how);
+        if (!two || l.heavy) continue;
+        line.y += h - 2, line.h = 20;
+        sheet.canvas.text(line, signed_number(l.low) + " to " + signed_number(l.high), small_text);
     }
 }
 

@@ -26,8 +26,8 @@ std::vector<Column> columns_of(const Experiment& e) {
     }
     c.push_back({"fireflies", "fireflies"});
     if (!e.regions.empty()) c.push_back({"var." + e.regions[0].name, named("var", e.regions[0])});
-    c.push_back({"horizon_frac", "horizon frac."});
-    c.push_back({"y_mean", "mean Y"});
+    c.push_back({"horizon_frac", "horizon_frac"});
+    c.push_back({"y_mean", "Y<sub>mean</sub>"});
     return c;
 }
 
@@ -174,6 +174,7 @@ void draw_meters(Sheet& sheet) {
     }
     Rect rest{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
     if (rest.h >= 170) draw_charts(sheet, rest);
+    if (rest.h >= 170) sheet.notes.push_back("slopes: fit, and 5–95 % over seeds");
     sheet.notes.push_back(fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "
                                       "Y<sub>ref</sub>",
                                       radiance_unit, number(sheet.experiment().firefly_k)));

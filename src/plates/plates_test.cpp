@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <random>
 #include <thread>
@@ -46,6 +47,9 @@ struct World {
         e.regions = {{"H", {w / 2, h / 2, w / 2 + w / 8, h / 2 + h / 8}, {}}, {"S", {w / 8, h / 8, w / 2, h / 2}, {}}};
         reference.y.assign(reference.size(), 0.2f);
         for (const char* arm : {"uniform", "cosine", "phong"}) add_arm(arm, arm);
+        for (const ArmPlan& a : e.arms) {
+            for (const Region& r : e.regions) metrics.ladders.push_back({a.name, r.name, 32, a.n, {2, 1}, -0.5, -0.6, -0.4, false});
+        }
     }
 
     void add_arm(const std::string& name, const std::string& sampler) {
@@ -159,6 +163,7 @@ TEST(Plates, Long_names_stay_in_their_boxes) {
         std::swap(world.e.arms[i], world.e.arms.back());
     }
     world.e.regions[0].name = "the highlight crescent as the key light draws it on the sphere";
+    for (RunMeter& run : world.metrics.runs) run.regions[0].region = world.e.regions[0].name;
     for (PlateKind kind : all_kinds) {
         SCOPED_TRACE(int(kind));
         PlatePlan plan = world.plan(kind, 3);
@@ -272,7 +277,9 @@ TEST(Words, Numbers_are_set_with_true_minus_and_powers) {
 TEST(Font, Its_absence_names_the_package) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     auto without_fonts = [] {
-        setenv("FONTCONFIG_FILE", "/dev/null", 1);
+        std::string config = testing::TempDir() + "/no-fonts.conf";
+        std::ofstream(config) << "<?xml version='1.0'?><fontconfig><dir>/nonexistent</dir></fontconfig>";
+        setenv("FONTCONFIG_FILE", config.c_str(), 1);
         try {
             World world(8, 8);
             draw_plate(world.plan(PlateKind::hero, 1), world.inputs());

@@ -22,9 +22,10 @@ struct Frame {
 };
 
 // The rim names the angles: n at 0, and where they fall on a ray, R and the direction it mirrors.
-std::string angle_name(int deg, int tilt_deg) {
+std::string angle_name(int deg, int tilt_deg, bool roomy) {
     if (deg == 0) return "n";
     std::string text = fmt::format("{}{}°", deg < 0 ? "−" : "", std::abs(deg));
+    if (!roomy) return text;
     if (deg == tilt_deg) return "R, " + text;
     if (deg == -tilt_deg) return "ω<sub>o</sub>, " + text;
     return text;
@@ -39,7 +40,8 @@ void draw_rays(Canvas& c, const Frame& f, double tilt) {
         Text how = with(with(with_px(small_text, 16), Vertical::middle),
                         a < 0 ? Align::right : a > 0 ? Align::left : Align::centre);
         double x = a < 0 ? p.x - 80 : a > 0 ? p.x : p.x - 40;
-        c.text({x, p.y - 11 - 6 * std::cos(a * degree), 80, 22}, angle_name(a, int(std::lround(tilt / degree))), how);
+        std::string name = angle_name(a, int(std::lround(tilt / degree)), f.radius >= 110);
+        c.text({x, p.y - 11 - 6 * std::cos(a * degree), 80, 22}, name, how);
     }
     Canvas::Point r = f.at(tilt, 1);
     c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
@@ -57,7 +59,7 @@ void draw_circles(Canvas& c, const Frame& f, double step, int rings) {
         c.text({x - 28, f.y + 7, 56, 20}, number(k * step, 3), how);
     }
     c.line(f.x - f.radius, f.y, f.x + f.radius, f.y, muted, 1.5);
-    c.text({f.x - f.radius, f.y + 7, f.radius - 30, 20}, "p, 1/sr", with_px(small_text, 16));
+    if (f.radius >= 100) c.text({f.x - f.radius, f.y + 7, f.radius - 30, 20}, "p, 1/sr", with_px(small_text, 16));
 }
 
 void draw_curve(Canvas& c, const Frame& f, const PolarCurve& curve, double top) {
@@ -89,13 +91,18 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     double w = plot.slot.w - plot.legend_w;
     double radius = std::min(w / 2 - 40, plot.slot.h - 30 - 28);
     if (radius < 20) return;
-    double step = round_step(plot.peak, 3);
-    int rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
+    double step = 0;
+    int rings = 0;
+    for (int about = 3; about >= 1; --about) {  // labels need 44 px each
+        step = round_step(plot.peak, about);
+        rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
+        if (radius / rings >= 44) break;
+    }
     Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
     draw_circles(canvas, f, step, rings);
     draw_rays(canvas, f, plot.tilt);
     for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, step * rings);
-    draw_legend(canvas, plot);
+    if (plot.legend_w > 0) draw_legend(canvas, plot);
 }
 
 }  // namespace crescent::plates

@@ -130,32 +130,46 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
     return parts;
 }
 
+// Title, density and peak; returns the y under them. In a narrow column the peak has a line of its own.
+double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, const Rect& col, bool narrow) {
+    const Experiment& e = sheet.experiment();
+    const Part& part = parts[i];
+    std::string axis = axis_of(part.key.arm, e);
+    std::string title = arm_name(part.key.arm, e) + (axis.empty() ? "" : " about " + axis);
+    sheet.canvas.text({col.x, col.y, col.w, 30}, title, with_px(title_text, 22));
+    std::string formula = density_formula_at(part.key.arm, part.key.s, e);
+    std::string peak = "peak " + number(part.peak, 3) + " sr<sup>−1</sup>";
+    if (i > 0 && parts[0].peak > 0) {
+        peak += fmt::format(" = {} × {}", number(part.peak / parts[0].peak, 3), arm_name(parts[0].key.arm, e));
+    }
+    Text how = with(with_px(body_text, 17), muted);
+    Rect line{col.x, col.y + 31, col.w, 24};
+    if (!narrow) formula += ",  " + peak;
+    sheet.canvas.text(line, formula, how);
+    if (narrow) sheet.canvas.text({line.x, line.y + 25, line.w, line.h}, peak, how);
+    return line.y + (narrow ? 56 : 31);
+}
+
 void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, double tilt) {
     const Experiment& e = sheet.experiment();
     const Part& part = parts[i];
     Rect col = column(content_band, parts.size(), i);
-    std::string axis = axis_of(part.key.arm, e);
-    std::string title = arm_name(part.key.arm, e) + (axis.empty() ? "" : " about " + axis);
-    sheet.canvas.text({col.x, col.y, col.w, 30}, title, with_px(title_text, 22));
-    std::string peak = ",  peak " + number(part.peak, 3) + " sr<sup>−1</sup>";
-    if (i > 0 && parts[0].peak > 0) {
-        peak += fmt::format(" = {} × {}", number(part.peak / parts[0].peak, 3), arm_name(parts[0].key.arm, e));
-    }
-    sheet.canvas.text({col.x, col.y + 31, col.w, 24}, density_formula_at(part.key.arm, part.key.s, e) + peak,
-                      with(with_px(body_text, 17), muted));
-    Rect dome{col.x, col.y + 62, col.w, 232};
+    bool narrow = col.w < 500;
+    double y = draw_words(sheet, parts, i, col, narrow);
+    Rect dome{col.x, y, col.w, content_band.y + 294 - y};
     if (!(part.peak > 0)) {
         paint_missing(sheet, dome, arm_name(part.key.arm, e) + " has no one density that needs no light");
         return;
     }
     draw_dome(sheet, part, dome, tilt);
     PolarPlot plot;
-    plot.slot = {col.x, col.y + 300, col.w, 240};
-    plot.legend_w = bar_room;
+    plot.slot = {col.x, content_band.y + 300, col.w, 240};
+    plot.legend_w = narrow ? 0 : bar_room;
     plot.peak = part.peak;
     plot.tilt = tilt;
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (k != i && !(parts[k].peak < part.peak && parts[k].peak > 0)) continue;
+        bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
+        if (k != i && (narrow || !lower)) continue;
         plot.curves.push_back({k == i, series[k % series_count], arm_name(parts[k].key.arm, e),
                                [&p = parts[k].p](double a) { return p.in_plane(a); }});
     }

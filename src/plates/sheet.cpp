@@ -99,10 +99,16 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
     Text how = with(with(with(with(body_text, ground), Weight::semibold), Align::centre), Vertical::middle);
     std::string text = escaped(name);
     double w = std::min(sheet.canvas.measure(text, how).w + 16, picture.w);
-    double x = std::clamp(outline.x - 1.25, picture.x, picture.right() - w);
-    double y = outline.y - h - 1 >= picture.y ? outline.y - h - 1 : std::min(outline.bottom() + 1, picture.bottom() - h);
-    sheet.canvas.fill({x, y, w, h}, c);
-    sheet.canvas.text({x + 4, y, w - 8, h}, text, how);
+    double left = outline.x - 1.25, right = outline.right() + 1.25 - w, above = outline.y - h - 1, below = outline.bottom() + 1;
+    for (auto [x, y] : {std::pair{left, above}, {right, above}, {left, below}, {right, below}, {left, outline.y}}) {
+        Rect tag{std::clamp(x, picture.x, picture.right() - w), y, w, h};
+        bool clear = std::none_of(sheet.tags.begin(), sheet.tags.end(), [&](const Rect& t) { return t.meets(tag); });
+        if (!clear || tag.y < picture.y || tag.bottom() > picture.bottom()) continue;
+        sheet.canvas.fill(tag, c);
+        sheet.canvas.text({tag.x + 4, tag.y, w - 8, h}, text, how);
+        sheet.tags.push_back(tag);
+        return;
+    }
 }
 
 double round_step(double top, int about) {

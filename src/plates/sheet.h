@@ -17,6 +17,7 @@ struct Sheet {
     const PlateInputs& in;
     std::uint64_t not_finite = 0;         // pixels shown that are not numbers
     std::vector<std::string> notes;       // for the footer, markup
+    std::vector<Rect> tags;               // name tags of regions so far
 
     Sheet(const PlatePlan& p, const PlateInputs& i) : plan(p), in(i) {}
     const Experiment& experiment() const { return in.experiment; }
@@ -45,7 +46,8 @@ Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
 /// Where image box `box` lies in the picture of `shown`.
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
 
-/// The name of an outlined region on a tag at its outside, kept on the picture.
+/// The name of an outlined region on a tag at one of its corners, on the picture and clear of earlier tags; none where
+/// there is no such place.
 void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c);
 
 /// A vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels stand to its right.
