@@ -165,22 +165,27 @@ private:
         }
     }
 
-    /// The tail index of each region's samples, at most about four million a region, of the published seed.
+    /// The tail index of each region's samples at the published seed. It belongs to an arm and exponent, not to N: it is
+    /// read off as many samples as about four million a region allow, and stands beside every rung.
     void tails() {
-        for (RunMeter& run : metrics_.runs) {
-            if (run.key.seed != experiment_.seed) continue;
-            const auto arm = std::find_if(experiment_.arms.begin(), experiment_.arms.end(), [&](const ArmPlan& a) { return a.name == run.key.arm; });
-            const Scene scene = scene_.with_s(run.key.s);
-            for (std::size_t r = 0; r < run.regions.size(); ++r) {
-                constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
-                const std::uint64_t fit = std::max<std::uint64_t>(most / run.regions[r].pixels, 1);
-                const std::uint64_t n = std::min({run.key.n, fit, most_a_pixel});
-                const std::size_t length = tail_length(run.regions[r].pixels * n);
-                std::uint64_t drawn = 0;
-                const std::vector<float> largest = largest_samples(scene, arm->sampler, n, run.key.seed, experiment_.regions[r].box, length + 1, isa_, watch_, drawn);
-                if (length > 0) run.regions[r].tail = fit_tail(std::span<const float>(largest));
+        for (const Job& job : jobs_of(experiment_, experiment_.seed)) {
+            const Scene scene = scene_.with_s(job.s);
+            for (std::size_t r = 0; r < experiment_.regions.size(); ++r) {
+                const std::optional<Tail> tail = tail_of(scene, job, experiment_.regions[r].box);
+                for (RunMeter& run : metrics_.runs)
+                    if (run.key.seed == job.seed && run.key.arm == job.arm->name && run.key.s == job.s) run.regions[r].tail = tail;
             }
         }
+    }
+
+    std::optional<Tail> tail_of(const Scene& scene, const Job& job, const Box& box) {
+        constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
+        const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
+        const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
+        const std::size_t length = tail_length(pixels * n);
+        std::uint64_t drawn = 0;
+        if (length == 0) return {};
+        return fit_pooled_tail(largest_samples(scene, job.arm->sampler, n, job.seed, box, length + 1, isa_, watch_, drawn));
     }
 
     void summarise() {

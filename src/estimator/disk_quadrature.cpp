@@ -107,7 +107,7 @@ DiskIntegral whole_disk(const Point& point, const DiskLight& disk, const Frame<d
         for (const auto& n : rule.nodes) sum += n.weight * point(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y)).imag();
         return sum * sqr(disk.radius);
     };
-    constexpr double good = 1e-7;  // relative, between two rules; the finer one is much better still
+    constexpr double good = 1e-6;  // relative, between two rules; the finer one, which is kept, is better by far
     const auto& rules = polar_rules();
     double coarse = apply(rules[0]);
     for (std::size_t k = 1; k < rules.size(); ++k) {

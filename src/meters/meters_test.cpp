@@ -45,6 +45,22 @@ TEST(TailIndex, CallsABoundedDistributionLightAndAConstantNoTailAtAll) {
     EXPECT_FALSE(fit_tail(std::span<const float>(std::vector<float>(3, 3.0f))).has_value());
 }
 
+TEST(TailIndex, OfPooledSamplesLooksPastTheStepToTheLitOnes) {
+    std::vector<float> mixed, heavy;
+    for (std::uint64_t j = 0; j < 500'000; ++j) {
+        const Vec2<float> u = draw(2, 0, j);
+        mixed.push_back(u.x < 0.003f ? 90 + 10 * u.y : u.y);  // bounded: four in a thousand meet a light
+        heavy.push_back(std::pow(u.x, -0.9f));
+    }
+    for (auto* x : {&mixed, &heavy}) {
+        std::sort(x->begin(), x->end(), std::greater<>());
+        x->resize(tail_length(500'000) + 1);
+    }
+    EXPECT_TRUE(fit_tail(std::span<const float>(mixed))->heavy());  // what the customary threshold makes of it
+    EXPECT_FALSE(fit_pooled_tail(mixed)->heavy());
+    EXPECT_TRUE(fit_pooled_tail(heavy)->heavy());
+}
+
 TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
     EXPECT_EQ(tail_length(10), 0u);
     EXPECT_EQ(tail_length(100), 20u);

@@ -44,8 +44,7 @@ template <class T> std::optional<Tail> fit(std::span<const T> largest) {
     for (std::size_t i = largest.size() - 1; i-- > 0;) x.push_back(static_cast<double>(largest[i]) - threshold);
     const double spread = 1e-5 * std::fabs(threshold);  // float samples of one value differ by rounding alone
     if (!std::isfinite(x.back()) || !(x.back() > spread)) return {};
-    const double quartile = x[static_cast<std::size_t>(static_cast<double>(x.size()) / 4 + 0.5) - 1];
-    if (!(quartile > 0)) std::erase_if(x, [](double v) { return !(v > 0); });  // ties at the threshold
+    std::erase_if(x, [spread](double v) { return !(v > spread); });  // ties at the threshold
     if (x.size() < 5) return {};
     const double n = static_cast<double>(x.size());
     constexpr double prior = 10;  // pseudo-exceedances at k = 1/2
@@ -63,5 +62,11 @@ std::size_t tail_length(std::uint64_t n) {
 
 std::optional<Tail> fit_tail(std::span<const float> largest) { return fit(largest); }
 std::optional<Tail> fit_tail(std::span<const double> largest) { return fit(largest); }
+
+std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
+    const std::optional<Tail> wide = fit_tail(largest), deep = fit_tail(largest.first(largest.empty() ? 0 : 1 + (largest.size() - 1) / 8));
+    if (!wide || !deep) return wide;
+    return std::fabs(wide->k - deep->k) > 2 * std::hypot(wide->se, deep->se) ? deep : wide;
+}
 
 }  // namespace crescent

@@ -20,4 +20,9 @@ std::size_t tail_length(std::uint64_t n);
 std::optional<Tail> fit_tail(std::span<const float> largest);
 std::optional<Tail> fit_tail(std::span<const double> largest);
 
+/// The same for samples of many pixels at once, of which a few in a thousand meet a light: the customary threshold may
+/// lie among the rest, and the step up to the lit ones would pass for a tail. A second fit to an eighth of the
+/// exceedances looks past it; where the two disagree by more than two standard errors, the deeper one counts.
+std::optional<Tail> fit_pooled_tail(std::span<const float> largest);
+
 }  // namespace crescent
