@@ -65,6 +65,32 @@ void add_schema(CLI::App& app, Work& work) {
     c->add_flag("--json", f->json, "as a JSON Schema");
 }
 
+constexpr const char* check_footer = R"(Nine verdicts, in order: valid, support, normalised, density, identity, physics,
+tail, mean, efficiency. Without ARM the whole list is judged, and 0 means that every
+arm gets what the list expects of it. Else: 0 right, 1 wrong, 4 inconclusive.
+docs/verdicts.md says what each verdict means and how --exec is spoken to.)";
+
+void add_check(CLI::App& app, Work& work) {
+    std::shared_ptr<CheckFlags> f;
+    CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
+    c->footer(check_footer);
+    c->add_option("ARM", f->arm, "a sampler of the list; without it, all")->type_name("");
+    c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")->type_name("KEY=VALUE")->take_all()->expected(1)->allow_extra_args(false);
+    auto* quick = c->add_flag("--quick", f->quick, "seconds an arm (the default)");
+    c->add_flag("--full", f->full, "minutes: more directions, more draws")->excludes(quick);
+    c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")->type_name("P");
+    c->add_option("--seed", f->seed, "default 1")->type_name("N");
+    c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which");
+    c->add_option("--exec", f->exec, "judge a program that answers over a pipe")->type_name("'PROGRAM ARGS'");
+    c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE");
+    c->add_option("--pdf-table", f->table, "the density of --samples, a .csv grid")->type_name("FILE");
+    c->add_option("--wo", f->wo, "the w_o of --samples")->type_name("x,y,z");
+    c->add_option("--json", f->json, "write every verdict with its evidence")->type_name("FILE");
+    c->add_option("--junit", f->junit, "write for a build server")->type_name("FILE");
+    c->add_option("--html", f->html, "write one page with maps, histograms and roses")->type_name("FILE");
+    c->add_flag("--quiet", f->quiet, "no progress; the table stays");
+}
+
 void add_version(CLI::App& app, Work& work) {
     std::shared_ptr<VersionFlags> f;
     command(app, work, "version", "Version, commit and compiler.", version, f);
@@ -113,6 +139,7 @@ std::function<int()> parse(int argc, char** argv) {
     add_run(app, work);
     add_list(app, work);
     add_schema(app, work);
+    add_check(app, work);
     add_version(app, work);
     try {
         app.parse(argc, argv);

@@ -38,6 +38,17 @@ struct SchemaFlags {
 };
 int schema(const SchemaFlags& flags);
 
+struct CheckFlags {
+    std::string arm;                     // "": all of the list
+    std::vector<std::string> settings;   // s=128
+    std::string exec, samples, table, wo;
+    std::string json, junit, html;       // files to write
+    double alpha = 1e-3;
+    unsigned seed = 1;
+    bool full = false, quick = false, planted = false, quiet = false;
+};
+int check(const CheckFlags& flags);
+
 struct VersionFlags {};
 int version(const VersionFlags& flags);
 

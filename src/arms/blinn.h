@@ -1,5 +1,5 @@
 // blinn: a cosine-power half-vector about n, mirrored to wi.
-//   p_m = (s+1)/(2 pi) (n.m)^s;  cos = u1^(1/(s+1)), phi = 2 pi u2;  p = p_m / (4 |wo.m|).
+//   p_m = (s+1)/(2 pi) (n.m)^s;  cos = u1^(1/(s+1)), phi = 2 pi u2;  p = p_m / (4 (wo.m)).
 // Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures", sampled as in Walter et al. 2007, eq. (14).
 #pragma once
 
@@ -20,11 +20,12 @@ template <class F> struct Blinn {
         const SinCos<F> phi = sincos_turns(u.y);
         const Vec3<F> m = {sin * phi.cos, sin * phi.sin, cos};
         const F p = scale * (u.x / cos) / half_jacobian(dot(wo, m));
-        return {mirror_about(wo, m), {select(u.x > number<F>(0), p, number<F>(0))}};
+        const Vec3<F> wi = mirror_about(wo, m);
+        return {wi, above(wo, wi, select(u.x > number<F>(0), p, number<F>(0)))};
     }
     PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {
-        const Halfway<F> h = halfway(wo, wi);
-        return {scale * cosine_power(h.m, Vec3<F>{number<F>(0), number<F>(0), number<F>(1)}, s) / h.jacobian};
+        const Vec3<F> m = halfway(wo, wi);
+        return above(wo, wi, scale * cosine_power(m, Vec3<F>{number<F>(0), number<F>(0), number<F>(1)}, s) / half_jacobian(dot(wo, m)));
     }
 };
 

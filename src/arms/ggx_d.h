@@ -1,5 +1,5 @@
 // ggx-d: a GGX normal by the distribution D(m) (n.m), mirrored to wi.
-//   tan^2 = alpha^2 u1 / (1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 |wo.m|).
+//   tan^2 = alpha^2 u1 / (1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
 // Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eqs (33), (35), (36), (14).
 // D as density over the drawn u1: D cos = (1 - u1 + alpha^2 u1)^2 cos / (pi alpha^2), which costs no second pass over m.
 #pragma once
@@ -21,11 +21,12 @@ template <class F> struct GgxD {
         const SinCos<F> phi = sincos_turns(u.y);
         const Vec3<F> m = {sin * phi.cos, sin * phi.sin, cos};
         const F p = sqr(t) * cos / (number<F>(pi) * a2);
-        return {mirror_about(wo, m), {p / half_jacobian(dot(wo, m))}};
+        const Vec3<F> wi = mirror_about(wo, m);
+        return {wi, above(wo, wi, p / half_jacobian(dot(wo, m)))};
     }
     PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {
-        const Halfway<F> h = halfway(wo, wi);
-        return {ggx.D(h.m) * h.m.z / h.jacobian};
+        const Vec3<F> m = halfway(wo, wi);
+        return above(wo, wi, ggx.D(m) * m.z / half_jacobian(dot(wo, m)));
     }
 };
 

@@ -23,14 +23,14 @@ template <class F> struct GgxVndf {
         const F sin = sqrt(larger((one - z) * (one + z), number<F>(0)));
         const SinCos<F> phi = sincos_turns(u.y);
         const Vec3<F> m = normalize(Vec3<F>{a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise});
-        return {mirror_about(wo, m), density(wo, m)};
+        const Vec3<F> wi = mirror_about(wo, m);
+        return {wi, density(wo, wi, m)};
     }
-    PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return density(wo, halfway(wo, wi).m); }
+    PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return density(wo, wi, halfway(wo, wi)); }
 
 private:
-    PerSr<F> density(Vec3<F> wo, Vec3<F> m) const {
-        const auto seen = (wo.z > number<F>(0)) & (dot(wo, m) > number<F>(0));
-        return {select(seen, ggx.G1(wo) * ggx.D(m) / (number<F>(4) * select(seen, wo.z, number<F>(1))), number<F>(0))};
+    PerSr<F> density(Vec3<F> wo, Vec3<F> wi, Vec3<F> m) const {
+        return above(wo, wi, ggx.G1(wo) * ggx.D(m) / (number<F>(4) * larger(wo.z, number<F>(1e-12))));
     }
 };
 

@@ -1,26 +1,24 @@
 // What the half-vector arms share: m is drawn about n, wi is wo mirrored in m, and
-//   dw_i = 4 |wo.m| dw_m,  hence  p(wi) = p_m(m) / (4 |wo.m|).        Walter et al. 2007, eq. (14)
-// Under the horizon m with wo.m < 0 still sends wi somewhere: m and -m give the same wi, so m is taken with m.z > 0 and
-// the density integrates to one over the whole sphere.
+//   dw_i = 4 (wo.m) dw_m,  hence  p(wi) = p_m(m) / (4 (wo.m)).        Walter et al. 2007, eq. (14)
+// Where wi falls under the horizon nothing is drawn: the sample weighs 0 and counts, and p is not renormalised, so that it
+// integrates to one less that share. (Under the horizon p would grow without bound towards wi = -wo.)
 #pragma once
 
 #include "arms/sampler.h"
 
 namespace crescent {
 
-template <class F> struct Halfway {
-    Vec3<F> m;
-    F jacobian;  // 4 |wo.m|, kept above 0
-};
+template <class F> F half_jacobian(F wo_m) { return number<F>(4) * larger(wo_m, number<F>(1e-12)); }
 
-template <class F> F half_jacobian(F wo_m) { return number<F>(4) * larger(abs(wo_m), number<F>(1e-12)); }
-
-template <class F> Halfway<F> halfway(Vec3<F> wo, Vec3<F> wi) {
+/// The half-vector of two directions above the horizon.
+template <class F> Vec3<F> halfway(Vec3<F> wo, Vec3<F> wi) {
     const Vec3<F> sum = wo + wi;
-    const F length2 = larger(dot(sum, sum), number<F>(1e-30));
-    const F scale = select(sum.z < number<F>(0), number<F>(-1), number<F>(1)) / sqrt(length2);
-    const Vec3<F> m = sum * scale;
-    return {m, half_jacobian(dot(wo, m))};
+    return sum * (number<F>(1) / sqrt(larger(dot(sum, sum), number<F>(1e-30))));
+}
+
+/// p where wo and wi are above the horizon, else 0.
+template <class F> PerSr<F> above(Vec3<F> wo, Vec3<F> wi, F p) {
+    return {select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), p, number<F>(0))};
 }
 
 /// wo mirrored in the unit vector m.

@@ -33,7 +33,7 @@ template <class F> LocalDisk<F> disk_of(const TrialLight& light) {
 }
 
 /// A is an arm template; planted faults are arms too.
-template <template <class> class A> class BuiltIn : public Subject {
+template <template <class> class A> class BuiltIn : public JudgedSampler {
 public:
     BuiltIn(const SurfaceSetup& surface, Vec3d wo, const TrialLight& light)
         : surface_(surface), disk_single_(disk_of<float>(light)), disk_double_(disk_of<double>(light)),

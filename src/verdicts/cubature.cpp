@@ -43,6 +43,7 @@ void apply_rule(Cell& cell, std::span<const double> g) {
     cell.value = area * seven;
     cell.error = area * std::fabs(seven - five);
     const auto [low, high] = std::minmax_element(g.begin(), g.end());
+    std::copy(g.begin() + 5, g.begin() + 13, cell.outer.begin());
     cell.low = *low;
     cell.high = *high;
     const double ratio = (9.0 / 70) / 0.9;  // fourth differences along either axis choose the side to halve
@@ -102,30 +103,24 @@ std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const Wi
 
 }  // namespace
 
-Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
-    const double total = witnesses ? witnesses->total : 0;
-    std::vector<Cell> cells = start_cells(start, bins, witnesses);
-    evaluate(cells, g);
-    Integral out;
-    out.evaluations = cells.size() * points;
+namespace {
+
+/// Halves cells, the worst first, until the errors left are small; true where cells at a jump were left for cutting.
+bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, double total, Integral& out) {
     bool edges = false;
     for (;;) {
-        double error = 0, all = 0;
+        double all = 0;
         std::vector<std::pair<double, std::size_t>> order;
+        edges = false;
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const bool at_edge = cells[i].rough() && cells[i].area() * cells[i].high < effort.edge_mass;
+            const bool at_edge = (cells[i].rough() || cells[i].rim_jumps) && cells[i].area() * cells[i].high < effort.edge_mass;
             const double urge = std::max(at_edge ? 0 : cells[i].error, disagreement(cells[i], total));
             edges = edges || at_edge;
-            error += cells[i].error;
             all += urge;
             order.emplace_back(urge, i);
         }
-        out.error = error;
-        if (!(all > effort.tolerance)) break;
-        if (out.evaluations >= effort.most_evaluations) {
-            out.settled = false;
-            break;
-        }
+        out.settled = !(all > effort.tolerance);
+        if (out.settled || out.evaluations >= effort.most_evaluations) return edges || !out.settled;
         std::sort(order.begin(), order.end(), std::greater<>());
         const std::size_t room = (effort.most_evaluations - out.evaluations) / (2 * points) + 1;
         double covered = 0;  // the largest errors, to nine tenths of the whole
@@ -146,11 +141,27 @@ Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effo
             cells.push_back(std::move(fresh[2 * k + 1]));
         }
     }
-    if (edges) {
-        out.evaluations += cut_along_jumps(cells, g);
-        out.error = 0;
-        for (const Cell& c : cells) out.error = c.cut ? std::hypot(out.error, c.error) : out.error + c.error;
+}
+
+}  // namespace
+
+Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
+    const double total = witnesses ? witnesses->total : 0;
+    std::vector<Cell> cells = start_cells(start, bins, witnesses);
+    evaluate(cells, g);
+    Integral out;
+    out.evaluations = cells.size() * points;
+    bool edges = refine(cells, g, effort, total, out);
+    for (int round = 0; edges && round < 12; ++round) {
+        bool found = false;
+        out.evaluations += try_rims(cells, g, effort.edge_mass, found);
+        if (!found || out.evaluations >= effort.most_evaluations) break;
+        edges = refine(cells, g, effort, total, out);
     }
+    if (edges) out.evaluations += cut_along_jumps(cells, g);
+    double at_jumps = 0;  // errors along a jump have either sign: they add up by their squares
+    for (const Cell& c : cells) (c.cut ? at_jumps : out.error) += c.cut ? sqr(c.error) : c.error;
+    out.error += std::sqrt(at_jumps);
     out.bins.assign(static_cast<std::size_t>(bins), 0.0);
     for (const Cell& c : cells) out.bins[static_cast<std::size_t>(c.rect.bin)] += c.value;
     for (double v : out.bins) out.value += v;

@@ -30,22 +30,21 @@ Vec2d at(const Rect& r, const Line& l, double t) {
 
 constexpr double inset = 1e-7;
 
+/// Four sides and four corners, in the order of the rule's outermost points.
 std::array<Vec2d, 8> rim(const Rect& r) {
     const double da = inset * (r.a1 - r.a0), db = inset * (r.b1 - r.b0), a = 0.5 * (r.a0 + r.a1), b = 0.5 * (r.b0 + r.b1);
-    return {{{r.a0 + da, r.b0 + db}, {r.a1 - da, r.b0 + db}, {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b1 - db},
-             {r.a0 + da, b}, {r.a1 - da, b}, {a, r.b0 + db}, {a, r.b1 - db}}};
+    return {{{r.a0 + da, b}, {r.a1 - da, b}, {a, r.b0 + db}, {a, r.b1 - db},
+             {r.a0 + da, r.b0 + db}, {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b0 + db}, {r.a1 - da, r.b1 - db}}};
 }
 
-/// Lines through every cell whose rim or inside is rough, along the side that sees more of the change.
-std::vector<Line> lines_through(const std::vector<Cell>& cells, std::span<const double> on_rim) {
+/// Lines through every cell that a jump seems to cross, along the side that sees more of the change.
+std::vector<Line> lines_through(const std::vector<Cell>& cells) {
     std::vector<Line> out;
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        const std::span<const double> v = on_rim.subspan(8 * c, 8);
-        const auto [low, high] = std::minmax_element(v.begin(), v.end());
-        const double top = std::max(*high, cells[c].high);
-        if (top - std::min(*low, cells[c].low) <= 0.3 * top) continue;
-        const double along_a = std::fabs(v[0] - v[1]) + std::fabs(v[2] - v[3]) + std::fabs(v[4] - v[5]);
-        const double along_b = std::fabs(v[0] - v[2]) + std::fabs(v[1] - v[3]) + std::fabs(v[6] - v[7]);
+        if (!cells[c].rough() && !cells[c].rim_jumps) continue;
+        const std::array<double, 8>& v = cells[c].outer;
+        const double along_a = std::fabs(v[4] - v[6]) + std::fabs(v[5] - v[7]) + std::fabs(v[0] - v[1]);
+        const double along_b = std::fabs(v[4] - v[5]) + std::fabs(v[6] - v[7]) + std::fabs(v[2] - v[3]);
         const Rect& r = cells[c].rect;
         for (double x : gauss5) {
             Line l;
@@ -92,15 +91,36 @@ std::size_t bracket(std::vector<Line>& all, const std::vector<Cell>& cells, cons
 
 }  // namespace
 
-std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g) {
+std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass, bool& found) {
     std::vector<Vec2d> where;
     std::vector<double> v;
     for (const Cell& c : cells)
-        for (Vec2d p : rim(c.rect)) where.push_back(p);
-    std::size_t count = evaluate(g, where, v);
-    std::vector<Line> all = lines_through(cells, v);
-    count += bracket(all, cells, g);
-    where.clear();
+        if (!c.rim_tried)
+            for (Vec2d p : rim(c.rect)) where.push_back(p);
+    const std::size_t count = evaluate(g, where, v);
+    const double* at_rim = v.data();
+    for (Cell& c : cells) {
+        if (c.rim_tried) continue;
+        c.rim_tried = true;
+        for (std::size_t k = 0; k < 8; ++k) {
+            const double top = std::max(c.high, at_rim[k]);
+            c.rim_jumps = c.rim_jumps || std::fabs(at_rim[k] - c.outer[k]) > 0.2 * top;
+            c.high = top;
+        }
+        std::copy(at_rim, at_rim + 8, c.outer.begin());
+        at_rim += 8;
+        if (!c.rim_jumps || c.area() * c.high < edge_mass) continue;
+        c.error = std::max(c.error, 0.05 * c.area() * c.high);
+        found = true;
+    }
+    return count;
+}
+
+std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g) {
+    std::vector<Line> all = lines_through(cells);
+    std::size_t count = bracket(all, cells, g);
+    std::vector<Vec2d> where;
+    std::vector<double> v;
     for (const Line& l : all) {
         const double jump = 0.5 * (l.t0 + l.t1);
         for (double from : {0.0, jump}) {

@@ -96,7 +96,7 @@ Fit fit(const Density& d, const Batchful& b) {
             seen += by_ring[i];
             due += due_ring[i];
         }
-    if (seen > 0) out.outside_p = boost::math::cdf(boost::math::complement(boost::math::poisson(due + n * (1e-5 + d.mass.error)), seen - 1));
+    if (seen > 0) out.outside_p = boost::math::cdf(boost::math::complement(boost::math::poisson(due + n * (1e-4 + d.mass.error)), seen - 1));
     return out;
 }
 

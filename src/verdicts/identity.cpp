@@ -63,7 +63,7 @@ Mismatch pdf_twice(const Work& work, int t) {
     const Batchful& b = work.first(t);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const Draw& d = b.draws[i];
-        if (is_nothing(d, b.pdf[i])) continue;
+        if (!(d.pdf > 0) || d.wi.z <= 0) continue;  // under the horizon a pdf weighs nothing
         ++m.tried;
         if (close(d.pdf, b.pdf[i])) continue;
         if (m.count < 4096 && close(d.pdf, b.pdf[i], pdf_conditioning(work, t, d.wi, b.pdf[i]))) continue;

@@ -51,6 +51,10 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
     Outcome out;
     try {
         Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        if (trial.yardstick) {
+            out.efficiency = measure_efficiency(work, index);
+            return out;
+        }
         out.verdicts.push_back(judge_valid(work));
         if (out.verdicts[0].state == State::wrong) {
             skip_rest(trial, out, "The sampler is not valid here.");
@@ -70,6 +74,7 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
     } catch (const SubjectFault& fault) {
+        if (trial.yardstick) return {};
         out.verdicts.clear();
         Verdict v = skipped(trial, "valid", fault.what());
         v.state = State::wrong;
@@ -92,6 +97,13 @@ void settle(Judgement& j) {
 
 }  // namespace
 
+std::string what_is_wrong(const Judgement& judgement) {
+    std::string out;
+    for (const Verdict& v : judgement.verdicts)
+        if (v.state == State::wrong || v.state == State::inconclusive) out += fmt::format("{} [{}] {} {}: {}\n", v.arm, v.trial, v.name, word(v.state), v.say);
+    return out;
+}
+
 std::string_view word(State state) {
     switch (state) {
         case State::right: return "right";
@@ -105,7 +117,8 @@ std::string_view word(State state) {
 /// Per technique four p-values of the density and one of the share that draws nothing; then the furnace and the mean.
 std::uint64_t count_tests(std::span<const Trial> trials) {
     std::uint64_t tests = 0;
-    for (const Trial& t : trials) tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0);
+    for (const Trial& t : trials)
+        if (!t.yardstick) tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0);
     return tests;
 }
 
@@ -136,6 +149,7 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
         if (o.efficiency) efficiencies.push_back(*o.efficiency);
     std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
     for (std::size_t i = 0; i < trials.size(); ++i) {
+        if (trials[i].yardstick) continue;
         outcomes[i].verdicts.push_back(std::move(ranks[i]));
         for (Verdict& v : outcomes[i].verdicts) {
             expect(trials[i], v);

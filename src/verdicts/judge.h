@@ -14,6 +14,8 @@ struct SubjectFault : std::runtime_error {
 
 /// Throws Interrupted when the watch says stop.
 Judgement judge(std::span<const Trial> trials, const Rigour& rigour, Watch& watch);
+/// The verdicts that are not right, a line each; "" where there are none.
+std::string what_is_wrong(const Judgement& judgement);
 /// How many statistical tests the trials ask for.
 std::uint64_t count_tests(std::span<const Trial> trials);
 

@@ -98,8 +98,8 @@ void apply(const Settings& settings, Stage& stage) {
     }
 }
 
-std::shared_ptr<const Subject> subject_of(const std::string& arm, const Stage& stage, Vec3d wo) {
-    std::shared_ptr<const Subject> out;
+std::shared_ptr<const JudgedSampler> subject_of(const std::string& arm, const Stage& stage, Vec3d wo) {
+    std::shared_ptr<const JudgedSampler> out;
     for_each_arm(Arms{}, [&]<template <class> class A>() {
         if (A<float>::name == arm) out = std::make_shared<BuiltIn<A>>(stage.surface, wo, stage.light);
     });
@@ -155,7 +155,7 @@ Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double sha
     return out;
 }
 
-Trial trial_on(const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const Subject> subject) {
+Trial trial_on(const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject) {
     Trial t;
     t.arm = std::move(arm);
     t.brdf = stage.brdf;
@@ -168,6 +168,46 @@ Trial trial_on(const Stage& stage, double theta, double azimuth, std::string arm
     t.light = stage.light;
     t.subject = std::move(subject);
     return t;
+}
+
+namespace {
+
+/// An arm of the list aimed at somebody else's BRDF.
+template <template <class> class A> class Borrowed : public BuiltIn<A> {
+public:
+    Borrowed(std::shared_ptr<const JudgedSampler> owner, Vec3d wo) : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
+    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    bool serial() const override { return owner_->serial(); }
+
+private:
+    std::shared_ptr<const JudgedSampler> owner_;
+};
+
+}  // namespace
+
+Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, double theta, double azimuth) {
+    Trial t;
+    t.arm = subject->name();
+    t.wo = tilt(theta, azimuth);
+    t.theta_deg = theta;
+    t.azimuth_deg = azimuth;
+    t.subject = subject;
+    return t;
+}
+
+std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full) {
+    std::vector<Trial> trials;
+    for (const auto& [theta, azimuth] : wo_grid(full)) {
+        trials.push_back(trial_of_subject(subject, theta, azimuth));
+        if (!subject->has_f()) continue;
+        const Vec3d wo = tilt(theta, azimuth);
+        for (const std::shared_ptr<const JudgedSampler>& peer : {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
+                                                           std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
+            trials.push_back(trial_of_subject(peer, theta, azimuth));
+            trials.back().yardstick = true;
+        }
+    }
+    return trials;
 }
 
 std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full) {

@@ -7,7 +7,7 @@
 
 namespace crescent {
 
-class RecordedSubject : public Subject {
+class RecordedSubject : public JudgedSampler {
 public:
     bool draws_at_will() const override { return false; }
     /// Round 0: every other row, from the first; round 1: the rest, which is independent of it.

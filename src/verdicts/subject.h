@@ -28,9 +28,9 @@ struct Pair {
 };
 
 /// One density with its draws, or two where a pair of samples is weighed by MIS. Thread-safe unless `serial()`.
-class Subject {
+class JudgedSampler {
 public:
-    virtual ~Subject() = default;
+    virtual ~JudgedSampler() = default;
     virtual std::string name() const = 0;
     virtual int techniques() const { return 1; }
     virtual void sample(int technique, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const = 0;
@@ -85,7 +85,8 @@ struct Trial {
     Parameters parameters;
     TrialLight light;
     Theory theory;
-    std::shared_ptr<const Subject> subject;
+    bool yardstick = false;  // only its efficiency counts, for others to be ranked against
+    std::shared_ptr<const JudgedSampler> subject;
     std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"
 };
 

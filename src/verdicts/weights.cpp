@@ -113,7 +113,7 @@ Verdict judge_tail(Work& work) {
     if (theory.tail_k) v.evidence["theory_k"] = *theory.tail_k;
     const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
     if (!tail) {
-        v.say = "The largest weights are all alike: no tail to speak of.";
+        v.say = "The largest weights are all alike: no tail to speak of. ";
     } else {
         v.evidence["k"] = tail->k;
         v.evidence["se"] = tail->se;

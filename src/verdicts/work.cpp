@@ -205,10 +205,11 @@ void Work::measure_density() {
         }
         const bool sharp = count > 0 && length(mean) / count > 0.9;
         const Vec3d n{0, 0, 1};
-        Density d = sharp ? density_about(t, normalize(mean), false) : density_about(t, n, true);
+        Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations) : density_about(t, n, true, rigour.evaluations);
         if (d.mass.error > 5e-5) {
-            Density other = sharp ? density_about(t, n, true) : density_about(t, normalize(peak), false);
+            Density other = sharp ? density_about(t, n, true, rigour.evaluations) : density_about(t, normalize(peak), false, rigour.evaluations);
             if (other.mass.error < d.mass.error) d = std::move(other);
+            if (d.mass.error > 1e-4) d = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations);
         }
         if (b.nothing > 0 && subject.draws_at_will()) find_nothing(t, d);
         else d.nothing = static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
@@ -237,7 +238,7 @@ std::size_t Density::bin_of(Vec2d at) const {
     return static_cast<std::size_t>(ring * sectors + sector);
 }
 
-Density Work::density_about(int technique, Vec3d axis, bool about_n) const {
+Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations) const {
     Density d;
     d.map = SphereMap(axis);
     d.about_n = about_n;
@@ -259,7 +260,7 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n) const {
         }
     }
     if (about_n) {
-        d.rings.push_back(1);
+        for (double rim : {0.9, 0.95, 0.99, 1.0}) d.rings.push_back(rim);  // where n.w is small, samplers stop short
         std::sort(d.rings.begin(), d.rings.end());
         d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-12; }), d.rings.end());
     }
@@ -281,7 +282,7 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n) const {
                            const std::vector<double> p = pdf(technique, wi, true);
                            for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
                        },
-                       {5e-6, rigour.evaluations}, &witnesses);
+                       {5e-6, evaluations}, &witnesses);
     return d;
 }
 

@@ -64,7 +64,7 @@ public:
     const Trial& trial;
     const Rigour& rigour;
     Tally& tally;
-    const Subject& subject;
+    const JudgedSampler& subject;
 
     Batchful draw(int technique, int round) const;  // round 0: the screening seed, 1: the confirming one
     const Batchful& first(int technique) const { return first_[static_cast<std::size_t>(technique)]; }
@@ -110,7 +110,7 @@ private:
     Integral integrate_incoming(Where where, bool even) const;
     void find_guides();
     Witnesses witnesses_of(int technique, const Density& d) const;
-    Density density_about(int technique, Vec3d axis, bool about_n) const;
+    Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations) const;
     void find_nothing(int technique, Density& d) const;
 };
 

@@ -1,0 +1,144 @@
+// `crescent check`: samplers judged by themselves.
+#include <cstdio>
+#include <map>
+
+#include <charconv>
+
+#include "commands.h"
+#include "crescent.h"
+#include "laws/planted/planted.h"
+#include "progress.h"
+#include "signals.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/pipe.h"
+#include "verdicts/print.h"
+#include "verdicts/samples.h"
+
+namespace crescent::cli {
+
+namespace {
+
+double number_in(const std::string& text, const std::string& what) {
+    double v = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) throw InputError({what, 0, 0}, "expected a number, not '" + text + "'");
+    return v;
+}
+
+Settings settings_of(const CheckFlags& flags) {
+    Settings out;
+    const std::map<std::string, std::pair<double, double>> ranges = {{"s", {1e-3, 1e6}}, {"alpha", {1e-4, 1}}, {"rho_d", {0, 1}}, {"rho_s", {0, 1}}};
+    for (const std::string& word : flags.settings) {
+        const std::size_t equals = word.find('=');
+        const std::string key = word.substr(0, equals);
+        if (equals == std::string::npos || !ranges.count(key)) throw InputError({"--set " + word, 0, 0}, "expected s=, alpha=, rho_d= or rho_s= and a number");
+        const double v = number_in(word.substr(equals + 1), "--set " + word);
+        const auto [low, high] = ranges.at(key);
+        if (!(v >= low && v <= high)) throw InputError({"--set " + word, 0, 0}, key + " is at least " + std::to_string(low) + " and at most " + std::to_string(high));
+        out[key] = v;
+    }
+    return out;
+}
+
+Vec3d direction_of(const std::string& text) {
+    double v[3];
+    std::string rest = text;
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t comma = rest.find(',');
+        if ((comma == std::string::npos) != (i == 2)) throw InputError({"--wo " + text, 0, 0}, "expected x,y,z");
+        v[i] = number_in(rest.substr(0, comma), "--wo " + text);
+        rest = comma == std::string::npos ? "" : rest.substr(comma + 1);
+    }
+    const Vec3d w{v[0], v[1], v[2]};
+    const double size = length(w);
+    if (!(size > 0.99 && size < 1.01) || !(w.z > 0)) throw InputError({"--wo " + text, 0, 0}, "expected a unit vector above the horizon, z > 0");
+    return normalize(w);
+}
+
+Rigour rigour_of(const CheckFlags& flags) {
+    Rigour r = flags.full ? Rigour::thorough() : Rigour::quick();
+    if (!(flags.alpha > 0 && flags.alpha < 1)) throw InputError({"--alpha", 0, 0}, "is between 0 and 1");
+    r.alpha = flags.alpha;
+    r.seed = flags.seed;
+    r.pictures = !flags.html.empty();
+    return r;
+}
+
+std::vector<Trial> trials_for(const CheckFlags& flags) {
+    if (!flags.exec.empty()) return trials_of_subject(start_pipe(flags.exec), flags.full);
+    if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
+    if (flags.wo.empty() || flags.table.empty()) throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
+    const Vec3d wo = direction_of(flags.wo);
+    Trial t = trial_of_subject(std::make_shared<SampleFile>(flags.samples, flags.table), std::acos(std::min(wo.z, 1.0)) * 180 / pi, std::atan2(wo.y, wo.x) * 180 / pi);
+    t.wo = wo;
+    return {t};
+}
+
+int exit_of(State state) { return state == State::wrong ? failed : state == State::inconclusive ? inconclusive : held; }
+
+void write_files(const CheckFlags& flags, const Judgement& j) {
+    if (!flags.json.empty()) write_whole(flags.json, verdict_json(j));
+    if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
+    if (!flags.html.empty()) write_whole(flags.html, verdict_html(j));
+}
+
+/// Which verdict catches which fault. Exit 0 where every fault is caught.
+int check_planted(const CheckFlags& flags, Watch& watch) {
+    bool all = true;
+    std::string text;
+    for (const PlantedFault& fault : planted_faults(flags.full)) {
+        const Judgement j = judge(fault.trials, rigour_of(flags), watch);
+        std::string caught;
+        for (std::string_view name : verdict_names)
+            for (const Verdict& v : j.verdicts)
+                if (v.name == name && v.state == State::wrong) {
+                    caught += (caught.empty() ? "" : ", ") + v.name;
+                    break;
+                }
+        all = all && !caught.empty();
+        char line[256];
+        std::snprintf(line, sizeof line, "%-66s %-12s %s\n", fault.name.c_str(), fault.breaks.c_str(), caught.empty() ? "NOT CAUGHT" : caught.c_str());
+        text += line;
+    }
+    print(text);
+    return all ? held : failed;
+}
+
+Judgement complaint(const std::string& what, const std::string& arm) {
+    Judgement j;
+    Verdict v;
+    v.arm = arm;
+    v.trial = "start";
+    v.name = "valid";
+    v.state = State::wrong;
+    v.say = what;
+    v.expected = false;
+    j.verdicts.push_back(v);
+    j.state = State::wrong;
+    j.as_expected = false;
+    return j;
+}
+
+}  // namespace
+
+int check(const CheckFlags& flags) {
+    Progress watch(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    StopOnSignal stop(watch);
+    if (flags.planted) return check_planted(flags, watch);
+    Judgement j;
+    try {
+        const std::vector<Trial> trials = trials_for(flags);
+        j = judge(trials, rigour_of(flags), watch);
+    } catch (const SubjectFault& fault) {
+        j = complaint(fault.what(), flags.exec);
+    }
+    watch.clear();
+    write_files(flags, j);
+    print(verdict_table(j));
+    const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.samples.empty();
+    if (whole_list) print(j.as_expected ? "every arm gets the verdicts that the list expects\n" : "not every arm gets the verdicts that the list expects\n");
+    return whole_list ? (j.as_expected ? held : failed) : exit_of(j.state);
+}
+
+}  // namespace crescent::cli

@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/print.h"
+
+namespace crescent {
+
+namespace {
+
+std::string escape(std::string_view s) {
+    std::string out;
+    for (char c : s) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+    return out;
+}
+
+/// Blue below, white at 0, red above; v in [-1, 1].
+std::string diverging(double v) {
+    const int fade = static_cast<int>(255 * (1 - std::min(std::fabs(v), 1.0)));
+    return v < 0 ? fmt::format("rgb({},{},255)", fade, fade) : fmt::format("rgb(255,{},{})", fade, fade);
+}
+std::string grey(double v) {
+    const int g = static_cast<int>(255 - 225 * std::clamp(v, 0.0, 1.0));
+    return fmt::format("rgb({},{},{})", g, g, g);
+}
+
+template <class Colour> std::string map_svg(const BinMap& m, std::string_view title, Colour colour) {
+    std::string out = fmt::format("<figure><svg viewBox='0 0 {} {}' width='260' height='200' preserveAspectRatio='none'>", m.sectors, m.rings);
+    for (int r = 0; r < m.rings; ++r)
+        for (int s = 0; s < m.sectors; ++s)
+            out += fmt::format("<rect x='{}' y='{}' width='1.02' height='1.02' fill='{}'/>", s, r, colour(static_cast<std::size_t>(r * m.sectors + s)));
+    return out + fmt::format("</svg><figcaption>{}</figcaption></figure>", title);
+}
+
+std::string maps(const BinMap& m) {
+    const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()), *std::max_element(m.expected.begin(), m.expected.end()));
+    std::string out = fmt::format("<p>Counts, {}: rings downwards from the axis, turns to the right; black is {:.0f} draws. Difference: (observed - expected) / sqrt(expected), red more, blue fewer, full at 4.</p><div class=row>", m.coordinates, top);
+    out += map_svg(m, "observed", [&](std::size_t i) { return grey(m.observed[i] / top); });
+    out += map_svg(m, "expected", [&](std::size_t i) { return grey(m.expected[i] / top); });
+    out += map_svg(m, "standardised difference", [&](std::size_t i) { return diverging((m.observed[i] - m.expected[i]) / std::sqrt(std::max(m.expected[i], 1.0)) / 4); });
+    return out + "</div>";
+}
+
+std::string histogram(const WeightPicture& w) {
+    if (w.counts.empty()) return "";
+    double top = 1;
+    for (double c : w.counts) top = std::max(top, std::log10(1 + c));
+    std::string out = "<figure><svg viewBox='0 0 480 200' width='400' height='170'>";
+    const double width = 480.0 / static_cast<double>(w.counts.size());
+    std::size_t mode = static_cast<std::size_t>(std::max_element(w.counts.begin(), w.counts.end()) - w.counts.begin());
+    for (std::size_t i = 0; i < w.counts.size(); ++i) {
+        const double h = 180 * std::log10(1 + w.counts[i]) / top;
+        out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#446'/>", static_cast<double>(i) * width, 190 - h, width - 0.5, h);
+    }
+    if (w.k > 0) {  // a Pareto tail: counts per decade fall as X^(-1/k)
+        out += "<polyline fill='none' stroke='#c33' stroke-width='2' points='";
+        for (std::size_t i = mode; i < w.counts.size(); ++i) {
+            const double c = w.counts[mode] * std::pow(10.0, -(w.log10_edges[i] - w.log10_edges[mode]) / w.k);
+            out += fmt::format("{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * std::log10(1 + c) / top);
+        }
+        out += "'/>";
+    }
+    return out + fmt::format("</svg><figcaption>X = f L cos / p, log10 from {:.2f} to {:.2f}, counts logarithmic; {:.0f} zeros; fitted tail k = {:.3f}{}</figcaption></figure>", w.log10_edges.front(),
+                             w.log10_edges.back(), w.zeros, w.k, w.k > 0 ? " (red)" : "");
+}
+
+std::string curve(const std::vector<double>& v, std::string_view colour) {
+    const double top = std::max(*std::max_element(v.begin(), v.end()), 1e-300);
+    std::string out = fmt::format("<polyline fill='none' stroke='{}' stroke-width='2' points='", colour);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const double angle = (static_cast<double>(i) - 89) * 3.14159265358979 / 180, r = 180 * v[i] / top;
+        out += fmt::format("{:.1f},{:.1f} ", 200 + r * std::sin(angle), 190 - r * std::cos(angle));
+    }
+    return out + "'/>";
+}
+
+std::string rose(const WeightPicture& w) {
+    if (w.rose_p.empty()) return "";
+    return "<figure><svg viewBox='0 0 400 200' width='360' height='180'><line x1='0' y1='190' x2='400' y2='190' stroke='#999'/>" + curve(w.rose_f, "#888") + curve(w.rose_p, "#06c") +
+           "</svg><figcaption>Plane of incidence: p (blue) over f L cos (grey), each to its own largest value</figcaption></figure>";
+}
+
+constexpr const char* head =
+    "<!doctype html><html lang=en><meta charset=utf-8><title>crescent check</title><style>body{font:15px/1.5 Inter,system-ui,sans-serif;margin:2em auto;max-width:64em;padding:0 1em}"
+    "table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #ddd;padding:.2em .5em;text-align:left;vertical-align:top}.wrong{color:#b00020;font-weight:600}"
+    ".inconclusive{color:#8a5a00}.right{color:#1a6b2a}.skipped{color:#666}.row{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figcaption{font-size:12px;max-width:30em}"
+    "summary{cursor:pointer}</style>";
+
+}  // namespace
+
+std::string verdict_html(const Judgement& j) {
+    std::string out = std::string(head) + fmt::format("<h1>crescent check: {}</h1><p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed.</p>", word(j.state), j.tests,
+                                                      j.alpha, j.screened, j.confirmed);
+    std::size_t map = 0, weight = 0;
+    for (std::size_t i = 0; i < j.verdicts.size();) {
+        const std::string arm = j.verdicts[i].arm, trial = j.verdicts[i].trial;
+        std::string rows;
+        bool open = false;
+        for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
+            const Verdict& v = j.verdicts[i];
+            open = open || v.state == State::wrong;
+            rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state), escape(v.say), v.why_expected.empty() ? "" : " <em>As the list expects: " + escape(v.why_expected) + ".</em>");
+        }
+        out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "", escape(arm), escape(trial), rows);
+        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial) out += maps(j.maps[map++]);
+        out += "<div class=row>";
+        while (weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].trial == trial) {
+            out += histogram(j.weights[weight]) + rose(j.weights[weight]);
+            ++weight;
+        }
+        out += "</div></details>";
+    }
+    return out + "</html>\n";
+}
+
+}  // namespace crescent

@@ -1,0 +1,282 @@
+#include "verdicts/pipe.h"
+
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <functional>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace crescent {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What came, for a message: cut short, with what does not print shown as \xNN.
+std::string shown(std::string_view s) {
+    std::string out = "'";
+    for (char c : s.substr(0, 80)) {
+        if (c >= ' ' && c < 127) out += c;
+        else out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return out + (s.size() > 80 ? "...'" : "'");
+}
+
+/// A float at the front of `s`, decimal or hexadecimal, NaN and infinities included; what is left stays in `s`.
+bool take_float(std::string_view& s, double& out) {
+    while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
+    const std::size_t end = std::min(s.find_first_of(" \t"), s.size());
+    std::string_view word = s.substr(0, end);
+    s.remove_prefix(end);
+    const bool negative = !word.empty() && word.front() == '-';
+    if (negative || (!word.empty() && word.front() == '+')) word.remove_prefix(1);
+    const bool hex = word.size() > 2 && word[0] == '0' && (word[1] == 'x' || word[1] == 'X');
+    if (hex) word.remove_prefix(2);
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), out, hex ? std::chars_format::hex : std::chars_format::general);
+    if (error == std::errc::result_out_of_range) out = 0;  // an underflow reads as 0; an overflow is not a number this bench can use
+    else if (error != std::errc{}) return false;
+    if (stop != word.data() + word.size() || word.empty() || word.front() == '-' || word.front() == '+') return false;
+    if (negative) out = -out;
+    return true;
+}
+
+bool blank(std::string_view s) { return s.find_first_not_of(" \t") == std::string_view::npos; }
+
+/// Shortest text that reads back as the same double.
+void append(std::string& to, double v) {
+    char buffer[32];
+    buffer[0] = ' ';
+    const auto end = std::to_chars(buffer + 1, buffer + sizeof buffer, v).ptr;
+    to.append(buffer, end);
+}
+
+class PipeSubject : public JudgedSampler {
+public:
+    PipeSubject(const std::string& command, const PipeLimits& limits) : limits_(limits) {
+        start(command);
+        try {
+            greet();
+        } catch (...) {
+            stop();
+            throw;
+        }
+    }
+    ~PipeSubject() override { stop(); }
+    PipeSubject(const PipeSubject&) = delete;
+    PipeSubject& operator=(const PipeSubject&) = delete;
+
+    std::string name() const override { return name_; }
+    bool serial() const override { return true; }
+    bool has_f() const override { return has_f_; }
+
+    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+        ask(u.size(), "four numbers 'wix wiy wiz pdf'",
+            [&](std::size_t i, std::string& line) {
+                line = "sample";
+                for (double v : {wo.x, wo.y, wo.z, u[i].x, u[i].y}) append(line, v);
+            },
+            [&](std::size_t i, std::string_view s) {
+                Draw& d = out[i];
+                return take_float(s, d.wi.x) && take_float(s, d.wi.y) && take_float(s, d.wi.z) && take_float(s, d.pdf) && blank(s);
+            });
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override { values("pdf", at, out); }
+    void f(std::span<const Pair> at, std::span<double> out) const override { values("f", at, out); }
+
+private:
+    PipeLimits limits_;
+    std::string name_;
+    bool has_f_ = false;
+    pid_t child_ = -1;
+    int to_ = -1, from_ = -1;
+    mutable std::string incoming_;
+    mutable std::size_t read_from_ = 0;
+    mutable std::uint64_t requests_ = 0;
+    mutable std::string broken_;  // what went wrong; nothing is asked from then on
+    bool greeted_ = false;
+
+    static void one_pair(std::string& line, const Pair& p) {
+        for (double v : {p.wo.x, p.wo.y, p.wo.z, p.wi.x, p.wi.y, p.wi.z}) append(line, v);
+    }
+    void values(const char* verb, std::span<const Pair> at, std::span<double> out) const {
+        ask(at.size(), "one number",
+            [&](std::size_t i, std::string& line) {
+                line = verb;
+                one_pair(line, at[i]);
+            },
+            [&](std::size_t i, std::string_view s) { return take_float(s, out[i]) && blank(s); });
+    }
+
+    void start(const std::string& command) {
+        std::signal(SIGPIPE, SIG_IGN);  // a program that closed its input shows as EPIPE
+        int in[2], out[2];
+        if (pipe2(in, O_CLOEXEC) != 0) throw SubjectFault(fmt::format("no pipe: {}", std::strerror(errno)));
+        if (pipe2(out, O_CLOEXEC) != 0) {
+            close(in[0]);
+            close(in[1]);
+            throw SubjectFault(fmt::format("no pipe: {}", std::strerror(errno)));
+        }
+        child_ = fork();
+        if (child_ == 0) {
+            setpgid(0, 0);
+            dup2(in[0], 0);
+            dup2(out[1], 1);
+            std::signal(SIGPIPE, SIG_DFL);
+            execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+            _exit(127);
+        }
+        close(in[0]);
+        close(out[1]);
+        to_ = in[1];
+        from_ = out[0];
+        if (child_ < 0) {
+            stop();
+            throw SubjectFault(fmt::format("no process: {}", std::strerror(errno)));
+        }
+        setpgid(child_, child_);
+        fcntl(to_, F_SETFL, fcntl(to_, F_GETFL) | O_NONBLOCK);
+        fcntl(from_, F_SETFL, fcntl(from_, F_GETFL) | O_NONBLOCK);
+    }
+
+    void stop() {
+        if (to_ >= 0) close(to_);
+        if (from_ >= 0) close(from_);
+        to_ = from_ = -1;
+        if (child_ <= 0) return;
+        for (int i = 0; i < 50; ++i) {  // half a second to end by itself
+            if (waitpid(child_, nullptr, WNOHANG) == child_) {
+                kill(-child_, SIGKILL);  // what it started and left behind
+                child_ = -1;
+                return;
+            }
+            usleep(10000);
+        }
+        kill(-child_, SIGKILL);
+        waitpid(child_, nullptr, 0);
+        child_ = -1;
+    }
+
+    void greet() {
+        ask(1, "'hello 1 NAME'", [](std::size_t, std::string& line) { line = "hello 1"; },
+            [&](std::size_t, std::string_view s) {
+                if (s.substr(0, 8) != "hello 1 " || blank(s.substr(8))) return false;
+                name_ = std::string(s.substr(s.find_first_not_of(" \t", 8)));
+                return true;
+            });
+        greeted_ = true;
+        ask(1, "one number, or '-' where there is no BRDF",
+            [](std::size_t, std::string& line) {
+                line = "f";
+                one_pair(line, {{0, 0, 1}, {0, 0, 1}});
+            },
+            [&](std::size_t, std::string_view s) {
+                double v = 0;
+                has_f_ = s != "-";
+                return !has_f_ || (take_float(s, v) && blank(s));
+            });
+    }
+
+    using Write = std::function<void(std::size_t, std::string&)>;
+    using Read = std::function<bool(std::size_t, std::string_view)>;
+
+    [[noreturn]] void fault(const Write& write, std::size_t i, const std::string& what, std::string_view expected) const {
+        std::string request;
+        write(i, request);
+        broken_ = fmt::format("request {} ({}): expected {}, {}", requests_ + i + 1, shown(request), expected, what);
+        throw SubjectFault(broken_);
+    }
+
+    std::string how_it_ended() const {
+        int status = 0;
+        for (int i = 0; i < 20; ++i) {
+            if (waitpid(child_, &status, WNOHANG | WNOWAIT) == child_) break;
+            siginfo_t info{};
+            if (waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child_)
+                return info.si_code == CLD_EXITED ? fmt::format("the program ended with exit code {}", info.si_status) : fmt::format("the program was killed by signal {}", info.si_status);
+            usleep(10000);
+        }
+        return "the program closed its output";
+    }
+
+    /// Writes all requests and reads all answers, whichever side is ready.
+    void ask(std::size_t count, std::string_view expected, const Write& write, const Read& read) const {
+        if (!broken_.empty()) throw SubjectFault(broken_);
+        std::string outgoing, line;
+        std::size_t written = 0, sent = 0, answered = 0;
+        Clock::time_point last = Clock::now();
+        while (answered < count) {
+            constexpr std::size_t ahead = 1 << 16;  // bytes of requests kept ready
+            if (outgoing.size() - sent < ahead / 2) {
+                outgoing.erase(0, sent);
+                sent = 0;
+                while (written < count && outgoing.size() < ahead) {
+                    write(written++, line);
+                    outgoing += line;
+                    outgoing += '\n';
+                }
+            }
+            pollfd ends[2] = {{from_, POLLIN, 0}, {to_, static_cast<short>(sent < outgoing.size() ? POLLOUT : 0), 0}};
+            const int ready = poll(ends, sent < outgoing.size() ? 2 : 1, 50);
+            if (ready > 0 && (ends[1].revents & (POLLOUT | POLLERR)) != 0 && sent < outgoing.size()) {
+                const ssize_t n = ::write(to_, outgoing.data() + sent, outgoing.size() - sent);
+                if (n > 0) sent += static_cast<std::size_t>(n);
+                else if (n < 0 && errno == EPIPE && (ends[0].revents & POLLIN) == 0) fault(write, answered, "but it closed its input: " + how_it_ended(), expected);
+            }
+            if (ready > 0 && (ends[0].revents & (POLLIN | POLLHUP)) != 0) {
+                if (!fill()) fault(write, answered, end_of_output(), expected);
+                last = Clock::now();
+                take_lines(count, answered, written, expected, write, read);
+            }
+            const double quiet = std::chrono::duration<double>(Clock::now() - last).count();
+            if (quiet > (greeted_ ? limits_.quiet_seconds : limits_.hello_seconds))
+                fault(write, answered, fmt::format("got nothing for {:.0f} s{}", quiet, pending().empty() ? " (does it flush every answer?)" : "; half a line stands there: " + shown(pending())), expected);
+        }
+        if (!pending().empty() && pending().find('\n') != std::string_view::npos)
+            fault(write, count - 1, "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))), expected);
+        requests_ += count;
+    }
+
+    std::string end_of_output() const {
+        return fmt::format("but {}{}", how_it_ended(), pending().empty() ? "" : " in the middle of a line: " + shown(pending()));
+    }
+    std::string_view pending() const { return std::string_view(incoming_).substr(read_from_); }
+
+    /// False at the end of the program's output.
+    bool fill() const {
+        incoming_.erase(0, read_from_);
+        read_from_ = 0;
+        char buffer[1 << 16];
+        const ssize_t n = ::read(from_, buffer, sizeof buffer);
+        if (n < 0) return errno == EAGAIN || errno == EINTR;
+        incoming_.append(buffer, static_cast<std::size_t>(n));
+        return n > 0;
+    }
+
+    void take_lines(std::size_t count, std::size_t& answered, std::size_t written, std::string_view expected, const Write& write, const Read& read) const {
+        for (;;) {
+            const std::size_t end = incoming_.find('\n', read_from_);
+            if (end == std::string::npos) {
+                if (pending().size() > limits_.longest_line) fault(write, std::min(answered, count - 1), fmt::format("got a line of more than {} bytes: {}", limits_.longest_line, shown(pending())), expected);
+                return;
+            }
+            std::string_view text(incoming_.data() + read_from_, end - read_from_);
+            if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+            if (answered >= written) fault(write, std::min(answered, count - 1), "got an answer to nothing: " + shown(text), expected);
+            if (answered >= count) return;
+            if (!read(answered, text)) fault(write, answered, "got " + shown(text), expected);
+            ++answered;
+            read_from_ = end + 1;
+        }
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const JudgedSampler> start_pipe(const std::string& command, const PipeLimits& limits) { return std::make_shared<PipeSubject>(command, limits); }
+
+}  // namespace crescent
