@@ -81,7 +81,7 @@ svg.strip { vertical-align: middle; } svg .reach { fill: var(--c1); opacity: 0.2
   html { font-size: 10pt; line-height: 1.45; } body { padding: 0; } main, header, footer { max-width: none; } .skip { display: none; }
   figure, .wide, .table { width: auto; margin-left: 0; } .table { overflow: visible; } table { font-size: 7.4pt; } th, td { padding-right: 0.45rem; }
   td.n, td.n .v { white-space: normal; } svg.strip { width: 86px; }
-  h2, h3 { break-after: avoid; } h2 { margin-top: 2.2rem; } figure, tr, .equation, dd { break-inside: avoid; } thead { display: table-header-group; } tr.group { break-after: avoid; }
+  h2, h3 { break-after: avoid; } h2 { margin-top: 2.2rem; } figure, tr, .equation, dd { break-inside: avoid; } thead { display: table-header-group; } tr.group, dt { break-after: avoid; }
   a { color: inherit; } .equation { overflow: visible; } figure.narrow svg { max-width: 130mm; margin: 0 auto; }
 }
 )css";
