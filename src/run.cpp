@@ -19,6 +19,7 @@
 #include "estimator/reference.h"
 #include "experiment/published.h"
 #include "films/exr.h"
+#include "jobs.h"
 #include "meters/evidence_measure.h"
 #include "meters/furnace.h"
 #include "meters/meters.h"
@@ -35,40 +36,12 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// The CPU as an instrument.
-class Cpu : public Instrument {
-public:
-    explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
-    std::string name() const override { return "CPU"; }
-    std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch) override {
-        return estimate_films(scene, job.arm->sampler, job.n, job.seed, isa_, watch);
-    }
-
-private:
-    std::string isa_;
-};
-
-/// Every pass of one seed: each arm at the experiment's own s, then the exponent control where it adds anything.
-std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
-    std::vector<Job> jobs;
-    const double own = experiment.s();
-    for (const ArmPlan& arm : experiment.arms) jobs.push_back({&arm, arm.n, own, seed});
-    if (!experiment.exponent) return jobs;
-    const ExponentControl& control = *experiment.exponent;
-    const auto arm = std::find_if(experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == control.arm; });
-    for (double s : control.s) {
-        const bool there = s == own && std::find(arm->n.begin(), arm->n.end(), control.n) != arm->n.end();
-        if (!there) jobs.push_back({&*arm, {control.n}, s, seed});
-    }
-    return jobs;
-}
-
 /// A run in the making: what is kept from one stage to the next.
 class Run {
 public:
     Run(const Experiment& experiment, const RunOptions& options, Watch& watch)
         : experiment_(experiment), options_(options), watch_(watch), isa_(kernels_for(options.isa).isa),
-          instrument_(options.instrument ? options.instrument : std::make_shared<Cpu>(isa_)),
+          instrument_(options.instrument ? options.instrument : cpu_instrument(isa_)),
           threads_(options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency())),
           limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), published_(published_of(experiment)), scene_(experiment) {}
 
