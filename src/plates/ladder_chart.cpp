@@ -99,7 +99,7 @@ void draw_names(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& l
     for (std::size_t i = 0; i < ladders.size(); ++i) {
         const Ladder& l = *ladders[i];
         Rect line{a.plot.right() + 10, places[i] - h / 2, 178, h};
-        Text how = with(with(with_px(body_text, 17), series[i % series_count]), Vertical::middle);
+        Text how = with(with(with_px(body_text, 17), arm_colour(l.arm, sheet.experiment())), Vertical::middle);
         how.least = 9;
         sheet.canvas.text(line, slope_text(l, sheet.experiment()), how);
         if (!two || l.heavy) continue;
@@ -117,14 +117,14 @@ void draw_ladder_chart(Sheet& sheet, const Rect& slot, const std::string& region
     sheet.canvas.text({slot.x, slot.y, slot.w - 188, 26}, "RMSE<sub>" + escaped(region) + "</sub> against N",
                       with(body_text, Weight::semibold));
     draw_axes(sheet, a, ladders);
-    for (std::size_t i = 0; i < ladders.size(); ++i) {
-        const Ladder& l = *ladders[i];
+    for (const Ladder* l : ladders) {
         std::vector<Canvas::Point> path;
-        for (std::size_t k = 0; k < l.n.size(); ++k) {
-            if (drawable(l.rmse[k])) path.push_back({a.x(double(l.n[k])), a.y(l.rmse[k])});
+        for (std::size_t k = 0; k < l->n.size(); ++k) {
+            if (drawable(l->rmse[k])) path.push_back({a.x(double(l->n[k])), a.y(l->rmse[k])});
         }
-        sheet.canvas.polyline(path, series[i % series_count], 2.5);
-        for (const Canvas::Point& p : path) sheet.canvas.dot(p.x, p.y, 4, series[i % series_count]);
+        Colour ink = arm_colour(l->arm, sheet.experiment());
+        sheet.canvas.polyline(path, ink, 2.5);
+        for (const Canvas::Point& p : path) sheet.canvas.dot(p.x, p.y, 4, ink);
     }
     draw_names(sheet, a, ladders);
 }

@@ -39,15 +39,12 @@ Direction from_angles(double theta, double phi) {
 // The dome's pixels: what lies on the sphere towards the viewer and above the surface.
 Block dome_block(const Density& p, double peak, int r) {
     Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
-    Srgb8 back{};
-    auto byte = [](double v) { return static_cast<unsigned char>(std::lround(255 * v)); };
-    back = {byte(ground.r), byte(ground.g), byte(ground.b)};
     for (int j = 0; j < block.height; ++j) {
         for (int i = 0; i < block.width; ++i) {
             double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
             double w = w2 > 0 ? std::sqrt(w2) : 0;
             Direction d{u, v * up - w * away, v * away + w * up};
-            block.set(i, j, w2 > 0 && d.z >= 0 ? turbo(p.at(d) / peak) : back);
+            block.set(i, j, w2 > 0 && d.z >= 0 ? turbo(p.at(d) / peak) : ground_bytes);
         }
     }
     return block;
@@ -170,7 +167,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
     for (std::size_t k = 0; k < parts.size(); ++k) {
         bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
         if (k != i && (narrow || !lower)) continue;
-        plot.curves.push_back({k == i, series[k % series_count], arm_name(parts[k].key.arm, e),
+        plot.curves.push_back({k == i, arm_colour(parts[k].key.arm, e), arm_name(parts[k].key.arm, e),
                                [&p = parts[k].p](double a) { return p.in_plane(a); }});
     }
     draw_polar(sheet.canvas, plot);

@@ -63,7 +63,12 @@ void finish(Sheet& sheet) {
         sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, say, how);
         foot.w -= w + gap;
     }
-    sheet.canvas.text(foot, joined(sheet.notes, "  ·  "), small_text);
+    std::string notes = joined(sheet.notes, "  ·  ");
+    if (sheet.canvas.measure(notes, small_text).w <= foot.w) {
+        sheet.canvas.text(foot, notes, small_text);
+    } else {
+        sheet.canvas.text({foot.x, foot.y - 9, foot.w, foot.h + 14}, notes, with_lines(with_px(small_text, 13), 2));
+    }
 }
 
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot) {
@@ -86,6 +91,11 @@ Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& s
     sheet.not_finite += not_finite(v, box);
     Fit f = fit(box.width(), box.height(), slot.w, slot.h);
     return paint_framed(sheet, photograph_block(v, box, f, sheet.experiment().exposure), slot);
+}
+
+Colour arm_colour(const std::string& arm, const Experiment& e) {
+    auto at = std::find_if(e.arms.begin(), e.arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
+    return series[std::size_t(at - e.arms.begin()) % series_count];
 }
 
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box) {

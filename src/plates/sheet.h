@@ -43,6 +43,9 @@ Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& say);
 /// Paints a block centred across the slot at its top, with a hairline around it.
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
 
+/// The same colour for an arm on every plate.
+Colour arm_colour(const std::string& arm, const Experiment& e);
+
 /// Where image box `box` lies in the picture of `shown`.
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
 

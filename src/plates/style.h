@@ -8,7 +8,8 @@ namespace crescent::plates {
 inline constexpr int sheet_width = 1280, sheet_height = 720;
 
 // A neutral dark ground, so that photographs keep their tones; text at 17:1 and 8:1 contrast.
-inline constexpr Colour ground{0.078, 0.082, 0.090};
+inline constexpr Srgb8 ground_bytes{20, 21, 23};
+inline constexpr Colour ground{ground_bytes[0] / 255.0, ground_bytes[1] / 255.0, ground_bytes[2] / 255.0};
 inline constexpr Colour panel{0.118, 0.125, 0.137};
 inline constexpr Colour rule{0.235, 0.247, 0.267};
 inline constexpr Colour bright{0.953, 0.953, 0.941};
