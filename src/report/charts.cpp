@@ -68,8 +68,9 @@ Axis log_axis(std::string label, const std::vector<double>& values) {
     axis.low = *std::min_element(positive.begin(), positive.end()) / 1.25;
     axis.high = *std::max_element(positive.begin(), positive.end()) * 1.25;
     const double decades = std::log10(axis.high / axis.low);
-    const std::vector<double> parts = decades > 4 ? std::vector<double>{1} : decades > 1.5 ? std::vector<double>{1, 3}
-                                                                            : std::vector<double>{1, 2, 3, 5};
+    const std::vector<double> parts = decades > 4     ? std::vector<double>{1}
+                                      : decades > 1.5 ? std::vector<double>{1, 3}
+                                                      : std::vector<double>{1, 2, 3, 5};
     for (int power = static_cast<int>(std::floor(std::log10(axis.low))); std::pow(10.0, power) <= axis.high; ++power)
         for (const double part : parts) {
             const double tick = part * std::pow(10.0, power);
@@ -158,30 +159,35 @@ std::string Chart::axes() const {
     const double bottom = height_ - bottom_margin, right = width_ - right_margin;
     std::string out;
     for (const double t : x_.ticks)
-        out += fmt::format("<path class=\"grid\" d=\"M{0:.1f} {1:.1f} V{2:.1f}\" /><text class=\"tick\" x=\"{0:.1f}\" "
-                           "y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n",
-                           px(t), bottom, top_margin, bottom + 16, tick_text(t, x_.log));
+        out += fmt::format(
+            "<path class=\"grid\" d=\"M{0:.1f} {1:.1f} V{2:.1f}\" /><text class=\"tick\" x=\"{0:.1f}\" "
+            "y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n",
+            px(t), bottom, top_margin, bottom + 16, tick_text(t, x_.log));
     for (const double t : y_.ticks)
-        out += fmt::format("<path class=\"grid\" d=\"M{0:.1f} {1:.1f} H{2:.1f}\" /><text class=\"tick\" x=\"{3:.1f}\" "
-                           "y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
-                           left_margin, py(t), right, left_margin - 7, py(t) + 4, tick_text(t, y_.log));
-    out += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f} V{:.1f} H{:.1f}\" />\n", left_margin, top_margin, bottom, right);
+        out += fmt::format(
+            "<path class=\"grid\" d=\"M{0:.1f} {1:.1f} H{2:.1f}\" /><text class=\"tick\" x=\"{3:.1f}\" "
+            "y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
+            left_margin, py(t), right, left_margin - 7, py(t) + 4, tick_text(t, y_.log));
+    out +=
+        fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f} V{:.1f} H{:.1f}\" />\n", left_margin, top_margin, bottom, right);
     out += fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                        (left_margin + right) / 2, height_ - 8, escape(x_.label));
     const double middle = (top_margin + bottom) / 2;
-    return out + fmt::format("<text class=\"label\" transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                             middle, escape(y_.label));
+    return out + fmt::format(
+                     "<text class=\"label\" transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                     middle, escape(y_.label));
 }
 
 std::string Chart::framed() const {  // an inner svg hides what leaves it
     const double w = width_ - left_margin - right_margin, h = height_ - top_margin - bottom_margin;
-    return fmt::format("<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left_margin, top_margin, w, h,
-                       inside_);
+    return fmt::format("<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n",
+                       left_margin, top_margin, w, h, inside_);
 }
 
 std::string Chart::str() const {
-    return fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n",
-                       width_, height_, escape(title_), escape(title_), axes(), framed() + body_ + names());
+    return fmt::format(
+        "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n", width_,
+        height_, escape(title_), escape(title_), axes(), framed() + body_ + names());
 }
 
 std::string strip_svg(const Strip& s) {
@@ -198,13 +204,15 @@ std::string strip_svg(const Strip& s) {
         marks += fmt::format("<rect class=\"reach\" x=\"{:.1f}\" y=\"4.5\" width=\"{:.1f}\" height=\"9\" />", at(s.q05),
                              std::max(1.0, at(s.q95) - at(s.q05)));
     marks += fmt::format("<path class=\"median\" d=\"M{:.1f} 2 V16\" />", at(s.median));
-    if (s.has_published) marks += fmt::format("<path class=\"diamond pub\" d=\"M{:.1f} 4 l5 5 l-5 5 l-5 -5 z\" />", at(s.published));
+    if (s.has_published)
+        marks += fmt::format("<path class=\"diamond pub\" d=\"M{:.1f} 4 l5 5 l-5 5 l-5 -5 z\" />", at(s.published));
     marks += fmt::format("<circle class=\"dot meas\" cx=\"{:.1f}\" cy=\"9\" r=\"3\" />", at(s.measured));
     std::string words = fmt::format("median {}, measured {}", figures(s.median), figures(s.measured));
     if (s.bar) words += fmt::format(", 5 to 95 % from {} to {}", figures(s.q05), figures(s.q95));
     if (s.has_published) words += fmt::format(", published {}", figures(s.published));
-    return fmt::format("<svg class=\"strip\" viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>", w,
-                       h, w, h, words, marks);
+    return fmt::format(
+        "<svg class=\"strip\" viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>", w, h,
+        w, h, words, marks);
 }
 
 }  // namespace crescent

@@ -16,7 +16,7 @@ struct Point {
 struct Axis {
     double low = 0, high = 1;  // data at the two ends
     bool log = false;
-    std::string label;         // MathML does not go into SVG: plain text
+    std::string label;  // MathML does not go into SVG: plain text
     std::vector<double> ticks;
 
     /// Where x lies on the axis: 0 at low, 1 at high.
@@ -68,7 +68,7 @@ private:
 /// A strip: 5-95 % as a bar, the median as a tick, the measured value as a dot, the published one as a diamond.
 struct Strip {
     double q05 = 0, median = 0, q95 = 0, measured = 0;
-    bool bar = true;          // false: no interval (heavy tail)
+    bool bar = true;  // false: no interval (heavy tail)
     bool has_published = false;
     double published = 0;
 };

@@ -21,12 +21,12 @@ struct Series {
 std::vector<Series> series_of(const Evidence& evidence) {
     std::vector<Series> all;
     for (const FurnaceQuantiles& q : evidence.furnace) {
-        auto found = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
+        auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
         if (found == all.end()) found = all.insert(all.end(), {q.arithmetic, q.u_bits, {}});
         found->rungs.push_back(&q);
     }
-    for (Series& s : all)
-        std::sort(s.rungs.begin(), s.rungs.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
+    for (Series& s : all) std::sort(s.rungs.begin(), s.rungs.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
     return all;
 }
 
@@ -43,7 +43,7 @@ std::optional<double> cap_of(const Evidence& evidence, int bits) {
     return {};
 }
 
-std::vector<double> column(const Series& s, double FurnaceQuantiles::*field) {
+std::vector<double> column(const Series& s, double FurnaceQuantiles::* field) {
     std::vector<double> out;
     for (const FurnaceQuantiles* q : s.rungs) out.push_back(q->*field);
     return out;
@@ -51,7 +51,8 @@ std::vector<double> column(const Series& s, double FurnaceQuantiles::*field) {
 
 Axis y_axis(const Evidence& evidence) {
     std::vector<double> values{evidence.expected};
-    for (const FurnaceQuantiles& q : evidence.furnace) values.insert(values.end(), {q.q05, q.q25, q.median, q.q75, std::min(q.q95, 1.6 * evidence.expected)});
+    for (const FurnaceQuantiles& q : evidence.furnace)
+        values.insert(values.end(), {q.q05, q.q25, q.median, q.q75, std::min(q.q95, 1.6 * evidence.expected)});
     return linear_axis("furnace reads, Y", values);
 }
 
@@ -84,7 +85,9 @@ const FurnaceQuantiles* nearest_rung(const Series& s, double n) {
     return *std::min_element(s.rungs.begin(), s.rungs.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
 }
 
-std::string share_text(const FalseRejection& r) { return percent(r.runs > 0 ? static_cast<double>(r.rejected) / r.runs : 0, 3); }
+std::string share_text(const FalseRejection& r) {
+    return percent(r.runs > 0 ? static_cast<double>(r.rejected) / r.runs : 0, 3);
+}
 
 }  // namespace
 
@@ -102,7 +105,8 @@ std::string furnace_table(const Evidence& evidence) {
         head.push_back({escape(s.name()), true});
         for (const FurnaceQuantiles* q : s.rungs) rungs.insert(q->n);
     }
-    html::Table table(fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)), head);
+    html::Table table(fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)),
+                      head);
     for (const std::uint64_t n : rungs) {
         std::vector<html::Cell> row{{std::to_string(n), true, true}};
         for (const Series& s : all) {
@@ -117,16 +121,22 @@ std::string furnace_table(const Evidence& evidence) {
 std::string furnace_sentence(const Page& page) {
     const Evidence& evidence = page.in.evidence;
     const auto all = series_of(evidence);
-    const auto coarse = std::min_element(all.begin(), all.end(), [](const Series& a, const Series& b) { return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits); });
-    const auto fine = std::max_element(all.begin(), all.end(), [](const Series& a, const Series& b) { return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits); });
+    const auto coarse = std::min_element(all.begin(), all.end(), [](const Series& a, const Series& b) {
+        return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits);
+    });
+    const auto fine = std::max_element(all.begin(), all.end(), [](const Series& a, const Series& b) {
+        return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits);
+    });
     if (coarse == fine || evidence.expected <= 0) return {};
     const FurnaceMeter* run = combined_furnace(page);
     const double n = run ? static_cast<double>(run->n) : static_cast<double>(fine->rungs.front()->n);
     const FurnaceQuantiles *low = nearest_rung(*coarse, n), *high = nearest_rung(*fine, n);
     const double short_low = 1 - low->median / evidence.expected, short_high = 1 - high->median / evidence.expected;
-    std::string out = fmt::format("At <i>N</i> = {} half of all furnaces read below {} in {} and below {} in {}, where {} is due: {} and {} "
-                                  "short.", low->n, html::value(figures(low->median)), escape(coarse->name()), html::value(figures(high->median)),
-                                  escape(fine->name()), html::value(figures(evidence.expected)), percent(short_low, 2), percent(short_high, 2));
+    std::string out = fmt::format(
+        "At <i>N</i> = {} half of all furnaces read below {} in {} and below {} in {}, where {} is due: {} and {} "
+        "short.",
+        low->n, html::value(figures(low->median)), escape(coarse->name()), html::value(figures(high->median)),
+        escape(fine->name()), html::value(figures(evidence.expected)), percent(short_low, 2), percent(short_high, 2));
     out += short_high > 0.5 * short_low
                ? " Nearly the same undershoot stands in the finer arithmetic, so precision is not what is missing."
                : " The finer arithmetic recovers most of it, so in this run precision does explain the undershoot.";
@@ -147,9 +157,11 @@ std::string lost_chart(const Evidence& evidence) {
         theory.push_back({angle, (1 - std::cos(angle * std::numbers::pi / 180)) / 2});
         shares.push_back(theory.back().y);
     }
-    Chart chart(600, 320, x, linear_axis("share of the fill that is lost", shares), "Lost share of Lambert under the fill against the tilt of R");
+    Chart chart(600, 320, x, linear_axis("share of the fill that is lost", shares),
+                "Lost share of Lambert under the fill against the tilt of R");
     chart.line(theory, "c0");
-    for (const LostSupport& l : evidence.lost) chart.bar(l.theta_R_deg, std::max(0.0, l.measured - 2 * l.se), l.measured + 2 * l.se, "c1");
+    for (const LostSupport& l : evidence.lost)
+        chart.bar(l.theta_R_deg, std::max(0.0, l.measured - 2 * l.se), l.measured + 2 * l.se, "c1");
     chart.dots(measured, "c1");
     return chart.str();
 }
@@ -164,10 +176,13 @@ std::string lost_sentence(const Evidence& evidence) {
     const std::size_t stride = std::max<std::size_t>(1, (tilted.size() + 4) / 5);  // at most five of them in a sentence
     std::string values;
     for (std::size_t i = stride - 1; i < tilted.size(); i += stride)
-        values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(tilted[i]->measured)), shortest(tilted[i]->theta_R_deg));
-    return html::p(fmt::format("Measured by drawing from the cosine and asking the Phong density whether it could have drawn the same: {}. "
-                               "The largest departure from theory is {:.1f} standard errors{}.", values.empty() ? "nothing" : values, worst,
-                               worst <= 4 ? "" : ", more than chance allows: theory and measurement disagree here"));
+        values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(tilted[i]->measured)),
+                              shortest(tilted[i]->theta_R_deg));
+    return html::p(fmt::format(
+        "Measured by drawing from the cosine and asking the Phong density whether it could have drawn the same: {}. "
+        "The largest departure from theory is {:.1f} standard errors{}.",
+        values.empty() ? "nothing" : values, worst,
+        worst <= 4 ? "" : ", more than chance allows: theory and measurement disagree here"));
 }
 
 std::string rejection_chart(const Evidence& evidence) {
@@ -180,7 +195,8 @@ std::string rejection_chart(const Evidence& evidence) {
     }
     Axis x = log_axis("exponent s", exponents);
     x.ticks = exponents;
-    Chart chart(600, 320, x, linear_axis("share of runs rejected", rates), "Share of correct runs that a t-test rejects, against s");
+    Chart chart(600, 320, x, linear_axis("share of runs rejected", rates),
+                "Share of correct runs that a t-test rejects, against s");
     chart.rule(evidence.alpha, "dashed strong", fmt::format("what the test promises: {}", percent(evidence.alpha)));
     for (const FalseRejection& r : evidence.rejections) chart.bar(r.s, r.low, r.high, "c1");
     chart.dots(points, "c1");
@@ -188,11 +204,16 @@ std::string rejection_chart(const Evidence& evidence) {
 }
 
 std::string rejection_table(const Evidence& evidence) {
-    html::Table table("Rejections of the correct arm, with Clopper–Pearson 95 % intervals",
-                      {{"<i>s</i>", true}, {"<i>k</i>", true}, {"Runs", true}, {"Rejected", true}, {"Rate", true}, {"95 % interval", true}});
+    html::Table table(
+        "Rejections of the correct arm, with Clopper–Pearson 95 % intervals",
+        {{"<i>s</i>", true}, {"<i>k</i>", true}, {"Runs", true}, {"Rejected", true}, {"Rate", true}, {"95 % interval", true}});
     for (const FalseRejection& r : evidence.rejections)
-        table.row({{shortest(r.s), true, true}, html::figure(fmt::format("{:.3f}", r.k)), html::figure(std::to_string(r.runs)),
-                   html::figure(std::to_string(r.rejected)), html::figure(share_text(r)), html::figure(percent(r.low) + " … " + percent(r.high))});
+        table.row({{shortest(r.s), true, true},
+                   html::figure(fmt::format("{:.3f}", r.k)),
+                   html::figure(std::to_string(r.runs)),
+                   html::figure(std::to_string(r.rejected)),
+                   html::figure(share_text(r)),
+                   html::figure(percent(r.low) + " … " + percent(r.high))});
     return table.str();
 }
 
@@ -207,8 +228,13 @@ std::string rejection_sentence(const Evidence& evidence) {
     }
     const auto exponents = [](int count) { return plural(static_cast<std::uint64_t>(count), "exponent"); };
     std::string out;
-    if (heavy > 0) out += fmt::format("Of {} with <i>k</i> above 1/2, the arm is rejected more often than promised, interval included, at {}.", exponents(heavy), heavy_above);
-    if (worst) out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s), html::value(share_text(*worst)));
+    if (heavy > 0)
+        out += fmt::format(
+            "Of {} with <i>k</i> above 1/2, the arm is rejected more often than promised, interval included, at {}.",
+            exponents(heavy), heavy_above);
+    if (worst)
+        out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s),
+                           html::value(share_text(*worst)));
     if (light > 0) out += fmt::format(" Of {} with <i>k</i> up to 1/2, at {}.", exponents(light), light_above);
     return html::p(out);
 }

@@ -30,8 +30,7 @@ std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const 
     };
     std::uint64_t best = 0;
     for (const std::uint64_t n : arms.front()->n)
-        if (std::all_of(arms.begin(), arms.end(), [&](const ArmPlan* arm) { return has(arm, n); }))
-            best = std::max(best, n);
+        if (std::all_of(arms.begin(), arms.end(), [&](const ArmPlan* arm) { return has(arm, n); })) best = std::max(best, n);
     return best;
 }
 

@@ -15,7 +15,7 @@ namespace crescent {
 struct Comparison {
     std::string larger, smaller;  // names; as given where the values are equal
     double high = 0, low = 0;
-    double ratio = 1;             // high / low, >= 1; infinite where low is 0
+    double ratio = 1;  // high / low, >= 1; infinite where low is 0
     bool equal = false;
 };
 Comparison compare(const std::string& a, double value_a, const std::string& b, double value_b);
@@ -46,8 +46,7 @@ public:
     std::optional<double> rmse(const std::string& arm, std::uint64_t n, const std::string& region) const;
     /// Tail of the region that a meter such as "rmse.H" names; empty for whole-frame meters.
     std::optional<Tail> tail(const BandMeter& band) const;
-    SeedCount seeds_above(const std::string& arm_a, const std::string& arm_b, std::uint64_t n,
-                          const std::string& region) const;
+    SeedCount seeds_above(const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const;
 
     /// Region in which rmse(a)/rmse(b) at n is largest, "" where there is none.
     std::string region_where_worst(const std::string& a, const std::string& b, std::uint64_t n) const;

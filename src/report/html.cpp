@@ -59,7 +59,8 @@ void Table::row(const std::vector<Cell>& cells) {
 
 void Table::group(std::string_view html) {
     if (grouped_ || rows_ > 0) body_ += "</tbody>\n";
-    body_ += fmt::format("<tbody>\n<tr class=\"group\"><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n", head_.size(), html);
+    body_ +=
+        fmt::format("<tbody>\n<tr class=\"group\"><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n", head_.size(), html);
     grouped_ = true;
 }
 
@@ -67,9 +68,10 @@ std::string Table::str() const {
     std::string head;
     for (const Cell& c : head_) head += cell(c, "col");
     const std::string end = grouped_ || rows_ > 0 ? "</tbody>" : "";
-    return fmt::format("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"table, may scroll sideways\"><table>\n"
-                       "<caption>{}</caption>\n<thead><tr>{}</tr></thead>\n{}{}</table></div>\n",
-                       caption_, head, body_, end);
+    return fmt::format(
+        "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"table, may scroll sideways\"><table>\n"
+        "<caption>{}</caption>\n<thead><tr>{}</tr></thead>\n{}{}</table></div>\n",
+        caption_, head, body_, end);
 }
 
 }  // namespace crescent::html

@@ -38,7 +38,7 @@ struct Cell {
     std::string html;
     bool number = false;
     bool head = false;
-    int rows = 1;  // rowspan
+    int rows = 1;    // rowspan
     int across = 1;  // colspan
 };
 Cell words(std::string html);

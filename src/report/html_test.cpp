@@ -15,7 +15,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-bool has_section(const std::string& html, const std::string& id) { return html.find("<section id=\"" + id + "\"") != std::string::npos; }
+bool has_section(const std::string& html, const std::string& id) {
+    return html.find("<section id=\"" + id + "\"") != std::string::npos;
+}
 
 TEST(ReportHtml, IsWellFormed) { EXPECT_EQ(xml_complaint(Sample().html()), ""); }
 
@@ -27,7 +29,8 @@ TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     s.metrics.assertions[0].name = s.metrics.assertions[0].text = s.provenance.command = s.provenance.experiment_file = bad;
     s.metrics.furnaces[0].name = s.metrics.references[0].region = s.evidence.furnace[0].arithmetic = bad;
     for (RunMeter& run : s.metrics.runs) run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
-    for (BandMeter& b : s.metrics.bands) b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
+    for (BandMeter& b : s.metrics.bands)
+        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
     EXPECT_EQ(xml_complaint(s.html()), "");
     EXPECT_THAT(s.html(), Not(HasSubstr("<script")));
@@ -42,8 +45,9 @@ TEST(ReportHtml, LoadsNothingFromElsewhere) {
 
 TEST(ReportHtml, SectionsStandWhereTheirDataIs) {
     const std::string html = Sample().html();
-    for (const char* id : {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b", "ladders", "exponent", "furnaces",
-                           "published", "reference", "wrong", "disagreements", "what-ifs", "limits", "assertions", "provenance"})
+    for (const char* id :
+         {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b", "ladders", "exponent", "furnaces",
+          "published", "reference", "wrong", "disagreements", "what-ifs", "limits", "assertions", "provenance"})
         EXPECT_TRUE(has_section(html, id)) << id;
 }
 
@@ -61,7 +65,8 @@ TEST(ReportHtml, SectionsVanishWithoutTheirData) {
     for (RunMeter& r : s.metrics.runs) r.regions.clear();
     const std::string html = s.html();
     EXPECT_EQ(xml_complaint(html), "");
-    for (const char* id : {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong", "disagreements", "assertions"}) {
+    for (const char* id :
+         {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong", "disagreements", "assertions"}) {
         EXPECT_FALSE(has_section(html, id)) << id;
         EXPECT_THAT(html, Not(HasSubstr("href=\"#" + std::string(id) + "\""))) << id;
     }
@@ -147,8 +152,9 @@ TEST(ReportHtml, SaysOfEveryFigureWhichCommandMakesIt) {
 }
 
 TEST(Charts, AxesHoldTheirValuesAndTicksLieOnThem) {
-    for (const Axis& axis : {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}), log_axis("x", {4, 256}),
-                             log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
+    for (const Axis& axis :
+         {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}), log_axis("x", {4, 256}),
+          log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
         ASSERT_LT(axis.low, axis.high);
         ASSERT_FALSE(axis.ticks.empty());
         for (const double tick : axis.ticks) {

@@ -10,9 +10,7 @@ M omega_dot_R() { return paren({omega(), mo("⋅"), mi("R")}); }
 M plus_s() { return row({mi("s"), mo("+"), mn("1")}); }
 M two_pi() { return row({mn("2"), mi("π")}); }
 M Y(const M& low) { return sub(mi("Y"), low); }
-M f_r(std::string_view index) {
-    return row({sub(mi("f"), mi("r")), paren({omega(index), mo(","), omega("o")})});
-}
+M f_r(std::string_view index) { return row({sub(mi("f"), mi("r")), paren({omega(index), mo(","), omega("o")})}); }
 M L_i(std::string_view index) { return row({sub(mi("L"), mi("i")), paren({omega(index)})}); }
 M four_o_dot_m() { return row({mn("4"), paren({omega("o"), mo("⋅"), mi("m")})}); }
 M hemisphere() { return sup(upright("Ω"), mo("+")); }
@@ -36,20 +34,18 @@ M rmse(std::string_view region) {
 }
 
 M integral() {
-    return row({sub(mi("L"), mi("o")), paren({omega("o")}), mo("="), sub(mo("∫"), hemisphere()), f_r(""), space(),
-                L_i(""), space(), n_dot_omega(), space(), upright("d"), omega()});
+    return row({sub(mi("L"), mi("o")), paren({omega("o")}), mo("="), sub(mo("∫"), hemisphere()), f_r(""), space(), L_i(""),
+                space(), n_dot_omega(), space(), upright("d"), omega()});
 }
 
 M estimator() {
-    return row({sub(hat(mi("L")), mi("o")), mo("="), frac(mn("1"), mi("N")),
-                under(mo("∑"), index_from_one(), mi("N")),
+    return row({sub(hat(mi("L")), mi("o")), mo("="), frac(mn("1"), mi("N")), under(mo("∑"), index_from_one(), mi("N")),
                 frac(row({f_r("k"), space(), L_i("k"), space(), n_dot_omega("k")}), row({mi("p"), paren({omega("k")})}))});
 }
 
 M brdf_phong() {
-    return row({sub(mi("f"), mi("r")), mo("="), frac(sub(mi("ρ"), mi("d")), mi("π")), mo("+"), sub(mi("ρ"), mi("s")),
-                space(), frac(row({mi("s"), mo("+"), mn("2")}), two_pi()), space(),
-                subsup(omega_dot_R(), mo("+"), mi("s"))});
+    return row({sub(mi("f"), mi("r")), mo("="), frac(sub(mi("ρ"), mi("d")), mi("π")), mo("+"), sub(mi("ρ"), mi("s")), space(),
+                frac(row({mi("s"), mo("+"), mn("2")}), two_pi()), space(), subsup(omega_dot_R(), mo("+"), mi("s"))});
 }
 
 M mirror() {
@@ -59,20 +55,17 @@ M mirror() {
 M rmse_region() {
     const M square = sup(paren({Y(mi("N")), paren({mi("x")}), mo("−"), Y(upright("ref")), paren({mi("x")})}), mn("2"));
     return row({rmse("A"), mo("="),
-                root(row({frac(mn("1"), abs({mi("A")})),
-                          "<munder>" + mo("∑") + row({mi("x"), mo("∈"), mi("A")}) + "</munder>", square}))});
+                root(row({frac(mn("1"), abs({mi("A")})), "<munder>" + mo("∑") + row({mi("x"), mo("∈"), mi("A")}) + "</munder>",
+                          square}))});
 }
 
 M variance() {
-    return row({upright("var"), paren({mi("x")}), mo("="),
-                frac(mn("1"), row({mi("N"), paren({mi("N"), mo("−"), mn("1")})})),
+    return row({upright("var"), paren({mi("x")}), mo("="), frac(mn("1"), row({mi("N"), paren({mi("N"), mo("−"), mn("1")})})),
                 under(mo("∑"), index_from_one(), mi("N")),
                 sup(paren({sub(mi("X"), mi("k")), mo("−"), bar(mi("X"))}), mn("2"))});
 }
 
-M firefly() {
-    return row({abs({Y(mi("N")), mo("−"), Y(upright("ref"))}), mo(">"), mi("k"), space(), Y(upright("ref"))});
-}
+M firefly() { return row({abs({Y(mi("N")), mo("−"), Y(upright("ref"))}), mo(">"), mi("k"), space(), Y(upright("ref"))}); }
 
 M density_uniform() { return frac(mn("1"), two_pi()); }
 M density_cosine() { return frac(n_dot_omega(), mi("π")); }
@@ -81,45 +74,51 @@ M density_phong() { return row({frac(plus_s(), two_pi()), space(), subsup(omega_
 M inverse_uniform() { return row({mi("cos"), mi("θ"), mo("="), sub(mi("u"), mn("1"))}); }
 M inverse_cosine() { return row({mi("cos"), mi("θ"), mo("="), root(sub(mi("u"), mn("1")))}); }
 M inverse_phong() {
-    return row({mi("cos"), mi("θ"), mo("="),
-                subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
+    return row({mi("cos"), mi("θ"), mo("="), subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
 }
 
 M density_mixture() {
-    return row({mi("q"), sub(mi("p"), upright("lobe")), mo("+"), paren({mn("1"), mo("−"), mi("q")}), sub(mi("p"), upright("cos"))});
+    return row(
+        {mi("q"), sub(mi("p"), upright("lobe")), mo("+"), paren({mn("1"), mo("−"), mi("q")}), sub(mi("p"), upright("cos"))});
 }
 M density_mis() { return row({sub(mi("p"), mn("1")), mo(","), sub(mi("p"), mn("2"))}); }
 M density_light_area() {
-    return frac(sup(abs({mi("y"), mo("−"), mi("x")}), mn("2")), row({mi("π"), sup(mi("r"), mn("2")), space(), mi("cos"), sub(mi("θ"), mi("y"))}));
+    return frac(sup(abs({mi("y"), mo("−"), mi("x")}), mn("2")),
+                row({mi("π"), sup(mi("r"), mn("2")), space(), mi("cos"), sub(mi("θ"), mi("y"))}));
 }
 M density_light_cap() { return frac(mn("1"), row({two_pi(), paren({mn("1"), mo("−"), mi("cos"), mi("b")})})); }
-M density_blinn() { return row({frac(plus_s(), two_pi()), space(), frac(sup(paren({mi("n"), mo("⋅"), mi("m")}), mi("s")), four_o_dot_m())}); }
-M density_ggx_d() { return frac(row({mi("D"), paren({mi("m")}), space(), paren({mi("n"), mo("⋅"), mi("m")})}), four_o_dot_m()); }
-M density_ggx_vndf() {
-    return frac(row({sub(mi("G"), mn("1")), paren({omega("o")}), space(), mi("D"), paren({mi("m")})}), row({mn("4"), paren({mi("n"), mo("⋅"), omega("o")})}));
+M density_blinn() {
+    return row({frac(plus_s(), two_pi()), space(), frac(sup(paren({mi("n"), mo("⋅"), mi("m")}), mi("s")), four_o_dot_m())});
 }
-M inverse_cap() { return row({mi("cos"), mi("θ"), mo("="), mn("1"), mo("−"), sub(mi("u"), mn("1")), paren({mn("1"), mo("−"), mi("cos"), mi("b")})}); }
+M density_ggx_d() {
+    return frac(row({mi("D"), paren({mi("m")}), space(), paren({mi("n"), mo("⋅"), mi("m")})}), four_o_dot_m());
+}
+M density_ggx_vndf() {
+    return frac(row({sub(mi("G"), mn("1")), paren({omega("o")}), space(), mi("D"), paren({mi("m")})}),
+                row({mn("4"), paren({mi("n"), mo("⋅"), omega("o")})}));
+}
+M inverse_cap() {
+    return row(
+        {mi("cos"), mi("θ"), mo("="), mn("1"), mo("−"), sub(mi("u"), mn("1")), paren({mn("1"), mo("−"), mi("cos"), mi("b")})});
+}
 M inverse_blinn() {
-    return row({mi("cos"), sub(mi("θ"), mi("m")), mo("="), subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
+    return row(
+        {mi("cos"), sub(mi("θ"), mi("m")), mo("="), subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
 }
 M inverse_ggx() {
-    return row({sup(mi("tan"), mn("2")), sub(mi("θ"), mi("m")), mo("="), frac(row({sup(mi("α"), mn("2")), sub(mi("u"), mn("1"))}), row({mn("1"), mo("−"), sub(mi("u"), mn("1"))}))});
+    return row({sup(mi("tan"), mn("2")), sub(mi("θ"), mi("m")), mo("="),
+                frac(row({sup(mi("α"), mn("2")), sub(mi("u"), mn("1"))}), row({mn("1"), mo("−"), sub(mi("u"), mn("1"))}))});
 }
 
 M pareto_index() { return row({mi("k"), mo("="), frac(row({mi("s"), mo("−"), mn("1")}), plus_s())}); }
 
-M lost_share() {
-    return frac(row({mn("1"), mo("−"), mi("cos"), sub(mi("θ"), mi("R"))}), mn("2"));
-}
+M lost_share() { return frac(row({mn("1"), mo("−"), mi("cos"), sub(mi("θ"), mi("R"))}), mn("2")); }
 
 M capped_mean() {
     return row({sub(mi("ρ"), mi("s")), mo("+"), sub(mi("ρ"), mi("d")),
-                paren({mn("1"), mo("−"),
-                       sup(mn("2"), row({mo("−"), mi("b"), paren({mn("1"), mo("−"), mi("k")})}))})});
+                paren({mn("1"), mo("−"), sup(mn("2"), row({mo("−"), mi("b"), paren({mn("1"), mo("−"), mi("k")})}))})});
 }
 
-M power_law() {
-    return row({rmse(), mo("∝"), sup(mi("N"), mi("m"))});
-}
+M power_law() { return row({rmse(), mo("∝"), sup(mi("N"), mi("m"))}); }
 
 }  // namespace crescent::mathml

@@ -12,7 +12,8 @@ using M = std::string;
 
 inline M wrap(std::string_view tag, const M& inside) {
     M out;
-    for (const std::string_view part : {std::string_view("<"), tag, std::string_view(">"), std::string_view(inside), std::string_view("</"), tag, std::string_view(">")})
+    for (const std::string_view part : {std::string_view("<"), tag, std::string_view(">"), std::string_view(inside),
+                                        std::string_view("</"), tag, std::string_view(">")})
         out += part;
     return out;
 }
@@ -47,13 +48,13 @@ M display(const M& inside, std::string_view alt);
 // The equations of the report.
 M omega(std::string_view index = "");
 M rmse(std::string_view region = "");
-M integral();      // L_o, over the upper hemisphere
-M estimator();     // its estimate from N samples
-M brdf_phong();    // Lambert + normalised Phong lobe
-M mirror();        // R
-M rmse_region();   // root mean square over a region
-M variance();      // of the mean of N samples
-M firefly();       // |Y - Y_ref| > k Y_ref
+M integral();     // L_o, over the upper hemisphere
+M estimator();    // its estimate from N samples
+M brdf_phong();   // Lambert + normalised Phong lobe
+M mirror();       // R
+M rmse_region();  // root mean square over a region
+M variance();     // of the mean of N samples
+M firefly();      // |Y - Y_ref| > k Y_ref
 M density_uniform();
 M density_cosine();
 M density_phong();

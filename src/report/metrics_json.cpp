@@ -8,9 +8,7 @@ namespace {
 
 Json optional_number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
 
-Json tail_json(const Tail& tail) {
-    return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}};
-}
+Json tail_json(const Tail& tail) { return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}}; }
 
 Json run_json(const RunMeter& run) {
     Json regions = Json::object();
@@ -54,9 +52,15 @@ Json band_json(const BandMeter& b) {
 Json ladder_json(const Ladder& l) {
     Json interval = heavy_tail;
     if (!l.heavy) interval = Json::array({number(l.low), number(l.high)});
-    return {{"arm", l.arm},      {"region", l.region},         {"s", number(l.s)},
-            {"n", l.n},          {"rmse", numbers(l.rmse)},    {"slope", number(l.slope)},
-            {"low", number(l.low)}, {"high", number(l.high)},  {"interval", std::move(interval)}};
+    return {{"arm", l.arm},
+            {"region", l.region},
+            {"s", number(l.s)},
+            {"n", l.n},
+            {"rmse", numbers(l.rmse)},
+            {"slope", number(l.slope)},
+            {"low", number(l.low)},
+            {"high", number(l.high)},
+            {"interval", std::move(interval)}};
 }
 
 Json furnace_json(const FurnaceMeter& f) {
@@ -83,13 +87,13 @@ Json reference_json(const ReferenceMeter& r) {
 }
 
 Json assertion_json(const AssertionResult& a) {
-    return {{"name", a.name}, {"pass", a.pass},  {"measured", number(a.measured)}, {"bound", number(a.bound)},
-            {"op", a.op},     {"text", a.text}};
+    return {{"name", a.name},           {"pass", a.pass}, {"measured", number(a.measured)},
+            {"bound", number(a.bound)}, {"op", a.op},     {"text", a.text}};
 }
 
 Json quantiles_json(const FurnaceQuantiles& q) {
-    return {{"arithmetic", q.arithmetic}, {"u_bits", q.u_bits},         {"n", q.n},
-            {"q05", number(q.q05)},       {"q25", number(q.q25)},       {"median", number(q.median)},
+    return {{"arithmetic", q.arithmetic}, {"u_bits", q.u_bits},   {"n", q.n},
+            {"q05", number(q.q05)},       {"q25", number(q.q25)}, {"median", number(q.median)},
             {"q75", number(q.q75)},       {"q95", number(q.q95)}};
 }
 
@@ -103,11 +107,12 @@ Json lost_json(const LostSupport& l) {
 }
 
 Json rejection_json(const FalseRejection& r) {
-    return {{"s", number(r.s)},   {"k", number(r.k)},     {"n", r.n}, {"runs", r.runs}, {"rejected", r.rejected},
+    return {{"s", number(r.s)},     {"k", number(r.k)},      {"n", r.n}, {"runs", r.runs}, {"rejected", r.rejected},
             {"low", number(r.low)}, {"high", number(r.high)}};
 }
 
-template <class T, class F> Json list(const std::vector<T>& all, F one) {
+template <class T, class F>
+Json list(const std::vector<T>& all, F one) {
     Json out = Json::array();
     for (const T& x : all) out.push_back(one(x));
     return out;
@@ -128,12 +133,9 @@ Json evidence_json(const Evidence& e) {
 }  // namespace
 
 Json provenance_json(const Provenance& p) {
-    return {{"version", p.version},
-            {"commit", p.commit},
-            {"compiler", p.compiler},
-            {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}},
-            {"seeds", p.seeds},
-            {"instrument", p.instrument},
+    return {{"version", p.version},   {"commit", p.commit},
+            {"compiler", p.compiler}, {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}},
+            {"seeds", p.seeds},       {"instrument", p.instrument},
             {"command", p.command}};
 }
 

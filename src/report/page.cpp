@@ -91,9 +91,10 @@ std::string Figures::figure(const std::string& id, const std::string& picture, c
                             const std::string& made) {
     ++count_;
     const char* narrow = picture.starts_with("<svg") ? " class=\"narrow\"" : "";  // one chart alone fits the column
-    return fmt::format("<figure id=\"{}\"{}>\n{}\n<figcaption><b>Figure {}.</b> {}\n<span class=\"made\"><code>{}</code> → "
-                       "<code>{}</code></span></figcaption>\n</figure>\n",
-                       id, narrow, picture, count_, caption, escape(in_.provenance.command), escape(made));
+    return fmt::format(
+        "<figure id=\"{}\"{}>\n{}\n<figcaption><b>Figure {}.</b> {}\n<span class=\"made\"><code>{}</code> → "
+        "<code>{}</code></span></figcaption>\n</figure>\n",
+        id, narrow, picture, count_, caption, escape(in_.provenance.command), escape(made));
 }
 
 std::string Page::colour(const std::string& arm) const {
@@ -130,6 +131,8 @@ std::string interval_html(const std::string& meter, const Band& band) {
     return html::value(figures_of(meter, band.q05) + " … " + figures_of(meter, band.q95));
 }
 
-std::string times(double ratio) { return std::isfinite(ratio) ? fmt::format("{:.{}f}", ratio, ratio < 10 ? 1 : 0) : "infinitely many"; }
+std::string times(double ratio) {
+    return std::isfinite(ratio) ? fmt::format("{:.{}f}", ratio, ratio < 10 ? 1 : 0) : "infinitely many";
+}
 
 }  // namespace crescent

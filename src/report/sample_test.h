@@ -56,7 +56,8 @@ inline void add_run(Sample& s, const std::string& arm, double in_h, double in_s)
     s.metrics.film_hashes[arm + " n=64 s=32"] = "0123456789abcdef";
 }
 
-inline Sample::Sample() {
+inline Experiment sample_experiment() {
+    Experiment experiment;
     experiment.file = "a.toml";
     experiment.title = "A sample";
     experiment.seed = 7;
@@ -78,6 +79,23 @@ inline Sample::Sample() {
     plate.name = "hero";
     plate.caption = "A hero";
     experiment.plates = {plate};
+    return experiment;
+}
+
+inline Evidence sample_evidence() {
+    Evidence e;
+    e.s = 32;
+    e.rho_d = 0.2;
+    e.rho_s = 0.1;
+    e.expected = 0.3;
+    e.furnace = {{"float32", 24, 1024, 0.18, 0.19, 0.2, 0.21, 0.28}, {"float64", 53, 1024, 0.18, 0.19, 0.201, 0.21, 0.28}};
+    e.caps = {{24, 0.23}, {53, 0.28}};
+    e.lost = {{0, 0, 0.001, 0}, {60, 0.2505, 0.001, 0.25}};
+    e.rejections = {{2, 1.0 / 3, 100000, 1000, 11, 0.006, 0.02}, {32, 0.939, 100000, 1000, 780, 0.75, 0.81}};
+    return e;
+}
+
+inline Sample::Sample() : experiment(sample_experiment()), evidence(sample_evidence()) {
     plates["hero"] = {1, 2, 3, 4};
     add_run(*this, "cosine", 6, 0.25);
     add_run(*this, "phong", 2, 1);
@@ -88,11 +106,6 @@ inline Sample::Sample() {
                           {"no bad samples", true, 0, 0, "==", "bad == 0"}};
     metrics.shape_pixels = {{"ball", 500}};
     metrics.geometry_pixels = 500;
-    evidence = {32, 0.2, 0.1, 0.3, 0.01,
-                {{"float32", 24, 1024, 0.18, 0.19, 0.2, 0.21, 0.28}, {"float64", 53, 1024, 0.18, 0.19, 0.201, 0.21, 0.28}},
-                {{24, 0.23}, {53, 0.28}},
-                {{0, 0, 0.001, 0}, {60, 0.2505, 0.001, 0.25}},
-                {{2, 1.0 / 3, 100000, 1000, 11, 0.006, 0.02}, {32, 0.939, 100000, 1000, 780, 0.75, 0.81}}};
     provenance = {"1.2.3", "abc", "GNU 12.2.0", "a.toml", "00ff", "CPU", "crescent run a.toml --seeds 3", {7, 8, 9}};
     timing.estimating_s = 1.5;
     timing.total_s = 2.5;

@@ -33,7 +33,8 @@ private:
         return {};
     }
 
-    std::string keyword(const Json& schema, const std::string& key, const Json& rule, const Json& v, const std::string& at) const {
+    std::string keyword(const Json& schema, const std::string& key, const Json& rule, const Json& v,
+                        const std::string& at) const {
         static const std::set<std::string> words{"$schema", "title", "description", "$defs"};
         if (words.count(key)) return {};
         if (key == "$ref") return check(root_.at(Json::json_pointer(rule.get<std::string>().substr(1))), v, at);

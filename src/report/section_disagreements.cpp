@@ -32,7 +32,8 @@ std::string spread(const std::vector<double>& all) {
     const auto [low, high] = std::minmax_element(all.begin(), all.end());
     if (*low < 0 && *high > 0) return {};
     const double least = std::min(std::fabs(*low), std::fabs(*high)), most = std::max(std::fabs(*low), std::fabs(*high));
-    const std::string range = most - least < 0.005 ? fmt::format("{:.0f}", 100 * most) : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * most);
+    const std::string range =
+        most - least < 0.005 ? fmt::format("{:.0f}", 100 * most) : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * most);
     return range + " % " + (*low < 0 ? "below" : "above");
 }
 
@@ -44,7 +45,8 @@ std::string highlight_remark(const Page& page, const ArmPlan& broad, const std::
         std::vector<double> all;
         for (const ArmPlan* arm : {page.find.arm_with("uniform"), &broad})
             if (arm)
-                if (const auto r = relative(page.find.band(arm->name, page.find.headline_n(), kind + region))) all.push_back(*r);
+                if (const auto r = relative(page.find.band(arm->name, page.find.headline_n(), kind + region)))
+                    all.push_back(*r);
         const std::string range = spread(all);
         if (range.empty()) continue;
         below = below && all.front() < 0;
@@ -57,9 +59,11 @@ std::string highlight_remark(const Page& page, const ArmPlan& broad, const std::
     const double s = *std::max_element(control->s.begin(), control->s.end());
     const auto mean = relative(page.find.band(control->arm, control->n, "y_mean", s));
     if (mean && *mean > 0)
-        out += fmt::format(" Raising them takes a highlight of more pixels, hence a larger {}. That raises {} at <i>s</i> = {} as well, and it "
-                           "stands at {} already. One geometry does not meet both.",
-                           escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
+        out += fmt::format(
+            " Raising them takes a highlight of more pixels, hence a larger {}. That raises {} at <i>s</i> = {} as well, and "
+            "it "
+            "stands at {} already. One geometry does not meet both.",
+            escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
     return out;
 }
 
@@ -78,8 +82,10 @@ std::string exponent_remark(const Page& page, const std::string& meter) {
 /// Largest departure of log RMSE from the -1/2 law, as a fraction.
 double departure(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse) {
     double mean = 0, worst = 0;
-    for (std::size_t i = 0; i < n.size(); ++i) mean += std::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) / static_cast<double>(n.size());
-    for (std::size_t i = 0; i < n.size(); ++i) worst = std::max(worst, std::fabs(std::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) - mean));
+    for (std::size_t i = 0; i < n.size(); ++i)
+        mean += std::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) / static_cast<double>(n.size());
+    for (std::size_t i = 0; i < n.size(); ++i)
+        worst = std::max(worst, std::fabs(std::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) - mean));
     return worst;
 }
 
@@ -98,7 +104,8 @@ std::vector<double> ladder_of(const Page& page, const ArmPlan& arm, const std::s
 std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const std::string& region) {
     std::vector<double> published;
     for (const std::uint64_t n : narrow.n)
-        if (const BandMeter* b = page.find.band(narrow.name, n, "rmse." + region); b && b->published) published.push_back(*b->published);
+        if (const BandMeter* b = page.find.band(narrow.name, n, "rmse." + region); b && b->published)
+            published.push_back(*b->published);
     if (published.size() < 3 || published.size() != narrow.n.size()) return {};
     const double limit = departure(narrow.n, published);
     int close = 0, of = 0;
@@ -109,14 +116,17 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
         if (departure(narrow.n, ladder) <= limit) ++close;
     }
     if (of < 2) return {};
-    return fmt::format("The published ladder of {} in {} strays from the −1/2 law by no more than {}. Of {} seeds here, {} keep as close: "
-                       "the others meet a rare bright sample on some rung.", escape(narrow.name), escape(region), percent(limit, 2), of, close);
+    return fmt::format(
+        "The published ladder of {} in {} strays from the −1/2 law by no more than {}. Of {} seeds here, {} keep as close: "
+        "the others meet a rare bright sample on some rung.",
+        escape(narrow.name), escape(region), percent(limit, 2), of, close);
 }
 
 /// A published rise of RMSE with N, for an arm whose square has no expectation.
 std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::string& region) {
     for (std::size_t i = 1; i < narrow.n.size(); ++i) {
-        const BandMeter *a = page.find.band(narrow.name, narrow.n[i - 1], "rmse." + region), *b = page.find.band(narrow.name, narrow.n[i], "rmse." + region);
+        const BandMeter *a = page.find.band(narrow.name, narrow.n[i - 1], "rmse." + region),
+                        *b = page.find.band(narrow.name, narrow.n[i], "rmse." + region);
         if (!a || !b || !a->published || !b->published || *b->published <= *a->published) continue;
         const double factor = *b->published / *a->published;
         int rose = 0, so_much = 0, of = 0;
@@ -128,9 +138,11 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
             so_much += ladder[i] >= factor * ladder[i - 1];
         }
         if (of < 2) return {};
-        return fmt::format("From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it rises, in {} by that "
-                           "much. With an infinite variance behind it, it need not fall.",
-                           narrow.n[i - 1], narrow.n[i], meter_html("rmse." + region), escape(narrow.name), factor, rose, of, so_much);
+        return fmt::format(
+            "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it rises, in "
+            "{} by that "
+            "much. With an infinite variance behind it, it need not fall.",
+            narrow.n[i - 1], narrow.n[i], meter_html("rmse." + region), escape(narrow.name), factor, rose, of, so_much);
     }
     return {};
 }
@@ -144,7 +156,8 @@ std::string remarks(const Page& page) {
         if (!hot.empty()) all.push_back(highlight_remark(page, *broad, hot));
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
-                all.push_back(fmt::format("For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
+                all.push_back(
+                    fmt::format("For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
         for (const char* meter : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, meter));
         if (!hot.empty()) all.push_back(smooth_ladder_remark(page, *narrow, hot));
         if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));
@@ -152,7 +165,9 @@ std::string remarks(const Page& page) {
     std::erase_if(all, [](const std::string& remark) { return remark.empty(); });
     if (all.empty()) return {};
     return html::p("What can be said about them, medians over seeds against published values:") + html::list(all) +
-           html::p("None of this is tuned away. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was found that meets every published figure.");
+           html::p(
+               "None of this is tuned away. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was found "
+               "that meets every published figure.");
 }
 
 }  // namespace
@@ -160,7 +175,12 @@ std::string remarks(const Page& page) {
 PageSection disagreements(Page& page) {
     if (!page.find.anything_published()) return {};
     html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
-                      {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true}, {"Median against published", true}});
+                      {words("Meter"),
+                       words("Run"),
+                       {"Published", true},
+                       {"Median", true},
+                       {"5–95 %", true},
+                       {"Median against published", true}});
     std::size_t judged = 0, outside = 0;
     for (const BandMeter& b : page.in.metrics.bands) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
@@ -168,12 +188,16 @@ PageSection disagreements(Page& page) {
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
         ++outside;
         const auto off = relative(&b);
-        table.row({html::heading(meter_html(b.meter)), words(run_html(b.key)), html::figure(figures_of(b.meter, *b.published)),
-                   html::figure(figures_of(b.meter, b.band.median)), {interval_html(b.meter, b.band), true},
+        table.row({html::heading(meter_html(b.meter)),
+                   words(run_html(b.key)),
+                   html::figure(figures_of(b.meter, *b.published)),
+                   html::figure(figures_of(b.meter, b.band.median)),
+                   {interval_html(b.meter, b.band), true},
                    {off ? signed_percent(*off) : "–", true}});
     }
     if (judged == 0) return {};
-    std::string out = html::p(fmt::format("{} can be held against a band; {} of them fall{} outside it.", plural(judged, "published value"), outside, outside == 1 ? "s" : ""));
+    std::string out = html::p(fmt::format("{} can be held against a band; {} of them fall{} outside it.",
+                                          plural(judged, "published value"), outside, outside == 1 ? "s" : ""));
     if (outside > 0) out += table.str() + remarks(page);
     return {"disagreements", "Where note and scene disagree", out};
 }

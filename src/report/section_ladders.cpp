@@ -85,8 +85,11 @@ std::string slope_table(const Page& page) {
                       {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
     for (const Ladder& l : page.in.metrics.ladders)
         if (l.n.size() > 1)
-            table.row({html::heading(escape(l.region)), words(escape(l.arm)), html::figure(shortest(l.s)),
-                       html::figure(fmt::format("{:.3f}", l.slope)), {slope_interval(l), true}});
+            table.row({html::heading(escape(l.region)),
+                       words(escape(l.arm)),
+                       html::figure(shortest(l.s)),
+                       html::figure(fmt::format("{:.3f}", l.slope)),
+                       {slope_interval(l), true}});
     return table.str();
 }
 
@@ -98,9 +101,11 @@ PageSection ladders(Page& page) {
         if (!ladders_in(page, region.name).empty()) charts += ladder_chart(page, region.name);
     if (charts.empty()) return {};
     const std::string published = page.find.anything_published() ? " Diamonds: published values." : "";
-    std::string out = fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())), fmt::arg("seed", page.seed_name()));
+    std::string out =
+        fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())), fmt::arg("seed", page.seed_name()));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
-                              "RMSE against <i>N</i> at the " + page.seed_name() + " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
+                              "RMSE against <i>N</i> at the " + page.seed_name() +
+                                  " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
                               "metrics.json, ladders");
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }
@@ -111,8 +116,10 @@ PageSection exponent(Page& page) {
     std::vector<Column> columns;
     for (const double s : control->s) columns.push_back({"<i>s</i> = " + shortest(s), control->arm, control->n, s});
     const std::string table = meters_table(
-        page, fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
-                          escape(control->arm), control->n, page.seed_name()), columns);
+        page,
+        fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
+                    escape(control->arm), control->n, page.seed_name()),
+        columns);
     if (table.empty()) return {};
     return {"exponent", "Exponent control",
             fmt::format(exponent_prose, fmt::arg("arm", escape(control->arm)), fmt::arg("n", control->n),

@@ -32,9 +32,15 @@ std::string fallen(const BandMeter& b) {
 }
 
 std::vector<html::Cell> band_row(const Page& page, const BandMeter& b, bool published) {
-    Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1, b.published.has_value(),
+    Strip strip{b.band.q05,
+                b.band.median,
+                b.band.q95,
+                b.measured,
+                !b.band.heavy && b.band.seeds > 1,
+                b.published.has_value(),
                 b.published.value_or(0)};
-    std::vector<html::Cell> row{html::heading(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s)))};
+    std::vector<html::Cell> row{
+        html::heading(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s)))};
     if (published) row.push_back(html::figure(b.published ? figures_of(b.meter, *b.published) : ""));
     row.push_back(html::figure(figures_of(b.meter, b.measured)));
     row.push_back(html::figure(figures_of(b.meter, b.band.median)));
@@ -80,8 +86,8 @@ PageSection published(Page& page) {
     }
     if (table.empty()) return {};
     const std::string prose = published ? published_prose : measured_prose;
-    const std::string intro = fmt::format(fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")),
-                                          fmt::arg("seed", e.seed));
+    const std::string intro = fmt::format(
+        fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")), fmt::arg("seed", e.seed));
     return {"published", published ? "Published and measured" : "All meters",
             intro + "<div class=\"wide\">" + table.str() + "</div>" + page.figures.plates(PlateKind::meters)};
 }

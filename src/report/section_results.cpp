@@ -27,20 +27,24 @@ std::string headline_table(const Page& page, std::uint64_t n) {
     std::vector<Column> columns;
     for (const ArmPlan& arm : e.arms)
         if (page.find.run(arm.name, n)) columns.push_back({escape(arm.name), arm.name, n, page.find.s()});
-    return meters_table(page, fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: at the {} seed, {}. Small: median over {}, "
-                                          "its 5–95 % band, and the tail index of the region’s samples",
-                                          n, shortest(page.find.s()), page.seed_name(), e.seed,
-                                          plural(static_cast<std::uint64_t>(e.seeds), "seed")), columns);
+    return meters_table(
+        page,
+        fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: at the {} seed, {}. Small: median over {}, "
+                    "its 5–95 % band, and the tail index of the region’s samples",
+                    n, shortest(page.find.s()), page.seed_name(), e.seed, plural(static_cast<std::uint64_t>(e.seeds), "seed")),
+        columns);
 }
 
 std::string frame_footnote(const Page& page, std::uint64_t n) {
     std::string values;
     for (const ArmPlan& arm : page.in.experiment.arms)
         if (const RunMeter* run = page.find.run(arm.name, n))
-            values += fmt::format("{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
+            values +=
+                fmt::format("{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
     if (values.empty()) return {};
     return html::element("p", "class=\"footnote\"",
-                         "Footnote: the RMSE of the whole frame, which lumps the regions together, reads " + values + ".") + "\n";
+                         "Footnote: the RMSE of the whole frame, which lumps the regions together, reads " + values + ".") +
+           "\n";
 }
 
 std::string broad_arms_sentence(const Page& page, const Pair& pair, const std::string& region) {
@@ -51,8 +55,10 @@ std::string broad_arms_sentence(const Page& page, const Pair& pair, const std::s
 }
 
 std::string not_seen(const Pair& pair, const std::string& loser, const std::string& winner) {
-    return html::p(fmt::format("In this run the failure does not show: at <i>N</i> = {} there is no region in which {}’s RMSE is "
-                               "larger than {}’s.", pair.n, escape(loser), escape(winner)));
+    return html::p(
+        fmt::format("In this run the failure does not show: at <i>N</i> = {} there is no region in which {}’s RMSE is "
+                    "larger than {}’s.",
+                    pair.n, escape(loser), escape(winner)));
 }
 
 bool larger_in(const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
@@ -95,8 +101,10 @@ PageSection results(Page& page) {
         if (pair) items.push_back(ordering_sentence(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
     if (!items.empty()) out += html::p("Region by region:") + html::list(items);
     if (const std::uint64_t bad = page.find.bad_samples())
-        out += html::p(fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
-                                   "trusted until that is understood.", plural(bad, "sample")));
+        out +=
+            html::p(fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
+                                "trusted until that is understood.",
+                                plural(bad, "sample")));
     return {"results", "Results", out + page.figures.plates(PlateKind::heat) + frame_footnote(page, n)};
 }
 
@@ -108,7 +116,8 @@ PageSection failure_a(Page& page) {
     const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
     std::string out;
     if (larger_in(page, broad, narrow, pair.n, region))
-        out = html::p("It shows in region <b>" + escape(region) + "</b>. " + ordering_sentence(page, broad, narrow, pair.n, region)) +
+        out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
+                      ordering_sentence(page, broad, narrow, pair.n, region)) +
               broad_arms_sentence(page, pair, region);
     else
         out = not_seen(pair, broad, narrow);
@@ -131,14 +140,16 @@ PageSection failure_b(Page& page) {
     const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
     std::string out;
     if (larger_in(page, narrow, broad, pair.n, region))
-        out = html::p("It shows in region <b>" + escape(region) + "</b>. " + ordering_sentence(page, narrow, broad, pair.n, region));
+        out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
+                      ordering_sentence(page, narrow, broad, pair.n, region));
     else
         out = not_seen(pair, narrow, broad);
     out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
                        fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
                        fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))),
                        fmt::arg("largest", html::value(figures(of_narrow->largest))), fmt::arg("lost", lost_words(page)));
-    return {"failure-b", "Failure B: " + escape(narrow) + " starves the surround", out + page.figures.plates(PlateKind::surround)};
+    return {"failure-b", "Failure B: " + escape(narrow) + " starves the surround",
+            out + page.figures.plates(PlateKind::surround)};
 }
 
 }  // namespace crescent

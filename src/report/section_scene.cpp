@@ -8,9 +8,7 @@ namespace {
 
 using html::words;
 
-std::string vec(const Vec3d& v) {
-    return html::value(fmt::format("({}, {}, {})", compact(v.x), compact(v.y), compact(v.z)));
-}
+std::string vec(const Vec3d& v) { return html::value(fmt::format("({}, {}, {})", compact(v.x), compact(v.y), compact(v.z))); }
 std::string rgb(const Rgb& c) {
     if (c[0] == c[1] && c[1] == c[2]) return shortest(c[0]);
     return html::value(fmt::format("({}, {}, {})", compact(c[0]), compact(c[1]), compact(c[2])));
@@ -53,9 +51,13 @@ std::string lobe(const Material& m) {
 }
 
 std::string shapes_table(const Page& page) {
-    html::Table table("Shapes. Pixels: how many primary rays meet the shape first",
-                      {words("Shape"), words("Kind"), words("Where"), words("<i>ρ</i><sub>d</sub>"), words("Lobe"),
-                       words("Blocks the disks"), {"Pixels", true}});
+    html::Table table("Shapes. Pixels: how many primary rays meet the shape first", {words("Shape"),
+                                                                                     words("Kind"),
+                                                                                     words("Where"),
+                                                                                     words("<i>ρ</i><sub>d</sub>"),
+                                                                                     words("Lobe"),
+                                                                                     words("Blocks the disks"),
+                                                                                     {"Pixels", true}});
     for (const Shape& shape : page.in.experiment.shapes) {
         const auto found = page.in.metrics.shape_pixels.find(shape.name);
         const bool known = found != page.in.metrics.shape_pixels.end();

@@ -60,7 +60,8 @@ std::string regions_sentence(const Experiment& e) {
     std::vector<std::string> names;
     for (const Region& r : e.regions)
         names.push_back(fmt::format("<b>{}</b> ({} × {} pixels)", escape(r.name), r.box.width(), r.box.height()));
-    return fmt::format(" Errors are read in {}, {}.", e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
+    return fmt::format(" Errors are read in {}, {}.", e.regions.size() == 1 ? "one region" : "regions that behave differently",
+                       html::join(names));
 }
 
 bool any_phong_lobe(const Experiment& e) {
@@ -76,7 +77,8 @@ PageSection question(Page& page) {
     for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
     return {"question", "The question",
             fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", html::join(names)),
-                        fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()), fmt::arg("seed", page.seed_name()))};
+                        fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()),
+                        fmt::arg("seed", page.seed_name()))};
 }
 
 PageSection estimator(Page& page) {

@@ -24,8 +24,10 @@ std::string heavy_words(const Page& page, const BandMeter& a, const BandMeter& b
         names += (names.empty() ? "" : " and ") + escape(band->key.arm);
         if (tail) names += fmt::format(" (tail index {})", html::value(tail_html(tail)));
     }
-    return fmt::format(" How large the ratio is stays <b>inconclusive: heavy tail</b>: the samples of {} spread so widely "
-                       "there that no interval means anything.", names);
+    return fmt::format(
+        " How large the ratio is stays <b>inconclusive: heavy tail</b>: the samples of {} spread so widely "
+        "there that no interval means anything.",
+        names);
 }
 
 std::string ranking(const Page& page, const BandMeter& a, const BandMeter& b) {

@@ -39,8 +39,7 @@ std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint)
     if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", all.size())) + "\n";
     std::string out = paint(red, failures_line(failed, all.size())) + "\n";
     for (const AssertionResult* a : failed) {
-        const std::string values =
-            fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound));
+        const std::string values = fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound));
         out += fmt::format("  {}{}\n", clip(a->name, columns - 2 - width(values)), values);
     }
     return out;
@@ -107,7 +106,9 @@ std::string speed(const Timing& t) {
 
 std::string where(const ReportInputs& in, const std::string& out_dir) {
     const std::string dir = out_dir.empty() ? "." : out_dir;
-    const auto line = [](const char* what, const std::string& path) { return fmt::format("  {:<9}{}\n", what, clip(path, columns - 11)); };
+    const auto line = [](const char* what, const std::string& path) {
+        return fmt::format("  {:<9}{}\n", what, clip(path, columns - 11));
+    };
     std::string out = line("look at", dir + "/report.html");
     if (!in.plates.empty()) out += line("plates", dir + "/plates/");
     return out + line("numbers", dir + "/metrics.json");

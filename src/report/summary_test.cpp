@@ -32,7 +32,8 @@ TEST(Summary, SaysFirstWhichFail) {
 
 TEST(Summary, StaysWithinEightyColumnsWhateverTheNames) {
     Sample s;
-    const std::string name = "Äöüß: ein sehr langer Name, der mit Umlauten beginnt und nirgends auf der Welt in eine Zeile passt";
+    const std::string name =
+        "Äöüß: ein sehr langer Name, der mit Umlauten beginnt und nirgends auf der Welt in eine Zeile passt";
     for (ArmPlan& arm : s.experiment.arms) arm.name += name;
     for (BandMeter& b : s.metrics.bands) b.key.arm += name, b.band.q05 = -1.2345678e-123, b.band.q95 = 9.87e200;
     for (RunMeter& r : s.metrics.runs) r.key.arm += name, r.bad = 1'000'000'000'000;

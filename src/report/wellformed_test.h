@@ -56,7 +56,8 @@ private:
 
     std::string word() {
         std::string out;
-        while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '-')) out += text_[at_++];
+        while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '-'))
+            out += text_[at_++];
         return out;
     }
 
@@ -85,7 +86,10 @@ private:
         at_ += 2;
         while (at_ < text_.size() && text_[at_] != '"' && say_.empty()) {
             if (text_[at_] == '<') return fail("< in an attribute");
-            if (text_[at_] == '&') reference(); else ++at_;
+            if (text_[at_] == '&')
+                reference();
+            else
+                ++at_;
         }
         ++at_;
     }
