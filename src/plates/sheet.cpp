@@ -67,7 +67,8 @@ void finish(Sheet& sheet) {
     if (sheet.canvas.measure(notes, small_text).w <= foot.w) {
         sheet.canvas.text(foot, notes, small_text);
     } else {
-        sheet.canvas.text({foot.x, foot.y - 9, foot.w, foot.h + 14}, notes, with_lines(with_px(small_text, 13), 2));
+        Text two = with(with_lines(with_px(small_text, 13), 2), Vertical::bottom);
+        sheet.canvas.text({foot.x, foot.y - 12, foot.w, 35}, notes, two);
     }
 }
 

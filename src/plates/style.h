@@ -27,7 +27,7 @@ inline constexpr double margin = 32, gap = 20;
 inline constexpr double sheet_inner = sheet_width - 2 * margin;
 inline constexpr Rect header_band{margin, 20, sheet_inner, 32};
 inline constexpr Rect content_band{margin, 64, sheet_inner, 540};
-inline constexpr Rect caption_band{margin, 616, sheet_inner, 56};
+inline constexpr Rect caption_band{margin, 616, sheet_inner, 51};
 inline constexpr Rect footer_band{margin, 680, sheet_inner, 20};
 
 inline constexpr Text label_text{20, bright, Weight::medium, Align::left, Vertical::middle, 1, 15};
