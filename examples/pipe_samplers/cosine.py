@@ -3,7 +3,7 @@
 
 One request a line, one answer a line, in order; n = +z; end of input ends it."""
 import math
-import sys
+import os
 
 
 def answer(words):
@@ -22,5 +22,9 @@ def answer(words):
     return "?"
 
 
-for line in sys.stdin:
-    print(answer(line.split()), flush=True)  # the asker waits for every answer
+rest = ""
+while chunk := os.read(0, 1 << 16):  # many requests stand ready at once: answer them all with one write
+    *lines, rest = (rest + chunk.decode()).split("\n")
+    out = "".join(answer(line.split()) + "\n" for line in lines).encode()
+    while out:
+        out = out[os.write(1, out):]

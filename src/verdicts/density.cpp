@@ -110,17 +110,20 @@ Verdict judge_normalised(const Work& work) {
     Verdict v = work.verdict("normalised", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
-        const double sum = d.mass.value + d.nothing, off = std::fabs(sum - 1);
+        const bool second = d.second && std::fabs(d.second->value + d.nothing - 1) < std::fabs(d.mass.value + d.nothing - 1);
+        const Integral& mass = second ? *d.second : d.mass;  // the one that speaks for the sampler
+        const double sum = mass.value + d.nothing, off = std::fabs(sum - 1);
         constexpr double allowed = 1e-4;
-        const double doubt = d.mass.settled ? d.mass.error : 2 * d.mass.error;
+        const double doubt = mass.settled ? mass.error : 2 * mass.error;
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
-        v.evidence["integral" + tag] = d.mass.value;
-        v.evidence["quadrature_error" + tag] = d.mass.error;
-        v.evidence["evaluations" + tag] = d.mass.evaluations;
+        v.evidence["integral" + tag] = mass.value;
+        v.evidence["quadrature_error" + tag] = mass.error;
+        v.evidence["evaluations" + tag] = mass.evaluations;
+        if (d.second) v.evidence["second_quadrature" + tag] = d.second->value;
         v.evidence["drawn_nothing" + tag] = d.nothing;
         v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
-        const std::string told = d.nothing > 0 ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}", d.mass.value, d.nothing, sum)
-                                               : fmt::format("p integrates to {:.6f} over the sphere", d.mass.value);
+        const std::string told = d.nothing > 0 ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}", mass.value, d.nothing, sum)
+                                               : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
         const double excess = std::max(off - allowed - doubt, 0.0);
         bool wrong = !std::isfinite(sum) || (excess > 0 && d.nothing_se == 0 && work.subject.draws_at_will() && d.nothing == 0);
         if (!wrong && excess > 0 && d.nothing > 0) {  // the share that draws nothing is itself an estimate
@@ -136,9 +139,9 @@ Verdict judge_normalised(const Work& work) {
             v.say = told + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
             return v;
         }
-        if (!d.mass.settled && d.mass.error > allowed && v.state == State::right) {
+        if (!mass.settled && mass.error > allowed && v.state == State::right) {
             v.state = State::inconclusive;
-            v.say = told + fmt::format(", but the quadrature itself is only good to {:.2g}.", d.mass.error);
+            v.say = told + fmt::format(", but the quadrature itself is only good to {:.2g}.", mass.error);
         }
         if (v.state == State::right) v.say = told + ": one, as a density must.";
     }

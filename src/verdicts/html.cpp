@@ -14,31 +14,14 @@ std::string escape(std::string_view s) {
     return out;
 }
 
-/// Blue below, white at 0, red above; v in [-1, 1].
-std::string diverging(double v) {
-    const int fade = static_cast<int>(255 * (1 - std::min(std::fabs(v), 1.0)));
-    return v < 0 ? fmt::format("rgb({},{},255)", fade, fade) : fmt::format("rgb(255,{},{})", fade, fade);
-}
-std::string grey(double v) {
-    const int g = static_cast<int>(255 - 225 * std::clamp(v, 0.0, 1.0));
-    return fmt::format("rgb({},{},{})", g, g, g);
-}
-
-template <class Colour> std::string map_svg(const BinMap& m, std::string_view title, Colour colour) {
-    std::string out = fmt::format("<figure><svg viewBox='0 0 {} {}' width='260' height='200' preserveAspectRatio='none'>", m.sectors, m.rings);
-    for (int r = 0; r < m.rings; ++r)
-        for (int s = 0; s < m.sectors; ++s)
-            out += fmt::format("<rect x='{}' y='{}' width='1.02' height='1.02' fill='{}'/>", s, r, colour(static_cast<std::size_t>(r * m.sectors + s)));
-    return out + fmt::format("</svg><figcaption>{}</figcaption></figure>", title);
-}
-
+/// Three maps, painted by the script at the head of the page from the counts themselves.
 std::string maps(const BinMap& m) {
     const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()), *std::max_element(m.expected.begin(), m.expected.end()));
     std::string out = fmt::format("<p>Counts, {}: rings downwards from the axis, turns to the right; black is {:.0f} draws. Difference: (observed - expected) / sqrt(expected), red more, blue fewer, full at 4.</p><div class=row>", m.coordinates, top);
-    out += map_svg(m, "observed", [&](std::size_t i) { return grey(m.observed[i] / top); });
-    out += map_svg(m, "expected", [&](std::size_t i) { return grey(m.expected[i] / top); });
-    out += map_svg(m, "standardised difference", [&](std::size_t i) { return diverging((m.observed[i] - m.expected[i]) / std::sqrt(std::max(m.expected[i], 1.0)) / 4); });
-    return out + "</div>";
+    for (const char* title : {"observed", "expected", "standardised difference"})
+        out += fmt::format("<figure><canvas width={} height={}></canvas><figcaption>{}</figcaption></figure>", m.sectors, m.rings, title);
+    out += fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}])</script>", m.sectors, top, fmt::join(m.observed, ","), fmt::join(m.expected, ","));
+    return out;
 }
 
 std::string histogram(const WeightPicture& w) {
@@ -84,7 +67,11 @@ constexpr const char* head =
     "<!doctype html><html lang=en><meta charset=utf-8><title>crescent check</title><style>body{font:15px/1.5 Inter,system-ui,sans-serif;margin:2em auto;max-width:64em;padding:0 1em}"
     "table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #ddd;padding:.2em .5em;text-align:left;vertical-align:top}.wrong{color:#b00020;font-weight:600}"
     ".inconclusive{color:#8a5a00}.right{color:#1a6b2a}.skipped{color:#666}.row{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figcaption{font-size:12px;max-width:30em}"
-    "summary{cursor:pointer}</style>";
+    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid #ddd}</style><script>"
+    "function paint(w,top,seen,due){const c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const grey=v=>{const g=255-225*Math.min(v/top,1);return[g,g,g]};"
+    "const tint=(o,e)=>{const d=(o-e)/Math.sqrt(Math.max(e,1))/4,f=255*(1-Math.min(Math.abs(d),1));return d<0?[f,f,255]:[255,f,f]};"
+    "const draw=(k,colour)=>{const x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"
+    "draw(0,i=>grey(seen[i]));draw(1,i=>grey(due[i]));draw(2,i=>tint(seen[i],due[i]))}</script>";
 
 }  // namespace
 

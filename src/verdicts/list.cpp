@@ -40,7 +40,7 @@ Stages stages_of(const std::string& arm) {
     if (arm == "uniform" || arm == "cosine") {
         lambert("fill");
         add_lobe(all, LobeKind::phong, {32}, true);
-        add_lobe(all, LobeKind::ggx, {0.3}, true);
+        add_lobe(all, LobeKind::ggx, {0.5}, true);
         lambert("fill + disk");
     } else if (arm == "phong") {
         add_lobe(all, LobeKind::phong, {8, 32, 128, 1e4, 1e5});

@@ -16,7 +16,7 @@ Verdict judge_tail(Work& work);
 Verdict judge_mean(const Work& work);
 
 struct Spread {
-    double n = 0, mean = 0, sd = 0, skew = 0;
+    double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
 };
 Spread spread(std::span<const double> x);
 /// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken out.
@@ -24,9 +24,10 @@ double johnson_t(const Spread& s, double expected);
 /// X of the screening draws; even: L = 1.
 std::vector<double> first_weights(const Work& work, bool even);
 std::optional<Tail> tail_of(std::span<const double> x);
-/// The normal law is near enough for a test: k-hat surely below 1/2, and |skew| / sqrt(n) below 0.1.
+/// k-hat surely below 1/2 and theory does not say otherwise.
 bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory);
-/// Two-sided p-value of the mean, the quadrature's own error granted; and the two-stage test.
+/// Two-sided p-value of the mean, the quadrature's own error granted, and the two-stage test. Where |skew| / sqrt(n) > 0.1 the normal
+/// law is too far off: Bernstein's inequality between 0 and the largest weight, which never accuses too often.
 double mean_p(const Spread& s, const Integral& expected);
 bool mean_fails(const Work& work, double p, const Integral& expected, bool even);
 

@@ -53,6 +53,7 @@ struct Density {
     std::vector<double> rings;  // ascending edges of a = 1 - cos, first 0, last 2
     int sectors = 0;
     Integral mass;
+    std::optional<Integral> second;  // in other coordinates, where the first does not come to one
     double nothing = 0, nothing_se = 0;  // share of draws that draw nothing, randomised lattice
     std::size_t bin_of(Vec2d at) const;
 };
@@ -110,8 +111,8 @@ private:
     Integral integrate_incoming(Where where, bool even) const;
     void find_guides();
     Witnesses witnesses_of(int technique, const Density& d) const;
-    Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations) const;
-    void find_nothing(int technique, Density& d) const;
+    Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
+    void find_nothing(int technique, Density& d, std::uint64_t points) const;
 };
 
 /// p-values.
