@@ -18,7 +18,10 @@ std::string with(const Page& page, const std::vector<std::string>& settings) {
     return out;
 }
 
+/// The shape of the exponent control, else the first with a lobe.
 const Shape* glossy(const Experiment& e) {
+    for (const Shape& shape : e.shapes)
+        if (e.exponent && shape.name == e.exponent->shape && shape.material.rho_s > 0) return &shape;
     for (const Shape& shape : e.shapes)
         if (shape.material.rho_s > 0) return &shape;
     return nullptr;
