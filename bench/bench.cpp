@@ -1,0 +1,59 @@
+// crescent_bench FILE.toml N: one line an arm, as JSON, of Msamples/s by crescent's kernels and by the straightforward
+// version, both on all cores. Samples are counted as geometry pixels x N. Each time is the best of some repetitions: what
+// else the machine does can only add to it. The means of both are printed too: they must be of the same integral.
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "crescent.h"
+#include "straightforward.h"
+
+namespace {
+
+using namespace crescent;
+
+template <class Work> double best_of(int repetitions, Work&& work) {
+    double best = 1e30;
+    for (int k = 0; k < repetitions; ++k) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    return best;
+}
+
+void arm(const Scene& scene, const std::string& sampler, std::uint64_t n, double samples, int threads) {
+    Watch watch;
+    std::vector<Film> films;
+    double plain_mean = 0;
+    const double fast = best_of(7, [&] { films = estimate_films(scene, sampler, {n}, 1, "", watch); });
+    const double plain = best_of(2, [&] { plain_mean = bench::straightforward(scene, sampler, static_cast<int>(n), 1, threads); });
+    double mean = 0;
+    for (float y : films.front().y) mean += y;
+    mean /= static_cast<double>(films.front().size());
+    std::cout << fmt::format(R"({{"arm": "{}", "crescent": {:.1f}, "straightforward": {:.2f}, "mean": {:.5f}, "straightforward_mean": {:.5f}}})", sampler,
+                             samples / fast * 1e-6, samples / plain * 1e-6, mean, plain_mean)
+              << std::endl;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    if (argc != 3) throw InputError({"crescent_bench", 0, 0}, "expected FILE.toml and N");
+    const Experiment experiment = load(argv[1]);
+    const std::uint64_t n = std::stoull(argv[2]);
+    const Scene scene(experiment);
+    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    std::uint64_t pixels = 0;
+    for (std::int16_t shape : shape_map(scene).shape) pixels += shape >= 0;
+    std::cout << fmt::format(R"({{"geometry_pixels": {}, "n": {}, "threads": {}, "isa": "{}", "version": "{}", "commit": "{}", "compiler": "{}"}})", pixels, n, threads,
+                             isas().back(), version(), commit(), compiler())
+              << std::endl;
+    for (const ArmPlan& plan : experiment.arms) arm(scene, plan.sampler, n, static_cast<double>(pixels * n), threads);
+} catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 2;
+}
