@@ -9,11 +9,6 @@
 #include "laws/planted/planted.h"
 #include "progress.h"
 #include "signals.h"
-#include "verdicts/judge.h"
-#include "verdicts/list.h"
-#include "verdicts/pipe.h"
-#include "verdicts/print.h"
-#include "verdicts/samples.h"
 
 namespace crescent::cli {
 

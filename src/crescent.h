@@ -4,6 +4,7 @@
 //   Scene             an Experiment -> what a pixel sees: surface point, normal, BRDF, lights, what blocks them
 //   Arms              the samplers on trial as a list of types; for_each_arm walks it
 //   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
+//   judge             a sampler by itself -> ordered verdicts with their evidence; verdicts/gtest.h has the matchers
 //   run               an Experiment -> films, meters, plates and report under one folder
 //
 // Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
@@ -26,4 +27,10 @@
 #include "report/report.h"
 #include "run.h"
 #include "scene/scene.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/pipe.h"
+#include "verdicts/print.h"
+#include "verdicts/samples.h"
+#include "verdicts/user.h"
 #include "version.h"

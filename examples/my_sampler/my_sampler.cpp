@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "verdicts/user.h"
+#include "crescent.h"
 
 struct MySampler {
     struct Drawn {

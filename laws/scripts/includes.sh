@@ -20,7 +20,8 @@ awk '
             else if (!(folder in rank)) wrong = "not a folder of src/"
             else if (rank[folder] > rank[from[2]]) wrong = folder " stands below " from[2]
         }
-        else if (from[1] != "src" && from[1] != "laws" && target != "crescent.h") {
+        # Beside the public face: its matchers, which need GoogleTest, and the faults that `crescent check --planted` catches.
+        else if (from[1] != "src" && from[1] != "laws" && target != "crescent.h" && target != "verdicts/gtest.h" && target != "laws/planted/planted.h") {
             dir = FILENAME; sub(/[^\/]*$/, "", dir)
             if (system("test -f \"" dir target "\"") != 0) wrong = "a door includes more than crescent.h"
         }
