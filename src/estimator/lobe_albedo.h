@@ -8,10 +8,11 @@
 
 namespace crescent {
 
-/// A at one angle by adaptive quadrature, to about 1e-10.
+/// A at one angle: Phong by adaptive quadrature to about 1e-10, the half-vector lobes by a fixed rule to about 1e-4.
 double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o);
 
-/// The same for many angles: cubic interpolation between quadratures, refined until its own error is below 1e-7.
+/// The same for many angles: cubic interpolation between quadratures, refined until its own error is below 1e-7
+/// (1e-5 for the half-vector lobes).
 class LobeAlbedo {
 public:
     LobeAlbedo(BrdfKind kind, double s, double alpha);
