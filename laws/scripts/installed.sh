@@ -8,5 +8,5 @@ cp -r "$CRESCENT_SOURCE/examples/find_package" example
 expect 0 cmake -S example -B example/build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_PREFIX_PATH="$work/prefix"
 expect 0 cmake --build example/build
 expect 0 example/build/noise "$tiny"
-grep -q phong printed || die "the example says nothing of phong: $(cat printed)"
+grep -q mixture printed || die "the example says nothing of mixture: $(cat printed)"
 expect 0 "$work/prefix/bin/crescent" --version

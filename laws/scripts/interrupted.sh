@@ -8,7 +8,7 @@ for signal in INT TERM; do
     for after in 0.1 0.6; do
         # A job in the background ignores SIGINT unless it has a process group of its own.
         set -m
-        "$CRESCENT" run "$tiny" --out good --set 'arms.phong.n=[16777216]' >printed 2>said &
+        "$CRESCENT" run "$tiny" --out good --set 'arms.cosine.n=[16777216]' >printed 2>said &
         run=$!
         set +m
         sleep "$after"

@@ -13,7 +13,11 @@ for threads in 1 2 3 16; do
     turn=$((turn + 1))
 done
 
-# And the evidence on Phong's tail, which only a Phong lobe brings.
-expect 0 "$CRESCENT" run "$tiny" --quiet --out evidence --threads 1 --isa scalar --set shapes.ball.brdf=phong
-expect 0 "$CRESCENT" run "$tiny" --quiet --out evidence-16 --threads 16 --set shapes.ball.brdf=phong
+# And the evidence on the tail of an arm that is Phong alone.
+{
+    cat "$tiny"
+    printf '[arms.phong]\nn = [4, 16]\n'
+} >evidence.toml
+expect 0 "$CRESCENT" run evidence.toml --quiet --out evidence --threads 1 --isa scalar
+expect 0 "$CRESCENT" run evidence.toml --quiet --out evidence-16 --threads 16
 same_outputs evidence evidence-16
