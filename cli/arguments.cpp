@@ -81,6 +81,7 @@ void add_check(CLI::App& app, Work& work) {
     c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")->type_name("P");
     c->add_option("--seed", f->seed, "default 1")->type_name("N");
     c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which");
+    c->add_option("--error-rates", f->error_rates, "measure the bench itself on so many seeds")->type_name("SEEDS")->check(CLI::Range(1, 100000));
     c->add_option("--exec", f->exec, "judge a program that answers over a pipe")->type_name("'PROGRAM ARGS'");
     c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE");
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv grid")->type_name("FILE");

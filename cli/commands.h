@@ -44,7 +44,7 @@ struct CheckFlags {
     std::string exec, samples, table, wo;
     std::string json, junit, html;       // files to write
     double alpha = 1e-3;
-    unsigned seed = 1;
+    unsigned seed = 1, error_rates = 0;  // error_rates: how many seeds; 0: not asked for
     bool full = false, quick = false, planted = false, quiet = false;
 };
 int check(const CheckFlags& flags);

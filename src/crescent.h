@@ -27,6 +27,7 @@
 #include "report/report.h"
 #include "run.h"
 #include "scene/scene.h"
+#include "verdicts/error_rates.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
 #include "verdicts/pipe.h"

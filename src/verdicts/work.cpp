@@ -57,9 +57,14 @@ void Rigour::share(std::uint64_t tests) {
     confirm = std::min(each / screen, screen / 10);
 }
 
-Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index) : trial(t), rigour(r), tally(counts), subject(*t.subject), index_(index) {
+Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index) : trial(t), rigour(r), tally(counts), subject(*t.subject), index_(index), seed_(r.seed) {
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
     grain_ = grain_of(first_[0].draws);
+}
+
+void Work::redraw(std::uint32_t seed) {
+    seed_ = seed;
+    for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }
 
 Batchful Work::draw(int technique, int round) const {
@@ -68,7 +73,7 @@ Batchful Work::draw(int technique, int round) const {
         tape->half(round, b.u, b.draws);
     } else {
         const std::uint64_t n = round == 0 ? rigour.draws : 4 * rigour.draws;
-        const std::uint32_t seed = seed_of(rigour.seed, static_cast<std::uint32_t>(round) * 7919u);
+        const std::uint32_t seed = seed_of(seed_, static_cast<std::uint32_t>(round) * 7919u);
         b.u.resize(n);
         b.draws.resize(n);
         for (std::uint64_t i = 0; i < n; ++i) {

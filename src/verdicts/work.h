@@ -67,6 +67,8 @@ public:
     Tally& tally;
     const JudgedSampler& subject;
 
+    /// Fresh draws for another seed; bins and integrals stay.
+    void redraw(std::uint32_t seed);
     Batchful draw(int technique, int round) const;  // round 0: the screening seed, 1: the confirming one
     const Batchful& first(int technique) const { return first_[static_cast<std::size_t>(technique)]; }
     const Density& density(int technique) const { return density_[static_cast<std::size_t>(technique)]; }
@@ -102,7 +104,7 @@ public:
     void measure_density();  // fills density(); apart, since an invalid sampler has none
 
 private:
-    std::uint32_t index_;
+    std::uint32_t index_, seed_;
     std::vector<Batchful> first_;
     std::vector<Density> density_;
     std::vector<Vec3d> guides_;

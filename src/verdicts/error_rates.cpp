@@ -1,0 +1,90 @@
+#include "verdicts/error_rates.h"
+
+#include <boost/math/distributions/binomial.hpp>
+#include <chrono>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include "simd/random.h"
+#include "verdicts/list.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+bool is_right(const Trial& t) { return !t.theory.wrong && (t.theta_deg == 0 || t.theta_deg == 45 || t.theta_deg == 85); }
+
+/// Verdicts of the statistical tests on the draws at hand.
+bool accused(Work& work) {
+    return judge_normalised(work).state == State::wrong || judge_density(work).state == State::wrong || judge_physics(work).state == State::wrong || judge_mean(work).state == State::wrong;
+}
+
+std::string rate(std::uint64_t hits, std::uint64_t of) {
+    const auto [low, high] = rate_interval(hits, of);
+    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of, of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
+}
+
+}  // namespace
+
+std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of) {
+    using boost::math::binomial_distribution;
+    const double n = static_cast<double>(of), k = static_cast<double>(hits);
+    if (of == 0) return {0, 1};
+    return {binomial_distribution<>::find_lower_bound_on_p(n, k, 0.025), hits == of ? 1.0 : binomial_distribution<>::find_upper_bound_on_p(n, k, 0.025)};
+}
+
+FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch& watch) {
+    std::vector<Trial> trials;
+    for (Trial& t : trials_of("", {}, false))
+        if (is_right(t)) trials.push_back(std::move(t));
+    Rigour rigour = given;
+    rigour.share(count_tests(trials));
+    Tally tally;
+    std::vector<std::atomic<int>> alarms(seeds);
+    watch.begin("false alarms", static_cast<double>(trials.size() * seeds));
+    oneapi::tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+        Work work(trials[i], rigour, tally, static_cast<std::uint32_t>(i));
+        work.measure_density();
+        for (std::uint64_t k = 0; k < seeds; ++k) {
+            watch.check();
+            work.redraw(seed_of(rigour.seed, static_cast<std::uint32_t>(k)));
+            if (accused(work)) ++alarms[k];
+            watch.advance(1);
+        }
+    });
+    FalseAlarms out;
+    out.seeds = seeds;
+    out.trials = trials.size();
+    out.draws = rigour.draws;
+    out.tests = tally.tests;
+    out.screened = tally.screened;
+    out.confirmed = tally.confirmed;
+    out.alpha = rigour.alpha;
+    out.screen = rigour.screen;
+    for (const auto& a : alarms) out.calls += a > 0;
+    return out;
+}
+
+std::string error_rates_text(const FalseAlarms& a, std::span<const Caught> caught, const std::string& command, const std::string& version) {
+    std::string out = "# The bench's own error rates\n\n";
+    out += fmt::format("Written by the program on {:%Y-%m-%d} ({}); made again with\n\n    {}\n\n", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())), version, command);
+    out += fmt::format("## How often a right arm is accused\n\nEvery right arm of the list on every surface and light, w_o at 0, 45 and 85 deg: {} cases of {} draws, {} seeds. Bins and integrals are made once;\n"
+                       "draws, tests and confirmations anew on each seed. The statistical tests share a family-wise error of {:g} over one call.\n\n", a.trials, a.draws, a.seeds, a.alpha);
+    out += "| what | rate |\n|---|---|\n";
+    out += fmt::format("| a test fails on its first seed (level {:.3g}) | {} |\n", a.screen, rate(a.screened, a.tests));
+    out += fmt::format("| and again on a fresh one: an accusation | {} |\n", rate(a.confirmed, a.tests));
+    out += fmt::format("| a whole call accuses some right arm (promised: at most {:g}) | {} |\n", a.alpha, rate(a.calls, a.seeds));
+    out += "\n## Which verdict catches which planted fault\n\n| fault | in | quick | full |\n|---|---|---|---|\n";
+    std::uint64_t quick = 0, full = 0, asked = 0;
+    for (const Caught& c : caught) {
+        out += fmt::format("| {} | {} | {} | {} |\n", c.fault, c.breaks, c.quick.empty() ? "**not caught**" : c.quick, c.full.empty() ? "**not caught**" : c.full);
+        quick += !c.quick.empty();
+        full += !c.full.empty();
+        ++asked;
+    }
+    return out + fmt::format("\nCaught in quick mode: {}. In full mode: {}.\n", rate(quick, asked), rate(full, asked));
+}
+
+}  // namespace crescent
