@@ -118,7 +118,7 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
         all = all && !table.back().full.empty();
     }
     const std::string command = "crescent check --error-rates " + std::to_string(flags.error_rates) + " --seed " + std::to_string(flags.seed);
-    print(error_rates_text(alarms, table, command, "crescent " + version() + ", commit " + commit()));
+    print(error_rates_text(alarms, table, command, "crescent " + crescent::version() + ", commit " + crescent::commit()));
     return all && rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha ? held : failed;
 }
 
