@@ -50,6 +50,7 @@ macro(crescent_folder name)
     add_library(crescent_${name} STATIC ${folder_sources})
     target_include_directories(crescent_${name} PUBLIC
       $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
+    target_compile_features(crescent_${name} PUBLIC cxx_std_20)
     target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
     list(PREPEND crescent_folders crescent_${name})
     if(EXISTS ${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)

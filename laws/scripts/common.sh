@@ -24,7 +24,7 @@ expect() {
     shift
     "$@" >printed 2>said || got=$?
     [ "$got" -eq "$code" ] || die "exit $got, expected $code: $*
-$(cat printed said)"
+$(tail -n 40 printed said)"
 }
 
 # same_outputs A B: equal but for what varies from run to run.
