@@ -45,8 +45,13 @@ std::string value(const std::string& meter, double v) {
 
 std::string band_text(const std::string& meter, const Band& b) {
     if (b.heavy) return "heavy tail";
-    if (b.seeds < 2) return "–";
     return value(meter, b.q05) + " – " + value(meter, b.q95);
+}
+
+int seeds_of(const Metrics& m) {
+    int seeds = 1;
+    for (const BandMeter& b : m.bands) seeds = std::max(seeds, b.band.seeds);
+    return seeds;
 }
 
 // The measured runs the plate shows: the plan's, else every arm at the n and s of the experiment.
@@ -79,7 +84,7 @@ Table plan_table(const Sheet& sheet) {
     t.columns = columns_of(sheet.experiment());
     auto height = [&] { return value_h + under_h * (t.published + t.band) + (t.published || t.band ? 13 : 5); };
     auto too_high = [&] { return double(t.rows.size()) * height() > content_band.h - t.head_h; };
-    t.band = true;
+    t.band = seeds_of(sheet.in.metrics) > 1;
     const auto& bands = sheet.in.metrics.bands;
     t.published = std::any_of(bands.begin(), bands.end(), [](const BandMeter& b) { return b.published.has_value(); });
     if (too_high()) t.published = false;
@@ -111,8 +116,7 @@ void draw_name(Sheet& sheet, const Table& t, const RunMeter& r, double y, int se
         sheet.canvas.text(line, "published", small_text);
         line.y += under_h;
     }
-    std::string say = seeds > 1 ? fmt::format("5–95 % of {} seeds", seeds) : "one seed, no band";
-    if (t.band) sheet.canvas.text(line, say, small_text);
+    if (t.band) sheet.canvas.text(line, fmt::format("5–95 % of {} seeds", seeds), small_text);
 }
 
 void draw_row(Sheet& sheet, const Table& t, const RunMeter& r, double y, int seeds) {
@@ -133,12 +137,6 @@ void draw_row(Sheet& sheet, const Table& t, const RunMeter& r, double y, int see
         if (t.band) c.text(cell(t, k, next, under_h + 2), b ? band_text(meter, b->band) : "–", under);
     }
     c.line(content_band.x, y + t.row_h - 0.5, content_band.right(), y + t.row_h - 0.5, rule, 1);
-}
-
-int seeds_of(const Metrics& m) {
-    int seeds = 1;
-    for (const BandMeter& b : m.bands) seeds = std::max(seeds, b.band.seeds);
-    return seeds;
 }
 
 void draw_charts(Sheet& sheet, const Rect& slot) {
@@ -174,7 +172,8 @@ void draw_meters(Sheet& sheet) {
     }
     Rect rest{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
     if (rest.h >= 170) draw_charts(sheet, rest);
-    if (rest.h >= 170) sheet.notes.push_back("slopes: fit, and 5–95 % over seeds");
+    if (seeds < 2) sheet.notes.push_back("one seed: no band");
+    if (rest.h >= 170) sheet.notes.push_back(seeds > 1 ? "slopes: fit, and 5–95 % over seeds" : "slopes: fit and its interval");
     sheet.notes.push_back(fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "
                                       "Y<sub>ref</sub>",
                                       radiance_unit, number(sheet.experiment().firefly_k)));

@@ -31,6 +31,15 @@ std::string angle_name(int deg, int tilt_deg, bool roomy) {
     return text;
 }
 
+// The smallest round step that reaches the peak in at most `rings` rings.
+double ring_step(double peak, int rings) {
+    double least = peak / rings, power = std::pow(10, std::floor(std::log10(least)));
+    for (double lead : {1.0, 2.0, 2.5, 3.0, 4.0, 5.0}) {
+        if (lead * power >= least * (1 - 1e-9)) return lead * power;
+    }
+    return 10 * power;
+}
+
 void draw_rays(Canvas& c, const Frame& f, double tilt) {
     for (int a = -90; a <= 90; a += 30) {
         Canvas::Point rim = f.at(a * degree, 1);
@@ -91,13 +100,8 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     double w = plot.slot.w - plot.legend_w;
     double radius = std::min(w / 2 - 40, plot.slot.h - 30 - 28);
     if (radius < 20) return;
-    double step = 0;
-    int rings = 0;
-    for (int about = 3; about >= 1; --about) {  // labels need 44 px each
-        step = round_step(plot.peak, about);
-        rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
-        if (radius / rings >= 44) break;
-    }
+    double step = ring_step(plot.peak, std::max(1, static_cast<int>(radius / 44)));  // a label needs 44 px
+    int rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
     Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
     draw_circles(canvas, f, step, rings);
     draw_rays(canvas, f, plot.tilt);

@@ -29,7 +29,7 @@ void region_facts(Sheet& sheet, const View& v, double y) {
     Rect line{facts_slot.x, y + 18, facts_slot.w, 24};
     for (std::size_t i = 0; i < regions.size() && line.y + 98 <= facts_slot.bottom(); ++i) {
         const Box& b = regions[i].box;
-        sheet.canvas.fill({line.x, line.y + 3, 18, 18}, series[i % series_count]);
+        sheet.canvas.fill({line.x, line.y + 3, 18, 18}, region_colour(i));
         sheet.canvas.text({line.x + 28, line.y, line.w - 28, 24}, "region " + escaped(regions[i].name),
                           with(body_text, Weight::semibold));
         sheet.canvas.text({line.x, line.y + 27, line.w, 20},
@@ -57,7 +57,7 @@ void draw_reference(Sheet& sheet) {
         slot.y += std::floor((slot.h - f.out_h) / 2);
         Rect picture = paint_photograph(sheet, v, whole(v), slot);
         for (std::size_t i = 0; i < e.regions.size(); ++i) {
-            outline_region(sheet, picture, v, e.regions[i], series[i % series_count]);
+            outline_region(sheet, picture, v, e.regions[i], region_colour(i));
         }
         sheet.notes.push_back("drawn through Khronos PBR Neutral, exposure " + number(e.exposure) + ", " + to_string(f));
         sheet.notes.push_back("means off the float film");

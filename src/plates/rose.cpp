@@ -135,13 +135,13 @@ double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, c
     std::string title = arm_name(part.key.arm, e) + (axis.empty() ? "" : " about " + axis);
     sheet.canvas.text({col.x, col.y, col.w, 30}, title, with_px(title_text, 22));
     std::string formula = density_formula_at(part.key.arm, part.key.s, e);
-    std::string peak = "peak " + number(part.peak, 3) + " sr<sup>−1</sup>";
-    if (i > 0 && parts[0].peak > 0) {
+    std::string peak = part.peak > 0 ? "peak " + number(part.peak, 3) + " sr<sup>−1</sup>" : "";
+    if (i > 0 && part.peak > 0 && parts[0].peak > 0) {
         peak += fmt::format(" = {} × {}", number(part.peak / parts[0].peak, 3), arm_name(parts[0].key.arm, e));
     }
     Text how = with(with_px(body_text, 17), muted);
     Rect line{col.x, col.y + 31, col.w, 24};
-    if (!narrow) formula += ",  " + peak;
+    if (!narrow && !peak.empty()) formula += ",  " + peak;
     sheet.canvas.text(line, formula, how);
     if (narrow) sheet.canvas.text({line.x, line.y + 25, line.w, line.h}, peak, how);
     return line.y + (narrow ? 56 : 31);
