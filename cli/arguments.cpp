@@ -19,13 +19,13 @@ experiment file; 3 an output cannot be written or a part is missing;
 4 inconclusive (check); 130 interrupted.
 
   crescent run experiments/gallery.toml      the published experiment
-  crescent run experiments/gallery.toml --set shapes.sphere.s=64 --set seed=7
+  crescent run experiments/gallery.toml --set sphere.s=64 --set seed=7
   crescent list                              what an experiment can name
   crescent schema                            every key of an experiment file)";
 
 constexpr const char* run_footer = R"(FILE is an experiment (`crescent schema` has its keys). --set takes the path
 of any key, with the same checks as the file:
-  --set shapes.sphere.s=64 --set seed=7
+  --set sphere.s=64 --set seed=7
 Films are the same bits for any --threads and any --isa.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,

@@ -1,0 +1,226 @@
+// Guides, densities and integrals of a trial: where its lobes stand, what mass each bin should hold, what arrives.
+#include <algorithm>
+#include <cmath>
+
+#include "simd/random.h"
+#include "verdicts/recorded.h"
+#include "verdicts/work.h"
+
+namespace crescent {
+
+namespace {
+
+/// Roberts' R2 sequence: even cover of the unit square, the same for every seed.
+Vec2d r2(std::uint64_t i, Vec2d shift) {
+    const double x = shift.x + 0.7548776662466927 * static_cast<double>(i + 1), y = shift.y + 0.5698402909980532 * static_cast<double>(i + 1);
+    const double top = 1 - 0x1p-24;
+    return {std::min(x - std::floor(x), top), std::min(y - std::floor(y), top)};
+}
+
+}  // namespace
+
+/// Where the sampler draws, by an even cover of u, and where a mirror lobe would be, at every scale.
+void Work::find_guides() {
+    for (int t = 0; t < subject.techniques(); ++t) {
+        std::vector<Draw> pilot;
+        if (subject.draws_at_will()) {
+            std::vector<Vec2d> u;
+            for (std::uint64_t i = 0; i < 2048; ++i) u.push_back(r2(i, {0.5, 0.5}));
+            pilot.resize(u.size());
+            subject.sample(t, trial.wo, u, pilot);
+        } else {
+            const auto& all = first_[0].draws;
+            pilot.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(all.size(), 2048)));
+        }
+        for (const Draw& d : pilot)
+            if (d.pdf > 0) guides_.push_back(d.wi);
+    }
+    const SphereMap about(mirror(trial.wo));
+    for (std::uint64_t i = 0; i < 384; ++i) {
+        const Vec2d v = r2(i, {0.1, 0.7});
+        guides_.push_back(about.direction({0.5 * std::pow(10.0, -7 * v.x), v.y}));
+    }
+}
+
+void Work::measure_density() {
+    find_guides();
+    for (int t = 0; t < subject.techniques(); ++t) {
+        const Batchful& b = first(t);
+        Vec3d mean{};
+        Vec3d peak{0, 0, 1};
+        double highest = 0, count = 0;
+        for (std::size_t i = 0; i < std::min<std::size_t>(b.draws.size(), 4096); ++i) {
+            const Draw& d = b.draws[i];
+            if (!(d.pdf > 0)) continue;
+            mean = mean + d.wi;
+            ++count;
+            if (d.pdf > highest) {
+                highest = d.pdf;
+                peak = d.wi;
+            }
+        }
+        const bool sharp = count > 0 && length(mean) / count > 0.9;
+        const Vec3d n{0, 0, 1};
+        Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations) : density_about(t, n, true, rigour.evaluations);
+        if (d.mass.error > 5e-5) {
+            Density other = sharp ? density_about(t, n, true, rigour.evaluations) : density_about(t, normalize(peak), false, rigour.evaluations);
+            if (other.mass.error < d.mass.error) d = std::move(other);
+            if (d.mass.error > 1e-4) d = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations);
+        }
+        if (b.nothing > 0 && subject.draws_at_will()) find_nothing(t, d, rigour.full ? 16384 : 2048);
+        else d.nothing = static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
+        // Too rare to have been met: half a million draws show a share of 5e-5 twenty times over.
+        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 && d.mass.value < 1 && subject.draws_at_will()) find_nothing(t, d, 32768);
+        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5)  // nobody is accused on one quadrature's word
+            d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
+        density_.push_back(std::move(d));
+    }
+}
+
+Witnesses Work::witnesses_of(int technique, const Density& d) const {
+    Witnesses out;
+    const Batchful& b = first(technique);
+    out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
+    const std::size_t n = std::min<std::size_t>(b.draws.size(), 32768);
+    out.total = static_cast<double>(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (is_nothing(b.draws[i], b.pdf[i])) continue;
+        const Vec2d at = d.map.coordinates(b.draws[i].wi);
+        out.bins[d.bin_of(at)].push_back(at);
+    }
+    return out;
+}
+
+std::size_t Density::bin_of(Vec2d at) const {
+    const auto edge = std::upper_bound(rings.begin(), rings.end(), at.x);
+    const auto ring = std::clamp<std::ptrdiff_t>(edge - rings.begin() - 1, 0, static_cast<std::ptrdiff_t>(rings.size()) - 2);
+    const int sector = std::clamp(static_cast<int>(at.y * sectors), 0, sectors - 1);
+    return static_cast<std::size_t>(ring * sectors + sector);
+}
+
+Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
+    Density d;
+    d.map = SphereMap(axis);
+    d.about_n = about_n;
+    d.sectors = rigour.sectors;
+    std::vector<double> a;
+    for (Vec3d w : std::span(guides_).first(guides_.size() - 384)) a.push_back(d.map.coordinates(w).x);
+    std::sort(a.begin(), a.end());
+    d.rings = {0};
+    if (!a.empty()) {
+        const double tails[] = {0.002, 0.01, 0.025};  // finer rings where samplers go wrong: at the axis and at the rim
+        std::vector<double> q(std::begin(tails), std::end(tails));
+        for (int i = 1; i < rigour.rings; ++i) q.push_back(static_cast<double>(i) / rigour.rings);
+        for (double v : tails) q.push_back(1 - v);
+        q.push_back(1);
+        std::sort(q.begin(), q.end());
+        for (double v : q) {
+            const double edge = a[static_cast<std::size_t>(v * static_cast<double>(a.size() - 1))];
+            if (edge > d.rings.back() * (1 + 1e-9) + 1e-14) d.rings.push_back(edge);
+        }
+    }
+    if (about_n) {
+        for (double rim : {0.9, 0.95, 0.99, 1.0}) d.rings.push_back(rim);  // where n.w is small, samplers stop short
+        std::sort(d.rings.begin(), d.rings.end());
+        d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-12; }), d.rings.end());
+    }
+    for (double extra : {2 * d.rings.back(), 8 * d.rings.back(), 64 * d.rings.back()})
+        if (!about_n && extra < 1.9) d.rings.push_back(extra);
+    d.rings.push_back(2);
+    std::vector<Rect> cells;
+    const int rings = static_cast<int>(d.rings.size()) - 1;
+    for (int i = 0; i < rings; ++i)
+        for (int k = 0; k < d.sectors; ++k)
+            cells.push_back({d.rings[static_cast<std::size_t>(i)], d.rings[static_cast<std::size_t>(i) + 1], double(k) / d.sectors, double(k + 1) / d.sectors,
+                             i * d.sectors + k});
+    const SphereMap map = d.map;
+    const Witnesses witnesses = witnesses_of(technique, d);
+    d.mass = integrate(guided(std::move(cells), map, guides_), rings * d.sectors,
+                       [&](std::span<const Vec2d> at, std::span<double> out) {
+                           std::vector<Vec3d> wi;
+                           for (Vec2d v : at) wi.push_back(map.direction(v));
+                           const std::vector<double> p = pdf(technique, wi, true);
+                           for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
+                       },
+                       {edge_mass / 20, evaluations, edge_mass}, &witnesses);
+    return d;
+}
+
+/// Sixteen random shifts of an even cover give the share of u that draws nothing and its standard error.
+void Work::find_nothing(int technique, Density& d, std::uint64_t n) const {
+    constexpr int shifts = 16;
+    double sum = 0, square = 0;
+    std::vector<Vec2d> u(n);
+    std::vector<Draw> draws(n);
+    for (int k = 0; k < shifts; ++k) {
+        const Vec2<float> shift = crescent::draw(seed_of(rigour.seed, 0x51f7u), index_, static_cast<std::uint64_t>(k), 8u + static_cast<std::uint32_t>(technique));
+        for (std::uint64_t i = 0; i < n; ++i) u[i] = r2(i, {shift.x, shift.y});
+        subject.sample(technique, trial.wo, u, draws);
+        const std::vector<double> p = pdf_of_drawn(technique, draws);
+        double none = 0;
+        for (std::size_t i = 0; i < n; ++i)
+            if (is_nothing(draws[i], p[i])) ++none;
+        sum += none / static_cast<double>(n);
+        square += sqr(none / static_cast<double>(n));
+    }
+    d.nothing = sum / shifts;
+    d.nothing_se = std::sqrt(std::max(square / shifts - sqr(d.nothing), 0.0) / (shifts - 1));
+}
+
+const Integral& Work::incoming(Where where, bool even) const {
+    auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
+    if (!kept) kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even) : integrate_incoming(where, even);
+    return *kept;
+}
+
+Integral Work::integrate_incoming(Where where, bool even) const {
+    const auto of_light = [&](std::span<const Vec3d> wi, std::span<double> out) {
+        const std::vector<double> value = f(wi, true);
+        const std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
+            out[i] = counts && wi[i].z > 0 ? value[i] * wi[i].z : 0.0;
+        }
+    };
+    const TrialLight& light = trial.light;
+    const double fill = even ? 1 : light.fill;
+    Integral total;
+    if (fill > 0) {
+        const SphereMap map(Vec3d{0, 0, 1});
+        total = integrate(guided(graded_cells(1), map, guides_), 1,
+                          [&](std::span<const Vec2d> at, std::span<double> out) {
+                              std::vector<Vec3d> wi;
+                              for (Vec2d v : at) wi.push_back(map.direction(v));
+                              of_light(wi, out);
+                              for (double& v : out) v *= 2 * pi * fill;
+                          },
+                          {5e-6, rigour.evaluations});
+    }
+    if (!even && light.has_disk()) {
+        const Frame<double> frame = frame_about(light.normal);
+        std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
+        for (int i = 0; i < 4; ++i)
+            for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
+        const Integral disk = integrate(cells, 1,
+                                        [&](std::span<const Vec2d> at, std::span<double> out) {
+                                            std::vector<Vec3d> wi;
+                                            std::vector<double> per_area;
+                                            for (Vec2d v : at) {
+                                                const double r = light.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
+                                                const Vec3d y = light.center + frame.t * (r * std::cos(phi)) + frame.b * (r * std::sin(phi));
+                                                wi.push_back(normalize(y));
+                                                per_area.push_back(std::max(-dot(wi.back(), light.normal), 0.0) / dot(y, y));
+                                            }
+                                            of_light(wi, out);
+                                            for (std::size_t i = 0; i < out.size(); ++i)
+                                                out[i] *= per_area[i] * pi * sqr(light.radius) * (light.radiance - fill);
+                                        },
+                                        {5e-6, rigour.evaluations / 4});
+        total.value += disk.value;
+        total.error += disk.error;
+        total.settled = total.settled && disk.settled;
+    }
+    return total;
+}
+
+}  // namespace crescent
