@@ -1,10 +1,8 @@
-# Version, commit and compiler, as every output states them.
-execute_process(COMMAND git describe --always --dirty --abbrev=12 WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
-  OUTPUT_VARIABLE crescent_commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-if(NOT crescent_commit)
-  set(crescent_commit unknown)
-endif()
+# Version, commit and compiler, as src/version.cpp states them.
+set(crescent_commit_header ${PROJECT_BINARY_DIR}/provenance/commit.h)
+add_custom_target(crescent_commit BYPRODUCTS ${crescent_commit_header}
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DOUTPUT=${crescent_commit_header} -P ${PROJECT_SOURCE_DIR}/cmake/commit.cmake
+  COMMENT "commit" VERBATIM)
 set(crescent_provenance
   CRESCENT_VERSION="${PROJECT_VERSION}"
-  CRESCENT_COMMIT="${crescent_commit}"
   CRESCENT_COMPILER="${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")

@@ -66,7 +66,9 @@ macro(crescent_public_library)
   target_include_directories(crescent_face PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
   target_link_libraries(crescent_face PUBLIC ${crescent_folders} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
-  target_compile_definitions(crescent_face PRIVATE ${crescent_provenance})
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/version.cpp PROPERTIES
+    COMPILE_DEFINITIONS "${crescent_provenance}" INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/provenance)
+  add_dependencies(crescent_face crescent_commit)
   add_library(crescent INTERFACE)
   target_link_libraries(crescent INTERFACE crescent_face)
   add_library(crescent::crescent ALIAS crescent)

@@ -27,6 +27,7 @@
 #include "meters/tail.h"
 #include "plates/plates.h"
 #include "simd/random.h"
+#include "version.h"
 
 namespace crescent {
 
@@ -186,9 +187,9 @@ private:
     }
 
     void provenance() {
-        provenance_.version = CRESCENT_VERSION;
-        provenance_.commit = CRESCENT_COMMIT;
-        provenance_.compiler = CRESCENT_COMPILER;
+        provenance_.version = version();
+        provenance_.commit = commit();
+        provenance_.compiler = compiler();
         provenance_.experiment_file = experiment_.file;
         provenance_.experiment_hash = fmt::format("{:016x}", experiment_.hash);
         provenance_.instrument = instrument_->name();

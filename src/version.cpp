@@ -1,5 +1,7 @@
-// Version, commit and compiler; cmake/provenance.cmake passes them in.
+// Version, commit and compiler; cmake/provenance.cmake passes them in, commit.h is made anew at every build.
 #include "version.h"
+
+#include <commit.h>
 
 namespace crescent {
 

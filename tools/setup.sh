@@ -68,11 +68,12 @@ binary_dir() {
     [ "$1" = release ] && echo "$root/build" || echo "$root/build-$1"
 }
 
-# follow NAME: copies ninja's lines to stdout (the log) and its progress to the terminal.
+# follow NAME LOG: copies ninja's lines to stdout (the log) and its progress to the terminal.
 follow() {
-    local line
+    local line told=
     while IFS= read -r line; do
         printf '%s\n' "$line"
+        [ -z "$told" ] && [[ $line == *Building* ]] && told=1 && say "building $1 (log: ${2#"$root"/})"
         [ -t 2 ] && [[ $line =~ ^\[([0-9]+/[0-9]+)\] ]] && printf '\r\e[K%s %s' "$1" "${BASH_REMATCH[1]}" >&2
     done
     [ -t 2 ] && printf '\r\e[K' >&2
@@ -85,15 +86,14 @@ build() {
     shift
     dir=$(binary_dir "$preset")
     log="$log_dir/$preset.log"
+    : >"$log"
+    # A repository that was moved is configured anew.
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir/CMakeCache.txt" "$dir/build.ninja"
     if [ ! -f "$dir/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$dir/build.ninja" ]; then
         say "configuring $preset"
         (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || fail 3 "$log" "cmake --preset $preset failed"
     fi
-    # With nothing to do this takes a fraction of a second and says nothing.
-    if ! ninja -C "$dir" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
-        say "building $preset (log: ${log#"$root"/})"
-    fi
-    ninja -C "$dir" "$@" 2>&1 | follow "$preset" >>"$log"
+    ninja -C "$dir" "$@" 2>&1 | follow "$preset" "$log" >>"$log"
     [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building $preset failed"
     [ $((SECONDS - start)) -lt 2 ] || say "built $preset in $((SECONDS - start)) s"
 }
