@@ -66,8 +66,7 @@ public:
         staging.write("timing.json", timing_json(timing_, provenance_));
         watch_.check();
         staging.commit();
-        RunResult result{metrics_, timing_, provenance_, terminal_summary(inputs(), timing_, options_.out, false)};
-        return result;
+        return {metrics_, timing_, provenance_, terminal_summary(inputs(), timing_, options_.out, false)};
     }
 
 private:
