@@ -6,7 +6,7 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O3")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
@@ -30,7 +30,9 @@ add_library(crescent_settings INTERFACE)
 # No contraction into fused multiply-add anywhere: films are the same bits from every compiler and instruction set.
 target_compile_options(crescent_settings INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno
   # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # Masks of one lane are plain bool, and & on them is meant.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
 if(CRESCENT_SANITIZE)
   target_compile_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   target_link_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE})

@@ -1,8 +1,8 @@
 #!/bin/bash
-# g++ and clang make the same films, bit for bit, on every instruction set. $FILM_HASHES and $FILM_HASHES_CLANG are the
-# program of laws/films built by each.
+# g++ and clang make the same films, bit for bit, on every instruction set. $FILM_HASHES and $FILM_HASHES_GCC are the
+# program of laws/films built by clang and by g++.
 . "$(dirname "$0")/common.sh"
-[ -x "${FILM_HASHES_CLANG:-}" ] || skip "nothing built by clang (cmake --preset clang && ninja -C build-clang film_hashes)"
+[ -x "${FILM_HASHES_GCC:-}" ] || skip "nothing built by g++ (cmake --preset gcc && ninja -C build-gcc film_hashes)"
 
 # Every sampler of the list over the small scene, and scenes with other shapes, lobes and lights.
 {
@@ -14,10 +14,10 @@ experiments=(every-arm.toml)
 for name in three-glosses two-lamps empty-room; do [ -f "$name.toml" ] && experiments+=("$name.toml"); done
 
 expect 0 "$FILM_HASHES" "${experiments[@]}"
-mv printed gcc
-expect 0 "$FILM_HASHES_CLANG" "${experiments[@]}"
-[ "$(wc -l <gcc)" -gt 20 ] || die "too few films: $(cat gcc)"
-diff gcc printed >difference || die "films differ between compilers: $(cat difference)"
+mv printed clang
+expect 0 "$FILM_HASHES_GCC" "${experiments[@]}"
+[ "$(wc -l <clang)" -gt 20 ] || die "too few films: $(cat clang)"
+diff clang printed >difference || die "films differ between compilers: $(cat difference)"
 # And between instruction sets: without its word, each line is there once a set.
-grep -v ' quadrature ' gcc | awk '{ $2 = ""; print }' | sort | uniq -c | awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
+grep -v ' quadrature ' clang | awk '{ $2 = ""; print }' | sort | uniq -c | awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
     die "films differ between instruction sets"

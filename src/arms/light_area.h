@@ -11,22 +11,42 @@ template <class F> struct LightArea {
     static constexpr std::string_view name = "light-area";
     const LocalDisk<F>* disks;
     int count;
-    explicit LightArea(const Site<F>& site) : disks(site.disks), count(site.disk_count) {}
+
+    /// A disk with what does not change from sample to sample.
+    struct Aim {
+        Vec3<F> center, t, b;  // t and b span the disk: as long as its radius
+        F scale;               // p = scale |y|^3: r^2 / cos(light) = |y|^3 / |c.n|; 0 where no emitting side faces x
+
+        Aim() = default;
+        explicit Aim(const LocalDisk<F>& d) {
+            const Frame<F> frame = frame_about(d.normal);
+            const F c = dot(d.to_center, d.normal);
+            const auto lit = faces(d, c);
+            center = d.to_center, t = frame.t * d.radius, b = frame.b * d.radius;
+            scale = select(lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(c), number<F>(1))), number<F>(0));
+        }
+    };
+    Aim first;  // most scenes have but one
+
+    explicit LightArea(const Site<F>& site) : disks(site.disks), count(site.disk_count) {
+        if (count > 0) first = Aim(disks[0]);
+    }
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
+        if (count == 1) return on_disk(first, u);
         Drawn<F> drawn = {{zero, zero, one}, {zero}};
         F below = zero;
         for (int k = 0; k < count; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
             const F above = k + 1 < count ? below + disks[k].power : one;
             const auto chosen = (u.x >= below) & (u.x < above);
-            const Drawn<F> one_disk = on_disk(disks[k], {(u.x - below) / (above - below), u.y});
+            const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - below) / (above - below), u.y});
             drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y), select(chosen, one_disk.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
             below = above;
         }
-        if (count > 1)  // disks may stand one behind another: every one that wi meets could have drawn it
-            drawn.pdf.v = select(drawn.pdf.v > zero, larger(pdf(wo, drawn.wi).v, drawn.pdf.v), zero);
+        // Disks may stand one behind another: every one that wi meets could have drawn it.
+        drawn.pdf.v = select(drawn.pdf.v > zero, larger(pdf(wo, drawn.wi).v, drawn.pdf.v), zero);
         return drawn;
     }
 
@@ -50,16 +70,12 @@ private:
         return per_sr(PerM2<F>{number<F>(1 / pi) / sqr(d.radius)}, r2, cos_light);
     }
 
-    [[gnu::always_inline]] static Drawn<F> on_disk(const LocalDisk<F>& d, Vec2<F> u) {
-        const F r = d.radius * sqrt(u.x);
+    [[gnu::always_inline]] static Drawn<F> on_disk(const Aim& aim, Vec2<F> u) {
+        const F r = sqrt(u.x);
         const SinCos<F> phi = sincos_turns(u.y);
-        const Frame<F> about = frame_about(d.normal);
-        const Vec3<F> y = d.to_center + about.t * (r * phi.cos) + about.b * (r * phi.sin);
-        const F r2 = dot(y, y);
-        const Vec3<F> wi = y * (number<F>(1) / sqrt(r2));
-        const F v = abs(dot(wi, d.normal));
-        const auto lit = faces(d, dot(d.to_center, d.normal)) & (v > number<F>(0));
-        return {wi, {select(lit, density(d, r2, select(lit, v, number<F>(1))).v, number<F>(0))}};
+        const Vec3<F> y = aim.center + aim.t * (r * phi.cos) + aim.b * (r * phi.sin);
+        const F r2 = dot(y, y), distance = sqrt(r2);
+        return {y * (number<F>(1) / distance), {aim.scale * r2 * distance}};
     }
 };
 

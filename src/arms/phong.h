@@ -20,8 +20,7 @@ template <class F> struct Phong {
         const F sin = sqrt(lobe.one_minus * (number<F>(1) + cos));
         const SinCos<F> phi = sincos_turns(u.y);
         const Frame<F> about = frame_about(mirror(wo));
-        const F p = scale * (u.x / cos);
-        return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {select(u.x > number<F>(0), p, number<F>(0))}};
+        return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * (u.x / cos)}};
     }
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return {scale * cosine_power(wi, mirror(wo), s)}; }
 };

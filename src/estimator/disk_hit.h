@@ -34,6 +34,23 @@ template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& dis
     return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
 }
 
+/// A cone from the surface that holds a disk: a first, cheap question to a direction. It never excludes one that meets the
+/// disk, for directions that are unit to 1e-6.
+template <class F> struct DiskCone {
+    Vec3<F> axis;
+    F cos;  // of its half-angle, less what rounding can do; 2 where no emitting side faces the surface
+
+    DiskCone() = default;
+    explicit DiskCone(const FacingDisk<F>& disk) {
+        const F one = number<F>(1), d2 = dot(disk.c, disk.c);
+        const auto outside = d2 > disk.r2;
+        axis = disk.c * (one / sqrt(larger(d2, number<F>(1e-30))));
+        cos = select(outside, sqrt(larger(one - disk.r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5), number<F>(-2));
+        cos = select(disk.r2 < number<F>(0), number<F>(2), cos);
+    }
+    CRESCENT_INLINE MaskOf<F> holds(Vec3<F> w) const { return dot(w, axis) > cos; }
+};
+
 template <class F> Vec3<F> broadcast(const std::array<float, 3>& a) { return {F(a[0]), F(a[1]), F(a[2])}; }
 
 /// t range of a slab; a component of 0 is nudged so that no 0/0 arises.

@@ -1,54 +1,15 @@
 #include "estimator/disk_quadrature.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/quadrature/gauss.hpp>
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <complex>
 
-#include "films/film.h"
-#include "scene/brdf.h"
+#include "estimator/chords.h"
+#include "estimator/disk_point.h"
 
 namespace crescent {
 
 namespace {
-
-using Pair = std::complex<double>;  // diffuse, lobe: two integrands in one pass
-
-/// What one surface point makes of a direction to the disk.
-struct Point {
-    Vec3d x, wo;
-    Frame<double> frame;
-    Surface surface;
-    Vec3d light_normal;
-
-    /// f cos(theta_i) cos(theta_l) / r^2 at y, 1/m^2, rho apart.
-    Pair operator()(Vec3d y) const {
-        const Vec3d d = y - x;
-        const double r2 = dot(d, d), r = std::sqrt(r2);
-        const Vec3d wi = frame.to_local(d * (1 / r));
-        if (wi.z <= 0) return 0;
-        const double geometry = wi.z * std::fabs(dot(d, light_normal)) / (r * r2);
-        return {geometry / pi, surface.rho_s > 0 ? geometry * lobe(wi) : 0.0};
-    }
-    double lobe(Vec3d wi) const {
-        switch (surface.brdf) {
-            case BrdfKind::phong: return PhongLobe<double>(surface.s, surface.alpha)(wo, wi);
-            case BrdfKind::blinn_phong: return BlinnPhongLobe<double>(surface.s, surface.alpha)(wo, wi);
-            case BrdfKind::ggx: return GgxLobe<double>(surface.s, surface.alpha)(wo, wi);
-        }
-        return 0;
-    }
-    /// How many times the lobe's width goes into the angle t: decides how fine a rule must be.
-    double sharpness(double t) const {
-        if (!(surface.rho_s > 0)) return 0;
-        const double s = surface.brdf == BrdfKind::ggx ? 2 / sqr(surface.alpha) : surface.s;
-        return t * std::sqrt(s);
-    }
-    /// Y of what the pair is worth under light of radiance 1.
-    double weigh(Pair p) const { return luminance(surface.rho_d) * std::abs(p.real()) + surface.rho_s * std::abs(p.imag()); }
-};
 
 /// Gauss-Legendre in r^2, evenly spaced in angle: nodes on the unit disk, weights summing to pi.
 struct PolarRule {
@@ -81,12 +42,10 @@ const std::vector<PolarRule>& polar_rules() {
     return rules;
 }
 
-DiskIntegral result(Pair value, Pair error) { return {value.real(), value.imag(), std::abs(error.real()), std::abs(error.imag())}; }
-
 /// The whole disk is above the horizon and open, Lambert: integral of cos(theta_i) dw / pi in closed form. The light's
 /// vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view factors, elements
 /// parallel and perpendicular to a disk), written without cancellation.
-double whole_disk_diffuse(const Point& point, const DiskLight& disk) {
+double whole_disk_diffuse(const DiskPoint& point, const DiskLight& disk) {
     const Vec3d d = disk.center - point.x;
     const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
     const Vec3d axis = along < 0 ? -disk.normal : disk.normal;
@@ -98,13 +57,13 @@ double whole_disk_diffuse(const Point& point, const DiskLight& disk) {
 }
 
 /// The same for the lobe: polar rules of rising order until two agree.
-DiskIntegral whole_disk(const Point& point, const DiskLight& disk, const Frame<double>& frame) {
+DiskIntegral whole_disk(const DiskPoint& point, const DiskLight& disk, const Frame<double>& frame) {
     DiskIntegral out;
     out.diffuse = whole_disk_diffuse(point, disk);
     if (!(point.surface.rho_s > 0)) return out;
     const auto apply = [&](const PolarRule& rule) {
         double sum = 0;
-        for (const auto& n : rule.nodes) sum += n.weight * point(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y)).imag();
+        for (const auto& n : rule.nodes) sum += n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
         return sum * sqr(disk.radius);
     };
     constexpr double good = 1e-6;  // relative, between two rules; the finer one, which is kept, is better by far
@@ -119,18 +78,6 @@ DiskIntegral whole_disk(const Point& point, const DiskLight& disk, const Frame<d
     return out;
 }
 
-template <unsigned n> Pair along(const Point& point, Vec3d y0, Vec3d y1, Interval part) {
-    const auto f = [&](double v) { return point(y0 + v * (y1 - y0)); };
-    return boost::math::quadrature::gauss<double, n>::integrate(f, part.lo, part.hi);
-}
-
-Pair along(const Point& point, Vec3d y0, Vec3d y1, Interval part, double sharpness) {
-    if (sharpness == 0) return along<5>(point, y0, y1, part);
-    if (sharpness < 1) return along<10>(point, y0, y1, part);
-    if (sharpness < 4) return along<20>(point, y0, y1, part);
-    return along<60>(point, y0, y1, part);
-}
-
 }  // namespace
 
 DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k)
@@ -139,7 +86,6 @@ DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k)
         const DiskLight& d = scene.disks()[other];
         if (other != k) bodies_.push_back({Occluder::Kind::disk, -2 - static_cast<int>(d.two_sided), d.center, d.normal, {}, d.radius});
     }
-    for (const Occluder& body : bodies_) bounds_.push_back(bound_of(body));
 }
 
 namespace {
@@ -155,28 +101,6 @@ bool hides_all(const Occluder& body, Vec3d x, const DiskLight& disk, const Frame
     return whole(disk.center + up) && whole(disk.center - up);
 }
 
-/// Chord by chord: on each, the exact open parts; across them, adaptive Gauss-Kronrod, which finds the kinks.
-DiskIntegral chord_by_chord(const Point& point, const DiskLight& disk, const Frame<double>& frame, const std::vector<const Occluder*>& bodies) {
-    const double sharpness = point.sharpness(disk.radius / length(disk.center - point.x));
-    const auto chord = [&](double phi) {
-        const double half = disk.radius * std::cos(phi);
-        const Vec3d middle = disk.center + frame.b * (disk.radius * std::sin(phi));
-        const Vec3d y0 = middle - frame.t * half, y1 = middle + frame.t * half;
-        std::vector<Interval> parts;
-        for (const Occluder* body : bodies) parts.push_back(hidden(*body, point.x, y0, y1));
-        const double h0 = dot(point.frame.n, y0 - point.x), h1 = dot(point.frame.n, y1 - point.x);
-        if (h0 <= 0 && h1 <= 0) return Pair(0);
-        if (h0 < 0) parts.push_back({0, h0 / (h0 - h1)});
-        if (h1 < 0) parts.push_back({h0 / (h0 - h1), 1});
-        Pair sum = 0;
-        for (const Interval& part : open_parts(std::move(parts))) sum += along(point, y0, y1, part, sharpness);
-        return sum * (2 * half * half);  // chord length x R cos(phi)
-    };
-    double error = 0;
-    const Pair value = boost::math::quadrature::gauss_kronrod<double, 15>::integrate(chord, -pi / 2, pi / 2, 7, 1e-5, &error);
-    return result(value, Pair(error, error));
-}
-
 }  // namespace
 
 DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) const {
@@ -186,12 +110,11 @@ DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) 
     const double reach = disk_.radius * std::sqrt(std::max(0.0, 1 - tilt * tilt));
     if (height + reach <= 0) return {};
     const Frame<double> local = frame_about(hit.n);
-    const Point point = {hit.x, local.to_local(hit.wo), local, surface, disk_.normal};
+    const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, disk_.normal};
     std::vector<const Occluder*> near;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const Occluder& body = bodies_[k];
+    for (const Occluder& body : bodies_) {
         const bool light_from_behind = body.shape == -2 && dot(body.a - hit.x, body.b) >= 0;
-        if (body.shape != hit.shape && !light_from_behind && may_hide(bounds_[k], hit.x, disk_.center, disk_.radius)) near.push_back(&body);
+        if (body.shape != hit.shape && !light_from_behind && !stands_clear(body, {hit.x}, disk_)) near.push_back(&body);
     }
     for (const Occluder* body : near)
         if (hides_all(*body, hit.x, disk_, frame_)) return {};

@@ -26,7 +26,6 @@ private:
     const DiskLight& disk_;
     Frame<double> frame_;
     std::vector<Occluder> bodies_;
-    std::vector<Bound> bounds_;
 };
 
 }  // namespace crescent

@@ -6,8 +6,7 @@
 #pragma once
 
 #include "arms/all.h"
-#include "estimator/disk_hit.h"
-#include "estimator/kernel.h"
+#include "estimator/kernel_lights.h"
 #include "scene/brdf.h"
 #include "simd/random.h"
 
@@ -15,12 +14,6 @@ namespace crescent {
 namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
-
-template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
-template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t at) { return load_as<UintOf<F>>(a.data() + at); }
-template <class F> Vec3<F> load_lanes(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t at) {
-    return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
-}
 
 /// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
 /// only samples that meet a disk touch, so that it can live in registers.
@@ -30,82 +23,29 @@ template <class F> struct Gathered {
     UintOf<F> horizon{0u}, bad{0u};
 };
 
-/// The part that samples which meet a disk add to.
-template <class F> struct Met {
-    F disk_g[most_disks], disk_g_lobe[most_disks];
-    UintOf<F> hits{0u};
-    bool any = false;  // in the current block
-};
-
 /// A pack's constants that every sample reads. A copy of its own, because the compiler must take whatever `meet` can
 /// reach for changed after each call, and would redo all that follows from it.
 template <class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s, pivot;
     UintOf<F> pixel;
-    FacingDisk<F> first;  // the first disk; most scenes have but one
+    DiskCone<F> first;  // round the first disk; most scenes have but one
 };
 
 /// One pack of pixels: its lights and the step that takes one sample.
-template <class A, class L, class F> struct Lane {
+template <class A, class L, class F> struct Lane : Lights<F> {
     using U = UintOf<F>;
-    const Sites& sites;
-    std::size_t at;
-    std::size_t disk_count;
-    LocalDisk<F> disks[most_disks];
-    FacingDisk<F> facing[most_disks];
+    using Lights<F>::sites, Lights<F>::at, Lights<F>::disk_count, Lights<F>::disks, Lights<F>::cones, Lights<F>::meet;
     Site<F> site;
-    Met<F> met;
 
-    Lane(const Sites& all, std::size_t first) : sites(all), at(first), disk_count(all.disks.size()) {
-        for (std::size_t k = 0; k < disk_count; ++k) {
-            const DiskArrays& d = sites.disks[k];
-            disks[k] = {load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power)};
-            facing[k] = FacingDisk<F>(disks[k]);
-            met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
-        }
+    Lane(const Sites& all, std::size_t first) : Lights<F>(all, first) {
         site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at), load_lanes<F>(sites.alpha, at),
                 load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks, static_cast<int>(disk_count)};
     }
 
     Constants<F> constants() const {
         return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pivot, at), load_lanes<F>(sites.pixel, at),
-                disk_count > 0 ? facing[0] : FacingDisk<F>{}};
-    }
-
-    /// Samples that met a disk: nearest disk first, then what stands before it. Returns X where one was met.
-    [[gnu::noinline]] F meet(Vec3<F> wi, F g, F lobe, F x, MaskOf<F> up) {
-        const F far = number<F>(1e30);
-        F nearest = far;
-        F index = number<F>(-1);
-        for (std::size_t k = 0; k < disk_count; ++k) {
-            F v;
-            const auto hit = meets_disk(facing[k], wi, v);
-            const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), far);
-            index = select(t < nearest, F(static_cast<float>(k)), index);
-            nearest = smaller(t, nearest);
-        }
-        const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
-        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at), load_lanes<F>(sites.bx, sites.by, sites.bz, at),
-                                load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
-        const Vec3<F> d = frame.to_world(wi);
-        const U own = load_lanes<F>(sites.shape, at);
-        F seen = select(up & (nearest < far), number<F>(1), number<F>(0));
-        for (const OccluderF& body : sites.occluders) {
-            const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
-            seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
-        }
-        for (std::size_t k = 0; k < disk_count; ++k) {
-            const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
-            const F gk = select(this_one, g, number<F>(0));
-            met.disk_g[k] = met.disk_g[k] + gk;
-            met.disk_g_lobe[k] = met.disk_g_lobe[k] + gk * lobe;
-            const F xk = g * (load_lanes<F>(sites.disks[k].d, at) + lobe * load_lanes<F>(sites.disks[k].s, at));
-            x = select(this_one, xk, x);
-        }
-        met.hits = met.hits + select(seen > number<F>(0), U(1u), U(0u));
-        met.any = true;
-        return x;
+                disk_count > 0 ? cones[0] : DiskCone<F>{}};
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
@@ -114,7 +54,7 @@ template <class A, class L, class F> struct Lane {
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
         const auto up = !(down | (drawn.pdf.v == zero));
-        to.horizon = to.horizon + select(down, U(1u), U(0u));
+        to.horizon = plus_one_where(down, to.horizon);
         const F g = select(up, weight * (cos / drawn.pdf.v), zero);
         const F lobe = select(up, brdf(c.wo, drawn.wi), zero);
         F x = g * c.fill_d;
@@ -124,10 +64,9 @@ template <class A, class L, class F> struct Lane {
             x = g * (c.fill_d + lobe * c.fill_s);
         }
         if (disk_count == 0) return x;
-        F v;
-        auto hit = meets_disk(c.first, drawn.wi, v);
-        for (std::size_t k = 1; k < disk_count; ++k) hit = hit | meets_disk(facing[k], drawn.wi, v);
-        if (any(hit & up)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
+        auto near = c.first.holds(drawn.wi);
+        for (std::size_t k = 1; k < disk_count; ++k) near = near | cones[k].holds(drawn.wi);
+        if (any(near & up)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
         return x;
     }
 
@@ -147,8 +86,8 @@ template <class A, class L, class F> struct Lane {
         const F off = x - c.pivot;
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
-        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up (-0 counts as 0: x + 0 clears its sign).
-        to.bad = to.bad + select(bits(x + number<F>(0)) > U(0x7f7fffffu), U(1u), U(0u));
+        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up.
+        to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
         if (call.samples) keep(x, call.samples, j, call.rungs.back());
     }
 
@@ -191,7 +130,7 @@ template <class F> struct Totals {
     }
 };
 
-template <class A, class L, class F> void write_rung(const Lane<A, L, F>& lane, const Gathered<F>& p, const Totals<F>& totals, Moments& out) {
+template <class F> [[gnu::noinline]] void write_rung(const Lights<F>& lane, const Gathered<F>& p, const Totals<F>& totals, Moments& out) {
     const std::size_t at = lane.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);

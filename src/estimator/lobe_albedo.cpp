@@ -4,6 +4,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
+#include <oneapi/tbb/parallel_for.h>
 
 #include "scene/brdf.h"
 
@@ -11,7 +12,7 @@ namespace crescent {
 
 namespace {
 
-template <class Call> double integrate(Call&& f, double a, double b, double tolerance = 1e-11) {
+template <class Call> double integrate(Call&& f, double a, double b, double tolerance = 1e-9) {
     return b > a ? boost::math::quadrature::gauss_kronrod<double, 21>::integrate(f, a, b, 12, tolerance) : 0.0;
 }
 
@@ -93,11 +94,8 @@ LobeAlbedo::LobeAlbedo(BrdfKind kind, double s, double alpha) {
         std::vector<double> finer(2 * cells + 1);
         error_ = 0;
         for (std::size_t k = 0; k <= cells; ++k) finer[2 * k] = values_[k];
-        for (std::size_t k = 0; k < cells; ++k) {
-            const double x = static_cast<double>(k) + 0.5;
-            finer[2 * k + 1] = exact(x, cells);
-            error_ = std::max(error_, std::fabs(interpolate(x) - finer[2 * k + 1]));
-        }
+        tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t k) { finer[2 * k + 1] = exact(static_cast<double>(k) + 0.5, cells); });
+        for (std::size_t k = 0; k < cells; ++k) error_ = std::max(error_, std::fabs(interpolate(static_cast<double>(k) + 0.5) - finer[2 * k + 1]));
         values_ = std::move(finer);
         if (error_ < good || cells >= last) break;
     }

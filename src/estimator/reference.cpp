@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <tuple>
 
 #include "estimator/disk_quadrature.h"
@@ -14,20 +13,23 @@ namespace crescent {
 
 namespace {
 
-/// One table a lobe, made when first asked for.
+/// One table for each lobe of a scene.
 class Albedos {
 public:
-    const LobeAlbedo& of(const Surface& surface) {
-        const std::lock_guard guard(lock_);
-        const auto key = std::tuple(surface.brdf, surface.s, surface.alpha);
-        auto at = tables_.find(key);
-        if (at == tables_.end()) at = tables_.try_emplace(key, surface.brdf, surface.s, surface.alpha).first;
-        return at->second;
+    explicit Albedos(const Scene& scene) {
+        for (std::size_t k = 0; k < scene.experiment().shapes.size(); ++k) {
+            Hit hit;
+            hit.shape = static_cast<int>(k);
+            const Surface surface = scene.surface(hit);
+            if (surface.rho_s > 0) tables_.try_emplace(key(surface), surface.brdf, surface.s, surface.alpha);
+        }
     }
+    const LobeAlbedo& of(const Surface& surface) const { return tables_.at(key(surface)); }
 
 private:
-    std::mutex lock_;
-    std::map<std::tuple<BrdfKind, double, double>, LobeAlbedo> tables_;
+    using Key = std::tuple<BrdfKind, double, double>;
+    static Key key(const Surface& surface) { return {surface.brdf, surface.s, surface.alpha}; }
+    std::map<Key, LobeAlbedo> tables_;
 };
 
 void store(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error) {
@@ -41,11 +43,11 @@ void store(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double erro
 /// The radiance of one pixel by quadrature, and the error of its Y.
 class Quadrature {
 public:
-    explicit Quadrature(const Scene& scene) : scene_(scene) {
+    explicit Quadrature(const Scene& scene) : scene_(scene), albedos_(scene) {
         for (std::size_t k = 0; k < scene.disks().size(); ++k) disks_.emplace_back(scene, k);
     }
 
-    std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) {
+    std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) const {
         const Rgb& fill = scene_.fill();
         double albedo = 0, error = 0;
         if (surface.rho_s > 0) {
@@ -70,8 +72,8 @@ public:
 
 private:
     const Scene& scene_;
-    std::vector<DiskQuadrature> disks_;
     Albedos albedos_;
+    std::vector<DiskQuadrature> disks_;
 };
 
 std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& exponents) {
@@ -160,7 +162,7 @@ void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
 std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch) {
     const Experiment& experiment = scene.experiment();
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
-    std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
+    const std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
     std::vector<ReferenceFilm> films = blank(experiment, exponents);
     const Image& image = experiment.image;
     for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "films/film.h"
+#include "scene/shadow.h"
 
 namespace crescent {
 
@@ -87,6 +88,23 @@ void Sites::pad() {
     for (DiskArrays& k : disks) fill_up(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
 }
 
+void Sites::prune(const Scene& scene) {
+    const auto range = [](const std::vector<float>& v) {
+        const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
+        return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));
+    };
+    const auto [x, half_x] = range(px);
+    const auto [y, half_y] = range(py);
+    const auto [z, half_z] = range(pz);
+    const Extent extent = {{x, y, z}, {half_x, half_y, half_z}};
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
+        const bool clear = std::all_of(scene.disks().begin(), scene.disks().end(), [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk); });
+        if (!clear) occluders[kept++] = occluders[k];
+    }
+    occluders.resize(kept);
+}
+
 std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
     std::vector<Sites> groups;
     const int width = scene.experiment().image.width;
@@ -103,7 +121,10 @@ std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_
             group->add(scene, static_cast<std::uint32_t>(index), *hit, surface);
         }
     }
-    for (Sites& group : groups) group.pad();
+    for (Sites& group : groups) {
+        group.pad();
+        group.prune(scene);
+    }
     return groups;
 }
 

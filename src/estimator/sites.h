@@ -48,13 +48,15 @@ struct Sites {
     std::vector<float> fill_d, fill_s;         // as DiskArrays::d, s for the fill
     std::vector<float> pivot;                  // the second moment is taken about it
     std::vector<DiskArrays> disks;
-    std::vector<OccluderF> occluders;
+    std::vector<OccluderF> occluders;          // those that may hide a disk from one of the sites
     std::vector<Rgb> rho_d;                    // per pixel, for the colours of the film
     std::vector<double> rho_s_exact;
 
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Surface& surface);
     /// Repeats the last site until every pack is full.
     void pad();
+    /// Drops the occluders that stand between no site and no disk.
+    void prune(const Scene& scene);
 };
 
 /// A scene's lights and occluders without any site yet.

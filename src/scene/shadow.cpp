@@ -135,48 +135,4 @@ Interval hidden(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1) {
     return {};
 }
 
-Bound bound_of(const Occluder& o) {
-    const Vec3d everywhere = {infinity, infinity, infinity};
-    const auto around = [](Vec3d c, Vec3d half) { return Bound{c - half, c + half}; };
-    const auto each = [](Vec3d v) { return Vec3d{std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; };
-    switch (o.kind) {
-        case Occluder::Kind::box: return {o.a, o.b};
-        case Occluder::Kind::quad: return around(o.a + 0.5 * (o.b + o.c), 0.5 * (each(o.b) + each(o.c)));
-        case Occluder::Kind::sphere:
-        case Occluder::Kind::disk: return around(o.a, {o.radius, o.radius, o.radius});
-        case Occluder::Kind::plane: return {-everywhere, everywhere};
-    }
-    return {};
-}
-
-bool may_hide(const Bound& bound, Vec3d x, Vec3d center, double radius) {
-    double near = 0, far = 1;
-    const auto slab = [&](double lo, double hi, double from, double to) {
-        if (from == to) {
-            if (from < lo - radius || from > hi + radius) far = -1;
-            return;
-        }
-        const double t0 = (lo - radius - from) / (to - from), t1 = (hi + radius - from) / (to - from);
-        near = std::max(near, std::min(t0, t1));
-        far = std::min(far, std::max(t0, t1));
-    };
-    slab(bound.min.x, bound.max.x, x.x, center.x);
-    slab(bound.min.y, bound.max.y, x.y, center.y);
-    slab(bound.min.z, bound.max.z, x.z, center.z);
-    return near <= far;
-}
-
-std::vector<Interval> open_parts(std::vector<Interval> parts) {
-    std::sort(parts.begin(), parts.end(), [](Interval a, Interval b) { return a.lo < b.lo; });
-    std::vector<Interval> open;
-    double from = 0;
-    for (const Interval& part : parts) {
-        if (part.empty()) continue;
-        if (part.lo > from) open.push_back({from, part.lo});
-        from = std::max(from, part.hi);
-    }
-    if (from < 1) open.push_back({from, 1});
-    return open;
-}
-
 }  // namespace crescent

@@ -3,7 +3,8 @@
 // where its shadow begins. Double precision.
 #pragma once
 
-#include <vector>
+#include <algorithm>
+#include <span>
 
 #include "scene/scene.h"
 
@@ -18,17 +19,25 @@ struct Interval {
 /// The v for which the segment from x to y(v) crosses the body.
 Interval hidden(const Occluder& body, Vec3d x, Vec3d y0, Vec3d y1);
 
-/// The body's extent along x, y and z; infinite for a plane.
-struct Bound {
-    Vec3d min{}, max{};
+/// Points within a box: its middle and half its sides. A single point has no sides.
+struct Extent {
+    Vec3d middle{}, half{};
 };
-Bound bound_of(const Occluder& body);
 
-/// Could the body stand between x and any point within `radius` of `center`? Never false where it does: the cone of
-/// lines is nowhere wider than `radius`, so the segment to the centre must come within `radius` of the body's extent.
-bool may_hide(const Bound& bound, Vec3d x, Vec3d center, double radius);
+/// A plane parts the body from all segments between these points and the disk: it hides nothing of it from any. Never
+/// true where it does hide some; false where none of the planes that are tried parts them.
+bool stands_clear(const Occluder& body, const Extent& from, const DiskLight& disk);
 
-/// [0, 1] less the given intervals, in order.
-std::vector<Interval> open_parts(std::vector<Interval> hidden_parts);
+/// Calls f with each part of [0, 1] that no interval covers, in order. Sorts the intervals.
+template <class F> void each_open_part(std::span<Interval> hidden_parts, F&& f) {
+    std::sort(hidden_parts.begin(), hidden_parts.end(), [](Interval a, Interval b) { return a.lo < b.lo; });
+    double from = 0;
+    for (const Interval& part : hidden_parts) {
+        if (part.empty()) continue;
+        if (part.lo > from) f(Interval{from, part.lo});
+        from = std::max(from, part.hi);
+    }
+    if (from < 1) f(Interval{from, 1});
+}
 
 }  // namespace crescent

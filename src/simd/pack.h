@@ -79,6 +79,10 @@ CRESCENT_INLINE Pack select(Mask m, Pack x, Pack y) { return {hn::IfThenElse(m.a
 CRESCENT_INLINE Uint select(Mask m, Uint x, Uint y) {
     return {hn::IfThenElse(hn::RebindMask(UintTag{}, m.a), x.a, y.a), hn::IfThenElse(hn::RebindMask(UintTag{}, m.b), x.b, y.b)};
 }
+/// A true lane's mask is -1.
+CRESCENT_INLINE Uint plus_one_where(Mask m, Uint u) {
+    return {hn::Sub(u.a, hn::VecFromMask(UintTag{}, hn::RebindMask(UintTag{}, m.a))), hn::Sub(u.b, hn::VecFromMask(UintTag{}, hn::RebindMask(UintTag{}, m.b)))};
+}
 CRESCENT_INLINE Pack sqrt(Pack x) { return {hn::Sqrt(x.a), hn::Sqrt(x.b)}; }
 CRESCENT_INLINE Pack abs(Pack x) { return {hn::Abs(x.a), hn::Abs(x.b)}; }
 CRESCENT_INLINE Uint bits(Pack x) { return {hn::BitCast(UintTag{}, x.a), hn::BitCast(UintTag{}, x.b)}; }

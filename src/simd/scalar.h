@@ -29,6 +29,7 @@ constexpr float select(bool m, float a, float b) { return m ? a : b; }
 constexpr double select(bool m, double a, double b) { return m ? a : b; }
 constexpr std::uint32_t select(bool m, std::uint32_t a, std::uint32_t b) { return m ? a : b; }
 constexpr bool any(bool m) { return m; }
+constexpr std::uint32_t plus_one_where(bool m, std::uint32_t u) { return u + static_cast<std::uint32_t>(m); }
 
 inline float sqrt(float x) { return std::sqrt(x); }
 inline double sqrt(double x) { return std::sqrt(x); }

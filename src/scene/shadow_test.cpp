@@ -1,0 +1,99 @@
+#include "scene/shadow.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scene/frame.h"
+#include "simd/random.h"
+
+namespace crescent {
+namespace {
+
+/// Numbers in [-1, 1], one after another.
+class Numbers {
+public:
+    explicit Numbers(std::uint32_t seed) : seed_(seed) {}
+    double operator()() { return 2.0 * static_cast<double>(draw(seed_, 0, 2 * k_++).x) - 1; }
+    Vec3d vec(double scale = 1) { return {scale * (*this)(), scale * (*this)(), scale * (*this)()}; }
+
+private:
+    std::uint32_t seed_;
+    std::uint64_t k_ = 0;
+};
+
+Occluder some_body(Occluder::Kind kind, Vec3d about, Numbers& next) {
+    Occluder o;
+    o.kind = kind;
+    o.a = about + next.vec(0.8);
+    o.radius = 0.3 * std::fabs(next());
+    const Vec3d size = next.vec(0.5);
+    if (kind == Occluder::Kind::box) o.b = o.a + Vec3d{std::fabs(size.x), std::fabs(size.y), std::fabs(size.z)};
+    if (kind == Occluder::Kind::quad) o.b = size, o.c = next.vec(0.5);
+    if (kind == Occluder::Kind::disk || kind == Occluder::Kind::plane) o.b = normalize(next.vec());
+    return o;
+}
+
+struct Obstacle {
+    Occluder body;
+    Extent from;
+    DiskLight disk;
+};
+
+Obstacle some_obstacle(Occluder::Kind kind, Numbers& next) {
+    Obstacle s;
+    const Vec3d half = next.vec(0.2);
+    s.from = {next.vec(1.5), {std::fabs(half.x), std::fabs(half.y), std::fabs(half.z)}};
+    s.disk.center = next.vec(1.5);
+    s.disk.normal = normalize(next.vec());
+    s.disk.radius = 0.3 * std::fabs(next());
+    s.body = some_body(kind, 0.5 * (s.from.middle + s.disk.center), next);
+    return s;
+}
+
+/// Of random segments from the points to the disk, those that the body crosses.
+int hidden_segments(const Obstacle& s, Numbers& next, int segments) {
+    const Frame<double> frame = frame_about(s.disk.normal);
+    int hidden_ones = 0;
+    for (int k = 0; k < segments; ++k) {
+        const Vec3d x = s.from.middle + Vec3d{next() * s.from.half.x, next() * s.from.half.y, next() * s.from.half.z};
+        const double r = s.disk.radius * std::sqrt(0.5 + 0.5 * next()), phi = pi * next();
+        const Vec3d y = s.disk.center + frame.t * (r * std::cos(phi)) + frame.b * (r * std::sin(phi));
+        hidden_ones += !hidden(s.body, x, y, y + 1e-9 * frame.t).empty();
+    }
+    return hidden_ones;
+}
+
+TEST(StandsClear, NeverPartsABodyFromSegmentsThatItCrosses) {
+    using Kind = Occluder::Kind;
+    for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
+        Numbers next(7 + static_cast<std::uint32_t>(kind));
+        int clear = 0, unclear = 0, in_the_way = 0;
+        for (int trial = 0; trial < 1000; ++trial) {
+            const Obstacle s = some_obstacle(kind, next);
+            const bool parted = stands_clear(s.body, s.from, s.disk);
+            const int hidden_ones = hidden_segments(s, next, 200);
+            EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
+            in_the_way += hidden_ones > 0;
+            clear += parted;
+            unclear += !parted && hidden_ones == 0;
+        }
+        // It is worth asking: most of what hides nothing is seen to hide nothing.
+        EXPECT_GT(in_the_way, 20) << static_cast<int>(kind);
+        EXPECT_GT(clear, 4 * unclear) << static_cast<int>(kind);
+    }
+}
+
+TEST(EachOpenPart, IsTheRestOfTheChord) {
+    const auto parts_of = [](std::vector<Interval> hidden_parts) {
+        std::vector<double> ends;
+        each_open_part(hidden_parts, [&](Interval part) { ends.insert(ends.end(), {part.lo, part.hi}); });
+        return ends;
+    };
+    EXPECT_EQ(parts_of({}), (std::vector<double>{0, 1}));
+    EXPECT_EQ(parts_of({{0.5, 0.75}, {0.25, 0.5}, {0.9, 0.8}}), (std::vector<double>{0, 0.25, 0.75, 1}));
+    EXPECT_EQ(parts_of({{0, 0.5}, {0.25, 1}}), (std::vector<double>{}));
+}
+
+}  // namespace
+}  // namespace crescent
