@@ -29,7 +29,7 @@ struct Dome {
     Canvas::Point at(const Direction& d, double reach = 1) const {
         return {x + reach * radius * d.x, y - reach * radius * (d.z * away + d.y * up)};
     }
-    static bool visible(const Direction& d) { return d.z * up - d.y * away >= 0; }
+    static bool visible(const Direction& d) { return d.z * up - d.y * away >= -1e-9; }  // the rim's two ends lie on the edge
 };
 
 Direction from_angles(double theta, double phi) {
