@@ -2,13 +2,14 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
+#include "commands.h"
 #include "crescent.h"
 
 namespace crescent::cli {
 
-/// Null for "cpu", which is built in. Throws OutputError where this build has no such instrument.
-std::shared_ptr<Instrument> instrument(const std::string& name);
+/// Null for "cpu", which is built in. Throws InputError where flags do not fit together, OutputError where this build has
+/// no such instrument or the machine lacks a part of it.
+std::shared_ptr<Instrument> instrument(const RunFlags& flags);
 
 }  // namespace crescent::cli

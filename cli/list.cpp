@@ -38,6 +38,14 @@ std::vector<Word> instruction_sets() {
     return out;
 }
 
+/// What --gl-device can name, by number.
+std::vector<Word> devices() {
+    std::vector<Word> out;
+    for (const auto& kind : instrument_kinds())
+        for (const InstrumentDevice& device : kind->devices()) out.push_back({fmt::format("{}  {}", device.number, device.means), ""});
+    return out;
+}
+
 struct Topic {
     std::string name, means;
     std::vector<Word> (*words)();
@@ -50,6 +58,7 @@ const std::vector<Topic>& topics() {
         {"plates", "kinds of picture", [] { return words_of_key("plates", "kind"); }},
         {"meters", "quantities that a check can name", meters},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
+        {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices},
     };
     return all;
 }
@@ -75,11 +84,13 @@ std::string lines(const std::vector<Word>& words, const char* indent) {
 
 int list(const ListFlags& flags) {
     std::string out;
+    bool known = flags.what.empty();
     for (const Topic& topic : topics()) {
+        known = known || flags.what == topic.name;
         if (flags.what.empty()) out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" + lines(topic.words(), "  ");
         if (flags.what == topic.name) out = lines(topic.words(), "");
     }
-    if (out.empty()) unknown(flags.what);
+    if (!known) unknown(flags.what);
     print(out);
     return held;
 }

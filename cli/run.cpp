@@ -26,6 +26,8 @@ std::string command_of(const RunFlags& flags) {
     for (const std::string& text : flags.overrides) command += " --set " + quoted(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
     if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
+    if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;
+    if (flags.gl_device >= 0) command += " --gl-device " + std::to_string(flags.gl_device);
     return command;
 }
 
@@ -41,7 +43,7 @@ int run(const RunFlags& flags) {
     options.threads = flags.threads;
     options.isa = flags.isa;
     options.command = command_of(flags);
-    options.instrument = instrument(flags.instrument);
+    options.instrument = instrument(flags);
 
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);

@@ -5,6 +5,7 @@
 //   Arms              the samplers on trial as a list of types; for_each_arm walks it
 //   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
 //   judge             a sampler by itself -> ordered verdicts with their evidence; verdicts/gtest.h has the matchers
+//   find_instrument   what else can compute films, where a door has brought it
 //   run               an Experiment -> films, meters, plates and report under one folder
 //
 // Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
@@ -21,12 +22,14 @@
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 #include "films/film.h"
+#include "instruments.h"
 #include "meters/evidence.h"
 #include "meters/metrics.h"
 #include "plates/plates.h"
 #include "report/report.h"
 #include "run.h"
 #include "scene/scene.h"
+#include "simd/random.h"
 #include "verdicts/error_rates.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"

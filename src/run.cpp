@@ -191,7 +191,7 @@ private:
         provenance_.compiler = compiler();
         provenance_.experiment_file = experiment_.file;
         provenance_.experiment_hash = fmt::format("{:016x}", experiment_.hash);
-        provenance_.instrument = instrument_->name();
+        provenance_.instrument = instrument_->name(), provenance_.instrument_details = instrument_->details();
         provenance_.command = options_.command.empty() ? "crescent run " + experiment_.file : options_.command;
         for (int k = 0; k < experiment_.seeds; ++k) provenance_.seeds.push_back(seed_of(experiment_.seed, static_cast<std::uint32_t>(k)));
     }

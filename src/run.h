@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/watch.h"
@@ -30,6 +31,8 @@ public:
     virtual std::string name() const = 0;  // for provenance and plates
     /// One film per rung, in order. The scene already has the job's s.
     virtual std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch) = 0;
+    /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
+    virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
     /// Claims of its own that join the assertions ("framebuffer is RGBA32F").
     virtual std::vector<AssertionResult> assertions() const { return {}; }
 };

@@ -19,7 +19,7 @@ Kernel kernel_of(const std::string& isa, std::string_view sampler, int lobe) {
     return kernels_for(isa).kernels[static_cast<std::size_t>(arm)][static_cast<std::size_t>(lobe + 1)];
 }
 
-/// Sums of one site over its n samples -> the film's pixel.
+/// Sums of one site over its film's n samples -> the film's pixel.
 class Finish {
 public:
     Finish(const Scene& scene, const Sites& sites, const Moments& m, Film& film) : scene_(scene), sites_(sites), m_(m), film_(film) {}
@@ -72,6 +72,11 @@ private:
 
 }  // namespace
 
+void develop(const Scene& scene, const Sites& sites, const Moments& moments, Film& film) {
+    const Finish finish(scene, sites, moments, film);
+    for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
+}
+
 void for_each_tile(int width, int height, Watch& watch, const std::function<void(const TileBox&)>& work) {
     const std::vector<TileBox> tiles = tiles_of(width, height);
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
@@ -93,11 +98,8 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.disks.size());
             kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
-                const Finish finish(scene, sites, moments[r], films[r]);
-                for (std::size_t i = 0; i < sites.count; ++i) {
-                    finish.pixel(i);
-                    bad[r] += moments[r].bad[i];
-                }
+                develop(scene, sites, moments[r], films[r]);
+                for (std::size_t i = 0; i < sites.count; ++i) bad[r] += moments[r].bad[i];
             }
             watch.advance(static_cast<double>(sites.count) * static_cast<double>(n.back()));
         }

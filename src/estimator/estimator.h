@@ -16,6 +16,9 @@ namespace crescent {
 std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
                                  const std::string& isa, Watch& watch);
 
+/// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.
+void develop(const Scene& scene, const Sites& sites, const Moments& moments, Film& film);
+
 /// Which shape each pixel sees.
 ShapeMap shape_map(const Scene& scene);
 

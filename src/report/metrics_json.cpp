@@ -133,10 +133,12 @@ Json evidence_json(const Evidence& e) {
 }  // namespace
 
 Json provenance_json(const Provenance& p) {
-    return {{"version", p.version},   {"commit", p.commit},
-            {"compiler", p.compiler}, {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}},
-            {"seeds", p.seeds},       {"instrument", p.instrument},
-            {"command", p.command}};
+    Json out = {{"version", p.version},   {"commit", p.commit},
+                {"compiler", p.compiler}, {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}},
+                {"seeds", p.seeds},       {"instrument", p.instrument},
+                {"command", p.command}};
+    for (const auto& [what, said] : p.instrument_details) out["instrument_details"][what] = said;
+    return out;
 }
 
 std::string metrics_json(const ReportInputs& in) {

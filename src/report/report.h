@@ -15,6 +15,7 @@ namespace crescent {
 struct Provenance {
     std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
     std::vector<std::uint32_t> seeds;
+    std::vector<std::pair<std::string, std::string>> instrument_details;  // what a driver says of itself; none: the CPU
 };
 
 /// What varies from run to run; stands apart in timing.json.

@@ -106,7 +106,7 @@ inline Sample::Sample() : experiment(sample_experiment()), evidence(sample_evide
                           {"no bad samples", true, 0, 0, "==", "bad == 0"}};
     metrics.shape_pixels = {{"ball", 500}};
     metrics.geometry_pixels = 500;
-    provenance = {"1.2.3", "abc", "GNU 12.2.0", "a.toml", "00ff", "CPU", "crescent run a.toml --seeds 3", {7, 8, 9}};
+    provenance = {"1.2.3", "abc", "GNU 12.2.0", "a.toml", "00ff", "CPU", "crescent run a.toml --seeds 3", {7, 8, 9}, {}};
     timing.estimating_s = 1.5;
     timing.total_s = 2.5;
     timing.threads = 2;

@@ -188,6 +188,7 @@ PageSection provenance(Page& page) {
     add("crescent", escape(p.version) + ", commit " + html::code(p.commit));
     add("Compiler", escape(p.compiler));
     add("Instrument", escape(p.instrument));
+    for (const auto& [what, said] : p.instrument_details) table.row({html::heading(escape(what)), words(escape(said))});
     add("Seeds", seeds_text(p.seeds));
     html::Table films("Hashes (XXH3-64) of the float films at the first seed; equal films have equal hashes",
                       {words("Film"), words("Hash")});

@@ -1,0 +1,136 @@
+#include "estimator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pass.h"
+
+namespace crescent::gl {
+
+ShaderSource estimator_source(const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies) {
+    ShaderSource source;
+    const std::size_t recorded = recorded_disks(disks);
+    std::size_t body_count = 0;
+    constexpr std::array<const char*, 5> kinds = {"SPHERES", "BOXES", "QUADS", "PLATES", "PLANES"};
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        source.define(kinds[k], bodies[k]);
+        body_count += bodies[k];
+    }
+    source.define("BODY_SLOTS", std::max<std::size_t>(body_count, 1));  // GLSL has no empty arrays
+    source.define("LOBE", std::to_string(lobe + 1));
+    source.define("DISKS", disks);
+    source.define("DISK_SLOTS", std::max<std::size_t>(disks, 1));
+    source.define("RECORDED", recorded);
+    source.define("RECORDED_SLOTS", std::max<std::size_t>((recorded + 1) / 2 * 2, 2));
+    source.define("sample_arm", "sample_" + glsl_word(sampler));
+    source.include("arms/" + glsl_word(sampler) + ".glsl");
+    source.include("estimator.glsl");
+    return source;
+}
+
+Estimator::Estimator(const Context& context) : context_(context) {
+    const Functions& gl = context.gl();
+    gl.GenVertexArrays(1, &vertex_array_);
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture_);
+    context.check("looking at the context");
+}
+
+double Estimator::longest_draw_s() const {
+    double longest = 0;
+    for (const auto& [text, kernel] : kernels_) longest = std::max(longest, kernel->pacer.longest_s());
+    return longest;
+}
+
+Estimator::Kernel& Estimator::kernel(const std::string& sampler, int lobe, std::size_t disks, const Bodies& bodies) {
+    const ShaderSource source = estimator_source(sampler, lobe, disks, bodies.counts);
+    std::unique_ptr<Kernel>& kernel = kernels_[source.text()];
+    if (!kernel) kernel = std::make_unique<Kernel>(context_, source);
+    return *kernel;
+}
+
+const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, Watch& watch) {
+    const Experiment& e = scene.experiment();
+    const std::string key = fmt::format("{:x} {} {}x{} {},{} {},{}", e.hash, e.s(), e.image.width, e.image.height, box.x0, box.y0, box.x1, box.y1);
+    if (sites_ && key == sites_key_) return *sites_;
+    sites_.reset();
+    sites_.emplace(context_, scene, box, watch);
+    sites_key_ = key;
+    return *sites_;
+}
+
+const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t attachments) {
+    if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height || framebuffer_->attachments() != attachments) {
+        framebuffer_.reset();
+        framebuffer_.emplace(context_, width, height, attachments);
+    }
+    return *framebuffer_;
+}
+
+namespace {
+
+/// What every draw of a program reads besides the samples' range.
+void set_scene(const Program& program, const Sites& any, const Bodies& bodies, const TileBox& box, int image_width, std::uint32_t seed) {
+    program.use();
+    program.set("sites", 0);
+    program.set("corner", box.x0, box.y0);
+    program.set("image_width", image_width);
+    program.set("seed", seed);
+    std::vector<std::array<float, 3>> disks;
+    for (const DiskArrays& d : any.disks) disks.push_back({d.radius, d.two_sided ? 1.0f : 0.0f, d.power});
+    if (!disks.empty()) program.set("disk_kind", disks);
+    if (!bodies.vectors.empty()) program.set("bodies", bodies.vectors);
+}
+
+void set_columns(LobePart& part, const SiteTexture& sites, int lobe) {
+    const std::size_t width = static_cast<std::size_t>(sites.width());
+    part.x0 = sites.width();
+    for (const Sites& group : sites.groups()) {
+        for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) {
+            const int x = static_cast<int>(sites.texel(group, i) % width);
+            part.x0 = std::min(part.x0, x), part.x1 = std::max(part.x1, x + 1);
+        }
+    }
+}
+
+}  // namespace
+
+void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed, std::vector<Film>& films, Watch& watch) {
+    const std::size_t disks = scene.disks().size();
+    const SiteTexture& here = sites(scene, box, watch);
+    if (here.groups().empty()) return;
+    const Sites& any = here.groups().front();
+    const Bodies bodies = bodies_of(any.occluders);
+    std::vector<LobePart> parts;
+    for (const int lobe : here.lobes()) {
+        Kernel& k = kernel(sampler, lobe, disks, bodies);
+        set_scene(k.program, any, bodies, box, scene.experiment().image.width, seed);
+        LobePart part{&k.program, &k.pacer, here.row_counts(lobe)};
+        set_columns(part, here, lobe);
+        parts.push_back(std::move(part));
+    }
+    const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(disks));
+    context_.gl().BindVertexArray(vertex_array_);  // core profiles draw nothing without one
+    here.bind();
+    target.bind();
+    Pass pass(context_, here, target, std::move(parts), disks, watch);
+    for (Film& film : films) {
+        pass.advance_to(film.n);
+        for (std::size_t g = 0; g < here.groups().size(); ++g) {
+            develop(scene, here.groups()[g], pass.moments()[g], film);
+            for (const std::uint32_t bad : pass.moments()[g].bad) film.bad += bad;
+        }
+    }
+}
+
+std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed, Watch& watch) {
+    ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
+    const Image& image = scene.experiment().image;
+    std::vector<Film> out;
+    for (const std::uint64_t rung : n) out.emplace_back(image.width, image.height, rung);
+    for (const TileBox& box : rectangles_of(image.width, image.height, scene.disks().size(), largest_texture_)) estimate(scene, box, sampler, seed, out, watch);
+    return out;
+}
+
+}  // namespace crescent::gl

@@ -1,0 +1,107 @@
+#include "pass.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace crescent::gl {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may hold, see estimator.glsl
+
+}  // namespace
+
+Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts, std::size_t disks, Watch& watch)
+    : context_(context), sites_(sites), framebuffer_(framebuffer), parts_(std::move(parts)), disks_(disks), watch_(watch), moments_(sites.groups().size()),
+      met_(framebuffer.attachments() - 2) {
+    for (std::size_t g = 0; g < moments_.size(); ++g) moments_[g].resize(sites.groups()[g].count, disks);
+}
+
+void Pass::advance_to(std::uint64_t n) {
+    while (done_ < n) {
+        const int samples = samples_per_draw(n - done_);
+        take(samples);
+        done_ += static_cast<std::uint64_t>(samples);
+    }
+}
+
+/// As many as a draw over one of the rows can take, in whole blocks of 16: few large draws, few readings.
+int Pass::samples_per_draw(std::uint64_t left) const {
+    std::uint64_t fits = longest_sum;
+    for (const LobePart& part : parts_) {
+        const std::uint64_t widest = *std::max_element(part.row_counts.begin(), part.row_counts.end());
+        fits = std::min(fits, std::max<std::uint64_t>(part.pacer->budget() / std::max<std::uint64_t>(widest, 1) / 16 * 16, 16));
+    }
+    return static_cast<int>(std::min(fits, left));
+}
+
+void Pass::take(int samples) {
+    for (std::size_t first = 0; first == 0 || first < disks_; first += most_recorded) {
+        for (LobePart& part : parts_) {
+            part.program->use();
+            part.program->set("first_sample", static_cast<int>(done_));
+            part.program->set("samples", samples);
+            part.program->set("first_recorded", static_cast<int>(first));
+            draw_part(part, samples);
+        }
+        gather(first);
+    }
+    for (const LobePart& part : parts_)
+        for (const std::uint64_t count : part.row_counts) watch_.advance(static_cast<double>(count) * samples);
+}
+
+void Pass::draw_part(LobePart& part, int samples) {
+    const int height = static_cast<int>(part.row_counts.size());
+    for (int y = 0; y < height;) {
+        const int from = y;
+        std::uint64_t pixels = 0;
+        do pixels += part.row_counts[static_cast<std::size_t>(y++)];
+        while (y < height && (pixels + part.row_counts[static_cast<std::size_t>(y)]) * static_cast<std::uint64_t>(samples) <= part.pacer->budget());
+        if (pixels == 0) continue;
+        const auto start = Clock::now();
+        draw_rows(part, from, y);
+        part.pacer->took(pixels * static_cast<std::uint64_t>(samples), std::chrono::duration<double>(Clock::now() - start).count());
+        watch_.check();
+    }
+}
+
+void Pass::draw_rows(const LobePart& part, int y0, int y1) {
+    const Functions& gl = context_.gl();
+    gl.Enable(GL_SCISSOR_TEST);
+    gl.Scissor(part.x0, y0, part.x1 - part.x0, y1 - y0);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.Finish();
+    context_.check("a draw");
+}
+
+/// Adds what the last draws of all parts wrote.
+void Pass::gather(std::size_t first_disk) {
+    if (first_disk == 0) {
+        framebuffer_.read(0, sums_);
+        framebuffer_.read(1, counts_);
+    }
+    for (std::size_t k = 0; k < met_.size(); ++k) framebuffer_.read(2 + k, met_[k]);
+    const std::size_t disks = std::min(disks_ - std::min(first_disk, disks_), most_recorded);
+    tbb::parallel_for(std::size_t{0}, moments_.size(), [&](std::size_t g) {
+        const Sites& group = sites_.groups()[g];
+        Moments& m = moments_[g];
+        for (std::size_t i = 0; i < group.count; ++i) {
+            const std::size_t at = 4 * sites_.texel(group, i);
+            if (first_disk == 0) {
+                m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]), m.square[i] += static_cast<double>(sums_[at + 2]);
+                m.largest[i] = std::max(m.largest[i], sums_[at + 3]);
+                m.horizon[i] += static_cast<std::uint32_t>(counts_[at]), m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
+                m.bad[i] += static_cast<std::uint32_t>(counts_[at + 2]);
+            }
+            for (std::size_t k = 0; k < disks; ++k) {
+                const float* pair = met_[k / 2].data() + at + 2 * (k % 2);
+                m.disk_g[first_disk + k][i] += static_cast<double>(pair[0]), m.disk_g_lobe[first_disk + k][i] += static_cast<double>(pair[1]);
+            }
+        }
+    });
+}
+
+}  // namespace crescent::gl

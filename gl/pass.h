@@ -1,0 +1,55 @@
+// One rectangle of a film: draws of bounded length, the moments they bring back, a rung whenever its samples are complete.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "framebuffer.h"
+#include "pacer.h"
+#include "program.h"
+#include "site_texture.h"
+
+namespace crescent::gl {
+
+/// Disks whose sums one draw can write beside the two attachments that it always has: 8 draw buffers are what core 3.3
+/// promises.
+constexpr std::size_t most_recorded = 12;
+constexpr std::size_t recorded_disks(std::size_t disks) { return disks < most_recorded ? disks : most_recorded; }
+constexpr std::size_t attachments_for(std::size_t disks) { return 2 + (recorded_disks(disks) + 1) / 2; }
+
+/// The pixels of one lobe in the rectangle, with the program that draws them.
+struct LobePart {
+    Program* program = nullptr;
+    Pacer* pacer = nullptr;
+    std::vector<std::uint64_t> row_counts;  // pixels of this lobe, row by row
+    int x0 = 0, x1 = 0;                     // columns outside have none
+};
+
+class Pass {
+public:
+    Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts, std::size_t disks, Watch& watch);
+
+    /// Takes samples [done, n); then moments() are those of n samples.
+    void advance_to(std::uint64_t n);
+    const std::vector<Moments>& moments() const { return moments_; }
+
+private:
+    int samples_per_draw(std::uint64_t left) const;
+    void take(int samples);
+    void draw_part(LobePart& part, int samples);
+    void draw_rows(const LobePart& part, int y0, int y1);
+    void gather(std::size_t first_disk);
+
+    const Context& context_;
+    const SiteTexture& sites_;
+    const Framebuffer& framebuffer_;
+    std::vector<LobePart> parts_;
+    std::size_t disks_;
+    Watch& watch_;
+    std::uint64_t done_ = 0;
+    std::vector<Moments> moments_;  // one a group of the sites
+    std::vector<float> sums_, counts_;
+    std::vector<std::vector<float>> met_;
+};
+
+}  // namespace crescent::gl

@@ -1,0 +1,64 @@
+#include "program.h"
+
+#include <fmt/format.h>
+
+namespace crescent::gl {
+
+namespace {
+
+template <class Get> std::string log_of(GLint length, Get&& get) {
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    GLsizei written = 0;
+    get(static_cast<GLsizei>(log.size()), &written, log.data());
+    log.resize(static_cast<std::size_t>(written));
+    return log.empty() ? "the driver gives no reason" : log;
+}
+
+}  // namespace
+
+GLuint Program::compile(GLenum stage, const std::string& text, const std::string& key) const {
+    const GLuint shader = gl().CreateShader(stage);
+    const char* source = text.c_str();
+    gl().ShaderSource(shader, 1, &source, nullptr);
+    gl().CompileShader(shader);
+    GLint compiled = GL_FALSE, length = 0;
+    gl().GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (compiled == GL_TRUE) return shader;
+    gl().GetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+    const std::string log = log_of(length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetShaderInfoLog(shader, n, written, to); });
+    gl().DeleteShader(shader);
+    context_.check("compiling a shader");
+    throw OutputError(fmt::format("a shader does not compile on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, key));
+}
+
+Program::Program(const Context& context, const ShaderSource& fragment) : context_(context) {
+    const std::string corners = std::string("#version 330 core\n") + shader_text("full_screen.vert.glsl");
+    const GLuint first = compile(GL_VERTEX_SHADER, corners, "full_screen.vert.glsl");
+    const GLuint second = compile(GL_FRAGMENT_SHADER, fragment.text(), fragment.key());
+    program_ = gl().CreateProgram();
+    for (const GLuint shader : {first, second}) {
+        gl().AttachShader(program_, shader);
+        gl().DeleteShader(shader);  // it lives as long as the program
+    }
+    gl().LinkProgram(program_);
+    GLint linked = GL_FALSE, length = 0;
+    gl().GetProgramiv(program_, GL_LINK_STATUS, &linked);
+    if (linked == GL_TRUE) return;
+    gl().GetProgramiv(program_, GL_INFO_LOG_LENGTH, &length);
+    const std::string log = log_of(length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetProgramInfoLog(program_, n, written, to); });
+    gl().DeleteProgram(program_);
+    throw OutputError(fmt::format("a shader does not link on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, fragment.key()));
+}
+
+Program::~Program() { gl().DeleteProgram(program_); }
+
+void Program::use() const { gl().UseProgram(program_); }
+
+void Program::set(const char* name, std::span<const std::array<float, 3>> all) const {
+    gl().Uniform3fv(at(name), static_cast<GLsizei>(all.size()), all.data()->data());
+}
+void Program::set(const char* name, std::span<const std::array<float, 4>> all) const {
+    gl().Uniform4fv(at(name), static_cast<GLsizei>(all.size()), all.data()->data());
+}
+
+}  // namespace crescent::gl

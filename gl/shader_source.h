@@ -1,0 +1,40 @@
+// GLSL from gl/shaders/, embedded in the program when it is built: a file with everything it includes, each file once.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crescent::gl {
+
+/// The files by their path under gl/shaders/, as embedded.
+struct ShaderFile {
+    const char *path, *text;
+};
+extern const ShaderFile shader_files[];
+extern const int shader_file_count;
+
+/// Null where there is none of that path.
+const char* shader_text(const std::string& path);
+
+/// A compilation unit: #version 330, #define lines, then files. Line numbers in a driver's log are those of the files.
+class ShaderSource {
+public:
+    void define(const std::string& name, const std::string& value) { head_ += "#define " + name + " " + value + "\n"; }
+    void define(const std::string& name, std::size_t value) { define(name, std::to_string(value)); }
+    /// Adds a file after what it includes.
+    void include(const std::string& path);
+    /// Adds text as if it were a file.
+    void add(const std::string& path, const std::string& text);
+    std::string text() const { return "#version 330 core\n" + head_ + body_; }
+    /// "source 0: brdf.glsl, source 1: ...": what the numbers before the lines of a log stand for.
+    std::string key() const;
+
+private:
+    std::string head_, body_;
+    std::vector<std::string> paths_;
+};
+
+/// "light-area" -> "light_area", as its file and functions are named.
+std::string glsl_word(std::string name);
+
+}  // namespace crescent::gl

@@ -1,0 +1,50 @@
+// light-area, as src/arms/light_area.h: next-event estimation (NEE), a disk light by area, the disk chosen by its power
+// Y(L) pi r^2.
+//   y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2);  p_A = 1/(pi r^2);  p = p_A |y - x|^2 / cos(light).
+// It reaches nothing but the disks.
+#include "sampler.glsl"
+
+// The surface stands before the emitting side; c = to_center.normal.
+bool faces(LocalDisk d, float c) { return c < 0.0 || (c > 0.0 && d.two_sided > 0.0); }
+float disk_density(LocalDisk d, float r2, float cos_light) { return (1.0 / pi) / sqr(d.radius) * r2 / cos_light; }
+
+float pdf_light_area(vec3 wo, vec3 wi) {
+    float sum = 0.0;
+    for (int k = 0; k < DISKS; ++k) {
+        LocalDisk d = disks[k];
+        float c = dot(d.to_center, d.normal), v = dot(wi, d.normal);
+        vec3 off = wi * c - d.to_center * v;
+        bool met = dot(off, off) <= sqr(d.radius * v) && faces(d, c) && c * v > 0.0;
+        float t = c / (met ? v : 1.0);
+        sum += met ? d.power * disk_density(d, sqr(t), abs(v)) : 0.0;
+    }
+    return sum;
+}
+
+Drawn on_disk(LocalDisk d, vec2 u) {
+    float r = d.radius * sqrt(u.x);
+    SinCos phi = sincos_turns(u.y);
+    Frame about = frame_about(d.normal);
+    vec3 y = d.to_center + about.t * (r * phi.cos) + about.b * (r * phi.sin);
+    float r2 = dot(y, y);
+    vec3 wi = y * (1.0 / sqrt(r2));
+    float v = abs(dot(wi, d.normal));
+    bool lit = faces(d, dot(d.to_center, d.normal)) && v > 0.0;
+    return Drawn(wi, lit ? disk_density(d, r2, v) : 0.0);
+}
+
+Drawn sample_light_area(vec3 wo, vec2 u) {
+    Drawn drawn = Drawn(vec3(0.0, 0.0, 1.0), 0.0);
+    float below = 0.0;
+    for (int k = 0; k < DISKS; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
+        float above = k + 1 < DISKS ? below + disks[k].power : 1.0;
+        if (u.x >= below && u.x < above) {
+            drawn = on_disk(disks[k], vec2((u.x - below) / (above - below), u.y));
+            drawn.pdf *= above - below;
+        }
+        below = above;
+    }
+    if (DISKS > 1 && drawn.pdf > 0.0)  // disks may stand one behind another: every one that wi meets could have drawn it
+        drawn.pdf = max(pdf_light_area(wo, drawn.wi), drawn.pdf);
+    return drawn;
+}

@@ -1,0 +1,5 @@
+// mis-power, as src/arms/mis_power.h: BRDF mixture and disk light, two samples, power heuristic.
+//   w_i = p_i^2 / (p_1^2 + p_2^2)      Veach & Guibas 1995, eq. (13) with beta = 2.
+#include "arms/mis.glsl"
+
+float heuristic(float own, float other) { return 1.0 / (1.0 + sqr(other / own)); }

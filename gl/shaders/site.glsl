@@ -1,0 +1,48 @@
+// Everything about a pixel's surface point, as src/estimator/sites.h gathers it and src/arms/sampler.h hands it to an arm.
+// Directions in the local frame unless they are said to be the world's; lengths in m, radiance in W/(sr m^2).
+//
+// `sites` has one texel a pixel and these layers, written by gl/site_texture.cpp:
+//   0  wo, s                  3  the frame's t (world), fill_d     6 + 2k  disk k: from the surface to its centre, d
+//   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
+//      rho_s, pivot           5  its n, lobe + 1 (-1: no surface)
+//   2  the point (world), shape
+#include "frame.glsl"
+
+uniform sampler2DArray sites;
+uniform vec3 disk_kind[DISK_SLOTS];  // radius; 1: emits from both sides; power, Y(L) pi r^2 relative to all disks
+
+// A disk light as seen from the surface.
+struct LocalDisk {
+    vec3 to_center, normal;
+    float radius, two_sided, power;
+};
+LocalDisk disks[DISK_SLOTS];
+vec2 disk_worth[DISK_SLOTS];  // Y of L rho_d / pi and of L rho_s: X = (cos/p) (d + s lobe)
+
+struct Site {
+    vec3 wo;
+    float s, alpha, diffuse, lobe;  // Phong exponent, GGX roughness, Y(rho_d), rho_s
+};
+Site site;
+
+// What the estimator alone knows.
+struct Surroundings {
+    Frame frame;          // world
+    vec3 point;           // world
+    float shape;
+    float fill_d, fill_s;  // as disk_worth, for the fill
+    float pivot;          // the second moment is taken about it
+    float kind;           // lobe + 1; -1: no surface
+};
+
+Surroundings load_site(ivec2 at) {
+    vec4 a = texelFetch(sites, ivec3(at, 0), 0), b = texelFetch(sites, ivec3(at, 1), 0), c = texelFetch(sites, ivec3(at, 2), 0);
+    vec4 t = texelFetch(sites, ivec3(at, 3), 0), u = texelFetch(sites, ivec3(at, 4), 0), n = texelFetch(sites, ivec3(at, 5), 0);
+    site = Site(a.xyz, a.w, b.x, b.y, b.z);
+    for (int k = 0; k < DISKS; ++k) {
+        vec4 center = texelFetch(sites, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(sites, ivec3(at, 7 + 2 * k), 0);
+        disks[k] = LocalDisk(center.xyz, normal.xyz, disk_kind[k].x, disk_kind[k].y, disk_kind[k].z);
+        disk_worth[k] = vec2(center.w, normal.w);
+    }
+    return Surroundings(Frame(t.xyz, u.xyz, n.xyz), c.xyz, c.w, t.w, u.w, b.w, n.w);
+}

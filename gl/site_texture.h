@@ -1,0 +1,59 @@
+// The sites of a rectangle of pixels, in the CPU's arrays and as the array texture that gl/shaders/site.glsl reads: one
+// texel a pixel, six layers and two more a disk light. The numbers are the same floats.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "context.h"
+#include "program.h"
+
+namespace crescent::gl {
+
+/// Sites in groups of one lobe, as sites_of() makes them, tile by tile.
+class SiteTexture {
+public:
+    SiteTexture(const Context& context, const Scene& scene, const TileBox& box, Watch& watch);
+    ~SiteTexture();
+    SiteTexture(const SiteTexture&) = delete;
+    SiteTexture& operator=(const SiteTexture&) = delete;
+
+    const TileBox& box() const { return box_; }
+    int width() const { return box_.x1 - box_.x0; }
+    int height() const { return box_.y1 - box_.y0; }
+    const std::vector<Sites>& groups() const { return groups_; }
+    /// Lobes (-1 to 2) that some pixel here has.
+    std::vector<int> lobes() const;
+    /// How many pixels of a lobe stand in each row.
+    std::vector<std::uint64_t> row_counts(int lobe) const;
+    /// Where site i of a group stands in the rectangle, row by row.
+    std::size_t texel(const Sites& group, std::size_t i) const;
+
+    /// Binds the texture to unit 0.
+    void bind() const;
+
+private:
+    void fill_site(std::vector<float>& layers, const Sites& group, std::size_t i) const;
+    void upload(const std::vector<float>& layers, std::size_t layer_count);
+
+    const Context& context_;
+    TileBox box_;
+    std::size_t image_width_;
+    std::vector<Sites> groups_;
+    GLuint texture_ = 0;
+};
+
+/// Texture layers for so many disks.
+constexpr std::size_t site_layers(std::size_t disks) { return 6 + 2 * disks; }
+
+/// The image in rectangles whose textures stay under about 256 MiB and the driver's largest texture.
+std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int largest_texture);
+
+/// The bodies that stand before lights, in the order that gl/shaders/disk_hit.glsl expects.
+struct Bodies {
+    std::vector<std::array<float, 4>> vectors;  // three a body
+    std::array<std::size_t, 5> counts{};        // spheres, boxes, quads, disks, planes
+};
+Bodies bodies_of(const std::vector<OccluderF>& occluders);
+
+}  // namespace crescent::gl
