@@ -29,11 +29,12 @@ ShaderSource estimator_source(const std::string& sampler, int lobe, std::size_t 
     return source;
 }
 
-Estimator::Estimator(const Context& context) : context_(context) {
+Estimator::Estimator(const Context& context, int largest_texture) : context_(context) {
     const Functions& gl = context.gl();
     gl.GenVertexArrays(1, &vertex_array_);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture_);
+    if (largest_texture > 0) largest_texture_ = std::min(largest_texture_, largest_texture);
     context.check("looking at the context");
 }
 
@@ -83,17 +84,6 @@ void set_scene(const Program& program, const Sites& any, const Bodies& bodies, c
     if (!bodies.vectors.empty()) program.set("bodies", bodies.vectors);
 }
 
-void set_columns(LobePart& part, const SiteTexture& sites, int lobe) {
-    const std::size_t width = static_cast<std::size_t>(sites.width());
-    part.x0 = sites.width();
-    for (const Sites& group : sites.groups()) {
-        for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) {
-            const int x = static_cast<int>(sites.texel(group, i) % width);
-            part.x0 = std::min(part.x0, x), part.x1 = std::max(part.x1, x + 1);
-        }
-    }
-}
-
 }  // namespace
 
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed, std::vector<Film>& films, Watch& watch) {
@@ -106,9 +96,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     for (const int lobe : here.lobes()) {
         Kernel& k = kernel(sampler, lobe, disks, bodies);
         set_scene(k.program, any, bodies, box, scene.experiment().image.width, seed);
-        LobePart part{&k.program, &k.pacer, here.row_counts(lobe)};
-        set_columns(part, here, lobe);
-        parts.push_back(std::move(part));
+        parts.push_back({&k.program, &k.pacer, here.pixels_of(lobe)});
     }
     const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(disks));
     context_.gl().BindVertexArray(vertex_array_);  // core profiles draw nothing without one

@@ -17,7 +17,8 @@ namespace crescent::gl {
 
 class Estimator {
 public:
-    explicit Estimator(const Context& context);
+    /// `largest_texture`: pixels along a side of what is computed at once; 0: the driver's limit.
+    explicit Estimator(const Context& context, int largest_texture = 0);
 
     /// One film per rung of n (ascending), as estimate_films() makes them.
     std::vector<Film> films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed, Watch& watch);

@@ -21,16 +21,12 @@ public:
         budget_ = static_cast<std::uint64_t>(std::min(fits, 4.0 * static_cast<double>(budget())));
     }
     double longest_s() const { return longest_; }
+    bool untried() const { return longest_ == 0; }
 
 private:
     static constexpr std::uint64_t least = 16384;
     std::uint64_t budget_ = least;
     double longest_ = 0;
-};
-
-/// Rows [y0, y1) of the next draw and how many samples a pixel.
-struct Slice {
-    int y0 = 0, y1 = 0;
 };
 
 }  // namespace crescent::gl

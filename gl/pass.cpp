@@ -28,12 +28,12 @@ void Pass::advance_to(std::uint64_t n) {
     }
 }
 
-/// As many as a draw over one of the rows can take, in whole blocks of 16: few large draws, few readings.
+/// As many as a draw over the fullest strip can take, in whole blocks of 16: few large draws, few readings.
 int Pass::samples_per_draw(std::uint64_t left) const {
     std::uint64_t fits = longest_sum;
     for (const LobePart& part : parts_) {
-        const std::uint64_t widest = *std::max_element(part.row_counts.begin(), part.row_counts.end());
-        fits = std::min(fits, std::max<std::uint64_t>(part.pacer->budget() / std::max<std::uint64_t>(widest, 1) / 16 * 16, 16));
+        const std::uint64_t fullest = *std::max_element(part.pixels.strips.begin(), part.pixels.strips.end());
+        fits = std::min(fits, std::max<std::uint64_t>(part.pacer->budget() / fullest / 16 * 16, 16));
     }
     return static_cast<int>(std::min(fits, left));
 }
@@ -42,6 +42,7 @@ void Pass::take(int samples) {
     for (std::size_t first = 0; first == 0 || first < disks_; first += most_recorded) {
         for (LobePart& part : parts_) {
             part.program->use();
+            if (part.pacer->untried()) warm_up(part);
             part.program->set("first_sample", static_cast<int>(done_));
             part.program->set("samples", samples);
             part.program->set("first_recorded", static_cast<int>(first));
@@ -49,29 +50,35 @@ void Pass::take(int samples) {
         }
         gather(first);
     }
-    for (const LobePart& part : parts_)
-        for (const std::uint64_t count : part.row_counts) watch_.advance(static_cast<double>(count) * samples);
+}
+
+/// A draw of no samples: drivers finish compiling when a program is first drawn with, and that is no measure of its speed.
+void Pass::warm_up(const LobePart& part) {
+    part.program->set("samples", 0);
+    draw_strips(part, 0, 1);
 }
 
 void Pass::draw_part(LobePart& part, int samples) {
-    const int height = static_cast<int>(part.row_counts.size());
-    for (int y = 0; y < height;) {
-        const int from = y;
-        std::uint64_t pixels = 0;
-        do pixels += part.row_counts[static_cast<std::size_t>(y++)];
-        while (y < height && (pixels + part.row_counts[static_cast<std::size_t>(y)]) * static_cast<std::uint64_t>(samples) <= part.pacer->budget());
+    const std::vector<std::uint64_t>& strips = part.pixels.strips;
+    const std::uint64_t each = static_cast<std::uint64_t>(samples);
+    for (std::size_t k = 0; k < strips.size();) {
+        const std::size_t from = k;
+        std::uint64_t pixels = strips[k++];
+        while (k < strips.size() && (pixels + strips[k]) * each <= part.pacer->budget()) pixels += strips[k++];
         if (pixels == 0) continue;
         const auto start = Clock::now();
-        draw_rows(part, from, y);
-        part.pacer->took(pixels * static_cast<std::uint64_t>(samples), std::chrono::duration<double>(Clock::now() - start).count());
+        draw_strips(part, from, k);
+        part.pacer->took(pixels * each, std::chrono::duration<double>(Clock::now() - start).count());
+        watch_.advance(static_cast<double>(pixels * each) / static_cast<double>(passes()));
         watch_.check();
     }
 }
 
-void Pass::draw_rows(const LobePart& part, int y0, int y1) {
+void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
     const Functions& gl = context_.gl();
+    const int y0 = static_cast<int>(from) * strip_rows, y1 = std::min(static_cast<int>(to) * strip_rows, sites_.height());
     gl.Enable(GL_SCISSOR_TEST);
-    gl.Scissor(part.x0, y0, part.x1 - part.x0, y1 - y0);
+    gl.Scissor(part.pixels.x0, y0, part.pixels.x1 - part.pixels.x0, y1 - y0);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
     gl.Finish();
     context_.check("a draw");

@@ -21,8 +21,7 @@ constexpr std::size_t attachments_for(std::size_t disks) { return 2 + (recorded_
 struct LobePart {
     Program* program = nullptr;
     Pacer* pacer = nullptr;
-    std::vector<std::uint64_t> row_counts;  // pixels of this lobe, row by row
-    int x0 = 0, x1 = 0;                     // columns outside have none
+    LobePixels pixels;
 };
 
 class Pass {
@@ -34,10 +33,13 @@ public:
     const std::vector<Moments>& moments() const { return moments_; }
 
 private:
+    /// How often each sample is drawn, so that every disk has its sums.
+    std::size_t passes() const { return disks_ == 0 ? 1 : (disks_ + most_recorded - 1) / most_recorded; }
     int samples_per_draw(std::uint64_t left) const;
     void take(int samples);
     void draw_part(LobePart& part, int samples);
-    void draw_rows(const LobePart& part, int y0, int y1);
+    void draw_strips(const LobePart& part, std::size_t from, std::size_t to);
+    void warm_up(const LobePart& part);
     void gather(std::size_t first_disk);
 
     const Context& context_;

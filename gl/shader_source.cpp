@@ -21,26 +21,26 @@ void ShaderSource::include(const std::string& path) {
 }
 
 void ShaderSource::add(const std::string& path, const std::string& text) {
-    const std::string number = std::to_string(paths_.size());
+    const std::size_t base = lines_per_file * paths_.size();
     paths_.push_back(path);
     std::istringstream lines(text);
     std::string own;
-    int line_number = 0;
+    std::size_t number = base;
     for (std::string line; std::getline(lines, line);) {
-        ++line_number;
+        ++number;
         constexpr std::string_view word = "#include \"";
-        if (line.starts_with(word)) include(line.substr(word.size(), line.rfind('"') - word.size()));
-        else if (own.empty()) own = "#line " + std::to_string(line_number) + " " + number + "\n" + line + "\n";
-        else own += line + "\n";
-        // What follows an include has the number of its own line again.
-        if (line.starts_with(word) && !own.empty()) own += "\n";
+        if (line.starts_with(word)) {
+            include(line.substr(word.size(), line.rfind('"') - word.size()));
+            line.clear();
+        }
+        own += line + "\n";
     }
-    body_ += own;
+    body_ += "#line " + std::to_string(base + 1) + "\n" + own;
 }
 
 std::string ShaderSource::key() const {
-    std::string out;
-    for (std::size_t k = 0; k < paths_.size(); ++k) out += (k ? ", source " : "source ") + std::to_string(k) + ": " + paths_[k];
+    std::string out = "lines";
+    for (std::size_t k = 0; k < paths_.size(); ++k) out += (k ? ", " : " ") + std::to_string(lines_per_file * k) + " + n: " + paths_[k];
     return out;
 }
 

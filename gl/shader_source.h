@@ -16,9 +16,12 @@ extern const int shader_file_count;
 /// Null where there is none of that path.
 const char* shader_text(const std::string& path);
 
-/// A compilation unit: #version 330, #define lines, then files. Line numbers in a driver's log are those of the files.
+/// A compilation unit: #version 330, #define lines, then files. Drivers do not agree on how to name a source, so each file
+/// has line numbers of its own in their logs: line n of file k is 1000 k + n.
 class ShaderSource {
 public:
+    static constexpr std::size_t lines_per_file = 1000;
+
     void define(const std::string& name, const std::string& value) { head_ += "#define " + name + " " + value + "\n"; }
     void define(const std::string& name, std::size_t value) { define(name, std::to_string(value)); }
     /// Adds a file after what it includes.
@@ -26,7 +29,7 @@ public:
     /// Adds text as if it were a file.
     void add(const std::string& path, const std::string& text);
     std::string text() const { return "#version 330 core\n" + head_ + body_; }
-    /// "source 0: brdf.glsl, source 1: ...": what the numbers before the lines of a log stand for.
+    /// "lines 0 + n: brdf.glsl, 1000 + n: ...": what the line numbers of a log stand for.
     std::string key() const;
 
 private:

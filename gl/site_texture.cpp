@@ -88,11 +88,18 @@ std::vector<int> SiteTexture::lobes() const {
     return out;
 }
 
-std::vector<std::uint64_t> SiteTexture::row_counts(int lobe) const {
-    std::vector<std::uint64_t> rows(static_cast<std::size_t>(height()));
-    for (const Sites& group : groups_)
-        for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) ++rows[texel(group, i) / static_cast<std::size_t>(width())];
-    return rows;
+LobePixels SiteTexture::pixels_of(int lobe) const {
+    const std::size_t across = static_cast<std::size_t>(width());
+    LobePixels out{std::vector<std::uint64_t>(static_cast<std::size_t>((height() + strip_rows - 1) / strip_rows)), width(), 0};
+    for (const Sites& group : groups_) {
+        for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) {
+            const std::size_t at = texel(group, i);
+            const int x = static_cast<int>(at % across);
+            ++out.strips[at / across / strip_rows];
+            out.x0 = std::min(out.x0, x), out.x1 = std::max(out.x1, x + 1);
+        }
+    }
+    return out;
 }
 
 std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int largest_texture) {

@@ -10,6 +10,15 @@
 
 namespace crescent::gl {
 
+/// Rows of pixels that are drawn together at least: renderers shade blocks of 4 x 4 or 8 x 4 pixels.
+inline constexpr int strip_rows = 4;
+
+/// Where the pixels of one lobe stand in a rectangle.
+struct LobePixels {
+    std::vector<std::uint64_t> strips;  // how many stand in each strip of rows
+    int x0 = 0, x1 = 0;                 // columns outside have none
+};
+
 /// Sites in groups of one lobe, as sites_of() makes them, tile by tile.
 class SiteTexture {
 public:
@@ -24,8 +33,7 @@ public:
     const std::vector<Sites>& groups() const { return groups_; }
     /// Lobes (-1 to 2) that some pixel here has.
     std::vector<int> lobes() const;
-    /// How many pixels of a lobe stand in each row.
-    std::vector<std::uint64_t> row_counts(int lobe) const;
+    LobePixels pixels_of(int lobe) const;
     /// Where site i of a group stands in the rectangle, row by row.
     std::size_t texel(const Sites& group, std::size_t i) const;
 

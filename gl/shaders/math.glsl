@@ -4,6 +4,7 @@
 //
 //   sincos_turns   u in [0, 1]               1.5e-7 absolute
 //   power          x in [0, 1], y > 0        2e-7 + 1e-7 |log2 x^y| relative; 0 below 2^-126
+//   root           u in [2^-24, 1]           2e-7 + 1e-7 y |log2 u| relative
 
 const float pi = 3.14159265358979323846;
 
@@ -66,6 +67,9 @@ Power power_near(float x, float near, float y) {
     return Power(in_range ? p.value : 0.0, in_range ? p.one_minus : 1.0);
 }
 Power power(float x, float y) { return power_near(x, x - 1.0, y); }
+
+// u^y and 1 - u^y for u in [2^-24, 1] and 0 < y <= 1/2, the inverse of a lobe's distribution.
+Power root(float u, float y) { return exp2_split(y * log2_near(u, u - 1.0)); }
 
 // (a.b)^s of unit vectors, from |a - b|^2, which loses nothing where they nearly meet.
 float cosine_power(vec3 a, vec3 b, float s) {

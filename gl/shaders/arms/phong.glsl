@@ -4,7 +4,7 @@
 #include "sampler.glsl"
 
 Drawn sample_phong(vec3 wo, vec2 u) {
-    Power lobe = power(u.x, 1.0 / (site.s + 1.0));
+    Power lobe = root(u.x, 1.0 / (site.s + 1.0));
     float cos = lobe.value;
     float sin = sqrt(lobe.one_minus * (1.0 + cos));
     SinCos phi = sincos_turns(u.y);

@@ -1,0 +1,186 @@
+// The law of the second copy: GLSL computes the CPU's films, every arm of the list, within a stated tolerance.
+#include <gtest/gtest.h>
+
+#include "compare_test.h"
+#include "estimator.h"
+#include "test_scene.h"
+
+namespace crescent::gl {
+namespace {
+
+using test::Difference;
+using test::Tolerance;
+
+Difference differences(const Scene& scene, Estimator& gl, const std::string& arm, std::uint64_t n, std::uint32_t seeds) {
+    Watch watch;
+    const ShapeMap shapes = shape_map(scene);
+    Difference out;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed)
+        test::compare(scene, shapes, estimate_films(scene, arm, {n}, seed, "", watch)[0], gl.films(scene, arm, {n}, seed, watch)[0], out);
+    return out;
+}
+
+void expect_within(const Difference& d, const Tolerance& tolerance, std::uint64_t n, bool software) {
+    EXPECT_LE(d.largest, tolerance.relative * (software ? 1 : test::gpu_factor)) << tolerance.reason;
+    const double samples = static_cast<double>(d.pixels * n);
+    EXPECT_LE(static_cast<double>(d.changed), samples * (software ? test::software_side_rate : test::gpu_side_rate));
+    EXPECT_EQ(d.bad_gl, d.bad_cpu);
+}
+
+class FilmLaw : public testing::TestWithParam<Tolerance> {};
+
+TEST_P(FilmLaw, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
+    const Scene scene(test::small_scene());
+    Estimator gl(test::context());
+    const bool software = test::context().software();
+    const std::string arm(GetParam().arm);
+    expect_within(differences(scene, gl, arm, 1, 24), GetParam(), 1, software);
+    expect_within(differences(scene, gl, arm, 48, 1), GetParam(), 48, software);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryArm, FilmLaw, testing::ValuesIn(test::software_tolerances), [](const auto& each) { return glsl_word(std::string(each.param.arm)); });
+
+TEST(FilmLaw, CoversEveryArmOfTheList) {
+    std::vector<std::string> stated;
+    for (const Tolerance& t : test::software_tolerances) stated.emplace_back(t.arm);
+    std::vector<std::string> listed = test::all_arms();
+    std::sort(stated.begin(), stated.end()), std::sort(listed.begin(), listed.end());
+    EXPECT_EQ(stated, listed);
+}
+
+TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
+    const Scene scene(test::small_scene()), other(test::small_scene({"shapes.phong.s=24.0024"}));
+    const ShapeMap shapes = shape_map(scene);
+    Watch watch;
+    Estimator gl(test::context());
+    Difference d;
+    test::compare(scene, shapes, estimate_films(other, "phong", {48}, 1, "", watch)[0], gl.films(scene, "phong", {48}, 1, watch)[0], d);
+    EXPECT_GT(d.largest, 7e-6);
+}
+
+TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
+    const Scene scene(test::small_scene()), other(test::small_scene({"disks.left.radius=0.42"}));
+    const ShapeMap shapes = shape_map(scene);
+    Watch watch;
+    Estimator gl(test::context());
+    Difference d;
+    for (std::uint32_t seed = 1; seed <= 4; ++seed)
+        test::compare(scene, shapes, estimate_films(other, "uniform", {48}, seed, "", watch)[0], gl.films(scene, "uniform", {48}, seed, watch)[0], d);
+    EXPECT_GT(static_cast<double>(d.changed), test::gpu_side_rate * static_cast<double>(d.pixels * 48));
+}
+
+TEST(Films, EveryPlaneIsTheCpus) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    Estimator gl(test::context());
+    const Film a = estimate_films(scene, "cosine", {64}, 5, "", watch)[0], b = gl.films(scene, "cosine", {64}, 5, watch)[0];
+    for (std::size_t at = 0; at < a.size(); ++at) {
+        if (a.hits[at] != b.hits[at]) continue;
+        for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::y2, &Film::largest})
+            EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 3e-6 * static_cast<double>((a.*plane)[at])) << at;
+        // A variance is a difference: what is left of X^2 after the mean's square.
+        EXPECT_NEAR(b.var[at], a.var[at], 3e-6 * static_cast<double>(a.y2[at]) / 63) << at;
+        EXPECT_EQ(b.horizon[at], a.horizon[at]);
+    }
+}
+
+TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    Estimator gl(test::context());
+    const std::vector<Film> many = gl.films(scene, "mixture", {1, 3, 16, 37, 64}, 9, watch);
+    for (const Film& film : many) {
+        const Film alone = gl.films(scene, "mixture", {film.n}, 9, watch)[0];
+        EXPECT_EQ(alone.hits, film.hits) << film.n;
+        EXPECT_EQ(alone.largest, film.largest) << film.n;
+        for (std::size_t at = 0; at < film.size(); ++at) EXPECT_NEAR(alone.y[at], film.y[at], 1e-6 * static_cast<double>(film.y[at])) << film.n;
+    }
+}
+
+TEST(Films, AFilmInRectanglesIsTheFilmAtOnce) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    Estimator whole(test::context()), parts(test::context(), 40);
+    EXPECT_EQ(hash(parts.films(scene, "cosine", {16}, 3, watch)[0]), hash(whole.films(scene, "cosine", {16}, 3, watch)[0]));
+}
+
+TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
+    const Scene scene(test::small_scene({"image.width=12", "image.height=8"}));
+    Watch watch;
+    Estimator gl(test::context());
+    for (const char* arm : {"uniform", "cosine"}) {
+        const Film a = estimate_films(scene, arm, {65536}, 5, "", watch)[0], b = gl.films(scene, arm, {65536}, 5, watch)[0];
+        for (std::size_t at = 0; at < a.size(); ++at) EXPECT_NEAR(b.y[at], a.y[at], 1e-6 * static_cast<double>(a.y[at])) << arm << ", pixel " << at;
+    }
+}
+
+TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
+    std::string text = test::scene_text;
+    for (int k = 0; k < 13; ++k)
+        text += "[disks.more" + std::to_string(k) + "]\ncenter = [" + std::to_string(0.35 * k - 2) + ", 3, 1]\nnormal = [0, -1, 0]\nradius = 0.15\nradiance = [" +
+                std::to_string(k + 1) + ", 9, " + std::to_string(20 - k) + "]\n";
+    const Experiment experiment = parse(text, "lights.toml", {"image.width=48", "image.height=32"});
+    const Scene scene(experiment);
+    ASSERT_EQ(scene.disks().size(), 15u);
+    Estimator gl(test::context());
+    Watch watch;
+    const Film a = estimate_films(scene, "light-area", {32}, 2, "", watch)[0], b = gl.films(scene, "light-area", {32}, 2, watch)[0];
+    EXPECT_EQ(a.hits, b.hits);
+    for (std::size_t at = 0; at < a.size(); ++at)
+        for (const auto plane : {&Film::r, &Film::g, &Film::b}) EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 5e-6 * static_cast<double>((a.*plane)[at])) << at;
+}
+
+TEST(Films, ASceneWithoutLightsAndBodiesIsDrawnToo) {
+    const Experiment experiment = parse(R"(
+title = "plain"
+seed = 1
+[image]
+width = 16
+height = 12
+[camera]
+eye = [0, 1, 4]
+target = [0, 0, 0]
+vfov_deg = 40
+[fill]
+radiance = [1, 1, 1]
+[shapes.floor]
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 1, 0]
+rho_d = [0.5, 0.5, 0.5]
+[arms.cosine]
+n = [16]
+[regions.all]
+box = [0, 0, 3, 3]
+)",
+                                        "plain.toml");
+    const Scene scene(experiment);
+    Watch watch;
+    Estimator gl(test::context());
+    const Film a = estimate_films(scene, "cosine", {16}, 1, "", watch)[0], b = gl.films(scene, "cosine", {16}, 1, watch)[0];
+    for (std::size_t at = 0; at < a.size(); ++at) EXPECT_NEAR(b.y[at], a.y[at], 1e-6);
+    EXPECT_NEAR(b.y[0], 0.5, 1e-6);
+}
+
+TEST(Films, APlantedNaNIsCountedInEverySample) {
+    Experiment experiment = test::small_scene();
+    experiment.shapes[0].material.s = std::numeric_limits<double>::quiet_NaN();
+    experiment.hash ^= 1;
+    const Scene scene(experiment);
+    Watch watch;
+    Estimator gl(test::context());
+    const std::uint64_t cpu = estimate_films(scene, "phong", {8}, 1, "", watch)[0].bad;
+    EXPECT_GT(cpu, 100u);
+    EXPECT_EQ(gl.films(scene, "phong", {8}, 1, watch)[0].bad, cpu);
+}
+
+TEST(Films, StopWhenAsked) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    watch.stop = true;
+    Estimator gl(test::context());
+    EXPECT_THROW(gl.films(scene, "cosine", {1u << 24}, 1, watch), Interrupted);
+}
+
+}  // namespace
+}  // namespace crescent::gl

@@ -1,0 +1,17 @@
+// Runs the tests of this folder where a GL context is to be had; else says so and returns 77, which ctest counts as skipped.
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "test_scene.h"
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    try {
+        std::cout << "on " << crescent::gl::test::context().renderer() << ", GL " << crescent::gl::test::context().version() << std::endl;
+    } catch (const crescent::OutputError& e) {
+        std::cout << "skipped: " << e.what() << std::endl;
+        return 77;
+    }
+    return RUN_ALL_TESTS();
+}
