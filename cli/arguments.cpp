@@ -26,8 +26,8 @@ experiment file; 3 an output cannot be written or a part is missing;
 constexpr const char* run_footer = R"(FILE is an experiment (`crescent schema` has its keys). --set takes the path
 of any key, with the same checks as the file:
   --set sphere.s=64 --set seed=7
-Films are the same bits for any --threads and any --isa. --instrument gl computes
-them in GLSL (docs/gl.md): the same to a tolerance.
+Films are the same bits for any --threads and any --isa. --instrument gl
+computes them in GLSL, the same to a tolerance: docs/gl.md.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,
 timing.json, plates/, films/. Each file appears whole or not at all.)";
@@ -52,7 +52,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--isa", f->isa, "scalar, sse4, avx2, avx512; default: the best here")->type_name("NAME");
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")->type_name("NAME")->check(CLI::IsMember({"egl", "osmesa"}));
-    c->add_option("--gl-device", f->gl_device, "with gl: a number of `list devices`; default: a GPU's")->type_name("N")->check(CLI::Range(0, 1023));
+    c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")->type_name("N")->check(CLI::Range(0, 1023));
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 

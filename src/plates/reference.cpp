@@ -50,7 +50,7 @@ void draw_reference(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
     View v = view(sheet.in.reference(s));
-    instrument_header(sheet, "REFERENCE", "not a sampling arm / s=" + number(s), reference_stream(e));
+    instrument_header(sheet, "REFERENCE", "not a sampling arm / s=" + number(s), reference_stream(e), false);
     if (v.width > 0) {
         Fit f = fit(v.width, v.height, picture_slot.w, picture_slot.h);
         Rect slot = picture_slot;

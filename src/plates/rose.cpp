@@ -186,11 +186,14 @@ void draw_rose(Sheet& sheet) {
     instrument_header(sheet, "PDF ROSE",
                       "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)) +
                           (elementary ? " / not Blinn, not GGX VNDF" : ""),
-                      "nothing sampled");
+                      "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i, tilt);
-    sheet.notes = {fmt::format("R stands {}° from n", number(tilt_deg)),
-                   "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale",
-                   "polar: plane of incidence"};
+    if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured
+    for (const std::string& note :
+         {fmt::format("R stands {}° from n", number(tilt_deg)),
+          std::string("domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
+          std::string("polar: plane of incidence")})
+        sheet.notes.push_back(note);
 }
 
 }  // namespace crescent::plates

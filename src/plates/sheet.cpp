@@ -40,9 +40,10 @@ void photograph_header(Sheet& sheet, const std::string& what, const std::string&
            stream);
 }
 
-void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream) {
+void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
     header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what, stream);
-    if (!sheet.in.instrument.empty()) sheet.notes.push_back("measured on " + escaped(sheet.in.instrument));
+    const std::string& on = sheet.in.instrument;
+    if (!on.empty()) sheet.notes.push_back((of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
 }
 
 void finish(Sheet& sheet) {

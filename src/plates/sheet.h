@@ -26,8 +26,9 @@ struct Sheet {
 /// "Khronos PBR Neutral / PHOTO-ONLY / `what`", and `stream` ("seed 7") at the right: no measured number stands on a
 /// photograph.
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream);
-/// "INSTRUMENT `name` / `what`"; names the instrument in the footer.
-void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream);
+/// "INSTRUMENT `name` / `what`"; names the instrument in the footer. `of_films`: what it shows was read off films, which any
+/// instrument may have computed; else it is the CPU's, and the films of the run are named beside it.
+void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films = true);
 /// "seed 7", "one stream, seed 7" for several runs.
 std::string stream_words(const std::vector<RunKey>& runs);
 /// The reference's own seed, "" where it is not sampled.
