@@ -112,6 +112,7 @@ TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
         const Film a = estimate_films(scene, arm, {65536}, 5, "", watch)[0], b = gl.films(scene, arm, {65536}, 5, watch)[0];
         for (std::size_t at = 0; at < a.size(); ++at) EXPECT_NEAR(b.y[at], a.y[at], 1e-6 * static_cast<double>(a.y[at])) << arm << ", pixel " << at;
     }
+    RecordProperty("longest_draw_ms", static_cast<int>(1000 * gl.longest_draw_s()));
 }
 
 TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {

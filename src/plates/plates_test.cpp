@@ -100,6 +100,15 @@ TEST(Plates, Long_names_stay_in_their_boxes) {
     }
 }
 
+TEST(Plates, Every_instrument_says_what_computed_its_films) {
+    World world(960, 540);
+    world.instrument = "GL 4.5, llvmpipe, OSMesa";
+    for (PlateKind kind : {PlateKind::reference, PlateKind::heat, PlateKind::rose, PlateKind::meters}) {
+        const std::vector<Setting> settings = world.settings(world.plan(kind, 2));
+        EXPECT_TRUE(std::any_of(settings.begin(), settings.end(), [&](const Setting& s) { return s.text.find(world.instrument) != std::string::npos; })) << int(kind);
+    }
+}
+
 TEST(Plates, Any_size_of_image_and_any_number_of_runs_is_drawn) {
     for (auto [w, h] : {std::pair{8, 8}, {40, 900}, {900, 12}, {1, 1}, {1500, 900}}) {
         World world(w, h);

@@ -57,6 +57,15 @@ TEST(MetricsJson, FitsItsSchemaWithNothingMeasured) {
     EXPECT_EQ(schema().complaint(parsed(s)), "");
 }
 
+TEST(MetricsJson, AnInstrumentsOwnWordsStandInTheProvenanceAndTheCpuHasNone) {
+    Sample s;
+    EXPECT_FALSE(parsed(s)["provenance"].contains("instrument_details"));
+    s.provenance.instrument_details = {{"GL_VERSION", "4.5 (Core Profile)"}, {"context", "OSMesa"}};
+    EXPECT_EQ(parsed(s)["provenance"]["instrument_details"]["GL_VERSION"], "4.5 (Core Profile)");
+    EXPECT_EQ(schema().complaint(parsed(s)), "");
+    EXPECT_NE(s.html().find("OSMesa"), std::string::npos);
+}
+
 TEST(MetricsJson, ItsSchemaNoticesWhatIsMissingWrongOrUnknown) {
     auto lacking = parsed(Sample());
     lacking["runs"][0].erase("arm");

@@ -1,0 +1,75 @@
+// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample, read off the very
+// source that the kernels are made of. + - * / and sqrt count one each; comparisons, selections and integers none.
+#pragma once
+
+#include "crescent.h"
+
+namespace crescent {
+
+struct Counted {
+    float v = 0;
+    static inline std::uint64_t operations = 0;
+
+    Counted() = default;
+    explicit constexpr Counted(float x) : v(x) {}
+    static Counted did(float x) {
+        ++operations;
+        return Counted(x);
+    }
+};
+
+template <> struct Lanes<Counted> {
+    using Mask = bool;
+    using Uint = std::uint32_t;
+    static constexpr std::size_t count = 1;
+};
+
+inline Counted operator+(Counted a, Counted b) { return Counted::did(a.v + b.v); }
+inline Counted operator-(Counted a, Counted b) { return Counted::did(a.v - b.v); }
+inline Counted operator*(Counted a, Counted b) { return Counted::did(a.v * b.v); }
+inline Counted operator/(Counted a, Counted b) { return Counted::did(a.v / b.v); }
+inline Counted operator-(Counted a) { return Counted(-a.v); }
+inline bool operator<(Counted a, Counted b) { return a.v < b.v; }
+inline bool operator<=(Counted a, Counted b) { return a.v <= b.v; }
+inline bool operator>(Counted a, Counted b) { return a.v > b.v; }
+inline bool operator>=(Counted a, Counted b) { return a.v >= b.v; }
+inline bool operator==(Counted a, Counted b) { return a.v == b.v; }
+inline Counted select(bool m, Counted a, Counted b) { return m ? a : b; }
+inline Counted sqrt(Counted a) { return Counted::did(std::sqrt(a.v)); }
+inline Counted abs(Counted a) { return Counted(std::fabs(a.v)); }
+inline std::uint32_t bits(Counted a) { return bits(a.v); }
+template <> inline Counted from_bits<Counted>(std::uint32_t u) { return Counted(from_bits<float>(u)); }
+template <> inline Counted to_float<Counted>(std::uint32_t u) { return Counted(to_float<float>(u)); }
+
+namespace bench {
+
+/// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there is one.
+template <class L> Counted carry(const Site<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
+    const LocalDisk<Counted>& disk = site.disks[0];
+    const L lobe(site.s, site.alpha);
+    const Counted g = weight * (drawn.wi.z / drawn.pdf.v), f = lobe(site.wo, drawn.wi);
+    const Counted x = g * (site.diffuse + f * site.lobe), off = x - site.diffuse;
+    const Counted along = dot(drawn.wi, disk.normal);
+    const Vec3<Counted> miss = drawn.wi * disk.radius - disk.to_center * along;
+    return dot(miss, miss) * (along * along) + (off * off + g) + g * f;
+}
+
+/// Operations of one sample of an arm on a surface with lobe L under one disk, without shadows and random integers.
+template <template <class> class A, class L> std::uint64_t operations_per_sample() {
+    const auto c = [](double x) { return Counted(static_cast<float>(x)); };
+    const LocalDisk<Counted> disk{{c(1), c(0.5), c(2)}, {c(0), c(0), c(-1)}, c(0.1), c(0), c(1)};
+    const Site<Counted> site{{c(0.6), c(0), c(0.8)}, c(32), c(0.2), c(0.17), c(0.12), &disk, 1};
+    const A<Counted> arm(site);
+    Counted::operations = 0;
+    const Vec2<Counted> u{unit_float<Counted>(0x51234567u), unit_float<Counted>(0x9abcdef0u)};
+    if constexpr (requires { A<Counted>::techniques; }) {
+        const Drawn<Counted> a = arm.template sample_technique<0>(site.wo, u), b = arm.template sample_technique<1>(site.wo, u);
+        carry<L>(site, a, arm.template weight<0>(site.wo, a)), carry<L>(site, b, arm.template weight<1>(site.wo, b));
+    } else {
+        carry<L>(site, arm.sample(site.wo, u), c(1));
+    }
+    return Counted::operations;
+}
+
+}  // namespace bench
+}  // namespace crescent

@@ -1,0 +1,84 @@
+// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every sampler of the list on the CPU and on GL, in
+// one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some repetitions,
+// CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's arithmetic peak in
+// Gflop/s as its maker states it; the last column is then the fraction of it that the samples' arithmetic makes (bench/counted.h).
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "counted.h"
+#include "crescent.h"
+
+namespace {
+
+using namespace crescent;
+
+double seconds_of(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Figures {
+    double cpu = 0, gl = 0;  // Msamples/s
+};
+
+Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampler, std::uint64_t n, double samples) {
+    Watch watch;
+    const ArmPlan plan{sampler, sampler, {n}, {}};
+    const Job job{&plan, {n}, scene.experiment().s(), 1};
+    gl.films(scene, {&plan, {1}, job.s, 1}, watch);  // compiles
+    double cpu_s = 1e30, gl_s = 1e30;
+    for (int k = 0; k < 3; ++k) {
+        cpu_s = std::min(cpu_s, seconds_of([&] { estimate_films(scene, sampler, {n}, 1, "", watch); }));
+        gl_s = std::min(gl_s, seconds_of([&] { gl.films(scene, job, watch); }));
+    }
+    return {samples / cpu_s * 1e-6, samples / gl_s * 1e-6};
+}
+
+std::string processor() {
+    std::ifstream cpuinfo("/proc/cpuinfo");
+    for (std::string line; std::getline(cpuinfo, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
+    return "unknown processor";
+}
+
+void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<Instrument>& gl, double peak) {
+    Scene scene(experiment);
+    scene.remember_primaries();
+    std::uint64_t pixels = 0, glossy = 0;
+    for (const std::int16_t shape : shape_map(scene).shape) {
+        pixels += shape >= 0;
+        glossy += shape >= 0 && experiment.shapes[static_cast<std::size_t>(shape)].material.rho_s > 0;
+    }
+    const double share = static_cast<double>(glossy) / static_cast<double>(pixels);
+    std::cout << fmt::format("CPU: {}, {} threads, {}  \nGL: {}  \n{}, N = {}, {} geometry pixels; crescent {} {}, {}\n\n", processor(), std::thread::hardware_concurrency(),
+                             isas().back(), gl->name(), experiment.file, n, pixels, version(), commit(), compiler());
+    std::cout << "| arm | CPU, Msamples/s | GL, Msamples/s | CPU / GL | operations a sample |" << (peak > 0 ? " of the peak |" : "") << "\n|---|--:|--:|--:|--:|"
+              << (peak > 0 ? "--:|" : "") << std::endl;
+    for_each_arm(Arms{}, [&]<template <class> class A>() {
+        const std::string name(A<float>::name);
+        const double operations = share * static_cast<double>(bench::operations_per_sample<A, PhongLobe<Counted>>()) +
+                                  (1 - share) * static_cast<double>(bench::operations_per_sample<A, NoLobe<Counted>>());
+        const Figures f = measure_arm(scene, *gl, name, n, static_cast<double>(pixels * n));
+        std::cout << fmt::format("| {} | {:.1f} | {:.1f} | {:.2f} | {:.0f} |", name, f.cpu, f.gl, f.cpu / f.gl, operations);
+        if (peak > 0) std::cout << fmt::format(" {:.1f} % |", 100 * f.gl * 1e-3 * operations / peak);
+        std::cout << std::endl;
+    });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    if (argc < 3 || argc > 6) throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
+    const auto kind = find_instrument("gl");
+    if (!kind) throw OutputError("this build has no GL instrument");
+    table(load(argv[1]), std::stoull(argv[2]), kind->open({argc > 3 ? argv[3] : "", argc > 4 ? std::stoi(argv[4]) : -1}), argc > 5 ? std::stod(argv[5]) : 0);
+} catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 2;
+}
