@@ -77,7 +77,10 @@ int main(int argc, char** argv) try {
     if (argc < 3 || argc > 6) throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
     const auto kind = find_instrument("gl");
     if (!kind) throw OutputError("this build has no GL instrument");
-    table(load(argv[1]), std::stoull(argv[2]), kind->open({argc > 3 ? argv[3] : "", argc > 4 ? std::stoi(argv[4]) : -1}), argc > 5 ? std::stod(argv[5]) : 0);
+    Experiment experiment = load(argv[1]);
+    for (Shape& shape : experiment.shapes)
+        if (!shape.material.alpha) shape.material.alpha = 0.2;  // the GGX arms aim by it
+    table(experiment, std::stoull(argv[2]), kind->open({argc > 3 ? argv[3] : "", argc > 4 ? std::stoi(argv[4]) : -1}), argc > 5 ? std::stod(argv[5]) : 0);
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';
     return 2;
