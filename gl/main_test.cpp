@@ -8,7 +8,8 @@
 int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
     try {
-        std::cout << "on " << crescent::gl::test::context().renderer() << ", GL " << crescent::gl::test::context().version() << std::endl;
+        const crescent::gl::Context& context = crescent::gl::test::context();
+        std::cout << "on " << context.renderer() << ", GL " << context.version() << std::endl;
     } catch (const crescent::OutputError& e) {
         std::cout << "skipped: " << e.what() << std::endl;
         return 77;
