@@ -20,6 +20,7 @@ Framebuffer::Framebuffer(const Context& context, int width, int height, std::siz
         gl().BindTexture(GL_TEXTURE_2D, textures_[k]);
         if (texel == Texel::rgba32f) gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
         else gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32UI, width, height, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, nullptr);
+        context_.check("making the textures of a framebuffer");
         for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) gl().TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
         targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(k));
         gl().FramebufferTexture(GL_FRAMEBUFFER, targets.back(), textures_[k], 0);
