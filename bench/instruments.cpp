@@ -33,7 +33,7 @@ Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampl
     const Job job{&plan, {n}, scene.experiment().s(), 1};
     gl.films(scene, {&plan, {1}, job.s, 1}, watch);  // compiles
     double cpu_s = 1e30, gl_s = 1e30;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 7; ++k) {
         cpu_s = std::min(cpu_s, seconds_of([&] { estimate_films(scene, sampler, {n}, 1, "", watch); }));
         gl_s = std::min(gl_s, seconds_of([&] { gl.films(scene, job, watch); }));
     }
