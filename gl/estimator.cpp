@@ -72,14 +72,14 @@ const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t att
 namespace {
 
 /// What every draw of a program reads besides the samples' range.
-void set_scene(const Program& program, const Sites& any, const Bodies& bodies, const TileBox& box, int image_width, std::uint32_t seed) {
+void set_scene(const Program& program, const Sites& lights, const Bodies& bodies, const TileBox& box, int image_width, std::uint32_t seed) {
     program.use();
     program.set("sites", 0);
     program.set("corner", box.x0, box.y0);
     program.set("image_width", image_width);
     program.set("seed", seed);
     std::vector<std::array<float, 3>> disks;
-    for (const DiskArrays& d : any.disks) disks.push_back({d.radius, d.two_sided ? 1.0f : 0.0f, d.power});
+    for (const DiskArrays& d : lights.disks) disks.push_back({d.radius, d.two_sided ? 1.0f : 0.0f, d.power});
     if (!disks.empty()) program.set("disk_kind", disks);
     if (!bodies.vectors.empty()) program.set("bodies", bodies.vectors);
 }
@@ -90,12 +90,12 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     const std::size_t disks = scene.disks().size();
     const SiteTexture& here = sites(scene, box, watch);
     if (here.groups().empty()) return;
-    const Sites& any = here.groups().front();
-    const Bodies bodies = bodies_of(any.occluders);
+    const Sites lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
+    const Bodies bodies = bodies_of(lights.occluders);
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {
         Kernel& k = kernel(sampler, lobe, disks, bodies);
-        set_scene(k.program, any, bodies, box, scene.experiment().image.width, seed);
+        set_scene(k.program, lights, bodies, box, scene.experiment().image.width, seed);
         parts.push_back({&k.program, &k.pacer, here.pixels_of(lobe)});
     }
     const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(disks));

@@ -22,15 +22,13 @@ float pdf_light_area(vec3 wo, vec3 wi) {
 }
 
 Drawn on_disk(LocalDisk d, vec2 u) {
-    float r = d.radius * sqrt(u.x);
+    float r = sqrt(u.x);
     SinCos phi = sincos_turns(u.y);
     Frame about = frame_about(d.normal);
-    vec3 y = d.to_center + about.t * (r * phi.cos) + about.b * (r * phi.sin);
-    float r2 = dot(y, y);
-    vec3 wi = y * (1.0 / sqrt(r2));
-    float v = abs(dot(wi, d.normal));
-    bool lit = faces(d, dot(d.to_center, d.normal)) && v > 0.0;
-    return Drawn(wi, lit ? disk_density(d, r2, v) : 0.0);
+    vec3 y = d.to_center + about.t * d.radius * (r * phi.cos) + about.b * d.radius * (r * phi.sin);
+    float c = dot(d.to_center, d.normal), r2 = dot(y, y), distance = sqrt(r2);
+    float scale = faces(d, c) ? (1.0 / pi) / (sqr(d.radius) * abs(c)) : 0.0;  // r^2 / cos(light) = |y|^3 / |c.n|
+    return Drawn(y * (1.0 / distance), scale * r2 * distance);
 }
 
 Drawn sample_light_area(vec3 wo, vec2 u) {

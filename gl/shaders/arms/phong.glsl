@@ -9,6 +9,6 @@ Drawn sample_phong(vec3 wo, vec2 u) {
     float sin = sqrt(lobe.one_minus * (1.0 + cos));
     SinCos phi = sincos_turns(u.y);
     float p = (site.s + 1.0) * (0.5 / pi) * (u.x / cos);
-    return Drawn(to_world(frame_about(mirror(wo)), vec3(sin * phi.cos, sin * phi.sin, cos)), u.x > 0.0 ? p : 0.0);
+    return Drawn(to_world(frame_about(mirror(wo)), vec3(sin * phi.cos, sin * phi.sin, cos)), p);
 }
 float pdf_phong(vec3 wo, vec3 wi) { return (site.s + 1.0) * (0.5 / pi) * cosine_power(wi, mirror(wo), site.s); }
