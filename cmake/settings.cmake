@@ -10,7 +10,7 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2")
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
 find_package(fmt REQUIRED)
@@ -38,6 +38,16 @@ if(CRESCENT_SANITIZE)
   target_link_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE})
 endif()
 
+# What nearly every file reads, read once a target: two thirds of the time to compile is spent in these.
+option(CRESCENT_PRECOMPILED "precompile the standard library's headers" ON)
+function(crescent_precompiled target)
+  if(CRESCENT_PRECOMPILED)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory>
+      <optional> <span> <sstream> <string> <string_view> <variant> <vector> <fmt/format.h> ${ARGN})
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
+  endif()
+endfunction()
+
 # crescent_folder(NAME LIBS...): src/NAME/*.cpp is the target crescent_NAME; it may use every folder named before it.
 # *_test.cpp stand beside their sources and are collected for laws/CMakeLists.txt.
 set(crescent_folders "")
@@ -54,6 +64,10 @@ macro(crescent_folder name)
       $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
     target_compile_features(crescent_${name} PUBLIC cxx_std_20)
     target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
+    list(LENGTH folder_sources size)
+    if(size GREATER 5)
+      crescent_precompiled(crescent_${name})
+    endif()
     list(PREPEND crescent_folders crescent_${name})
     if(EXISTS ${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)
       include(${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)

@@ -1,6 +1,9 @@
 # What runs once a sample is worth a longer compilation.
 target_compile_options(crescent_estimator PRIVATE $<$<CONFIG:Release>:-O3>)
 
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/estimator/kernel_sse4.cpp ${PROJECT_SOURCE_DIR}/src/estimator/kernel_avx2.cpp
+  ${PROJECT_SOURCE_DIR}/src/estimator/kernel_avx512.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+
 # Each instruction set's kernels are compiled with its own flags, on processors that have any of them.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(dir ${PROJECT_SOURCE_DIR}/src/estimator)

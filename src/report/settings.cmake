@@ -1,0 +1,3 @@
+if(CRESCENT_PRECOMPILED)
+  target_precompile_headers(crescent_report PRIVATE <nlohmann/json.hpp>)
+endif()
