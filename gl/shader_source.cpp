@@ -25,9 +25,7 @@ void ShaderSource::add(const std::string& path, const std::string& text) {
     paths_.push_back(path);
     std::istringstream lines(text);
     std::string own;
-    std::size_t number = base;
     for (std::string line; std::getline(lines, line);) {
-        ++number;
         constexpr std::string_view word = "#include \"";
         if (line.starts_with(word)) {
             include(line.substr(word.size(), line.rfind('"') - word.size()));

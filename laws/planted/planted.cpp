@@ -21,7 +21,6 @@ struct Plan {
 };
 
 double power_cos(Vec3d a, Vec3d b, double s) { return std::pow(std::max(dot(a, b), 0.0), s); }
-const Vec3d normal{0, 0, 1};
 Vec3d spherical(double cos, double turns) {
     const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
     return {sin * std::cos(2 * pi * turns), sin * std::sin(2 * pi * turns), cos};
