@@ -152,6 +152,7 @@ Verdict judge_density(Work& work) {
     Verdict v = work.verdict("density", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
+        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value)) return work.verdict("density", State::skipped, fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
         const Fit f = fit(d, work.first(t));
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         v.evidence["coordinates" + tag] = coordinates(d);
@@ -167,7 +168,6 @@ Verdict judge_density(Work& work) {
         v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
         if (work.rigour.pictures && t == 0)
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d), static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected});
-        if (!(d.mass.value > 0)) return work.verdict("density", State::skipped, "p integrates to 0: there is nothing to compare draws with.");
         std::optional<Fit> fresh;
         const auto of = [&](auto which) {
             return work.fails(which(f), [&](int round) {

@@ -46,6 +46,7 @@ public:
         for (double& v : out) v = 0;
     }
     /// What f ought to be where that is known apart from f; the same as f elsewhere.
+    virtual bool has_true_f() const { return false; }
     virtual void true_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.
     virtual bool draws_at_will() const { return true; }
