@@ -70,7 +70,11 @@ Rigour rigour_of(const CheckFlags& flags) {
 }
 
 std::vector<Trial> trials_for(const CheckFlags& flags) {
-    if (!flags.exec.empty()) return trials_of_subject(start_pipe(flags.exec), flags.full);
+    if (!flags.exec.empty()) {
+        PipeLimits limits;
+        if (flags.full) limits.total_seconds = 3600;
+        return trials_of_subject(start_pipe(flags.exec, limits), flags.full);
+    }
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
     if (flags.wo.empty() || flags.table.empty()) throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
     const Vec3d wo = direction_of(flags.wo);
@@ -137,18 +141,21 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     return all && rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha ? held : failed;
 }
 
-Judgement complaint(const std::string& what, const std::string& arm, double alpha) {
+/// A program that never came to be judged.
+Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
     Judgement j;
-    j.alpha = alpha;
-    Verdict v;
-    v.arm = arm;
-    v.trial = "start";
-    v.name = "valid";
-    v.state = State::wrong;
-    v.say = what;
-    v.expected = false;
-    j.verdicts.push_back(v);
-    j.state = State::wrong;
+    j.alpha = flags.alpha;
+    j.state = dynamic_cast<const SubjectTooSlow*>(&fault) ? State::inconclusive : State::wrong;
+    for (std::string_view name : verdict_names) {
+        Verdict v;
+        v.arm = flags.exec;
+        v.trial = "start";
+        v.name = name;
+        v.state = name == "valid" ? j.state : State::skipped;
+        v.say = name == "valid" ? fault.what() : "The program never came to be judged.";
+        v.expected = v.state == State::skipped;
+        j.verdicts.push_back(v);
+    }
     j.as_expected = false;
     return j;
 }
@@ -166,7 +173,7 @@ int check(const CheckFlags& flags) {
         const std::vector<Trial> trials = trials_for(flags);
         j = judge(trials, rigour_of(flags), watch);
     } catch (const SubjectFault& fault) {
-        j = complaint(fault.what(), flags.exec, flags.alpha);
+        j = complaint(fault, flags);
     }
     watch.clear();
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.samples.empty();

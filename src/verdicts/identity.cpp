@@ -65,7 +65,7 @@ Mismatch pdf_twice(const Work& work, int t) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || d.wi.z <= 0) continue;  // under the horizon a pdf weighs nothing
         ++m.tried;
-        if (close(d.pdf, b.pdf[i])) continue;
+        if (close(d.pdf, b.pdf[i], 2 * work.subject.doubt(d.wi))) continue;
         if (m.count < 4096 && close(d.pdf, b.pdf[i], pdf_conditioning(work, t, d.wi, b.pdf[i]))) continue;
         m.add(d.pdf, b.pdf[i], d.wi);
     }

@@ -83,8 +83,9 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
         if (trial.yardstick) return {};
         out.verdicts.clear();
         Verdict v = skipped(trial, "valid", fault.what());
-        v.state = State::wrong;
-        v.evidence["first_fault"] = fault.what();
+        const bool gone = dynamic_cast<const SubjectGone*>(&fault), slow = dynamic_cast<const SubjectTooSlow*>(&fault);
+        v.state = gone ? State::skipped : slow ? State::inconclusive : State::wrong;
+        if (!gone) v.evidence["first_fault"] = fault.what();
         out.verdicts.push_back(v);
         skip_rest(trial, out, "The sampler stopped answering as agreed.");
     }

@@ -26,17 +26,23 @@ std::string fault_of(const Draw& d, double pdf_there) {
     return "";
 }
 
+/// "samples.csv:17, " for a draw that stands in a file.
+std::string at_place(const Work& work, const Batchful& b, std::size_t i) {
+    const std::string place = &b == &work.first(0) ? work.subject.place(i) : "";
+    return place.empty() ? "" : place + ", ";
+}
+
 std::string fault_of(const Work& work, int technique, const Batchful& b) {
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const std::string fault = fault_of(b.draws[i], b.pdf[i]);
-        if (!fault.empty()) return fmt::format("at {}{}: {}", told(b.u[i]), work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
+        if (!fault.empty()) return fmt::format("{}at {}{}: {}", at_place(work, b, i), told(b.u[i]), work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
     }
-    if (!work.subject.has_f()) return "";
+    if (!work.subject.has_drawn_f()) return "";
     const std::vector<double>& f = work.f_of_drawn(b);
     for (std::size_t i = 0; i < f.size(); ++i) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || d.wi.z <= 0) continue;
-        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {:.9g}", told(d.wi), f[i]);
+        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("{}f at {} is {:.9g}", at_place(work, b, i), told(d.wi), f[i]);
         if (!std::isfinite(f[i] * d.wi.z / d.pdf)) return fmt::format("the weight f cos / p at {} is not finite", told(d.wi));
     }
     return "";

@@ -105,7 +105,7 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
 }
 
 Verdict judge_tail(Work& work) {
-    if (!work.subject.has_f()) return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
+    if (!work.subject.has_drawn_f()) return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
     std::vector<double> x = first_weights(work, false);
     const Spread s = spread(x);
     const std::optional<Tail> tail = tail_of(x);
@@ -146,7 +146,8 @@ Verdict judge_tail(Work& work) {
 }
 
 Verdict judge_mean(const Work& work) {
-    if (!work.subject.has_f()) return work.verdict("mean", State::skipped, "There is no BRDF, hence no integral to compare the mean with.");
+    if (!work.subject.has_f())
+        return work.verdict("mean", State::skipped, work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with." : "There is no BRDF, hence no integral to compare the mean with.");
     Verdict v = work.verdict("mean", State::right, "");
     const Integral expected = work.incoming(Work::Where::reached, false);
     const std::vector<double> x = first_weights(work, false);

@@ -84,6 +84,10 @@ Batchful Work::draw(int technique, int round) const {
 const std::vector<double>& Work::f_of_drawn(const Batchful& b) const {
     if (b.f.size() == b.draws.size()) return b.f;
     std::vector<Vec3d> wi;
+    if (!subject.has_f()) {
+        for (const Draw& d : b.draws) b.f.push_back(d.pdf > 0 && d.wi.z > 0 ? d.f.value_or(0) : 0);
+        return b.f;
+    }
     for (const Draw& d : b.draws)
         if (d.pdf > 0 && d.wi.z > 0 && is_finite(d.wi)) wi.push_back(d.wi);
     const std::vector<double> value = f(wi);

@@ -58,6 +58,8 @@ struct Density {
     int sectors = 0;
     Integral mass;
     std::optional<Integral> second;  // in other coordinates, where the first does not come to one
+    std::vector<double> doubt;  // by bin, where p was tabulated; else empty
+    double doubts = 0;          // their sum
     double nothing = 0, nothing_se = 0;  // share of draws that draw nothing, randomised lattice
     std::size_t bin_of(Vec2d at) const;
 };

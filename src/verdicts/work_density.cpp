@@ -176,6 +176,11 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t
                            for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
                        },
                        {edge_mass / 20, evaluations, edge_mass}, &witnesses);
+    for (const Doubt& doubt : subject.doubts()) {
+        d.doubt.resize(d.mass.bins.size());
+        d.doubt[d.bin_of(map.coordinates(doubt.at))] += doubt.mass;
+        d.doubts += doubt.mass;
+    }
     return d;
 }
 
