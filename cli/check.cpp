@@ -69,9 +69,10 @@ Rigour rigour_of(const CheckFlags& flags) {
     return r;
 }
 
-std::vector<Trial> trials_for(const CheckFlags& flags) {
+std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
     if (!flags.exec.empty()) {
         PipeLimits limits;
+        limits.stop = &watch.stop;
         if (flags.full) limits.total_seconds = 3600;
         return trials_of_subject(start_pipe(flags.exec, limits), flags.full);
     }
@@ -127,7 +128,7 @@ int check_planted(const CheckFlags& flags, Watch& watch) {
 /// Both tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and the promise to right arms is kept.
 int check_error_rates(const CheckFlags& flags, Watch& watch) {
     Rigour rigour = rigour_of(flags);
-    rigour.draws = 8192;  // the levels do not depend on it; many seeds matter more than many draws
+    rigour.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
     const FalseAlarms alarms = measure_false_alarms(flags.error_rates, rigour, watch);
     std::vector<Caught> table;
     bool all = true;
@@ -170,7 +171,7 @@ int check(const CheckFlags& flags) {
     if (flags.planted) return check_planted(flags, watch);
     Judgement j;
     try {
-        const std::vector<Trial> trials = trials_for(flags);
+        const std::vector<Trial> trials = trials_for(flags, watch);
         j = judge(trials, rigour_of(flags), watch);
     } catch (const SubjectFault& fault) {
         j = complaint(fault, flags);

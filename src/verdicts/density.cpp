@@ -78,7 +78,8 @@ Fit fit(const Density& d, const Batchful& b) {
     const double n = static_cast<double>(b.draws.size());
     const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = d.rings.size() - 1;
     // Left by p: what draws nothing. Scaled to the share that was drawn, so that the normalisation is not judged twice.
-    const double scale = n * (1 - d.nothing) / d.mass.value;
+    const bool table = d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;  // its sum says less than its bins
+    const double scale = table ? n : n * (1 - d.nothing) / d.mass.value;
     std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors), slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
     for (std::size_t i = 0; i < d.doubt.size(); ++i) {
         slack[i] = scale * d.doubt[i];

@@ -30,6 +30,9 @@ public:
             stop();
             if (unknown && !greeted_) throw InputError({"--exec", 0, 0}, "the shell cannot start '" + command + "'");
             throw;
+        } catch (...) {
+            stop();
+            throw;
         }
     }
     ~PipeSubject() override { stop(); }
@@ -215,6 +218,10 @@ private:
                 if (!fill()) fault(write, answered, end_of_output(), expected);
                 last = Clock::now();
                 take_lines(count, answered, written, expected, write, read);
+            }
+            if (limits_.stop && limits_.stop->load()) {
+                broken_ = "interrupted";
+                throw Interrupted{};
             }
             if (seconds_since(began_) > limits_.total_seconds) {
                 broken_ = fmt::format("request {} of a program that is too slow to judge: {:.0f} s are spent and it gives {:.3g} answers a second", requests_ + answered + 1, limits_.total_seconds,

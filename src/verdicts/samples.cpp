@@ -111,8 +111,8 @@ bool SampleFile::agrees_as_cells() const {
     return 10 * alike >= 9 * drawn;
 }
 
-/// A straight line from point to point is off by at most an eighth of the second difference, a quarter of what p bends by; half is
-/// granted. At the first and the last row the line is prolonged: what it bends by next to it.
+/// A straight line from point to point is off by a quarter of what p bends by where p is smooth, and by all of it at a kink. At the
+/// first and the last row the line is prolonged: twice what it bends by next to it.
 void SampleFile::find_bends() {
     const std::size_t m = rows_.size(), n = columns_.size();
     bent_.assign(values_.size(), 0);
@@ -126,7 +126,7 @@ void SampleFile::find_bends() {
                 const double t = (rows_[c] - rows_[c - 1]) / (rows_[c + 1] - rows_[c - 1]);
                 along = std::fabs(p(c, j) - (1 - t) * p(c - 1, j) - t * p(c + 1, j));
             }
-            bent_[i * n + j] = 0.5 * (along * (i == 0 || i + 1 == m ? 2 : 1) + std::fabs(p(i, j) - 0.5 * (p(i, west) + p(i, east))));
+            bent_[i * n + j] = along * (i == 0 || i + 1 == m ? 2 : 1) + std::fabs(p(i, j) - 0.5 * (p(i, west) + p(i, east)));
         }
 }
 
@@ -170,20 +170,26 @@ double SampleFile::doubt(Vec3d w) const {
     return std::max({bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
 }
 
+/// In pieces that are small beside any bin.
 std::vector<Doubt> SampleFile::doubts() const {
     std::vector<Doubt> out;
     if (cells_) return out;
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-        for (std::size_t j = 0; j < columns_.size(); ++j) {
-            const double mass = bent_[i * columns_.size() + j] * (row_edges_[i + 1] - row_edges_[i]) * (column_edges_[j + 1] - column_edges_[j]);
-            const double sin = std::sqrt(std::max(1 - sqr(rows_[i]), 0.0));
-            if (mass > 0) out.push_back({{sin * std::cos(columns_[j]), sin * std::sin(columns_[j]), rows_[i]}, mass});
+    const std::size_t rows = 1 + 192 / rows_.size(), columns = 1 + 64 / columns_.size();
+    for (std::size_t i = 0; i < rows_.size() * rows; ++i)
+        for (std::size_t j = 0; j < columns_.size() * columns; ++j) {
+            const std::size_t r = i / rows, c = j / columns;
+            const double dz = (row_edges_[r + 1] - row_edges_[r]) / static_cast<double>(rows), dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
+            const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)), phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
+            const double sin = std::sqrt(std::max(1 - z * z, 0.0));
+            const Vec3d w{sin * std::cos(phi), sin * std::sin(phi), z};
+            const double mass = doubt(w) * dz * dphi;
+            if (mass > 0) out.push_back({w, mass});
         }
     return out;
 }
 
-std::string SampleFile::place(std::size_t draw) const {
-    const std::size_t row = 2 * draw;  // every other row is judged first
+std::string SampleFile::place(int round, std::size_t draw) const {
+    const std::size_t row = 2 * draw + static_cast<std::size_t>(round);  // every other row is judged first
     return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
 }
 

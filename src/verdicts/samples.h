@@ -22,7 +22,7 @@ public:
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override;
     std::vector<Doubt> doubts() const override;
     double doubt(Vec3d w) const override;
-    std::string place(std::size_t draw) const override;
+    std::string place(int round, std::size_t draw) const override;
 
 private:
     struct Spot {  // between rows i and i + 1, columns j and j + 1

@@ -61,7 +61,7 @@ public:
     virtual std::vector<Doubt> doubts() const { return {}; }
     virtual double doubt(Vec3d /*w*/) const { return 0; }
     /// Where a recorded draw stands, "samples.csv:17"; "" where it was asked for.
-    virtual std::string place(std::size_t /*draw*/) const { return {}; }
+    virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.
     virtual bool draws_at_will() const { return true; }
     /// What it can be asked in a second; a slow program is judged at fewer w_o.

@@ -28,7 +28,7 @@ std::string fault_of(const Draw& d, double pdf_there) {
 
 /// "samples.csv:17, " for a draw that stands in a file.
 std::string at_place(const Work& work, const Batchful& b, std::size_t i) {
-    const std::string place = &b == &work.first(0) ? work.subject.place(i) : "";
+    const std::string place = work.subject.place(&b == &work.first(0) ? 0 : 1, i);
     return place.empty() ? "" : place + ", ";
 }
 
@@ -87,6 +87,7 @@ Verdict judge_valid(const Work& work) {
     for (int t = 0; t < work.subject.techniques(); ++t) {
         std::string fault = work.subject.draws_at_will() ? fault_of(work, t, corners(work, t)) : "";
         if (fault.empty()) fault = fault_of(work, t, work.first(t));
+        if (fault.empty() && !work.subject.draws_at_will()) fault = fault_of(work, t, work.draw(t, 1));
         if (fault.empty()) fault = fault_all_over(work, t);
         if (!fault.empty()) {
             Verdict v = work.verdict("valid", State::wrong, "What the sampler returns cannot be used: " + fault + ".");

@@ -27,7 +27,15 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
         for (double v : x)
             if (v > 0) ++out.counts[static_cast<std::size_t>(std::clamp((std::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
     }
-    out.k = tail ? tail->k : 0;
+    if (tail && tail->exceedances + 1 < x.size()) {
+        out.k = tail->k;
+        out.exceedances = static_cast<double>(tail->exceedances);
+        std::vector<double> largest = x;
+        std::sort(largest.begin(), largest.end(), std::greater<>());
+        out.threshold = largest[tail->exceedances];
+        const double median = largest[tail->exceedances / 2] - out.threshold;
+        out.sigma = std::fabs(out.k) < 1e-6 ? median / std::log(2.0) : out.k * median / (std::exp2(out.k) - 1);
+    }
     std::vector<Vec3d> wi;
     const double azimuth = std::atan2(work.trial.wo.y, work.trial.wo.x) * 180 / pi;
     for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));

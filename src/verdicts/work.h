@@ -122,6 +122,7 @@ private:
     void find_guides();
     void find_rims(int technique);
     void add_rims(Density& d) const;
+    void sharpen(int technique, Density& d) const;
     Witnesses witnesses_of(int technique, const Density& d) const;
     Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
     void find_nothing(int technique, Density& d, std::uint64_t points) const;
