@@ -43,7 +43,7 @@ expect 1 "$CRESCENT" check --quiet --samples wrong.csv --wo 0,0,1 --pdf-table ta
 sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
 expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
 grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"
-for call in "phng" "--set q=1" "cosine --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 0,0,1"; do
+for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 0,0,1"; do
     expect 2 "$CRESCENT" check $call
 done
 expect 2 "$CRESCENT" check --exec ''
