@@ -16,9 +16,12 @@ namespace {
 
 bool is_right(const Trial& t) { return !t.theory.wrong && (t.theta_deg == 0 || t.theta_deg == 45 || t.theta_deg == 85); }
 
-/// Whether any verdict that depends on the draws at hand is wrong.
-bool accused(Work& work) {
-    return judge_normalised(work).state == State::wrong || judge_identity(work).state == State::wrong || judge_density(work).state == State::wrong || judge_physics(work).state == State::wrong || judge_mean(work).state == State::wrong;
+/// The first verdict that is wrong of those that depend on the draws at hand.
+std::optional<Verdict> accusation(Work& work) {
+    for (auto* verdict : {+[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); }, +[](Work& w) { return judge_identity(w); },
+                          +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_mean(w); }})
+        if (Verdict v = verdict(work); v.state == State::wrong) return v;
+    return {};
 }
 
 std::string rate(std::uint64_t hits, std::uint64_t of) {
@@ -50,7 +53,10 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch
         for (std::uint64_t k = 0; k < seeds; ++k) {
             watch.check();
             work.redraw(seed_of(rigour.seed, static_cast<std::uint32_t>(k)));
-            if (accused(work)) ++alarms[k];
+            if (const std::optional<Verdict> v = accusation(work)) {
+                ++alarms[k];
+                watch.say(fmt::format("seed {}: {} [{}] {}: {}", k, v->arm, v->trial, v->name, v->say));
+            }
             watch.advance(1);
         }
     });
