@@ -21,16 +21,25 @@ double number_in(const std::string& text, const std::string& what) {
     return v;
 }
 
+std::string shortest(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", v);
+    return text;
+}
+
 Settings settings_of(const CheckFlags& flags) {
     Settings out;
     const std::map<std::string, std::pair<double, double>> ranges = {{"s", {1e-3, 1e6}}, {"alpha", {1e-4, 1}}, {"rho_d", {0, 1}}, {"rho_s", {0, 1}}};
     for (const std::string& word : flags.settings) {
         const std::size_t equals = word.find('=');
         const std::string key = word.substr(0, equals);
-        if (equals == std::string::npos || !ranges.count(key)) throw InputError({"--set " + word, 0, 0}, "expected s=, alpha=, rho_d= or rho_s= and a number");
+        if (equals == std::string::npos || !ranges.count(key)) {
+            const std::string near = nearest(key, {"s", "alpha", "rho_d", "rho_s"});
+            throw InputError({"--set " + word, 0, 0}, "expected s=, alpha=, rho_d= or rho_s= and a number" + (near.empty() || near == key ? "" : "; did you mean '" + near + "'?"));
+        }
         const double v = number_in(word.substr(equals + 1), "--set " + word);
         const auto [low, high] = ranges.at(key);
-        if (!(v >= low && v <= high)) throw InputError({"--set " + word, 0, 0}, key + " is at least " + std::to_string(low) + " and at most " + std::to_string(high));
+        if (!(v >= low && v <= high)) throw InputError({"--set " + word, 0, 0}, key + " is at least " + shortest(low) + " and at most " + shortest(high));
         out[key] = v;
     }
     return out;
@@ -60,8 +69,13 @@ Rigour rigour_of(const CheckFlags& flags) {
     return r;
 }
 
-std::vector<Trial> trials_for(const CheckFlags& flags) {
-    if (!flags.exec.empty()) return trials_of_subject(start_pipe(flags.exec), flags.full);
+std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
+    if (!flags.exec.empty()) {
+        PipeLimits limits;
+        limits.stop = &watch.stop;
+        if (flags.full) limits.total_seconds = 3600;
+        return trials_of_subject(start_pipe(flags.exec, limits), flags.full);
+    }
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
     if (flags.wo.empty() || flags.table.empty()) throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
     const Vec3d wo = direction_of(flags.wo);
@@ -71,6 +85,12 @@ std::vector<Trial> trials_for(const CheckFlags& flags) {
 }
 
 int exit_of(State state) { return state == State::wrong ? failed : state == State::inconclusive ? inconclusive : held; }
+
+/// Minutes of work are not lost to a folder that is not there: every file is opened before the first draw.
+void try_files(const CheckFlags& flags) {
+    for (const std::string& path : {flags.json, flags.junit, flags.html})
+        if (!path.empty()) can_write(path);
+}
 
 void write_files(const CheckFlags& flags, const Judgement& j) {
     if (!flags.json.empty()) write_whole(flags.json, verdict_json(j));
@@ -108,7 +128,7 @@ int check_planted(const CheckFlags& flags, Watch& watch) {
 /// Both tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and the promise to right arms is kept.
 int check_error_rates(const CheckFlags& flags, Watch& watch) {
     Rigour rigour = rigour_of(flags);
-    rigour.draws = 8192;  // the levels do not depend on it; many seeds matter more than many draws
+    rigour.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
     const FalseAlarms alarms = measure_false_alarms(flags.error_rates, rigour, watch);
     std::vector<Caught> table;
     bool all = true;
@@ -122,17 +142,21 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     return all && rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha ? held : failed;
 }
 
-Judgement complaint(const std::string& what, const std::string& arm) {
+/// A program that never came to be judged.
+Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
     Judgement j;
-    Verdict v;
-    v.arm = arm;
-    v.trial = "start";
-    v.name = "valid";
-    v.state = State::wrong;
-    v.say = what;
-    v.expected = false;
-    j.verdicts.push_back(v);
-    j.state = State::wrong;
+    j.alpha = flags.alpha;
+    j.state = dynamic_cast<const SubjectTooSlow*>(&fault) ? State::inconclusive : State::wrong;
+    for (std::string_view name : verdict_names) {
+        Verdict v;
+        v.arm = flags.exec;
+        v.trial = "start";
+        v.name = name;
+        v.state = name == "valid" ? j.state : State::skipped;
+        v.say = name == "valid" ? fault.what() : "The program never came to be judged.";
+        v.expected = v.state == State::skipped;
+        j.verdicts.push_back(v);
+    }
     j.as_expected = false;
     return j;
 }
@@ -142,21 +166,23 @@ Judgement complaint(const std::string& what, const std::string& arm) {
 int check(const CheckFlags& flags) {
     Progress watch(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(watch);
+    try_files(flags);
     if (flags.error_rates > 0) return check_error_rates(flags, watch);
     if (flags.planted) return check_planted(flags, watch);
     Judgement j;
     try {
-        const std::vector<Trial> trials = trials_for(flags);
+        const std::vector<Trial> trials = trials_for(flags, watch);
         j = judge(trials, rigour_of(flags), watch);
     } catch (const SubjectFault& fault) {
-        j = complaint(fault.what(), flags.exec);
+        j = complaint(fault, flags);
     }
     watch.clear();
-    write_files(flags, j);
-    print(verdict_table(j));
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.samples.empty();
+    if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
+    print(verdict_table(j));
     if (whole_list) print(j.as_expected ? "every arm gets the verdicts that the list expects\n" : "not every arm gets the verdicts that the list expects\n");
-    return whole_list ? (j.as_expected ? held : failed) : exit_of(j.state);
+    write_files(flags, j);
+    return exit_of(j.state);
 }
 
 }  // namespace crescent::cli

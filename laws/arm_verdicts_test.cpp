@@ -75,6 +75,68 @@ TEST(Verdicts, LeaveARightSamplerOfAConeAlone) {
     EXPECT_THAT(Cone{}, IsARightSampler());
 }
 
+/// A density tabulated over 8 x 16 cells of the hemisphere, one of them forty times as bright: its warp has a seam at every cell.
+struct Tabulated {
+    struct Drawn {
+        Vec3d wi;
+        double pdf;
+    };
+    static double cell(int i, int j) { return 0.1 + (i * 7 + j * 13) % 11 * 0.35 + (i == 3 && j == 5 ? 40 : 0); }
+    static double row(int i) {
+        double sum = 0;
+        for (int j = 0; j < 16; ++j) sum += cell(i, j);
+        return sum;
+    }
+    static double all() {
+        double sum = 0;
+        for (int i = 0; i < 8; ++i) sum += row(i);
+        return sum;
+    }
+    double pdf(Vec3d, Vec3d wi) const {
+        const double turns = std::atan2(wi.y, wi.x) / (2 * pi);
+        return wi.z <= 0 ? 0 : cell(std::min(7, int(wi.z * 8)), std::min(15, int((turns < 0 ? turns + 1 : turns) * 16))) / all() * 128 / (2 * pi);
+    }
+    Drawn sample(Vec3d wo, Vec2d u) const {
+        int i = 0, j = 0;
+        double x = u.x * all();
+        for (; i < 7 && x >= row(i); ++i) x -= row(i);
+        double y = u.y * row(i);
+        for (; j < 15 && y >= cell(i, j); ++j) y -= cell(i, j);
+        const double z = (i + std::min(x / row(i), 1 - 1e-9)) / 8, phi = 2 * pi * (j + std::min(y / cell(i, j), 1 - 1e-9)) / 16, sin = std::sqrt(1 - z * z);
+        const Vec3d wi{sin * std::cos(phi), sin * std::sin(phi), z};
+        return {wi, pdf(wo, wi)};
+    }
+};
+
+TEST(Verdicts, LeaveASamplerWithSeamsAlone) { EXPECT_THAT(Tabulated{}, IsARightSampler()); }
+
+TEST(Verdicts, LeaveAThinBandAlone) {
+    struct Band {
+        double low = std::cos(0.735), high = std::cos(0.70);
+        double pdf(Vec3d, Vec3d wi) const { return wi.z >= low && wi.z <= high ? 1 / (2 * pi * (high - low)) : 0; }
+        Tabulated::Drawn sample(Vec3d, Vec2d u) const {
+            const double z = low + (high - low) * u.x, sin = std::sqrt(1 - z * z);
+            return {{sin * std::cos(2 * pi * u.y), sin * std::sin(2 * pi * u.y), z}, 1 / (2 * pi * (high - low))};
+        }
+    };
+    EXPECT_THAT(Band{}, IsARightSampler());
+}
+
+TEST(Verdicts, AskForThePdfWhereNothingIsDrawn) {
+    struct Negative : CosineOfMine {
+        float pdf(std::array<float, 3>, std::array<float, 3> wi) const { return wi[2] / 3.14159265f; }
+    };
+    const Judgement j = judge_sampler("negative under the horizon", Negative{});
+    EXPECT_EQ(find(j, "w_o 0 deg", "valid").state, State::wrong);
+}
+
+TEST(Verdicts, CallAProgramTooSlowRatherThanWrong) {
+    PipeLimits limits;
+    limits.total_seconds = 0.5;
+    const std::string slow = "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
+    EXPECT_THROW(start_pipe(slow, limits), SubjectTooSlow);
+}
+
 std::string fault_of(const std::string& command) {
     PipeLimits limits;
     limits.hello_seconds = limits.quiet_seconds = 0.5;

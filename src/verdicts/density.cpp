@@ -19,9 +19,13 @@ struct Pearson {
 };
 
 /// Pools neighbours until 5 are expected. What cannot reach 5 in the end joins the last pool.
-Pearson pearson(const std::vector<double>& observed, const std::vector<double>& expected) {
-    std::vector<std::pair<double, double>> pools;  // observed, expected
-    double o = 0, e = 0;
+/// `slack`: what each expectation is known to, where p was tabulated; it is taken off the difference.
+Pearson pearson(const std::vector<double>& observed, const std::vector<double>& expected, const std::vector<double>& slack) {
+    struct Pool {
+        double seen, due, slack;
+    };
+    std::vector<Pool> pools;
+    double o = 0, e = 0, s = 0;
     Pearson out;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (expected[i] < 1e-6) {
@@ -31,15 +35,17 @@ Pearson pearson(const std::vector<double>& observed, const std::vector<double>& 
         }
         o += observed[i];
         e += std::max(expected[i], 0.0);
+        s += slack[i];
         if (e >= 5) {
-            pools.emplace_back(o, e);
-            o = e = 0;
+            pools.push_back({o, e, s});
+            o = e = s = 0;
         }
     }
     if (pools.empty()) return out;
-    pools.back().first += o;
-    pools.back().second += e;
-    for (const auto& [seen, due] : pools) out.statistic += sqr(seen - due) / due;
+    pools.back().seen += o;
+    pools.back().due += e;
+    pools.back().slack += s;
+    for (const Pool& p : pools) out.statistic += sqr(std::max(std::fabs(p.seen - p.due) - p.slack, 0.0)) / p.due;
     out.pools = pools.size();
     out.degrees = static_cast<double>(pools.size()) - 1;
     out.p = chi_squared_p(out.statistic, out.degrees);
@@ -72,8 +78,14 @@ Fit fit(const Density& d, const Batchful& b) {
     const double n = static_cast<double>(b.draws.size());
     const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = d.rings.size() - 1;
     // Left by p: what draws nothing. Scaled to the share that was drawn, so that the normalisation is not judged twice.
-    const double scale = n * (1 - d.nothing) / d.mass.value;
-    std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors);
+    const bool table = d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;  // its sum says less than its bins
+    const double scale = table ? n : n * (1 - d.nothing) / d.mass.value;
+    std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors), slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
+    for (std::size_t i = 0; i < d.doubt.size(); ++i) {
+        slack[i] = scale * d.doubt[i];
+        slack_ring[i / sectors] += slack[i];
+        slack_sector[i % sectors] += slack[i];
+    }
     for (std::size_t i = 0; i < d.mass.bins.size(); ++i) {
         const double due = scale * d.mass.bins[i];
         out.expected.push_back(due);
@@ -86,17 +98,18 @@ Fit fit(const Density& d, const Batchful& b) {
     if (n * d.nothing >= 5) {  // nothing drawn is one more bin
         observed.insert(observed.begin(), nothing);
         expected.insert(expected.begin(), n * d.nothing);
+        slack.insert(slack.begin(), 0);
     }
-    out.joint = pearson(observed, expected);
-    out.rings = pearson(by_ring, due_ring);
-    out.sectors = pearson(by_sector, due_sector);
+    out.joint = pearson(observed, expected, slack);
+    out.rings = pearson(by_ring, due_ring, slack_ring);
+    out.sectors = pearson(by_sector, due_sector, slack_sector);
     double seen = 0, due = 0;  // rings that expect less than one draw: the Poisson law; the quadrature's own error is granted
     for (std::size_t i = 0; i < rings; ++i)
         if (due_ring[i] < 1) {
             seen += by_ring[i];
             due += due_ring[i];
         }
-    if (seen > 0) out.outside_p = boost::math::cdf(boost::math::complement(boost::math::poisson(due + n * (1e-4 + d.mass.error)), seen - 1));
+    if (seen > 0) out.outside_p = boost::math::cdf(boost::math::complement(boost::math::poisson(due + n * (1e-4 + d.mass.error + d.doubts)), seen - 1));
     return out;
 }
 
@@ -114,8 +127,9 @@ Verdict judge_normalised(const Work& work) {
         const Integral& mass = second ? *d.second : d.mass;  // the one that speaks for the sampler
         const double sum = mass.value + d.nothing, off = std::fabs(sum - 1);
         constexpr double allowed = 1e-4;
-        const double doubt = mass.settled ? mass.error : 2 * mass.error;
+        const double doubt = (mass.settled ? mass.error : 2 * mass.error) + d.doubts;
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
+        if (d.doubts > 0) v.evidence["table_known_to" + tag] = d.doubts;
         v.evidence["integral" + tag] = mass.value;
         v.evidence["quadrature_error" + tag] = mass.error;
         v.evidence["evaluations" + tag] = mass.evaluations;
@@ -143,7 +157,12 @@ Verdict judge_normalised(const Work& work) {
             v.state = State::inconclusive;
             v.say = told + fmt::format(", but the quadrature itself is only good to {:.2g}.", mass.error);
         }
-        if (v.state == State::right) v.say = told + ": one, as a density must.";
+        if (v.state == State::right && d.doubts > allowed) {
+            v.say = told + fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.doubts);
+            if (d.doubts > 0.05) v.state = State::inconclusive;
+        } else if (v.state == State::right) {
+            v.say = told + ": one, as a density must.";
+        }
     }
     return v;
 }
@@ -152,6 +171,7 @@ Verdict judge_density(Work& work) {
     Verdict v = work.verdict("density", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
+        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value)) return work.verdict("density", State::skipped, fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
         const Fit f = fit(d, work.first(t));
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         v.evidence["coordinates" + tag] = coordinates(d);
@@ -167,7 +187,6 @@ Verdict judge_density(Work& work) {
         v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
         if (work.rigour.pictures && t == 0)
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d), static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected});
-        if (!(d.mass.value > 0)) return work.verdict("density", State::skipped, "p integrates to 0: there is nothing to compare draws with.");
         std::optional<Fit> fresh;
         const auto of = [&](auto which) {
             return work.fails(which(f), [&](int round) {

@@ -30,21 +30,23 @@ std::string histogram(const WeightPicture& w) {
     for (double c : w.counts) top = std::max(top, std::log10(1 + c));
     std::string out = "<figure><svg viewBox='0 0 480 200' width='400' height='170'>";
     const double width = 480.0 / static_cast<double>(w.counts.size());
-    std::size_t mode = static_cast<std::size_t>(std::max_element(w.counts.begin(), w.counts.end()) - w.counts.begin());
     for (std::size_t i = 0; i < w.counts.size(); ++i) {
         const double h = 180 * std::log10(1 + w.counts[i]) / top;
-        out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#446'/>", static_cast<double>(i) * width, 190 - h, width - 0.5, h);
+        out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class=bar />", static_cast<double>(i) * width, 190 - h, width - 0.5, h);
     }
-    if (w.k > 0) {  // a Pareto tail: counts per decade fall as X^(-1/k)
-        out += "<polyline fill='none' stroke='#c33' stroke-width='2' points='";
-        for (std::size_t i = mode; i < w.counts.size(); ++i) {
-            const double c = w.counts[mode] * std::pow(10.0, -(w.log10_edges[i] - w.log10_edges[mode]) / w.k);
+    if (w.exceedances > 0 && w.sigma > 0) {  // what the fitted generalised Pareto law expects in each bin above its threshold
+        const auto survival = [&](double x) { return x <= w.threshold ? 1.0 : std::fabs(w.k) < 1e-6 ? std::exp(-(x - w.threshold) / w.sigma) : std::pow(std::max(1 + w.k * (x - w.threshold) / w.sigma, 0.0), -1 / w.k); };
+        out += "<polyline fill='none' stroke='#d33' stroke-width='2' points='";
+        for (std::size_t i = 0; i < w.counts.size(); ++i) {
+            const double low = std::pow(10.0, w.log10_edges[i]), high = std::pow(10.0, w.log10_edges[i + 1]);
+            if (low < w.threshold) continue;
+            const double c = w.exceedances * (survival(low) - survival(high));
             out += fmt::format("{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * std::log10(1 + c) / top);
         }
         out += "'/>";
     }
-    return out + fmt::format("</svg><figcaption>X = f L cos / p, log10 from {:.2f} to {:.2f}, counts logarithmic; {:.0f} zeros; fitted tail k = {:.3f}{}</figcaption></figure>", w.log10_edges.front(),
-                             w.log10_edges.back(), w.zeros, w.k, w.k > 0 ? " (red)" : "");
+    return out + fmt::format("</svg><figcaption>X = f L cos / p, log10 from {:.2f} to {:.2f}, counts logarithmic; {:.0f} zeros; {}</figcaption></figure>", w.log10_edges.front(),
+                             w.log10_edges.back(), w.zeros, w.exceedances > 0 ? fmt::format("the tail fitted to the {:.0f} largest in red, k = {:.3f}", w.exceedances, w.k) : std::string("no tail: the largest are all alike"));
 }
 
 std::string curve(const std::vector<double>& v, std::string_view colour) {
@@ -59,7 +61,7 @@ std::string curve(const std::vector<double>& v, std::string_view colour) {
 
 std::string rose(const WeightPicture& w) {
     if (w.rose_p.empty()) return "";
-    return "<figure><svg viewBox='0 0 400 200' width='360' height='180'><line x1='0' y1='190' x2='400' y2='190' stroke='#999'/>" + curve(w.rose_f, "#888") + curve(w.rose_p, "#06c") +
+    return "<figure><svg viewBox='0 0 400 200' width='360' height='180'><line x1='0' y1='190' x2='400' y2='190' stroke='#999'/>" + curve(w.rose_f, "#888") + curve(w.rose_p, "#27d") +
            "</svg><figcaption>Plane of incidence: p (blue) over f L cos (grey), each to its own largest value</figcaption></figure>";
 }
 
@@ -67,7 +69,8 @@ constexpr const char* head =
     "<!doctype html><html lang=en><meta charset=utf-8><title>crescent check</title><style>body{font:15px/1.5 Inter,system-ui,sans-serif;margin:2em auto;max-width:64em;padding:0 1em}"
     "table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #ddd;padding:.2em .5em;text-align:left;vertical-align:top}.wrong{color:#b00020;font-weight:600}"
     ".inconclusive{color:#8a5a00}.right{color:#1a6b2a}.skipped{color:#666}.row{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figcaption{font-size:12px;max-width:30em}"
-    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid #ddd}</style><script>"
+    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid #ddd}:root{color-scheme:light dark}.bar{fill:#446}@media(prefers-color-scheme:dark){body{background:#15171a;color:#ddd}td,th{border-color:#333}.wrong{color:#ff6b7d}.inconclusive{color:#e0b050}.right{color:#6fcf8a}"
+    ".skipped{color:#999}.bar{fill:#9ab}canvas{border-color:#444}}</style><script>"
     "function paint(w,top,seen,due){const c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const grey=v=>{const g=255-225*Math.min(v/top,1);return[g,g,g]};"
     "const tint=(o,e)=>{const d=(o-e)/Math.sqrt(Math.max(e,1))/4,f=255*(1-Math.min(Math.abs(d),1));return d<0?[f,f,255]:[255,f,f]};"
     "const draw=(k,colour)=>{const x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"

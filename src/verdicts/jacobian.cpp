@@ -1,6 +1,7 @@
 // |Jacobian| x p without knowing the warp: central differences of sample(wo, u). Where a warp is one to one, p |J| = 1; where
 // several u reach one direction p is the sum of 1/|J| over them, so p |J| >= 1 everywhere. p |J| < 1 is a wrong density
-// in any case, whatever the sampler. Seams and kinks of a warp are told from smooth ground by comparing two step sizes.
+// in any case, whatever the sampler. Seams and kinks of a warp (a tabulated density has one at every cell) are told from smooth
+// ground by comparing step sizes, and by one-sided differences: beside a kink the side away from it is clean.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +17,8 @@ constexpr double step = 0x1p-8;
 constexpr double tiny_step = 0x1p-19;
 constexpr int stencil = 11;  // centre, +-h, +-h/2 along each side, and a tiny move along each
 
-std::array<Vec2d, stencil> stencil_at(Vec2d u) {
-    const double h = step, k = step / 2;
+std::array<Vec2d, stencil> stencil_at(Vec2d u, double h = step) {
+    const double k = h / 2;
     return {{u, {u.x + h, u.y}, {u.x - h, u.y}, {u.x, u.y + h}, {u.x, u.y - h}, {u.x + k, u.y}, {u.x - k, u.y}, {u.x, u.y + k}, {u.x, u.y - k},
              {u.x + tiny_step, u.y}, {u.x, u.y + tiny_step}}};
 }
@@ -53,6 +54,51 @@ Derivative derivative(std::span<const Draw> w, double grain) {
     return out;
 }
 
+/// The largest |J| of the four quadrants about u, by one-sided differences of second order, and its relative noise.
+struct Quadrants {
+    double largest = 0, noise = 1;
+};
+
+Quadrants quadrants(std::span<const Draw> w, double grain, double h) {
+    Quadrants out;
+    for (const Draw& d : w)
+        if (!(d.pdf > 0)) return out;
+    const Vec3d c = w[0].wi;
+    const auto sided = [&](int whole, int half) { return ((w[half].wi - c) * 4.0 - (w[whole].wi - c)) * (1 / h); };
+    for (const Vec3d& x : {sided(1, 5), sided(2, 6)})
+        for (const Vec3d& y : {sided(3, 7), sided(4, 8)}) {
+            const double j = area(x, y);
+            if (j <= out.largest) continue;
+            out.largest = j;
+            out.noise = 8 * grain / h * (1 / length(x) + 1 / length(y)) * (length(x) * length(y) / j);
+        }
+    return out;
+}
+
+struct Suspect {
+    Vec2d u;
+    double p, p_j;
+    bool stands = true;
+};
+
+/// Looks at every suspect again with steps down to 2^-18, as far as rounding allows; one that reaches 1 in any quadrant is let go.
+void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects) {
+    for (double h = step; h >= 0x1p-18; h /= 4) {
+        std::vector<Vec2d> u;
+        for (const Suspect& s : suspects)
+            for (Vec2d v : stencil_at(s.u, h)) u.push_back(v);
+        std::vector<Draw> w(u.size());
+        work.subject.sample(technique, work.trial.wo, u, w);
+        for (std::size_t i = 0; i < suspects.size(); ++i) {
+            Suspect& s = suspects[i];
+            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), work.grain(), h);
+            const double lacking = 1 - s.p_j;
+            if (h < step && 2 * q.noise > 0.25 * lacking) continue;  // rounding drowns it: the wider steps have spoken
+            if (s.p * q.largest > 1 - 0.3 * lacking) s.stands = false;
+        }
+    }
+}
+
 }  // namespace
 
 WarpFinding study_warp(const Work& work, int technique) {
@@ -69,18 +115,13 @@ WarpFinding study_warp(const Work& work, int technique) {
     std::vector<Draw> w(u.size());
     work.subject.sample(technique, work.trial.wo, u, w);
     std::size_t one = 0;
+    std::vector<Suspect> suspects;
     for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
         const Derivative d = derivative(std::span(w).subspan(i, stencil), work.grain());
         if (!d.usable) continue;
         ++out.usable;
         const double pj = w[i].pdf * d.j, allowed = 5e-4 + 2 * d.error;
-        if (pj < 1 - allowed) {
-            ++out.below;
-            if (pj < out.smallest) {
-                out.smallest = pj;
-                out.at = u[i];
-            }
-        }
+        if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf, pj});
         if (std::fabs(pj - 1) <= allowed) ++one;
         for (int axis = 0; axis < 2; ++axis) {
             const double due = d.along[axis] * tiny_step;
@@ -88,6 +129,14 @@ WarpFinding study_warp(const Work& work, int technique) {
             ++out.steps_tried;
             if (length(w[i + 9 + static_cast<std::size_t>(axis)].wi - w[i].wi) < 0.2 * due) ++out.stuck;
         }
+    }
+    look_closer(work, technique, suspects);
+    for (const Suspect& s : suspects) {
+        if (!s.stands) continue;
+        ++out.below;
+        if (s.p_j >= out.smallest) continue;
+        out.smallest = s.p_j;
+        out.at = s.u;
     }
     out.one_to_one = out.usable ? static_cast<double>(one) / static_cast<double>(out.usable) : 0;
     return out;

@@ -47,14 +47,20 @@ void expect(const Trial& trial, Verdict& v) {
     }
 }
 
+/// Another arm on a program's own BRDF: each draw costs a question, and a variance to 3 % ranks well enough.
+Rigour for_yardstick(const Trial& trial, Rigour rigour) {
+    if (trial.subject->serial()) rigour.draws = std::min<std::uint64_t>(rigour.draws, 4096);
+    return rigour;
+}
+
 Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally, Watch& watch) {
     Outcome out;
     try {
-        Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
         if (trial.yardstick) {
-            out.efficiency = measure_efficiency(work, index);
+            out.efficiency = measure_efficiency(Work(trial, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
             return out;
         }
+        Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
         out.verdicts.push_back(judge_valid(work));
         if (out.verdicts[0].state == State::wrong) {
             skip_rest(trial, out, "The sampler is not valid here.");
@@ -77,8 +83,9 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
         if (trial.yardstick) return {};
         out.verdicts.clear();
         Verdict v = skipped(trial, "valid", fault.what());
-        v.state = State::wrong;
-        v.evidence["first_fault"] = fault.what();
+        const bool gone = dynamic_cast<const SubjectGone*>(&fault), slow = dynamic_cast<const SubjectTooSlow*>(&fault);
+        v.state = gone ? State::skipped : slow ? State::inconclusive : State::wrong;
+        if (!gone) v.evidence["first_fault"] = fault.what();
         out.verdicts.push_back(v);
         skip_rest(trial, out, "The sampler stopped answering as agreed.");
     }

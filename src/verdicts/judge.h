@@ -12,6 +12,16 @@ struct SubjectFault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// It was given up in an earlier trial.
+struct SubjectGone : SubjectFault {
+    using SubjectFault::SubjectFault;
+};
+
+/// It answers as agreed, but not in anybody's lifetime.
+struct SubjectTooSlow : SubjectFault {
+    using SubjectFault::SubjectFault;
+};
+
 /// Throws Interrupted when the watch says stop.
 Judgement judge(std::span<const Trial> trials, const Rigour& rigour, Watch& watch);
 /// The verdicts that are not right, a line each; "" where there are none.

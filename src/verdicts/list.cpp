@@ -1,5 +1,6 @@
 #include "verdicts/list.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -89,13 +90,20 @@ Theory theory_of(const std::string& arm, const Stage& stage, double theta_deg) {
     return t;
 }
 
-void apply(const Settings& settings, Stage& stage) {
-    for (const auto& [key, value] : settings) {
-        if (key == "s") stage.surface.s = value;
-        if (key == "alpha") stage.surface.alpha = value;
-        if (key == "rho_d" && stage.surface.rho_d > 0) stage.surface.rho_d = value;
-        if (key == "rho_s" && stage.surface.rho_s > 0) stage.surface.rho_s = value;
-    }
+/// Sets what this stage has; the keys that it read are crossed out of `unread`.
+void apply(const Settings& settings, Stage& stage, Settings& unread) {
+    const auto set = [&](const char* key, bool has, double& to) {
+        const auto at = settings.find(key);
+        if (at == settings.end() || !has) return;
+        to = at->second;
+        unread.erase(key);
+    };
+    SurfaceSetup& f = stage.surface;
+    set("s", stage.tells_s, f.s);
+    set("alpha", stage.tells_alpha, f.alpha);
+    set("rho_d", f.rho_d > 0, f.rho_d);
+    set("rho_s", f.rho_s > 0, f.rho_s);
+    if (f.rho_d + f.rho_s > 1) throw InputError({"--set", 0, 0}, fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));
 }
 
 std::shared_ptr<const JudgedSampler> subject_of(const std::string& arm, const Stage& stage, Vec3d wo) {
@@ -197,7 +205,15 @@ Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, doub
 
 std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full) {
     std::vector<Trial> trials;
-    for (const auto& [theta, azimuth] : wo_grid(full)) {
+    std::vector<std::pair<double, double>> grid = wo_grid(full);
+    const double questions = full ? 4e6 : 2e5, seconds = full ? 600 : 60;  // of one w_o; of all
+    const std::size_t affordable = static_cast<std::size_t>(std::clamp(seconds * subject->answers_per_second() / questions, 2.0, 1e3));
+    if (affordable < grid.size()) {  // the middle first, then the grazing one
+        std::stable_sort(grid.begin(), grid.end(), [](auto a, auto b) { return std::fabs(a.first - 45) < std::fabs(b.first - 45); });
+        if (grid.size() > 2) std::swap(grid[1], *std::find(grid.begin(), grid.end(), std::pair<double, double>{85, 75}));
+        grid.resize(affordable);
+    }
+    for (const auto& [theta, azimuth] : grid) {
         trials.push_back(trial_of_subject(subject, theta, azimuth));
         if (!subject->has_f()) continue;
         const Vec3d wo = tilt(theta, azimuth);
@@ -217,11 +233,12 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
         const std::string near = nearest(arm, names);
         throw InputError({"crescent check", 0, 0}, "no sampler '" + arm + "'" + (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", ")) : "; did you mean '" + near + "'?"));
     }
+    Settings unread = settings;
     for (const std::string& name : names) {
         if (!arm.empty() && name != arm) continue;
         Stages stages;
         for (Stage s : stages_of(name)) {
-            apply(settings, s);
+            apply(settings, s, unread);
             bool seen = false;
             for (const Stage& other : stages) seen = seen || alike(s, other);
             if (!seen) stages.push_back(s);
@@ -233,6 +250,7 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
                 trials.push_back(std::move(t));
             }
     }
+    if (!unread.empty()) throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
     return trials;
 }
 

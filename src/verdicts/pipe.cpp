@@ -1,6 +1,5 @@
 #include "verdicts/pipe.h"
 
-#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -11,49 +10,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/errors.h"
+#include "verdicts/pipe_text.h"
+
 namespace crescent {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// What came, for a message: cut short, with what does not print shown as \xNN.
-std::string shown(std::string_view s) {
-    std::string out = "'";
-    for (char c : s.substr(0, 80)) {
-        if (c >= ' ' && c < 127) out += c;
-        else out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    }
-    return out + (s.size() > 80 ? "...'" : "'");
-}
-
-/// A float at the front of `s`, decimal or hexadecimal, NaN and infinities included; what is left stays in `s`.
-bool take_float(std::string_view& s, double& out) {
-    while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
-    const std::size_t end = std::min(s.find_first_of(" \t"), s.size());
-    std::string_view word = s.substr(0, end);
-    s.remove_prefix(end);
-    const bool negative = !word.empty() && word.front() == '-';
-    if (negative || (!word.empty() && word.front() == '+')) word.remove_prefix(1);
-    const bool hex = word.size() > 2 && word[0] == '0' && (word[1] == 'x' || word[1] == 'X');
-    if (hex) word.remove_prefix(2);
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), out, hex ? std::chars_format::hex : std::chars_format::general);
-    if (error == std::errc::result_out_of_range) out = 0;  // an underflow reads as 0; an overflow is not a number this bench can use
-    else if (error != std::errc{}) return false;
-    if (stop != word.data() + word.size() || word.empty() || word.front() == '-' || word.front() == '+') return false;
-    if (negative) out = -out;
-    return true;
-}
-
-bool blank(std::string_view s) { return s.find_first_not_of(" \t") == std::string_view::npos; }
-
-/// Shortest text that reads back as the same double.
-void append(std::string& to, double v) {
-    char buffer[32];
-    buffer[0] = ' ';
-    const auto end = std::to_chars(buffer + 1, buffer + sizeof buffer, v).ptr;
-    to.append(buffer, end);
-}
 
 class PipeSubject : public JudgedSampler {
 public:
@@ -61,6 +25,11 @@ public:
         start(command);
         try {
             greet();
+        } catch (const SubjectFault&) {
+            const bool unknown = broken_.find("exit code 127") != std::string::npos || broken_.find("exit code 126") != std::string::npos;
+            stop();
+            if (unknown && !greeted_) throw InputError({"--exec", 0, 0}, "the shell cannot start '" + command + "'");
+            throw;
         } catch (...) {
             stop();
             throw;
@@ -73,6 +42,7 @@ public:
     std::string name() const override { return name_; }
     bool serial() const override { return true; }
     bool has_f() const override { return has_f_; }
+    double answers_per_second() const override { return rate_; }
 
     void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
         ask(u.size(), "four numbers 'wix wiy wiz pdf'",
@@ -99,6 +69,10 @@ private:
     mutable std::uint64_t requests_ = 0;
     mutable std::string broken_;  // what went wrong; nothing is asked from then on
     bool greeted_ = false;
+    Clock::time_point began_ = Clock::now();
+    double rate_ = 0;  // answers a second, as met when it started
+
+    static double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
     static void one_pair(std::string& line, const Pair& p) {
         for (double v : {p.wo.x, p.wo.y, p.wo.z, p.wi.x, p.wi.y, p.wi.z}) append(line, v);
@@ -144,6 +118,7 @@ private:
     }
 
     void stop() {
+        if (!broken_.empty() && child_ > 0) kill(-child_, SIGKILL);  // it need not be told that nobody listens
         if (to_ >= 0) close(to_);
         if (from_ >= 0) close(from_);
         to_ = from_ = -1;
@@ -165,7 +140,7 @@ private:
         ask(1, "'hello 1 NAME'", [](std::size_t, std::string& line) { line = "hello 1"; },
             [&](std::size_t, std::string_view s) {
                 if (s.substr(0, 8) != "hello 1 " || blank(s.substr(8))) return false;
-                name_ = std::string(s.substr(s.find_first_not_of(" \t", 8)));
+                name_ = plain_name(s.substr(s.find_first_not_of(" \t", 8)));
                 return true;
             });
         greeted_ = true;
@@ -179,6 +154,14 @@ private:
                 has_f_ = s != "-";
                 return !has_f_ || (take_float(s, v) && blank(s));
             });
+        for (std::size_t count : {16, 256, 4096}) {  // until a tenth of a second has passed
+            const Clock::time_point start = Clock::now();
+            const std::vector<Vec2d> u(count, {0.5, 0.5});
+            std::vector<Draw> out(count);
+            sample(0, {0, 0, 1}, u, out);
+            rate_ = static_cast<double>(count) / std::max(seconds_since(start), 1e-6);
+            if (seconds_since(start) > 0.1) break;
+        }
     }
 
     using Write = std::function<void(std::size_t, std::string&)>;
@@ -191,13 +174,17 @@ private:
         throw SubjectFault(broken_);
     }
 
+    static std::string exit_told(int code) {
+        return fmt::format("the program ended with exit code {}", code) + (code > 128 && code < 160 ? fmt::format(" (signal {})", code - 128) : "");
+    }
+
     std::string how_it_ended() const {
         int status = 0;
         for (int i = 0; i < 20; ++i) {
             if (waitpid(child_, &status, WNOHANG | WNOWAIT) == child_) break;
             siginfo_t info{};
             if (waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child_)
-                return info.si_code == CLD_EXITED ? fmt::format("the program ended with exit code {}", info.si_status) : fmt::format("the program was killed by signal {}", info.si_status);
+                return info.si_code == CLD_EXITED ? exit_told(info.si_status) : fmt::format("the program was killed by signal {}", info.si_status);
             usleep(10000);
         }
         return "the program closed its output";
@@ -205,7 +192,7 @@ private:
 
     /// Writes all requests and reads all answers, whichever side is ready.
     void ask(std::size_t count, std::string_view expected, const Write& write, const Read& read) const {
-        if (!broken_.empty()) throw SubjectFault(broken_);
+        if (!broken_.empty()) throw SubjectGone("the program was given up: " + broken_);
         std::string outgoing, line;
         std::size_t written = 0, sent = 0, answered = 0;
         Clock::time_point last = Clock::now();
@@ -231,6 +218,15 @@ private:
                 if (!fill()) fault(write, answered, end_of_output(), expected);
                 last = Clock::now();
                 take_lines(count, answered, written, expected, write, read);
+            }
+            if (limits_.stop && limits_.stop->load()) {
+                broken_ = "interrupted";
+                throw Interrupted{};
+            }
+            if (seconds_since(began_) > limits_.total_seconds) {
+                broken_ = fmt::format("request {} of a program that is too slow to judge: {:.0f} s are spent and it gives {:.3g} answers a second", requests_ + answered + 1, limits_.total_seconds,
+                                      static_cast<double>(requests_ + answered) / seconds_since(began_));
+                throw SubjectTooSlow(broken_);
             }
             const double quiet = std::chrono::duration<double>(Clock::now() - last).count();
             if (quiet > (greeted_ ? limits_.quiet_seconds : limits_.hello_seconds))

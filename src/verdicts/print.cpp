@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 
@@ -108,6 +109,15 @@ std::string verdict_junit(const Judgement& judgement) {
     }
     return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"crescent check\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n{}</testsuite>\n", judgement.verdicts.size(), failures,
                        skipped, cases);
+}
+
+void can_write(const std::string& path) {
+    const std::string beside = path + ".part";
+    std::FILE* file = std::fopen(beside.c_str(), "ab");
+    if (!file) throw OutputError("cannot write " + path + ": " + std::strerror(errno));
+    std::fclose(file);
+    std::remove(beside.c_str());
+    if (std::filesystem::is_directory(path)) throw OutputError("cannot write " + path + ": it is a folder");
 }
 
 void write_whole(const std::string& path, const std::string& text) {

@@ -14,6 +14,8 @@ std::string verdict_json(const Judgement& judgement);
 std::string verdict_junit(const Judgement& judgement);
 /// Maps of observed, expected and standardised difference, weight histograms with their tail, and roses of p over f L cos.
 std::string verdict_html(const Judgement& judgement);
+/// Throws OutputError where write_whole would.
+void can_write(const std::string& path);
 /// Writes beside the place and renames; throws OutputError.
 void write_whole(const std::string& path, const std::string& text);
 

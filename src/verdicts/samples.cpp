@@ -1,114 +1,16 @@
 #include "verdicts/samples.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
-#include <map>
-#include <regex>
-#include <sstream>
 
-#include "base/errors.h"
 #include "simd/scalar.h"
+#include "verdicts/table_file.h"
 
 namespace crescent {
 
 namespace {
 
-/// Rows of numbers under named columns.
-struct Table {
-    std::vector<std::string> columns;
-    std::vector<std::vector<double>> rows;
-    int column(std::string_view name) const {
-        const auto at = std::find(columns.begin(), columns.end(), name);
-        return at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
-    }
-};
-
-struct Reader {
-    std::string path;
-    std::vector<Complaint> complaints;
-    void complain(unsigned line, unsigned column, const std::string& say) {
-        complaints.push_back({{path, line, column}, say});
-        if (complaints.size() >= 10) throw InputError(complaints);
-    }
-    void settle() const {
-        if (!complaints.empty()) throw InputError(complaints);
-    }
-};
-
-std::string trimmed(std::string s) {
-    const auto from = s.find_first_not_of(" \t\r");
-    return from == std::string::npos ? "" : s.substr(from, s.find_last_not_of(" \t\r") - from + 1);
-}
-
-Table read_csv(Reader& in, std::istream& file) {
-    Table t;
-    std::string text;
-    for (unsigned line = 1; std::getline(file, text); ++line) {
-        if (trimmed(text).empty()) continue;
-        std::vector<double> row;
-        unsigned column = 1;
-        std::stringstream cells(text);
-        for (std::string cell; std::getline(cells, cell, ','); column += static_cast<unsigned>(cell.size()) + 1) {
-            const std::string word = trimmed(cell);
-            if (t.columns.empty() || t.rows.empty() ? line == 1 : false) {
-                row.push_back(0);
-                t.columns.push_back(word);
-                continue;
-            }
-            double v = 0;
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), v);
-            if (error != std::errc{} || end != word.data() + word.size()) in.complain(line, column, "expected a number, not '" + word.substr(0, 40) + "'");
-            row.push_back(v);
-        }
-        if (line == 1) continue;
-        if (row.size() != t.columns.size()) in.complain(line, 1, fmt::format("expected {} values, as the header has, not {}", t.columns.size(), row.size()));
-        else t.rows.push_back(std::move(row));
-    }
-    if (t.columns.empty()) in.complain(1, 1, "the file is empty; expected a header line");
-    in.settle();
-    return t;
-}
-
-Table read_npy(Reader& in, std::istream& file, const std::vector<std::string>& names) {
-    char magic[10];
-    if (!file.read(magic, 10) || std::memcmp(magic, "\x93NUMPY", 6) != 0) in.complain(0, 0, "not an NPY file"), in.settle();
-    std::uint32_t length = static_cast<unsigned char>(magic[8]) | static_cast<unsigned>(static_cast<unsigned char>(magic[9])) << 8;
-    if (magic[6] > 1) {
-        char more[2];
-        file.read(more, 2);
-        length |= static_cast<unsigned>(static_cast<unsigned char>(more[0])) << 16 | static_cast<unsigned>(static_cast<unsigned char>(more[1])) << 24;
-    }
-    if (length > 65536) in.complain(0, 0, "the NPY header is too long"), in.settle();
-    std::string header(length, ' ');
-    file.read(header.data(), static_cast<std::streamsize>(length));
-    std::smatch type, shape;
-    const bool known = std::regex_search(header, type, std::regex("'descr':\\s*'<f([48])'")) && std::regex_search(header, shape, std::regex("'shape':\\s*\\((\\d+),\\s*(\\d+)\\)")) &&
-                       header.find("'fortran_order': False") != std::string::npos;
-    if (!known) in.complain(0, 0, "expected a two-dimensional array of <f4 or <f8 in C order, not " + trimmed(header).substr(0, 100)), in.settle();
-    const std::size_t rows = std::stoull(shape[1]), columns = std::stoull(shape[2]), size = type[1] == "4" ? 4 : 8;
-    if (columns < 6 || columns > names.size()) in.complain(0, 0, fmt::format("expected 6 or 7 columns, u1,u2,wix,wiy,wiz,pdf[,f], not {}", columns)), in.settle();
-    Table t;
-    t.columns.assign(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(columns));
-    std::vector<char> raw(columns * size);
-    for (std::size_t r = 0; r < rows; ++r) {
-        if (!file.read(raw.data(), static_cast<std::streamsize>(raw.size()))) in.complain(0, 0, fmt::format("the file ends in row {} of {}", r + 1, rows)), in.settle();
-        std::vector<double> row;
-        for (std::size_t c = 0; c < columns; ++c) {
-            float single;
-            double whole;
-            if (size == 4) std::memcpy(&single, &raw[4 * c], 4), row.push_back(static_cast<double>(single));
-            else std::memcpy(&whole, &raw[8 * c], 8), row.push_back(whole);
-        }
-        t.rows.push_back(std::move(row));
-    }
-    return t;
-}
-
-/// Centres -> edges of cells.
 std::vector<double> edges_of(const std::vector<double>& centres, double first, double last) {
     std::vector<double> out = {first};
     for (std::size_t i = 0; i + 1 < centres.size(); ++i) out.push_back(0.5 * (centres[i] + centres[i + 1]));
@@ -116,11 +18,12 @@ std::vector<double> edges_of(const std::vector<double>& centres, double first, d
     return out;
 }
 
-std::vector<double> distinct(std::vector<double> v) {
+/// The values that differ by more than `tolerance`, ascending.
+std::vector<double> distinct(std::vector<double> v, double tolerance) {
     std::sort(v.begin(), v.end());
     std::vector<double> out;
     for (double x : v)
-        if (out.empty() || x - out.back() > 1e-6) out.push_back(x);
+        if (out.empty() || x - out.back() > tolerance) out.push_back(x);
     return out;
 }
 
@@ -129,60 +32,165 @@ std::size_t cell_of(const std::vector<double>& edges, double v) {
     return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(edges.size()) - 2));
 }
 
+std::size_t nearest_of(const std::vector<double>& sorted, double v) {
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), v);
+    if (at == sorted.end() || (at != sorted.begin() && v - at[-1] < *at - v)) return static_cast<std::size_t>(at - sorted.begin()) - 1;
+    return static_cast<std::size_t>(at - sorted.begin());
+}
+
 double turned(double phi) { return phi < 0 ? phi + 2 * pi : phi; }
+double turned(Vec3d w) { return turned(std::atan2(w.y, w.x)); }
 
 }  // namespace
 
 SampleFile::SampleFile(const std::string& samples, const std::string& table) : name_(samples) {
-    Reader in{samples, {}};
-    std::ifstream file(samples, std::ios::binary);
-    if (!file) in.complain(0, 0, "cannot be read"), in.settle();
-    const std::vector<std::string> names = {"u1", "u2", "wix", "wiy", "wiz", "pdf", "f"};
-    const Table t = samples.ends_with(".npy") ? read_npy(in, file, names) : read_csv(in, file);
-    int column[6];
-    for (std::size_t i = 0; i < 6; ++i)
-        if ((column[i] = t.column(names[i])) < 0) in.complain(1, 1, "no column '" + names[i] + "'; expected u1,u2,wix,wiy,wiz,pdf[,f]");
-    in.settle();
-    if (t.rows.size() < 1000) in.complain(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows.size())), in.settle();
-    for (const std::vector<double>& r : t.rows) {
-        const auto at = [&](int i) { return r[static_cast<std::size_t>(column[i])]; };
-        u_.push_back({at(0), at(1)});
-        draws_.push_back({{at(2), at(3), at(4)}, at(5), {}});
-    }
+    read_samples(samples);
     read_table(table);
+    cells_ = agrees_as_cells();
+    find_bends();
+}
+
+void SampleFile::read_samples(const std::string& path) {
+    Complaints in{path, {}};
+    const std::vector<std::string> without = {"u1", "u2", "wix", "wiy", "wiz", "pdf"};
+    std::vector<std::string> with = without;
+    with.emplace_back("f");
+    const NumberTable t = read_table_file(in, {without, with});
+    if (t.rows() < 1000) in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())), in.settle();
+    const int f = t.column("f");
+    has_drawn_f_ = f >= 0;
+    lines_ = t.lines;
+    for (std::size_t r = 0; r < t.rows(); ++r) {
+        const auto at = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
+        u_.push_back({at("u1"), at("u2")});
+        for (const char* name : {"u1", "u2"})
+            if (!(at(name) >= 0 && at(name) <= 1)) in.add(t.lines.empty() ? 0 : t.lines[r], static_cast<unsigned>(t.column(name)) + 1, fmt::format("{} is {:g}; expected a number from 0 to 1", name, at(name)));
+        Draw d{{at("wix"), at("wiy"), at("wiz")}, at("pdf"), {}, {}};
+        if (f >= 0) d.f = t.at(r, static_cast<std::size_t>(f));
+        draws_.push_back(d);
+    }
+    in.settle();
 }
 
 void SampleFile::read_table(const std::string& path) {
-    Reader in{path, {}};
-    std::ifstream file(path);
-    if (!file) in.complain(0, 0, "cannot be read"), in.settle();
-    const Table t = read_csv(in, file);
+    Complaints in{path, {}};
+    const NumberTable t = read_table_file(in, {{"cos_theta", "phi", "pdf"}, {"wix", "wiy", "wiz", "pdf"}});
     const bool polar = t.column("cos_theta") >= 0;
-    const std::vector<std::string> wanted = polar ? std::vector<std::string>{"cos_theta", "phi", "pdf"} : std::vector<std::string>{"wix", "wiy", "wiz", "pdf"};
-    for (const std::string& name : wanted)
-        if (t.column(name) < 0) in.complain(1, 1, "no column '" + name + "'; expected wix,wiy,wiz,pdf or cos_theta,phi,pdf");
-    in.settle();
     std::vector<double> cos, phi, p;
-    for (const std::vector<double>& r : t.rows) {
-        const auto at = [&](const char* name) { return r[static_cast<std::size_t>(t.column(name))]; };
+    for (std::size_t r = 0; r < t.rows(); ++r) {
+        const auto at = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
         cos.push_back(polar ? at("cos_theta") : at("wiz"));
-        phi.push_back(turned(polar ? at("phi") : std::atan2(at("wiy"), at("wix"))));
+        phi.push_back(polar ? turned(at("phi")) : turned(Vec3d{at("wix"), at("wiy"), 0}));
         p.push_back(at("pdf"));
+        if (!(std::fabs(cos.back()) <= 1 + 1e-6) || !(phi.back() >= 0 && phi.back() <= 2 * pi + 1e-6) || !std::isfinite(p.back()))
+            in.add(t.lines.empty() ? 0 : t.lines[r], 1, "no direction of the sphere with a finite pdf");
     }
-    const std::vector<double> rows = distinct(cos), columns = distinct(phi);
-    if (rows.size() < 2 || columns.size() < 2 || rows.size() * columns.size() != p.size())
-        in.complain(0, 0, fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries", rows.size(), columns.size(), p.size())), in.settle();
-    cos_ = edges_of(rows, rows.front() < 0 ? -1 : 0, 1);
-    phi_ = edges_of(columns, 0, 2 * pi);
-    values_.assign(p.size(), 0);
-    for (std::size_t i = 0; i < p.size(); ++i) values_[cell_of(cos_, cos[i]) * columns.size() + cell_of(phi_, phi[i])] = p[i];
+    in.settle();
+    for (double tolerance = 1e-7; rows_.size() * columns_.size() != p.size() && tolerance < 1e-2; tolerance *= 10) {
+        rows_ = distinct(cos, tolerance);
+        columns_ = distinct(phi, tolerance);
+    }
+    if (rows_.size() < 2 || columns_.size() < 2 || rows_.size() * columns_.size() != p.size())
+        in.add(0, 0, fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries", rows_.size(), columns_.size(), p.size())), in.settle();
+    row_edges_ = edges_of(rows_, rows_.front() < -1e-6 ? -1 : 0, 1);
+    column_edges_ = edges_of(columns_, 0, 2 * pi);
+    values_.assign(p.size(), std::nan(""));
+    for (std::size_t i = 0; i < p.size(); ++i) values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
+    for (double v : values_)
+        if (std::isnan(v)) in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.settle();
+}
+
+/// Nine of ten samples carry the very value of their cell.
+bool SampleFile::agrees_as_cells() const {
+    std::size_t drawn = 0, alike = 0;
+    for (const Draw& d : draws_) {
+        if (!(d.pdf > 0)) continue;
+        ++drawn;
+        alike += std::fabs(of_cell(d.wi) - d.pdf) <= 1e-4 * d.pdf;
+    }
+    return 10 * alike >= 9 * drawn;
+}
+
+/// A straight line from point to point is off by a quarter of what p bends by where p is smooth, and by all of it at a kink. At the
+/// first and the last row the line is prolonged: twice what it bends by next to it.
+void SampleFile::find_bends() {
+    const std::size_t m = rows_.size(), n = columns_.size();
+    bent_.assign(values_.size(), 0);
+    if (cells_) return;
+    const auto p = [&](std::size_t i, std::size_t j) { return values_[i * n + j]; };
+    for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+            const std::size_t c = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(m, 3) - 2), west = (j + n - 1) % n, east = (j + 1) % n;
+            double along = 0;
+            if (m > 2) {
+                const double t = (rows_[c] - rows_[c - 1]) / (rows_[c + 1] - rows_[c - 1]);
+                along = std::fabs(p(c, j) - (1 - t) * p(c - 1, j) - t * p(c + 1, j));
+            }
+            bent_[i * n + j] = along * (i == 0 || i + 1 == m ? 2 : 1) + std::fabs(p(i, j) - 0.5 * (p(i, west) + p(i, east)));
+        }
+}
+
+double SampleFile::of_cell(Vec3d w) const {
+    return w.z < row_edges_.front() ? 0 : values_[cell_of(row_edges_, w.z) * columns_.size() + cell_of(column_edges_, turned(w))];
+}
+
+SampleFile::Spot SampleFile::spot(Vec3d w) const {
+    const auto row = std::upper_bound(rows_.begin(), rows_.end(), w.z) - rows_.begin();
+    Spot at{};
+    at.i0 = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row - 1, 0, static_cast<std::ptrdiff_t>(rows_.size()) - 2));
+    at.i1 = at.i0 + 1;
+    at.s = (w.z - rows_[at.i0]) / (rows_[at.i1] - rows_[at.i0]);
+    const double phi = turned(w);
+    const auto column = static_cast<std::size_t>(std::upper_bound(columns_.begin(), columns_.end(), phi) - columns_.begin());
+    at.j1 = column % columns_.size();
+    at.j0 = (column + columns_.size() - 1) % columns_.size();
+    const double from = columns_[at.j0] - (column == 0 ? 2 * pi : 0), to = columns_[at.j1] + (column == columns_.size() ? 2 * pi : 0);
+    at.t = to > from ? (phi - from) / (to - from) : 0;
+    return at;
+}
+
+double SampleFile::between(const Spot& at) const {
+    const std::size_t n = columns_.size();
+    const double low = (1 - at.t) * values_[at.i0 * n + at.j0] + at.t * values_[at.i0 * n + at.j1];
+    const double high = (1 - at.t) * values_[at.i1 * n + at.j0] + at.t * values_[at.i1 * n + at.j1];
+    return std::max((1 - at.s) * low + at.s * high, std::min({low, high, 0.0}));
 }
 
 void SampleFile::pdf(int, std::span<const Pair> at, std::span<double> out) const {
     for (std::size_t i = 0; i < at.size(); ++i) {
         const Vec3d w = at[i].wi;
-        out[i] = w.z < cos_.front() ? 0 : values_[cell_of(cos_, w.z) * (phi_.size() - 1) + cell_of(phi_, turned(std::atan2(w.y, w.x)))];
+        out[i] = w.z < row_edges_.front() ? 0 : cells_ ? of_cell(w) : between(spot(w));
     }
+}
+
+double SampleFile::doubt(Vec3d w) const {
+    if (cells_ || w.z < row_edges_.front()) return 0;
+    const Spot at = spot(w);
+    const std::size_t n = columns_.size();
+    return std::max({bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
+}
+
+/// In pieces that are small beside any bin.
+std::vector<Doubt> SampleFile::doubts() const {
+    std::vector<Doubt> out;
+    if (cells_) return out;
+    const std::size_t rows = 1 + 192 / rows_.size(), columns = 1 + 64 / columns_.size();
+    for (std::size_t i = 0; i < rows_.size() * rows; ++i)
+        for (std::size_t j = 0; j < columns_.size() * columns; ++j) {
+            const std::size_t r = i / rows, c = j / columns;
+            const double dz = (row_edges_[r + 1] - row_edges_[r]) / static_cast<double>(rows), dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
+            const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)), phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
+            const double sin = std::sqrt(std::max(1 - z * z, 0.0));
+            const Vec3d w{sin * std::cos(phi), sin * std::sin(phi), z};
+            const double mass = doubt(w) * dz * dphi;
+            if (mass > 0) out.push_back({w, mass});
+        }
+    return out;
+}
+
+std::string SampleFile::place(int round, std::size_t draw) const {
+    const std::size_t row = 2 * draw + static_cast<std::size_t>(round);  // every other row is judged first
+    return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
 }
 
 }  // namespace crescent

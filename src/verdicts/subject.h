@@ -20,6 +20,13 @@ struct Draw {
     Vec3d wi{};
     double pdf = 0;
     std::optional<double> weight;
+    std::optional<double> f;  // where it is known at the draws alone
+};
+
+/// How much of p's mass about a direction is not known, where p was tabulated.
+struct Doubt {
+    Vec3d at;
+    double mass;
 };
 
 /// wo and wi of one question.
@@ -46,9 +53,19 @@ public:
         for (double& v : out) v = 0;
     }
     /// What f ought to be where that is known apart from f; the same as f elsewhere.
+    virtual bool has_true_f() const { return false; }
     virtual void true_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
+    /// f is known at the draws, though not elsewhere: their weights can be looked at, but compared with no integral.
+    virtual bool has_drawn_f() const { return has_f(); }
+    /// A tabulated p is known to this much, over the sphere and at one direction, 1/sr.
+    virtual std::vector<Doubt> doubts() const { return {}; }
+    virtual double doubt(Vec3d /*w*/) const { return 0; }
+    /// Where a recorded draw stands, "samples.csv:17"; "" where it was asked for.
+    virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.
     virtual bool draws_at_will() const { return true; }
+    /// What it can be asked in a second; a slow program is judged at fewer w_o.
+    virtual double answers_per_second() const { return 1e9; }
     /// Only one thread may call.
     virtual bool serial() const { return false; }
 };

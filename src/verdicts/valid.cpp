@@ -26,19 +26,24 @@ std::string fault_of(const Draw& d, double pdf_there) {
     return "";
 }
 
+/// "samples.csv:17, " for a draw that stands in a file.
+std::string at_place(const Work& work, const Batchful& b, std::size_t i) {
+    const std::string place = work.subject.place(&b == &work.first(0) ? 0 : 1, i);
+    return place.empty() ? "" : place + ", ";
+}
+
 std::string fault_of(const Work& work, int technique, const Batchful& b) {
-    std::vector<Vec3d> wi;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const std::string fault = fault_of(b.draws[i], b.pdf[i]);
-        if (!fault.empty()) return fmt::format("at {}{}: {}", told(b.u[i]), work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
-        wi.push_back(b.draws[i].pdf > 0 ? b.draws[i].wi : Vec3d{0, 0, 1});
+        if (!fault.empty()) return fmt::format("{}at {}{}: {}", at_place(work, b, i), told(b.u[i]), work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
     }
-    if (!work.subject.has_f()) return "";
-    const std::vector<double> f = work.f(wi);
+    if (!work.subject.has_drawn_f()) return "";
+    const std::vector<double>& f = work.f_of_drawn(b);
     for (std::size_t i = 0; i < f.size(); ++i) {
-        if (!(b.draws[i].pdf > 0) || wi[i].z <= 0) continue;
-        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {:.9g}", told(wi[i]), f[i]);
-        if (!std::isfinite(f[i] * wi[i].z / b.draws[i].pdf)) return fmt::format("the weight f cos / p at {} is not finite", told(wi[i]));
+        const Draw& d = b.draws[i];
+        if (!(d.pdf > 0) || d.wi.z <= 0) continue;
+        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("{}f at {} is {:.9g}", at_place(work, b, i), told(d.wi), f[i]);
+        if (!std::isfinite(f[i] * d.wi.z / d.pdf)) return fmt::format("the weight f cos / p at {} is not finite", told(d.wi));
     }
     return "";
 }
@@ -55,6 +60,26 @@ Batchful corners(const Work& work, int technique) {
     return b;
 }
 
+/// pdf(w) and f(w) all over the sphere, near the horizon on both sides and near the normal, whether drawn or not.
+std::string fault_all_over(const Work& work, int technique) {
+    std::vector<Vec3d> wi;
+    constexpr int turns = 16;
+    for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.5, -0.9, -1.0})
+        for (int k = 0; k < turns; ++k) {
+            const double phi = 2 * pi * (k + 0.37) / turns, sin = std::sqrt(1 - z * z);
+            wi.push_back({sin * std::cos(phi), sin * std::sin(phi), z});
+        }
+    const std::vector<double> p = work.pdf(technique, wi);
+    for (std::size_t i = 0; i < wi.size(); ++i)
+        if (!std::isfinite(p[i]) || p[i] < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(wi[i]), p[i]);
+    if (!work.subject.has_f()) return "";
+    std::erase_if(wi, [](Vec3d w) { return w.z <= 0; });
+    const std::vector<double> f = work.f(wi);
+    for (std::size_t i = 0; i < wi.size(); ++i)
+        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {:.9g}", told(wi[i]), f[i]);
+    return "";
+}
+
 }  // namespace
 
 Verdict judge_valid(const Work& work) {
@@ -62,6 +87,8 @@ Verdict judge_valid(const Work& work) {
     for (int t = 0; t < work.subject.techniques(); ++t) {
         std::string fault = work.subject.draws_at_will() ? fault_of(work, t, corners(work, t)) : "";
         if (fault.empty()) fault = fault_of(work, t, work.first(t));
+        if (fault.empty() && !work.subject.draws_at_will()) fault = fault_of(work, t, work.draw(t, 1));
+        if (fault.empty()) fault = fault_all_over(work, t);
         if (!fault.empty()) {
             Verdict v = work.verdict("valid", State::wrong, "What the sampler returns cannot be used: " + fault + ".");
             v.evidence["first_fault"] = fault;
@@ -71,7 +98,7 @@ Verdict judge_valid(const Work& work) {
         for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0;
     }
     if (drawn == 0) return work.verdict("valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws));
-    Verdict v = work.verdict("valid", State::right, fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of u and over {} draws.", draws));
+    Verdict v = work.verdict("valid", State::right, fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of u, over {} draws and all over the sphere.", draws));
     v.evidence["draws"] = draws;
     v.evidence["direction_grain"] = work.grain();
     return v;

@@ -37,7 +37,8 @@ struct BinMap {
 struct WeightPicture {
     std::string arm, trial;
     std::vector<double> log10_edges, counts;  // histogram of log10 X
-    double zeros = 0, k = 0;
+    double zeros = 0, k = 0, exceedances = 0;
+    double threshold = 0, sigma = 0;          // of the generalised Pareto law with that k; sigma from the median exceedance
     std::vector<double> rose_p, rose_f;       // plane of incidence, from -90 to 90 deg of wi
 };
 

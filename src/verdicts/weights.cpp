@@ -27,7 +27,15 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
         for (double v : x)
             if (v > 0) ++out.counts[static_cast<std::size_t>(std::clamp((std::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
     }
-    out.k = tail ? tail->k : 0;
+    if (tail && tail->exceedances + 1 < x.size()) {
+        out.k = tail->k;
+        out.exceedances = static_cast<double>(tail->exceedances);
+        std::vector<double> largest = x;
+        std::sort(largest.begin(), largest.end(), std::greater<>());
+        out.threshold = largest[tail->exceedances];
+        const double median = largest[tail->exceedances / 2] - out.threshold;
+        out.sigma = std::fabs(out.k) < 1e-6 ? median / std::log(2.0) : out.k * median / (std::exp2(out.k) - 1);
+    }
     std::vector<Vec3d> wi;
     const double azimuth = std::atan2(work.trial.wo.y, work.trial.wo.x) * 180 / pi;
     for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));
@@ -83,7 +91,8 @@ bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Th
 }
 
 double mean_p(const Spread& s, const Integral& expected) {
-    const double doubt = expected.error + 1e-6 * std::fabs(expected.value);  // quadrature's own, and float rounding of f and p
+    constexpr double allowed = 1e-4;  // relative: what normalised and identity allow p itself, float rounding of a sharp lobe included
+    const double doubt = expected.error + allowed * std::fabs(expected.value);
     const double off = std::max(std::fabs(s.mean - expected.value) - doubt, 0.0);
     if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1) return std::min(2 * std::exp(-0.5 * s.n * off * off / (sqr(s.sd) + s.largest * off / 3 + 1e-300)), 1.0);
     const double z = std::fabs(johnson_t(s, expected.value)) - doubt / std::max(s.sd / std::sqrt(s.n), 1e-300);
@@ -105,7 +114,7 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
 }
 
 Verdict judge_tail(Work& work) {
-    if (!work.subject.has_f()) return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
+    if (!work.subject.has_drawn_f()) return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
     std::vector<double> x = first_weights(work, false);
     const Spread s = spread(x);
     const std::optional<Tail> tail = tail_of(x);
@@ -146,7 +155,8 @@ Verdict judge_tail(Work& work) {
 }
 
 Verdict judge_mean(const Work& work) {
-    if (!work.subject.has_f()) return work.verdict("mean", State::skipped, "There is no BRDF, hence no integral to compare the mean with.");
+    if (!work.subject.has_f())
+        return work.verdict("mean", State::skipped, work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with." : "There is no BRDF, hence no integral to compare the mean with.");
     Verdict v = work.verdict("mean", State::right, "");
     const Integral expected = work.incoming(Work::Where::reached, false);
     const std::vector<double> x = first_weights(work, false);

@@ -81,13 +81,33 @@ Batchful Work::draw(int technique, int round) const {
     return b;
 }
 
-/// A draw of nothing has no direction to ask about: 0.
+const std::vector<double>& Work::f_of_drawn(const Batchful& b) const {
+    if (b.f.size() == b.draws.size()) return b.f;
+    std::vector<Vec3d> wi;
+    if (!subject.has_f()) {
+        for (const Draw& d : b.draws) b.f.push_back(d.pdf > 0 && d.wi.z > 0 ? d.f.value_or(0) : 0);
+        return b.f;
+    }
+    for (const Draw& d : b.draws)
+        if (d.pdf > 0 && d.wi.z > 0 && is_finite(d.wi)) wi.push_back(d.wi);
+    const std::vector<double> value = f(wi);
+    b.f.assign(b.draws.size(), 0);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < b.draws.size(); ++i)
+        if (b.draws[i].pdf > 0 && b.draws[i].wi.z > 0 && is_finite(b.draws[i].wi)) b.f[i] = value[next++];
+    return b.f;
+}
+
+/// A draw of nothing, or of NaN, has no direction to ask about: 0.
 std::vector<double> Work::pdf_of_drawn(int technique, std::span<const Draw> draws) const {
     std::vector<Vec3d> wi;
-    for (const Draw& d : draws) wi.push_back(d.pdf > 0 ? d.wi : Vec3d{0, 0, 1});
-    std::vector<double> p = pdf(technique, wi);
-    for (std::size_t i = 0; i < p.size(); ++i)
-        if (!(draws[i].pdf > 0)) p[i] = 0;
+    for (const Draw& d : draws)
+        if (d.pdf > 0 && is_finite(d.wi)) wi.push_back(d.wi);
+    const std::vector<double> asked = pdf(technique, wi);
+    std::vector<double> p(draws.size());
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < draws.size(); ++i)
+        if (draws[i].pdf > 0 && is_finite(draws[i].wi)) p[i] = asked[next++];
     return p;
 }
 
@@ -123,14 +143,10 @@ std::vector<double> Work::weights(std::span<const Batchful> techniques, bool eve
     for (std::size_t t = 0; t < techniques.size(); ++t) {
         const Batchful& b = techniques[t];
         std::vector<Pair> at;
-        std::vector<Vec3d> wi;
-        for (const Draw& d : b.draws) {
-            wi.push_back(d.pdf > 0 && d.wi.z > 0 ? d.wi : Vec3d{0, 0, 1});
-            at.push_back({trial.wo, wi.back()});
-        }
+        for (const Draw& d : b.draws) at.push_back({trial.wo, d.pdf > 0 && d.wi.z > 0 ? d.wi : Vec3d{0, 0, 1}});
         std::vector<double> mis(at.size());
         subject.mis_weight(static_cast<int>(t), at, mis);
-        const std::vector<double> value = f(wi);
+        const std::vector<double>& value = f_of_drawn(b);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Draw& d = b.draws[i];
             if (!(d.pdf > 0) || d.wi.z <= 0) continue;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -40,8 +41,11 @@ struct Batchful {
     std::vector<Vec2d> u;
     std::vector<Draw> draws;
     std::vector<double> pdf;  // pdf(w) asked afterwards, as the sampler's own arithmetic says it
+    mutable std::vector<double> f;  // f of every draw above the horizon, once asked for
     std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0
 };
+
+inline bool is_finite(Vec3d w) { return std::isfinite(w.x + w.y + w.z); }
 
 /// Nothing drawn: pdf 0, or a direction under the horizon that pdf(w) does not own up to.
 inline bool is_nothing(const Draw& d, double pdf_there) { return !(d.pdf > 0) || (d.wi.z <= 0 && !(pdf_there > 0)); }
@@ -54,6 +58,8 @@ struct Density {
     int sectors = 0;
     Integral mass;
     std::optional<Integral> second;  // in other coordinates, where the first does not come to one
+    std::vector<double> doubt;  // by bin, where p was tabulated; else empty
+    double doubts = 0;          // their sum
     double nothing = 0, nothing_se = 0;  // share of draws that draw nothing, randomised lattice
     std::size_t bin_of(Vec2d at) const;
 };
@@ -76,6 +82,8 @@ public:
     double grain() const { return grain_; }
     std::span<const Vec3d> guides() const { return guides_; }
 
+    /// f of every draw above the horizon, 0 elsewhere; a program behind a pipe is asked once.
+    const std::vector<double>& f_of_drawn(const Batchful& b) const;
     std::vector<double> pdf_of_drawn(int technique, std::span<const Draw> draws) const;
     std::vector<double> pdf(int technique, std::span<const Vec3d> wi, bool exact = false) const;
     /// Sum over techniques.
@@ -107,11 +115,14 @@ private:
     std::uint32_t index_, seed_;
     std::vector<Batchful> first_;
     std::vector<Density> density_;
-    std::vector<Vec3d> guides_;
+    std::vector<Vec3d> guides_, rims_;
     double grain_ = 0;
     mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
     Integral integrate_incoming(Where where, bool even) const;
     void find_guides();
+    void find_rims(int technique);
+    void add_rims(Density& d) const;
+    void sharpen(int technique, Density& d) const;
     Witnesses witnesses_of(int technique, const Density& d) const;
     Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
     void find_nothing(int technique, Density& d, std::uint64_t points) const;

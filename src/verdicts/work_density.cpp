@@ -33,13 +33,30 @@ void Work::find_guides() {
             pilot.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(all.size(), 2048)));
         }
         for (const Draw& d : pilot)
-            if (d.pdf > 0) guides_.push_back(d.wi);
+            if (d.pdf > 0 && is_finite(d.wi)) guides_.push_back(d.wi);
+        if (subject.draws_at_will()) find_rims(t);
     }
     const SphereMap about(mirror(trial.wo));
     for (std::uint64_t i = 0; i < 384; ++i) {
         const Vec2d v = r2(i, {0.1, 0.7});
         guides_.push_back(about.direction({0.5 * std::pow(10.0, -7 * v.x), v.y}));
     }
+}
+
+/// Where the sides of the unit square go: for most warps the rim of what is drawn, to the last digit.
+void Work::find_rims(int technique) {
+    constexpr int along = 32;
+    std::vector<Vec2d> u;
+    for (double side : {0.0, 1 - 0x1p-24})
+        for (int i = 0; i < along; ++i) {
+            const double v = (i + 0.5) / along;
+            u.push_back({side, v});
+            u.push_back({v, side});
+        }
+    std::vector<Draw> drawn(u.size());
+    subject.sample(technique, trial.wo, u, drawn);
+    for (const Draw& d : drawn)
+        if (d.pdf > 0 && is_finite(d.wi)) rims_.push_back(d.wi);
 }
 
 void Work::measure_density() {
@@ -94,8 +111,51 @@ Witnesses Work::witnesses_of(int technique, const Density& d) const {
 std::size_t Density::bin_of(Vec2d at) const {
     const auto edge = std::upper_bound(rings.begin(), rings.end(), at.x);
     const auto ring = std::clamp<std::ptrdiff_t>(edge - rings.begin() - 1, 0, static_cast<std::ptrdiff_t>(rings.size()) - 2);
-    const int sector = std::clamp(static_cast<int>(at.y * sectors), 0, sectors - 1);
+    const int sector = at.y > 0 ? std::min(static_cast<int>(at.y * sectors), sectors - 1) : 0;
     return static_cast<std::size_t>(ring * sectors + sector);
+}
+
+/// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral / p's. The bin is
+/// set right by that, as far as its doubt reaches, and is then known to the spread of table / p: twice the standard error of its
+/// mean, and a tenth for draws that do not follow p.
+void Work::sharpen(int technique, Density& d) const {
+    struct Ratio {
+        double n = 0, sum = 0, squares = 0;
+    };
+    std::vector<Ratio> ratio(d.doubt.size());
+    const Batchful& b = first(technique);
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        if (is_nothing(b.draws[i], b.pdf[i])) continue;
+        Ratio& r = ratio[d.bin_of(d.map.coordinates(b.draws[i].wi))];
+        const double v = b.pdf[i] / b.draws[i].pdf;
+        ++r.n;
+        r.sum += v;
+        r.squares += v * v;
+    }
+    for (std::size_t k = 0; k < d.doubt.size(); ++k) {
+        const Ratio& r = ratio[k];
+        if (r.n < 8 || !(d.mass.bins[k] > 0)) continue;
+        const double mean = r.sum / r.n, sd = std::sqrt(std::max(r.squares / r.n - mean * mean, 0.0)), reach = d.doubt[k] / d.mass.bins[k];
+        const double right = d.mass.bins[k] / std::clamp(mean, std::max(1 - reach, 0.1), 1 + reach);
+        d.mass.value += right - d.mass.bins[k];
+        d.mass.bins[k] = right;
+        d.doubt[k] = std::min(d.doubt[k], right * sd * (2 / std::sqrt(r.n) + 0.1));
+    }
+}
+
+/// An edge at the nearest and the farthest rim: what lies beyond expects nothing.
+void Work::add_rims(Density& d) const {
+    if (rims_.empty()) return;
+    double least = 2, most = 0;
+    for (Vec3d w : rims_) {
+        const double a = d.map.coordinates(w).x;
+        least = std::min(least, a);
+        most = std::max(most, a);
+    }
+    for (double edge : {least, most})
+        if (edge > 1e-12 && edge < 2 - 1e-9) d.rings.push_back(edge);
+    std::sort(d.rings.begin(), d.rings.end());
+    d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-13; }), d.rings.end());
 }
 
 Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
@@ -127,6 +187,7 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t
     for (double extra : {2 * d.rings.back(), 8 * d.rings.back(), 64 * d.rings.back()})
         if (!about_n && extra < 1.9) d.rings.push_back(extra);
     d.rings.push_back(2);
+    add_rims(d);
     std::vector<Rect> cells;
     const int rings = static_cast<int>(d.rings.size()) - 1;
     for (int i = 0; i < rings; ++i)
@@ -143,6 +204,12 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t
                            for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
                        },
                        {edge_mass / 20, evaluations, edge_mass}, &witnesses);
+    for (const Doubt& doubt : subject.doubts()) {
+        d.doubt.resize(d.mass.bins.size());
+        d.doubt[d.bin_of(map.coordinates(doubt.at))] += doubt.mass;
+        d.doubts += doubt.mass;
+    }
+    if (!d.doubt.empty()) sharpen(technique, d);
     return d;
 }
 
@@ -168,6 +235,7 @@ void Work::find_nothing(int technique, Density& d, std::uint64_t n) const {
 }
 
 const Integral& Work::incoming(Where where, bool even) const {
+    even = even && (trial.light.has_disk() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
     if (!kept) kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even) : integrate_incoming(where, even);
     return *kept;

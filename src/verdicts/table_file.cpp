@@ -1,0 +1,142 @@
+#include "verdicts/table_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <regex>
+
+namespace crescent {
+
+namespace {
+
+std::string_view trimmed(std::string_view s) {
+    const auto from = s.find_first_not_of(" \t\r");
+    return from == std::string_view::npos ? std::string_view() : s.substr(from, s.find_last_not_of(" \t\r") - from + 1);
+}
+
+/// Calls each(cell, column from 1) for every cell of a line.
+template <class Each> void cells_of(std::string_view line, Each&& each) {
+    for (std::size_t from = 0;;) {
+        const std::size_t comma = line.find(',', from);
+        each(trimmed(line.substr(from, comma - from)), static_cast<unsigned>(from + 1));
+        if (comma == std::string_view::npos) return;
+        from = comma + 1;
+    }
+}
+
+double number(Complaints& in, std::string_view word, unsigned line, unsigned column) {
+    double v = 0;
+    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
+    if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) return 0;  // an underflow
+    if (error != std::errc{} || end != digits.data() + digits.size()) in.add(line, column, fmt::format("expected a number, not '{}'", word.substr(0, 40)));
+    return v;
+}
+
+NumberTable read_csv(Complaints& in, std::istream& file) {
+    NumberTable t;
+    std::string text;
+    for (unsigned line = 1; std::getline(file, text); ++line) {
+        if (line == 1 && text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a byte order mark
+        if (trimmed(text).empty()) continue;
+        if (t.columns.empty()) {
+            cells_of(text, [&](std::string_view cell, unsigned) { t.columns.emplace_back(cell); });
+            continue;
+        }
+        const std::size_t before = t.values.size();
+        cells_of(text, [&](std::string_view cell, unsigned column) { t.values.push_back(number(in, cell, line, column)); });
+        const std::size_t got = t.values.size() - before;
+        if (got != t.columns.size()) {
+            in.add(line, 1, fmt::format("expected {} values, as the header has, not {}", t.columns.size(), got));
+            t.values.resize(before);
+        } else {
+            t.lines.push_back(line);
+        }
+    }
+    if (t.columns.empty()) in.add(1, 1, "the file is empty; expected a header line");
+    in.settle();
+    return t;
+}
+
+void name_columns(Complaints& in, const NumberTable& t, const std::vector<std::vector<std::string>>& layouts) {
+    const auto has_all = [&](const std::vector<std::string>& layout) { return std::all_of(layout.begin(), layout.end(), [&](const std::string& n) { return t.column(n) >= 0; }); };
+    const auto fits = [&](const std::vector<std::string>& layout) { return has_all(layout) && layout.size() == t.columns.size(); };
+    if (std::any_of(layouts.begin(), layouts.end(), fits)) return;
+    std::string expected;
+    for (const auto& layout : layouts) expected += fmt::format("{}{}", expected.empty() ? "" : " or ", fmt::join(layout, ","));
+    in.add(1, 1, fmt::format("expected the header {}, not {}", expected, std::string(fmt::format("{}", fmt::join(t.columns, ","))).substr(0, 100)));
+    in.settle();
+}
+
+struct NpyHeader {
+    std::size_t rows = 0, columns = 0, size = 0;
+    bool by_column = false;
+};
+
+NpyHeader npy_header(Complaints& in, std::istream& file) {
+    char magic[10];
+    if (!file.read(magic, 10) || std::memcmp(magic, "\x93NUMPY", 6) != 0) in.add(0, 0, "not an NPY file"), in.settle();
+    const auto byte = [](char c) { return static_cast<std::uint32_t>(static_cast<unsigned char>(c)); };
+    std::uint32_t length = byte(magic[8]) | byte(magic[9]) << 8;
+    if (magic[6] > 1) {
+        char more[2] = {};
+        file.read(more, 2);
+        length |= byte(more[0]) << 16 | byte(more[1]) << 24;
+    }
+    if (length > 65536) in.add(0, 0, "the NPY header is too long"), in.settle();
+    std::string header(length, ' ');
+    file.read(header.data(), static_cast<std::streamsize>(length));
+    std::smatch type, shape;
+    const bool known = std::regex_search(header, type, std::regex("'descr':\\s*'<f([48])'")) && std::regex_search(header, shape, std::regex("'shape':\\s*\\((\\d{1,15}),\\s*(\\d{1,15})\\)"));
+    if (!known) in.add(0, 0, fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", trimmed(header).substr(0, 100))), in.settle();
+    return {std::stoull(shape[1]), std::stoull(shape[2]), type[1] == "4" ? 4u : 8u, header.find("'fortran_order': True") != std::string::npos};
+}
+
+NumberTable read_npy(Complaints& in, std::istream& file, const std::vector<std::vector<std::string>>& layouts) {
+    const NpyHeader h = npy_header(in, file);
+    NumberTable t;
+    std::string expected;
+    for (const auto& layout : layouts) {
+        if (layout.size() == h.columns) t.columns = layout;
+        expected += fmt::format("{}{} ({})", expected.empty() ? "" : " or ", layout.size(), fmt::join(layout, ","));
+    }
+    if (t.columns.empty()) in.add(0, 0, fmt::format("expected {} columns, not {}", expected, h.columns)), in.settle();
+    const auto start = file.tellg();
+    file.seekg(0, std::ios::end);
+    const std::size_t bytes = static_cast<std::size_t>(file.tellg() - start);
+    if (bytes / h.size / h.columns < h.rows) in.add(0, 0, fmt::format("the file ends in row {} of {}", bytes / h.size / h.columns + 1, h.rows)), in.settle();
+    file.seekg(start);
+    std::vector<char> raw(h.rows * h.columns * h.size);
+    file.read(raw.data(), static_cast<std::streamsize>(raw.size()));
+    t.values.resize(h.rows * h.columns);
+    for (std::size_t r = 0; r < h.rows; ++r)
+        for (std::size_t c = 0; c < h.columns; ++c) {
+            const char* at = &raw[h.size * (h.by_column ? c * h.rows + r : r * h.columns + c)];
+            float single = 0;
+            double& v = t.values[r * h.columns + c];
+            if (h.size == 4) std::memcpy(&single, at, 4), v = static_cast<double>(single);
+            else std::memcpy(&v, at, 8);
+        }
+    return t;
+}
+
+}  // namespace
+
+int NumberTable::column(std::string_view name) const {
+    const auto at = std::find(columns.begin(), columns.end(), name);
+    return at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
+}
+
+NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::string>>& layouts) {
+    std::ifstream file(in.path, std::ios::binary);
+    if (!file || file.peek() == std::ifstream::traits_type::eof()) in.add(0, 0, file ? "is empty" : "cannot be read"), in.settle();
+    if (in.path.ends_with(".npy")) return read_npy(in, file, layouts);
+    NumberTable t = read_csv(in, file);
+    name_columns(in, t, layouts);
+    return t;
+}
+
+}  // namespace crescent
