@@ -19,8 +19,8 @@ using Vec2d = Vec2<double>;
 struct Draw {
     Vec3d wi{};
     double pdf = 0;
-    std::optional<double> weight;
-    std::optional<double> f;  // where it is known at the draws alone
+    std::optional<double> weight{};
+    std::optional<double> f{};  // where it is known at the draws alone
 };
 
 /// How much of p's mass about a direction is not known, where p was tabulated.
