@@ -8,7 +8,8 @@ namespace crescent {
 
 Surface furnace_surface(const Experiment& experiment, const Shape& shape, bool lobe_only) {
     const Material& m = shape.material;
-    Surface surface{m.rho_d, m.rho_s, m.brdf, m.s ? *m.s : experiment.s(), m.alpha.value_or(0.0)};
+    const double s = m.s ? *m.s : experiment.s();
+    Surface surface{m.rho_d, m.rho_s, m.brdf, s, roughness(m, s)};
     if (lobe_only) surface.rho_d = {};
     return surface;
 }

@@ -73,7 +73,7 @@ Section shapes() {
          "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
         {"brdf", Type::word, none, "", defaulted, "\"phong\"",
          "Which lobe.", to<&Shape::material, &Material::brdf>, {"phong", "blinn-phong", "ggx"}},
-        {"alpha", Type::number, {0, 1, true}, "", optional, "none; needed by a ggx lobe",
+        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)), a lobe about as wide; a ggx lobe states its own",
          "GGX roughness, not remapped.", to<&Shape::material, &Material::alpha>},
         {"reveal_rho_d", Type::color, unit_range, "", optional, "rho_d",
          "Diffuse albedo of the four sides of the recess.", to<&Shape::reveal_rho_d>, {}, "panel"},

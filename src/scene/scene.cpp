@@ -85,10 +85,12 @@ std::optional<Hit> Scene::trace(int i, int j) const {
     return hit;
 }
 
+double roughness(const Material& material, double s) { return material.alpha.value_or(std::sqrt(2 / (s + 2))); }
+
 Surface Scene::surface(const Hit& hit) const {
     const Shape& shape = experiment_.shapes[static_cast<std::size_t>(hit.shape)];
     const Material& m = shape.material;
-    Surface out{m.rho_d, m.rho_s, m.brdf, m.s.value_or(s_), m.alpha.value_or(0.0)};
+    Surface out{m.rho_d, m.rho_s, m.brdf, m.s.value_or(s_), roughness(m, m.s.value_or(s_))};
     if (hit.reveal) {
         out.rho_d = shape.reveal_rho_d.value_or(m.rho_d);
         out.rho_s = 0;
