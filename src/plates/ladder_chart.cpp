@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "plates/words.h"
+
 namespace crescent::plates {
 
 namespace {
@@ -17,10 +19,13 @@ struct Axes {
     double y(double v) const { return plot.bottom() - plot.h * (std::log(v) - y0) / (y1 - y0); }
 };
 
+// Those of the arms that the plate shows; of all arms where it names none.
 std::vector<const Ladder*> ladders_of(const Sheet& sheet, const std::string& region) {
+    const std::vector<RunKey> shown = keys_of(sheet.plan, sheet.experiment());
     std::vector<const Ladder*> list;
     for (const Ladder& l : sheet.in.metrics.ladders) {
-        if (l.region == region && l.s == sheet.experiment().s() && l.n.size() > 1) list.push_back(&l);
+        const bool here = shown.empty() || std::any_of(shown.begin(), shown.end(), [&](const RunKey& k) { return k.arm == l.arm; });
+        if (here && l.region == region && l.s == sheet.experiment().s() && l.n.size() > 1) list.push_back(&l);
     }
     return list;
 }
