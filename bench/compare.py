@@ -3,7 +3,7 @@
 
     bench/compare.py [--experiment FILE] [--n N] [--write] [--no-mitsuba]
 
-Builds crescent_bench, makes a virtual environment with Mitsuba under build-bench/ where there is none, runs the three
+Builds crescent_bench, makes a virtual environment with Mitsuba under build/ where there is none, runs the three
 after one another on an otherwise idle machine, and prints Msamples/s per arm with their ratios. Samples are counted
 alike in all three: geometry pixels x N. --write puts the table, date, processor and command into docs/speed.md.
 Exit 1 where an arm is less than ten times as fast as Mitsuba.
@@ -18,7 +18,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BUILD = ROOT / "build-bench"
+BUILD = ROOT / "build"
 LEAST = 10  # times Mitsuba
 
 
@@ -38,7 +38,7 @@ def mitsuba_python():
     python = BUILD / "mitsuba" / "bin" / "python"
     if subprocess.run([str(python), "-c", "import mitsuba, numpy"], stderr=subprocess.DEVNULL).returncode == 0 if python.exists() else False:
         return python
-    print("installing mitsuba from PyPI under build-bench/mitsuba", file=sys.stderr)
+    print("installing mitsuba from PyPI under build/mitsuba", file=sys.stderr)
     for command in ([sys.executable, "-m", "venv", BUILD / "mitsuba"], [python, "-m", "pip", "install", "-q", "mitsuba", "numpy"]):
         if subprocess.run([str(word) for word in command]).returncode != 0:
             print("no mitsuba: its column stays empty", file=sys.stderr)

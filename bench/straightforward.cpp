@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "scene/shadow.h"
+
 namespace crescent::bench {
 
 namespace {
@@ -52,6 +54,9 @@ Vec3d draw(const std::string& sampler, const Point& at, double u1, double u2, do
     pdf = (s + 1) / (2 * pi) * std::pow(cos, s);
     return about(at.mirror_basis, cos, phi);
 }
+
+/// Does the segment from x to y cross the body? A chord of next to no length at y.
+bool blocks(const Occluder& body, Vec3d x, Vec3d y) { return !hidden(body, x, y, y + 1e-9 * frame_about(normalize(y - x)).t).empty(); }
 
 Rgb incident(const Scene& scene, const Point& at, Vec3d wi) {
     double nearest = 1e30;

@@ -66,7 +66,7 @@ DiskIntegral whole_disk(const DiskPoint& point, const DiskLight& disk, const Fra
         for (const auto& n : rule.nodes) sum += n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
         return sum * sqr(disk.radius);
     };
-    constexpr double good = 1e-6;  // relative, between two rules; the finer one, which is kept, is better by far
+    constexpr double good = 1e-5;  // relative, between two rules; the finer one, which is kept, is better by far
     const auto& rules = polar_rules();
     double coarse = apply(rules[0]);
     for (std::size_t k = 1; k < rules.size(); ++k) {

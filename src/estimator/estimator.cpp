@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <mutex>
+#include <numeric>
 
 #include "base/errors.h"
 
@@ -99,7 +100,7 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
             kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 develop(scene, sites, moments[r], films[r]);
-                for (std::size_t i = 0; i < sites.count; ++i) bad[r] += moments[r].bad[i];
+                bad[r] += std::accumulate(moments[r].bad.begin(), moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
             }
             watch.advance(static_cast<double>(sites.count) * static_cast<double>(n.back()));
         }

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <cmath>
+#include <oneapi/tbb/parallel_for.h>
 
 #include "scene/intersect.h"
 
@@ -50,8 +51,10 @@ void Scene::remember_primaries() {
     const std::size_t width = static_cast<std::size_t>(experiment_.image.width), height = static_cast<std::size_t>(experiment_.image.height);
     if (width * height > std::size_t{1} << 20) return;
     auto all = std::make_shared<std::vector<Hit>>(width * height);
-    for (std::size_t at = 0; at < all->size(); ++at)
-        if (const auto hit = trace(static_cast<int>(at % width), static_cast<int>(at / width))) (*all)[at] = *hit;
+    tbb::parallel_for(std::size_t{0}, height, [&](std::size_t j) {
+        for (std::size_t i = 0; i < width; ++i)
+            if (const auto hit = trace(static_cast<int>(i), static_cast<int>(j))) (*all)[j * width + i] = *hit;
+    });
     primaries_ = std::move(all);
 }
 

@@ -66,7 +66,4 @@ private:
     std::shared_ptr<const std::vector<Hit>> primaries_;  // shape -1: nothing met
 };
 
-/// Does the open segment from x to y meet the body?
-bool blocks(const Occluder& o, Vec3d x, Vec3d y);
-
 }  // namespace crescent
