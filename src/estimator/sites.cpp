@@ -80,12 +80,22 @@ void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, c
     rho_s_exact.push_back(surface.rho_s);
 }
 
+template <class Work> void Sites::each_array(Work&& work) {
+    const auto all = [&](auto&... arrays) { (work(arrays), ...); };
+    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, pivot);
+    for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
+}
+
+void Sites::reserve(std::size_t sites) {
+    const std::size_t full = (sites + widest_pack - 1) / widest_pack * widest_pack;
+    each_array([&](auto& array) { array.reserve(full); });
+    rho_d.reserve(full);
+    rho_s_exact.reserve(full);
+}
+
 void Sites::pad() {
     const std::size_t full = (count + widest_pack - 1) / widest_pack * widest_pack;
-    const auto fill_up = [&](auto&... arrays) { (arrays.resize(full, arrays.back()), ...); };
-    if (count == 0) return;
-    fill_up(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, pivot);
-    for (DiskArrays& k : disks) fill_up(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
+    if (count > 0) each_array([&](auto& array) { array.resize(full, array.back()); });
 }
 
 void Sites::prune(const Scene& scene) {
@@ -117,7 +127,10 @@ std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_
             const Surface surface = scene.surface(*hit);
             const int lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
             auto group = std::find_if(groups.begin(), groups.end(), [&](const Sites& g) { return g.lobe == lobe; });
-            if (group == groups.end()) group = groups.insert(group, empty_sites(scene, lobe));
+            if (group == groups.end()) {
+                group = groups.insert(group, empty_sites(scene, lobe));
+                group->reserve(static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0));
+            }
             group->add(scene, static_cast<std::uint32_t>(index), *hit, surface);
         }
     }

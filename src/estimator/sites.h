@@ -55,8 +55,12 @@ struct Sites {
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Surface& surface);
     /// Repeats the last site until every pack is full.
     void pad();
+    void reserve(std::size_t sites);
     /// Drops the occluders that stand between no site and no disk.
     void prune(const Scene& scene);
+
+private:
+    template <class Work> void each_array(Work&& work);
 };
 
 /// A scene's lights and occluders without any site yet.
