@@ -8,8 +8,6 @@
 #include <thread>
 #include <vector>
 
-#include "scene/shadow.h"
-
 namespace crescent::bench {
 
 namespace {

@@ -29,6 +29,7 @@
 #include "report/report.h"
 #include "run.h"
 #include "scene/scene.h"
+#include "scene/shadow.h"
 #include "simd/random.h"
 #include "verdicts/error_rates.h"
 #include "verdicts/judge.h"
