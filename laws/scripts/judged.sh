@@ -2,14 +2,10 @@
 # Samplers of one's own: a struct built against an installed crescent, programs behind a pipe, draws in a file; what is
 # wrong with a call is told with exit 2, before anything is judged.
 . "$(dirname "$0")/common.sh"
-: "${CRESCENT_BUILD:?the build folder}"
 
-expect 0 cmake --install "$CRESCENT_BUILD" --prefix "$work/prefix"
-cp -r "$CRESCENT_SOURCE/examples/my_sampler" mine
-expect 0 cmake -S mine -B mine/build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_PREFIX_PATH="$work/prefix"
-expect 0 cmake --build mine/build
-expect 0 mine/build/my_sampler
-[ ! -e mine/build/my_sampler_test ] || expect 0 mine/build/my_sampler_test
+build_example my_sampler
+expect 0 my_sampler/build/my_sampler
+[ ! -e my_sampler/build/my_sampler_test ] || expect 0 my_sampler/build/my_sampler_test
 
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm

@@ -3,7 +3,6 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <span>
 
 #include "scene/shadow.h"
 
@@ -52,7 +51,7 @@ public:
         : point_(point), disk_(disk), frame_(frame), bodies_(bodies), sharpness_(point.sharpness(disk.radius / length(disk.center - point.x))) {}
 
     /// The chord at height R sin(phi), times what turns d phi into area.
-    Pair operator()(double phi) {
+    Parts operator()(double phi) {
         const double half = disk_.radius * std::cos(phi);
         const Vec3d middle = disk_.center + frame_.b * (disk_.radius * std::sin(phi));
         const Vec3d y0 = middle - frame_.t * half, y1 = middle + frame_.t * half;
@@ -68,7 +67,7 @@ public:
             diffuse += lambert(part) / pi;
             if (point_.surface.rho_s > 0) lobe += lobe_along(point_, y0, y1 - y0, part, sharpness_);
         });
-        return Pair(diffuse, lobe) * (2 * half * half);  // chord length x R cos(phi)
+        return Parts(diffuse, lobe) * (2 * half * half);  // chord length x R cos(phi)
     }
 
 private:
@@ -84,19 +83,19 @@ private:
 /// disk's, are closed in upon.
 struct Adaptive {
     double tolerance;  // of one interval, in the unit of `weigh`
-    Pair value = 0, error = 0;
+    Parts value = 0, error = 0;
 
     template <class F, class Weigh> void add(F& f, const Weigh& weigh, double lo, double hi, int depth) {
         constexpr std::array<double, 3> x = {0.43424374934680256, 0.77459666924148338, 0.96049126870802028};
         constexpr std::array<double, 4> kronrod = {0.45091653865847414, 0.40139741477596222, 0.26848808986833344, 0.10465622602646727};
         const double middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
         const auto both = [&](double t) { return f(middle - half * t) + f(middle + half * t); };
-        const Pair f0 = f(middle), f2 = both(x[1]);
-        const Pair fine = half * (kronrod[0] * f0 + kronrod[1] * both(x[0]) + kronrod[2] * f2 + kronrod[3] * both(x[2]));
-        const Pair coarse = half * (8.0 / 9 * f0 + 5.0 / 9 * f2), off = fine - coarse;
+        const Parts f0 = f(middle), f2 = both(x[1]);
+        const Parts fine = half * (kronrod[0] * f0 + kronrod[1] * both(x[0]) + kronrod[2] * f2 + kronrod[3] * both(x[2]));
+        const Parts coarse = half * (8.0 / 9 * f0 + 5.0 / 9 * f2), off = fine - coarse;
         if (depth == 0 || weigh(off) <= tolerance) {
             value += fine;
-            error += Pair(std::fabs(off.real()), std::fabs(off.imag()));
+            error += Parts(std::fabs(off.real()), std::fabs(off.imag()));
             return;
         }
         add(f, weigh, lo, middle, depth - 1);
@@ -108,7 +107,7 @@ struct Adaptive {
 
 DiskIntegral chord_by_chord(const DiskPoint& point, const DiskLight& disk, const Frame<double>& frame, const std::vector<const Occluder*>& bodies) {
     const double open = sqr(disk.radius) / dot(disk.center - point.x, disk.center - point.x);  // Lambert's, about
-    const auto weigh = [&](Pair p) { return point.weigh(p); };
+    const auto weigh = [&](Parts p) { return point.weigh(p); };
     const double all = weigh({open, open});
     if (!(all > 0)) return {};  // a black surface
     Chords chords(point, disk, frame, bodies);

@@ -10,7 +10,7 @@
 
 namespace crescent {
 
-using Pair = std::complex<double>;  // diffuse, lobe: two integrands in one pass
+using Parts = std::complex<double>;  // diffuse, lobe: two integrands in one pass
 
 /// What one surface point makes of a direction to the disk.
 struct DiskPoint {
@@ -41,7 +41,7 @@ struct DiskPoint {
         return t * std::sqrt(s);
     }
     /// Y of what the pair is worth under light of radiance 1.
-    double weigh(Pair p) const { return luminance(surface.rho_d) * std::abs(p.real()) + surface.rho_s * std::abs(p.imag()); }
+    double weigh(Parts p) const { return luminance(surface.rho_d) * std::abs(p.real()) + surface.rho_s * std::abs(p.imag()); }
 };
 
 }  // namespace crescent

@@ -7,9 +7,7 @@
 namespace crescent {
 
 Surface furnace_surface(const Experiment& experiment, const Shape& shape, bool lobe_only) {
-    const Material& m = shape.material;
-    const double s = m.s ? *m.s : experiment.s();
-    Surface surface{m.rho_d, m.rho_s, m.brdf, s, roughness(m, s)};
+    Surface surface = surface_of(shape.material, experiment.s());
     if (lobe_only) surface.rho_d = {};
     return surface;
 }

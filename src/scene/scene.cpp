@@ -88,14 +88,16 @@ std::optional<Hit> Scene::trace(int i, int j) const {
     return hit;
 }
 
-double roughness(const Material& material, double s) { return material.alpha.value_or(std::sqrt(2 / (s + 2))); }
+Surface surface_of(const Material& m, double common_s) {
+    const double s = m.s.value_or(common_s);
+    return {m.rho_d, m.rho_s, m.brdf, s, m.alpha.value_or(std::sqrt(2 / (s + 2)))};
+}
 
 Surface Scene::surface(const Hit& hit) const {
     const Shape& shape = experiment_.shapes[static_cast<std::size_t>(hit.shape)];
-    const Material& m = shape.material;
-    Surface out{m.rho_d, m.rho_s, m.brdf, m.s.value_or(s_), roughness(m, m.s.value_or(s_))};
+    Surface out = surface_of(shape.material, s_);
     if (hit.reveal) {
-        out.rho_d = shape.reveal_rho_d.value_or(m.rho_d);
+        out.rho_d = shape.reveal_rho_d.value_or(out.rho_d);
         out.rho_s = 0;
     }
     return out;

@@ -27,9 +27,9 @@ struct Surface {
     double s = 0, alpha = 0;
 };
 
-/// GGX alpha. Where the material states none: sqrt(2/(s+2)), as wide as a Blinn-Phong lobe of exponent s (Walter et al. 2007,
-/// section 5.3), so that a GGX arm has something to aim by on any surface.
-double roughness(const Material& material, double s);
+/// A material's surface in a scene whose common exponent is s. Where it states no alpha: sqrt(2/(s+2)), as wide as a
+/// Blinn-Phong lobe of exponent s (Walter et al. 2007), so that a GGX arm has something to aim by on any surface.
+Surface surface_of(const Material& material, double common_s);
 
 /// A convex body that can stand between a surface and a light. Shapes that are not convex are made of several.
 struct Occluder {
