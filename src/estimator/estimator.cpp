@@ -1,5 +1,6 @@
 #include "estimator/estimator.h"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -90,11 +91,12 @@ void for_each_tile(int width, int height, Watch& watch, const std::function<void
 std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
                                  const std::string& isa, Watch& watch) {
     const Image& image = scene.experiment().image;
-    std::vector<Film> films;
-    for (std::uint64_t rung : n) films.emplace_back(image.width, image.height, rung);
+    std::vector<Film> films(n.size());
+    tbb::parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) { films[r] = Film(image.width, image.height, n[r]); });
     std::vector<std::atomic<std::uint64_t>> bad(n.size());
+    tbb::enumerable_thread_specific<std::vector<Moments>> scratch(n.size());  // a thread's tiles follow one another in it
     for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
-        std::vector<Moments> moments(n.size());
+        std::vector<Moments>& moments = scratch.local();
         for (const Sites& sites : sites_of(scene, tile, nullptr)) {
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.disks.size());
             kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});

@@ -11,11 +11,13 @@ KernelTable avx2_kernels();
 KernelTable avx512_kernels();
 
 void Moments::resize(std::size_t sites, std::size_t disks) {
-    for (auto* sums : {&g, &g_lobe, &square}) sums->assign(sites, 0.0);
-    disk_g.assign(disks, std::vector<double>(sites));
-    disk_g_lobe.assign(disks, std::vector<double>(sites));
-    largest.assign(sites, 0.0f);
-    for (auto* counts : {&horizon, &hits, &bad}) counts->assign(sites, 0u);
+    for (auto* sums : {&g, &g_lobe, &square}) sums->resize(sites);
+    for (auto* sums : {&disk_g, &disk_g_lobe}) {
+        sums->resize(disks);
+        for (std::vector<double>& of_disk : *sums) of_disk.resize(sites);
+    }
+    largest.resize(sites);
+    for (auto* counts : {&horizon, &hits, &bad}) counts->resize(sites);
 }
 
 std::vector<std::string> isas() {

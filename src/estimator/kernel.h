@@ -27,6 +27,7 @@ struct Moments {
     std::vector<double> square;                  // sum of (X - pivot)^2
     std::vector<float> largest;                  // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
+    /// Entries that are new are 0; kernels write all of them.
     void resize(std::size_t sites, std::size_t disks);
 };
 

@@ -75,9 +75,9 @@ double ggx_albedo(double alpha, double cos_o) {
 }  // namespace
 
 double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o) {
-    const double c = std::clamp(cos_o, 1e-6, 1.0);
+    const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no room at the horizon itself
     switch (kind) {
-        case BrdfKind::phong: return phong_albedo(s, c);
+        case BrdfKind::phong: return phong_albedo(s, std::clamp(cos_o, 0.0, 1.0));
         case BrdfKind::blinn_phong: return blinn_albedo(s, c);
         case BrdfKind::ggx: return ggx_albedo(alpha, c);
     }

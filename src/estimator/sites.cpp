@@ -1,6 +1,7 @@
 #include "estimator/sites.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "films/film.h"
 #include "scene/shadow.h"
@@ -13,11 +14,11 @@ double reflected(const Rgb& light, const Rgb& albedo) {
     return luminance(Rgb{light[0] * albedo[0], light[1] * albedo[1], light[2] * albedo[2]});
 }
 
-void push(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, Vec3d v) {
-    x.push_back(static_cast<float>(v.x));
-    y.push_back(static_cast<float>(v.y));
-    z.push_back(static_cast<float>(v.z));
+void put(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t i, Vec3d v) {
+    x[i] = static_cast<float>(v.x), y[i] = static_cast<float>(v.y), z[i] = static_cast<float>(v.z);
 }
+
+std::size_t whole_packs(std::size_t sites) { return (sites + widest_pack - 1) / widest_pack * widest_pack; }
 
 std::array<float, 3> single(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -51,51 +52,65 @@ Sites empty_sites(const Scene& scene, int lobe) {
     return sites;
 }
 
-void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Surface& surface) {
-    const Frame<double> frame = frame_about(hit.n);
-    ++count;
-    pixel.push_back(pixel_index);
-    shape.push_back(static_cast<std::uint32_t>(hit.shape));
-    push(wox, woy, woz, frame.to_local(hit.wo));
-    s.push_back(static_cast<float>(surface.s));
-    alpha.push_back(static_cast<float>(surface.alpha));
-    diffuse.push_back(static_cast<float>(luminance(surface.rho_d)));
-    rho_s.push_back(static_cast<float>(surface.rho_s));
-    push(px, py, pz, hit.x);
-    push(tx, ty, tz, frame.t);
-    push(bx, by, bz, frame.b);
-    push(nx, ny, nz, frame.n);
+Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
     const double fill = reflected(scene.fill(), surface.rho_d);
-    fill_d.push_back(static_cast<float>(fill / pi));
-    fill_s.push_back(static_cast<float>(luminance(scene.fill()) * surface.rho_s));
-    pivot.push_back(static_cast<float>(fill));  // Lambert under the fill alone
+    fill_d = static_cast<float>(fill / pi);
+    fill_s = static_cast<float>(luminance(scene.fill()) * surface.rho_s);
+    pivot = static_cast<float>(fill);  // Lambert under the fill alone
+    for (const DiskLight& light : scene.disks()) {
+        disk_d.push_back(static_cast<float>(reflected(light.radiance, surface.rho_d) / pi));
+        disk_s.push_back(static_cast<float>(luminance(light.radiance) * surface.rho_s));
+    }
+}
+
+void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading) {
+    const Frame<double> frame = frame_about(hit.n);
+    const std::size_t i = count++;
+    pixel[i] = pixel_index;
+    shape[i] = static_cast<std::uint32_t>(hit.shape);
+    put(wox, woy, woz, i, frame.to_local(hit.wo));
+    s[i] = static_cast<float>(shading.surface.s);
+    alpha[i] = static_cast<float>(shading.surface.alpha);
+    diffuse[i] = static_cast<float>(luminance(shading.surface.rho_d));
+    rho_s[i] = static_cast<float>(shading.surface.rho_s);
+    put(px, py, pz, i, hit.x);
+    put(tx, ty, tz, i, frame.t);
+    put(bx, by, bz, i, frame.b);
+    put(nx, ny, nz, i, frame.n);
+    fill_d[i] = shading.fill_d;
+    fill_s[i] = shading.fill_s;
+    pivot[i] = shading.pivot;
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const DiskLight& light = scene.disks()[k];
-        push(disks[k].cx, disks[k].cy, disks[k].cz, frame.to_local(light.center - hit.x));
-        push(disks[k].nx, disks[k].ny, disks[k].nz, frame.to_local(light.normal));
-        disks[k].d.push_back(static_cast<float>(reflected(light.radiance, surface.rho_d) / pi));
-        disks[k].s.push_back(static_cast<float>(luminance(light.radiance) * surface.rho_s));
+        put(disks[k].cx, disks[k].cy, disks[k].cz, i, frame.to_local(light.center - hit.x));
+        put(disks[k].nx, disks[k].ny, disks[k].nz, i, frame.to_local(light.normal));
+        disks[k].d[i] = shading.disk_d[k];
+        disks[k].s[i] = shading.disk_s[k];
     }
-    rho_d.push_back(surface.rho_d);
-    rho_s_exact.push_back(surface.rho_s);
+    rho_d[i] = shading.surface.rho_d;
+    rho_s_exact[i] = shading.surface.rho_s;
 }
 
 template <class Work> void Sites::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
-    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, pivot);
+    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, pivot, rho_d, rho_s_exact);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
 }
 
 void Sites::reserve(std::size_t sites) {
-    const std::size_t full = (sites + widest_pack - 1) / widest_pack * widest_pack;
-    each_array([&](auto& array) { array.reserve(full); });
-    rho_d.reserve(full);
-    rho_s_exact.reserve(full);
+    each_array([&](auto& array) { array.reserve(whole_packs(sites)); });
+}
+
+void Sites::make_room(std::size_t more) {
+    each_array([&](auto& array) { array.resize(count + more); });
 }
 
 void Sites::pad() {
-    const std::size_t full = (count + widest_pack - 1) / widest_pack * widest_pack;
-    if (count > 0) each_array([&](auto& array) { array.resize(full, array.back()); });
+    if (count == 0) return;
+    each_array([&](auto& array) {
+        array.resize(whole_packs(count));
+        std::fill(array.begin() + static_cast<std::ptrdiff_t>(count), array.end(), array[count - 1]);
+    });
 }
 
 void Sites::prune(const Scene& scene) {
@@ -115,30 +130,61 @@ void Sites::prune(const Scene& scene) {
     occluders.resize(kept);
 }
 
-std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
+namespace {
+
+/// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then at hand.
+class Sorter {
+public:
+    Sorter(const Scene& scene, const TileBox& tile) : scene_(scene), columns_(static_cast<std::size_t>(tile.x1 - tile.x0)), area_(columns_ * static_cast<std::size_t>(tile.y1 - tile.y0)) {}
+
+    void next_row() {
+        for (Sites& group : groups) group.make_room(columns_);
+    }
+
+    void add(std::uint32_t pixel, const Hit& hit) {
+        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_) {
+            shading_.emplace(scene_, scene_.surface(hit));
+            shape_ = hit.shape, reveal_ = hit.reveal;
+        }
+        const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
+        auto group = std::find_if(groups.begin(), groups.end(), [&](const Sites& g) { return g.lobe == lobe; });
+        if (group == groups.end()) {
+            group = groups.insert(group, empty_sites(scene_, lobe));
+            group->reserve(area_);
+            group->make_room(columns_);
+        }
+        group->add(scene_, pixel, hit, *shading_);
+    }
+
     std::vector<Sites> groups;
+
+private:
+    const Scene& scene_;
+    std::size_t columns_, area_;  // pixels in a row, and in the tile
+    std::optional<Shading> shading_;
+    int shape_ = -1;
+    bool reveal_ = false;
+};
+
+}  // namespace
+
+std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
+    Sorter sorter(scene, tile);
     const int width = scene.experiment().image.width;
     for (int j = tile.y0; j < tile.y1; ++j) {
+        sorter.next_row();
         for (int i = tile.x0; i < tile.x1; ++i) {
             const std::size_t index = static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
             const std::optional<Hit> hit = scene.primary(i, j);
             if (shape_map) shape_map[index] = static_cast<std::int16_t>(hit ? hit->shape : -1);
-            if (!hit) continue;
-            const Surface surface = scene.surface(*hit);
-            const int lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
-            auto group = std::find_if(groups.begin(), groups.end(), [&](const Sites& g) { return g.lobe == lobe; });
-            if (group == groups.end()) {
-                group = groups.insert(group, empty_sites(scene, lobe));
-                group->reserve(static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0));
-            }
-            group->add(scene, static_cast<std::uint32_t>(index), *hit, surface);
+            if (hit) sorter.add(static_cast<std::uint32_t>(index), *hit);
         }
     }
-    for (Sites& group : groups) {
+    for (Sites& group : sorter.groups) {
         group.pad();
         group.prune(scene);
     }
-    return groups;
+    return std::move(sorter.groups);
 }
 
 }  // namespace crescent

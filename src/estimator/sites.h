@@ -28,6 +28,14 @@ struct DiskArrays {
     float power = 0;                // Y(L) pi r^2, relative to all disks
 };
 
+/// What every site of one surface shares: what a sample is worth there, by the light it meets.
+struct Shading {
+    Surface surface;
+    float fill_d = 0, fill_s = 0, pivot = 0;  // as in Sites
+    std::vector<float> disk_d, disk_s;        // as in DiskArrays, one a disk
+    Shading(const Scene& scene, const Surface& on);
+};
+
 /// Occluders in float, as the kernels test them.
 struct OccluderF {
     Occluder::Kind kind;
@@ -52,10 +60,12 @@ struct Sites {
     std::vector<Rgb> rho_d;                    // per pixel, for the colours of the film
     std::vector<double> rho_s_exact;
 
-    void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Surface& surface);
+    /// Adds a site where room was made for it.
+    void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading);
+    void make_room(std::size_t more);
+    void reserve(std::size_t sites);
     /// Repeats the last site until every pack is full.
     void pad();
-    void reserve(std::size_t sites);
     /// Drops the occluders that stand between no site and no disk.
     void prune(const Scene& scene);
 
