@@ -30,7 +30,8 @@ Films are the same bits for any --threads and any --isa. --instrument gl
 computes them in GLSL, the same to a tolerance: docs/gl.md.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,
-timing.json, plates/, films/. Each file appears whole or not at all.)";
+timing.json, plates/, films/. Each file appears whole or not at all. A long run
+that was stopped goes on where it was when the same command is given again.)";
 
 /// A command that fills in Flags and then runs `perform`.
 template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* name, const char* means, int (*perform)(const Flags&), std::shared_ptr<Flags>& flags) {
@@ -53,6 +54,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")->type_name("NAME")->check(CLI::IsMember({"egl", "osmesa"}));
     c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")->type_name("N")->check(CLI::Range(0, 1023));
+    c->add_option("--keep-after", f->keep_after, "what takes longer is kept while it runs; default 10")->type_name("SECONDS")->check(CLI::NonNegativeNumber);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 

@@ -26,6 +26,7 @@ struct RunFlags {
     std::string gl_context;              // "": EGL
     int gl_device = -1;                  // -1: a GPU where there is one
     int seeds = 0, threads = 0;          // 0: the file's; as many as the machine has
+    double keep_after = 10;              // s
     bool quiet = false;
 };
 int run(const RunFlags& flags);

@@ -75,6 +75,8 @@ void Progress::advance(double units) {
     if (lock.owns_lock() && now >= next_draw_) draw();
 }
 
+void Progress::skip(double units) { total_.fetch_sub(units, std::memory_order_relaxed); }
+
 void Progress::draw() {
     next_draw_ = (Clock::now() + interval).time_since_epoch().count();
     to_stderr("\r" + progress_line(what_, done_, total_, seconds()) + "\x1b[K");

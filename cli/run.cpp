@@ -42,6 +42,7 @@ int run(const RunFlags& flags) {
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
     options.threads = flags.threads;
     options.isa = flags.isa;
+    options.keep_after_s = flags.keep_after;
     options.command = command_of(flags);
     options.instrument = instrument(flags);
 

@@ -20,6 +20,7 @@
 #include "experiment/published.h"
 #include "films/exr.h"
 #include "jobs.h"
+#include "kept.h"
 #include "meters/evidence_measure.h"
 #include "meters/furnace.h"
 #include "meters/meters.h"
@@ -36,7 +37,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 /// A run in the making: what is kept from one stage to the next.
 class Run {
 public:
@@ -50,6 +50,7 @@ public:
         const auto start = Clock::now();
         look();
         Staging staging(options_.out);
+        kept_.emplace(experiment_, options_, instrument_->name(), watch_);
         stage("references", [&] { references(); });
         stage("films", [&] { films(); });
         timing_.estimating_s = seconds_since(start);
@@ -66,6 +67,7 @@ public:
         staging.write("timing.json", timing_json(timing_, provenance_));
         watch_.check();
         staging.commit();
+        kept_->forget();
         return {metrics_, timing_, provenance_, terminal_summary(inputs(), timing_, options_.out, false)};
     }
 
@@ -101,15 +103,15 @@ private:
             if (std::find(exponents.begin(), exponents.end(), job.s) == exponents.end()) exponents.push_back(job.s);
         const double pixels = static_cast<double>(shapes_.shape.size());
         watch_.begin("reference by quadrature", pixels);
-        quadrature_ = quadrature_reference(scene_, exponents, watch_);
+        TileKeeper quadrature = kept_->tiles("quadrature"), note = kept_->tiles("note");
+        quadrature_ = quadrature_reference(scene_, exponents, watch_, &quadrature);
         watch_.begin("the note's reference", pixels);
-        note_ = note_reference(scene_, exponents, isa_, watch_);
+        note_ = note_reference(scene_, exponents, isa_, watch_, &note);
     }
 
-    const ReferenceFilm* find(const std::vector<ReferenceFilm>& films, double s) const {
-        for (const ReferenceFilm& film : films)
-            if (film.s == s) return &film;
-        return nullptr;
+    static const ReferenceFilm* find(const std::vector<ReferenceFilm>& films, double s) {
+        const auto film = std::ranges::find(films, s, &ReferenceFilm::s);
+        return film == films.end() ? nullptr : &*film;
     }
     const ReferenceFilm& reference(double s) const {
         return *find(experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_, s);
@@ -126,16 +128,28 @@ private:
         }
     }
 
-    void run_job(const Job& job, bool keep) {
+    /// `films`: they are kept in memory, for the plates and for the disk; else their meters are all that is needed.
+    void run_job(Job job, bool films) {
         const auto start = Clock::now();
-        std::vector<Film> films = instrument_->films(scene_.with_s(job.s), job, watch_);
-        const std::uint64_t samples = metrics_.geometry_pixels * job.n.back();
-        timing_.arms.push_back({job.arm->name, job.n.back(), job.s, samples, seconds_since(start)});
-        for (std::size_t r = 0; r < job.n.size(); ++r) {
-            const RunKey key{job.arm->name, job.n[r], job.s, job.seed};
-            metrics_.runs.push_back(measure(experiment_, key, films[r], reference(job.s), shapes_));
-            if (keep) films_.emplace_back(key, std::move(films[r]));
+        std::vector<RunMeter> meters = kept_->meters(job);
+        TileKeeper keeper = kept_->tiles(fmt::format("{}-s{}-seed{}", job.arm->name, job.s, job.seed));
+        double samples = 0;
+        if (films || meters.empty()) {
+            job.keeper = &keeper;
+            std::vector<Film> made = instrument_->films(scene_.with_s(job.s), job, watch_);
+            samples = static_cast<double>(metrics_.geometry_pixels * job.n.back()) - keeper.restored();
+            if (meters.empty()) kept_->add(meters = meters_of(job, made));
+            for (std::size_t r = 0; films && r < made.size(); ++r) films_.emplace_back(meters[r].key, std::move(made[r]));
         }
+        if (!films) keeper.remove();
+        timing_.arms.push_back({job.arm->name, job.n.back(), job.s, static_cast<std::uint64_t>(samples), seconds_since(start)});
+        metrics_.runs.insert(metrics_.runs.end(), meters.begin(), meters.end());
+    }
+
+    std::vector<RunMeter> meters_of(const Job& job, const std::vector<Film>& films) const {
+        std::vector<RunMeter> out;
+        for (const Film& film : films) out.push_back(measure(experiment_, {job.arm->name, film.n, job.s, job.seed}, film, reference(job.s), shapes_));
+        return out;
     }
 
     /// The tail index of each region's samples at the published seed. It belongs to an arm and exponent, not to N: it is
@@ -168,21 +182,7 @@ private:
         for (const ReferenceFilm& film : quadrature_) metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
         for (const ReferenceFilm& film : note_) metrics_.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
         for (const ReferenceFilm& q : quadrature_)
-            for (const Region& region : experiment_.regions) metrics_.references.push_back(compare(q, *find(note_, q.s), region));
-    }
-
-    ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region) const {
-        ReferenceMeter m;
-        m.s = q.s, m.region = region.name;
-        m.rms_difference = rms_difference(q.y, note.y, q.width, region.box);
-        m.rms_standard_error = rms(note.error, q.width, region.box);
-        m.quadrature_error = rms(q.error, q.width, region.box);
-        for (const auto& [key, film] : films_) {
-            if (key.s != q.s) continue;
-            const double a = rms_difference(film.y, q.y, q.width, region.box), b = rms_difference(film.y, note.y, q.width, region.box);
-            if (a > 0) m.rmse_unlike = std::max(m.rmse_unlike, std::fabs(b - a) / a);
-        }
-        return m;
+            for (const Region& region : experiment_.regions) metrics_.references.push_back(compare(q, *find(note_, q.s), region, films_));
     }
 
     void provenance() {
@@ -220,9 +220,8 @@ private:
     std::vector<unsigned char> draw(const PlatePlan& plan) const {
         const PlateInputs in{experiment_, metrics_, shapes_,
                              [this](const RunKey& key) -> const Film* {
-                                 for (const auto& [k, film] : films_)
-                                     if (k == key) return &film;
-                                 return nullptr;
+                                 const auto film = std::ranges::find(films_, key, &std::pair<RunKey, Film>::first);
+                                 return film == films_.end() ? nullptr : &film->second;
                              },
                              [this](double s) { return find(experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_, s); },
                              instrument_->name()};
@@ -290,6 +289,7 @@ private:
     Evidence evidence_;
     Timing timing_;
     Provenance provenance_;
+    std::optional<Kept> kept_;
     std::map<std::string, std::vector<unsigned char>> plates_;
 };
 

@@ -16,12 +16,15 @@
 
 namespace crescent {
 
+class TileKeeper;
+
 /// One pass over the pixels: one arm, every rung, one exponent, one seed.
 struct Job {
     const ArmPlan* arm = nullptr;
     std::vector<std::uint64_t> n;  // ascending
     double s = 0;
     std::uint32_t seed = 0;
+    TileKeeper* keeper = nullptr;  // an instrument that works tile by tile may keep finished ones in it
 };
 
 /// What computes films. The CPU's is built in; a door may bring another (GL).
@@ -42,6 +45,7 @@ struct RunOptions {
     int threads = 0;       // 0: as many as the machine has
     std::string isa;       // "": the best this machine has
     std::string command;   // as typed, for the provenance
+    double keep_after_s = 10;  // passes and runs that take longer keep what they have finished, see kept.h
     std::shared_ptr<Instrument> instrument;  // null: the CPU
 };
 

@@ -20,6 +20,8 @@ public:
     virtual void begin(std::string_view /*what*/, double /*total*/) {}
     /// `units` more are done.
     virtual void advance(double /*units*/) {}
+    /// `units` of the total were done by an earlier run.
+    virtual void skip(double /*units*/) {}
     /// A line worth keeping in a log.
     virtual void say(std::string_view /*line*/) {}
 

@@ -79,35 +79,41 @@ void develop(const Scene& scene, const Sites& sites, const Moments& moments, Fil
     for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
 }
 
-void for_each_tile(int width, int height, Watch& watch, const std::function<void(const TileBox&)>& work) {
-    const std::vector<TileBox> tiles = tiles_of(width, height);
+void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* keeper, const std::function<double(std::size_t)>& work) {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (watch.stop.load(std::memory_order_relaxed)) return;
-        work(tiles[k]);
+        if (watch.stop.load(std::memory_order_relaxed) || (keeper && keeper->holds(k))) return;
+        const double units = work(k);
+        if (watch.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
+        watch.advance(units);
+        if (keeper) keeper->add(k, units);
     });
     watch.check();
 }
 
 std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
-                                 const std::string& isa, Watch& watch) {
+                                 const std::string& isa, Watch& watch, TileKeeper* keeper) {
     const Image& image = scene.experiment().image;
+    const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
     tbb::parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) { films[r] = Film(image.width, image.height, n[r]); });
-    std::vector<std::atomic<std::uint64_t>> bad(n.size());
+    std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
+    if (keeper) keeper->begin(tiles, outputs_of(films, bad));
     tbb::enumerable_thread_specific<std::vector<Moments>> scratch(n.size());  // a thread's tiles follow one another in it
-    for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
+    for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
-        for (const Sites& sites : sites_of(scene, tile, nullptr)) {
+        double samples = 0;
+        for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.disks.size());
             kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 develop(scene, sites, moments[r], films[r]);
-                bad[r] += std::accumulate(moments[r].bad.begin(), moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
+                bad[r][k] += std::accumulate(moments[r].bad.begin(), moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
             }
-            watch.advance(static_cast<double>(sites.count) * static_cast<double>(n.back()));
+            samples += static_cast<double>(sites.count) * static_cast<double>(n.back());
         }
+        return samples;
     });
-    for (std::size_t r = 0; r < n.size(); ++r) films[r].bad = bad[r];
+    for (std::size_t r = 0; r < n.size(); ++r) films[r].bad = std::accumulate(bad[r].begin(), bad[r].end(), std::uint64_t{0});
     return films;
 }
 

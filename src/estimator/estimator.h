@@ -7,14 +7,15 @@
 
 #include "base/watch.h"
 #include "estimator/kernel.h"
+#include "estimator/tile_keeper.h"
 #include "films/film.h"
 #include "scene/scene.h"
 
 namespace crescent {
 
-/// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best.
+/// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best. `keeper`: keeps finished tiles.
 std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
-                                 const std::string& isa, Watch& watch);
+                                 const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
 
 /// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.
 void develop(const Scene& scene, const Sites& sites, const Moments& moments, Film& film);
@@ -31,7 +32,8 @@ std::vector<float> largest_samples(const Scene& scene, std::string_view sampler,
 Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const std::string& isa,
                        const std::atomic<bool>* stop, float* samples = nullptr);
 
-/// Calls work(tile) for every tile of the image on all cores; stops early when the watch says so.
-void for_each_tile(int width, int height, Watch& watch, const std::function<void(const TileBox&)>& work);
+/// Calls work(k) for every tile k on all cores, except for those that the keeper holds; it returns what the tile was
+/// worth in units of progress. Stops early when the watch says so.
+void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* keeper, const std::function<double(std::size_t)>& work);
 
 }  // namespace crescent

@@ -82,12 +82,6 @@ std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& expo
     return scenes;
 }
 
-std::vector<ReferenceFilm> blank(const Experiment& experiment, const std::vector<double>& exponents) {
-    std::vector<ReferenceFilm> films;
-    for (double s : exponents) films.emplace_back(experiment.image.width, experiment.image.height, s);
-    return films;
-}
-
 /// The same sites with lights that turn X into the wanted part: the disk by itself, or the fill on the lobe alone.
 Sites only_disk(const Scene& scene, const Sites& all, std::size_t k) {
     Sites sites = all;
@@ -153,47 +147,54 @@ private:
     double lobe_n_ = 1, disk_n_ = 1;
 };
 
+/// One film per exponent, made by calling work(tile, films) for every tile.
+template <class Work>
+std::vector<ReferenceFilm> by_tiles(const Experiment& experiment, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper, Work&& work) {
+    std::vector<ReferenceFilm> films;
+    for (double s : exponents) films.emplace_back(experiment.image.width, experiment.image.height, s);
+    const std::vector<TileBox> tiles = tiles_of(experiment.image.width, experiment.image.height);
+    if (keeper) keeper->begin(tiles, outputs_of(films));
+    for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
+        work(tiles[k], films);
+        return static_cast<double>(tiles[k].x1 - tiles[k].x0) * (tiles[k].y1 - tiles[k].y0);
+    });
+    return films;
+}
+
 void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
     to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at], to.error[at] = from.error[at];
 }
 
 }  // namespace
 
-std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch) {
+std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper) {
     const Experiment& experiment = scene.experiment();
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     const std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
-    std::vector<ReferenceFilm> films = blank(experiment, exponents);
-    const Image& image = experiment.image;
-    for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
-        for (int j = tile.y0; j < tile.y1; ++j) {
-            watch.check();
-            for (int i = tile.x0; i < tile.x1; ++i) {
-                const auto hit = scenes[0].primary(i, j);
-                if (!hit) continue;
-                const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i);
-                for (std::size_t e = 0; e < scenes.size(); ++e) {
-                    const Surface surface = scenes[e].surface(*hit);
-                    if (e > 0 && !(surface.rho_s > 0)) {  // no lobe, no exponent
-                        copy_pixel(films[0], films[e], at);
-                        continue;
-                    }
-                    const auto [radiance, error] = integrals[e](*hit, surface);
-                    store(films[e], at, radiance, error);
-                }
+    const auto pixel = [&](int i, int j, std::vector<ReferenceFilm>& films) {
+        const auto hit = scenes[0].primary(i, j);
+        if (!hit) return;
+        const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment.image.width) + static_cast<std::size_t>(i);
+        for (std::size_t e = 0; e < scenes.size(); ++e) {
+            const Surface surface = scenes[e].surface(*hit);
+            if (e > 0 && !(surface.rho_s > 0)) {  // no lobe, no exponent
+                copy_pixel(films[0], films[e], at);
+                continue;
             }
+            const auto [radiance, error] = integrals[e](*hit, surface);
+            store(films[e], at, radiance, error);
         }
-        watch.advance((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
+    };
+    return by_tiles(experiment, exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+        for (int j = tile.y0; j < tile.y1 && !watch.stop.load(std::memory_order_relaxed); ++j)
+            for (int i = tile.x0; i < tile.x1; ++i) pixel(i, j, films);
     });
-    return films;
 }
 
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch) {
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper) {
     const Experiment& experiment = scene.experiment();
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
-    std::vector<ReferenceFilm> films = blank(experiment, exponents);
-    const Image& image = experiment.image;
-    for_each_tile(image.width, image.height, watch, [&](const TileBox& tile) {
+    return by_tiles(experiment, exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
         for (std::size_t e = 0; e < scenes.size(); ++e) {
             for (const Sites& sites : sites_of(scenes[e], tile, nullptr)) {
                 if (e > 0 && sites.lobe < 0) {
@@ -204,9 +205,7 @@ std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<
                 for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
             }
         }
-        watch.advance((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
     });
-    return films;
 }
 
 }  // namespace crescent

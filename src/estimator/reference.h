@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "base/watch.h"
+#include "estimator/tile_keeper.h"
 #include "scene/scene.h"
 #include "films/film.h"
 
 namespace crescent {
 
-/// One film per exponent, in order.
-std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch);
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch);
+/// One film per exponent, in order. `keeper`: keeps finished tiles.
+std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper = nullptr);
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
 
 }  // namespace crescent

@@ -11,21 +11,20 @@ namespace {
 
 std::size_t area(int w, int h) { return static_cast<std::size_t>(w) * static_cast<std::size_t>(h); }
 
-class Hash {
-public:
-    Hash() : state_(XXH3_createState()) { XXH3_64bits_reset(state_); }
-    ~Hash() { XXH3_freeState(state_); }
-    Hash(const Hash&) = delete;
-    Hash& operator=(const Hash&) = delete;
-    template <class T> Hash& add(const std::vector<T>& v) {
-        XXH3_64bits_update(state_, v.data(), v.size() * sizeof(T));
-        return *this;
-    }
-    std::string text() const { return fmt::format("{:016x}", XXH3_64bits_digest(state_)); }
+template <class Byte, class... V> std::vector<std::span<Byte>> bytes_of(V&... planes) {
+    return {std::span<Byte>(reinterpret_cast<Byte*>(planes.data()), sizeof(planes[0]) * planes.size())...};
+}
+template <class Byte, class F> std::vector<std::span<Byte>> film_bytes(F& f) { return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.y2, f.var, f.largest, f.horizon, f.hits); }
+template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f) { return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.error); }
 
-private:
-    XXH3_state_t* state_;
-};
+std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
+    XXH3_state_t* state = XXH3_createState();
+    XXH3_64bits_reset(state);
+    for (const auto plane : planes) XXH3_64bits_update(state, plane.data(), plane.size());
+    const std::uint64_t digest = XXH3_64bits_digest(state);
+    XXH3_freeState(state);
+    return fmt::format("{:016x}", digest);
+}
 
 }  // namespace
 
@@ -40,12 +39,12 @@ ReferenceFilm::ReferenceFilm(int w, int h, double exponent) : width(w), height(h
     for (auto* plane : {&r, &g, &b, &y, &error}) plane->assign(area(w, h), 0.0f);
 }
 
-std::string hash(const Film& film) {
-    return Hash().add(film.r).add(film.g).add(film.b).add(film.y).add(film.y2).add(film.var).add(film.largest).add(film.horizon).add(film.hits).text();
-}
+std::vector<std::span<std::byte>> Film::planes() { return film_bytes<std::byte>(*this); }
 
-std::string hash(const ReferenceFilm& film) {
-    return Hash().add(film.r).add(film.g).add(film.b).add(film.y).add(film.error).text();
-}
+std::vector<std::span<std::byte>> ReferenceFilm::planes() { return reference_bytes<std::byte>(*this); }
+
+std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(film)); }
+
+std::string hash(const ReferenceFilm& film) { return hash_of(reference_bytes<const std::byte>(film)); }
 
 }  // namespace crescent

@@ -1,7 +1,9 @@
 // A film: per pixel, what n samples of one arm said. Rows run bottom-up, pixel (i, j) at j * width + i.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,8 @@ struct Film {
     std::vector<std::uint32_t> hits;     // samples that met a disk light
     std::uint64_t bad = 0;        // NaN, infinite or negative samples in the whole film
 
+    /// Every plane as bytes, 4 a pixel.
+    std::vector<std::span<std::byte>> planes();
     Film() = default;
     Film(int w, int h, std::uint64_t samples);
     std::size_t size() const { return y.size(); }
@@ -47,6 +51,7 @@ struct ReferenceFilm {
     int width = 0, height = 0;
     double s = 0;
     std::vector<float> r, g, b, y, error;
+    std::vector<std::span<std::byte>> planes();
     std::size_t size() const { return y.size(); }
     ReferenceFilm() = default;
     ReferenceFilm(int w, int h, double exponent);

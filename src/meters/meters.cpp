@@ -64,6 +64,20 @@ double rms(const std::vector<float>& a, int width, const Box& box) {
     return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at])); }));
 }
 
+ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region, const std::vector<std::pair<RunKey, Film>>& films) {
+    ReferenceMeter m;
+    m.s = q.s, m.region = region.name;
+    m.rms_difference = rms_difference(q.y, note.y, q.width, region.box);
+    m.rms_standard_error = rms(note.error, q.width, region.box);
+    m.quadrature_error = rms(q.error, q.width, region.box);
+    for (const auto& [key, film] : films) {
+        if (key.s != q.s) continue;
+        const double a = rms_difference(film.y, q.y, q.width, region.box), b = rms_difference(film.y, note.y, q.width, region.box);
+        if (a > 0) m.rmse_unlike = std::max(m.rmse_unlike, std::fabs(b - a) / a);
+    }
+    return m;
+}
+
 double meter_value(const RunMeter& run, const std::string& meter) {
     if (meter == "fireflies") return static_cast<double>(run.fireflies);
     if (meter == "horizon_frac") return run.horizon_frac;

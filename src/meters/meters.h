@@ -1,6 +1,7 @@
 // Films -> numbers. Every sum runs in double over pixels in storage order, so equal films give equal numbers.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -16,6 +17,9 @@ RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& fi
 /// Root mean square of the difference of two Y planes over a box, and of one plane.
 double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
 double rms(const std::vector<float>& a, int width, const Box& box);
+
+/// How far two references of one exponent are apart in a region, and what that does to the RMSE of any of the films.
+ReferenceMeter compare(const ReferenceFilm& quadrature, const ReferenceFilm& note, const Region& region, const std::vector<std::pair<RunKey, Film>>& films);
 
 /// The value of a meter by its name: rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame.
 double meter_value(const RunMeter& run, const std::string& meter);

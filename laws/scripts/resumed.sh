@@ -1,0 +1,36 @@
+#!/bin/bash
+# A run that was killed goes on where it was: the same bytes as a run that was left alone, and less work.
+. "$(dirname "$0")/common.sh"
+
+long=(run "$tiny" --quiet --keep-after 0 --set image.width=256 --set image.height=144 --set seeds=2 --set 'arms.cosine.n=[16,384]' --set 'arms.mixture.n=[16,384]'
+    --set 'regions.ball.box=[100,60,130,90]')
+expect 0 "$CRESCENT" "${long[@]}" --out alone
+long+=(--out stopped)
+
+# kill_when NAME: kills a run once it has kept something in a file of that name.
+kill_when() {
+    "$CRESCENT" "${long[@]}" >/dev/null 2>&1 &
+    local run=$!
+    until compgen -G "stopped/.crescent-kept/*/$1" >/dev/null; do
+        kill -0 "$run" 2>/dev/null || die "the run ended before it kept $1"
+        sleep 0.01
+    done
+    kill -s KILL "$run"
+    wait "$run" 2>/dev/null
+}
+
+kill_when 'cosine-s32-seed7'
+kill_when 'mixture-s32-seed7'
+truncate -s -100 stopped/.crescent-kept/*/mixture-s32-seed7
+expect 0 "$CRESCENT" "${long[@]}" --threads 1 --isa scalar
+same_outputs alone stopped
+[ -e stopped/.crescent-kept ] && die "what was kept is still there"
+drawn() { grep -o '"samples": [0-9]*' "$1/timing.json" | awk '{ sum += $2 } END { print sum }'; }
+[ "$(drawn stopped)" -lt "$(drawn alone)" ] || die "nothing of the killed run was used"
+
+# Another experiment takes nothing from it.
+kill_when 'cosine-s32-seed7'
+expect 0 "$CRESCENT" run "$tiny" --out stopped
+grep -q 'going on' said && die "another experiment went on from what was kept: $(cat said)"
+[ -e stopped/.crescent-kept ] && die "what was kept outlived the outputs that replaced it"
+exit 0

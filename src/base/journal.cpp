@@ -1,0 +1,115 @@
+#include "base/journal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/errors.h"
+
+namespace crescent {
+
+namespace {
+
+/// What stands before the bytes of a record.
+struct Head {
+    std::uint64_t size, hash;
+};
+
+bool read_all(int file, void* to, std::size_t size) {
+    auto* at = static_cast<char*>(to);
+    while (size > 0) {
+        const ssize_t n = ::read(file, at, size);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        at += n, size -= static_cast<std::size_t>(n);
+    }
+    return true;
+}
+
+/// The next record, if it is whole.
+bool next_record(int file, std::uint64_t left, std::vector<std::byte>& record) {
+    Head head;
+    if (left < sizeof head || !read_all(file, &head, sizeof head) || head.size > left - sizeof head) return false;
+    record.resize(head.size);
+    return read_all(file, record.data(), head.size) && XXH3_64bits(record.data(), record.size()) == head.hash;
+}
+
+Journal::Bytes bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+}  // namespace
+
+Journal::Journal(std::string path, std::string key) : path_(std::move(path)), key_(std::move(key)) {}
+
+Journal::Journal(Journal&& other) noexcept
+    : path_(std::move(other.path_)), key_(std::move(other.key_)), file_(std::exchange(other.file_, -1)), taken_(other.taken_) {}
+
+Journal::~Journal() {
+    if (file_ >= 0) close(file_);
+}
+
+bool Journal::open(int flags) {
+    file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | flags, 0666);
+    if (file_ < 0) return false;
+    taken_ = flock(file_, LOCK_EX | LOCK_NB) != 0;
+    return !taken_;
+}
+
+void Journal::read(const std::function<void(Bytes)>& take) {
+    struct stat about {};
+    if (!open(0) || fstat(file_, &about) != 0) return;
+    const auto size = static_cast<std::uint64_t>(about.st_size);
+    std::uint64_t whole = 0;
+    std::vector<std::byte> record;
+    while (next_record(file_, size - whole, record)) {
+        if (whole > 0) take(record);
+        else if (record.size() != key_.size() || std::memcmp(record.data(), key_.data(), key_.size()) != 0) break;
+        whole += sizeof(Head) + record.size();
+    }
+    if (whole == 0 || ftruncate(file_, static_cast<off_t>(whole)) != 0 || lseek(file_, 0, SEEK_END) < 0) remove();
+}
+
+void Journal::append(const std::vector<Bytes>& parts) {
+    if (taken_) return;
+    if (file_ < 0) {
+        std::error_code error;
+        std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), error);
+        if (!open(O_CREAT | O_TRUNC)) {
+            if (taken_) return;
+            throw OutputError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
+        }
+        write({bytes_of(key_)});
+    }
+    write(parts);
+}
+
+void Journal::write(const std::vector<Bytes>& parts) {
+    std::vector<std::byte> all(sizeof(Head));
+    for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
+    const Head head = {all.size() - sizeof(Head), XXH3_64bits(all.data() + sizeof(Head), all.size() - sizeof(Head))};
+    std::memcpy(all.data(), &head, sizeof head);
+    for (std::size_t done = 0; done < all.size();) {
+        const ssize_t n = ::write(file_, all.data() + done, all.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) throw OutputError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
+        done += static_cast<std::size_t>(n);
+    }
+}
+
+void Journal::remove() {
+    if (taken_) return;
+    ::unlink(path_.c_str());
+    if (file_ >= 0) close(std::exchange(file_, -1));
+}
+
+}  // namespace crescent

@@ -1,0 +1,94 @@
+// Journals: what was written whole is read back, whatever a kill or a worn disk did to the rest.
+#include "base/journal.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/errors.h"
+
+namespace crescent {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+class Journals : public testing::Test {
+protected:
+    fs::path folder_ = fs::path(testing::TempDir()) / ("journals-" + std::to_string(::getpid()));
+    std::string path_ = folder_ / "deep" / "one";
+    void SetUp() override { fs::remove_all(folder_); }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    Texts read(Journal& journal) const {
+        Texts out;
+        journal.read([&](Journal::Bytes bytes) { out.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size()); });
+        return out;
+    }
+    Texts read(const std::string& key = "work") const {
+        Journal journal(path_, key);
+        return read(journal);
+    }
+    static void append(Journal& journal, const Texts& parts) {
+        std::vector<Journal::Bytes> bytes;
+        for (const std::string& part : parts) bytes.push_back(std::as_bytes(std::span(part)));
+        journal.append(bytes);
+    }
+    void write(const std::vector<Texts>& records) const {
+        Journal journal(path_, "work");
+        for (const Texts& record : records) append(journal, record);
+    }
+};
+
+TEST_F(Journals, GiveRecordsBackInOrder) {
+    EXPECT_TRUE(read().empty());
+    EXPECT_FALSE(fs::exists(folder_)) << "reading makes nothing";
+    write({{"first"}, {"sec", "", "ond"}, {""}});
+    EXPECT_EQ(read(), (Texts{"first", "second", ""}));
+}
+
+TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
+    write({{"one"}, {"two"}, {"three"}});
+    std::ifstream whole(path_, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+    const Texts all = {"one", "two", "three"};
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+        std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes.substr(0, length);
+        Journal journal(path_, "work");
+        Texts kept = read(journal);
+        ASSERT_LT(kept.size(), all.size()) << length;
+        EXPECT_TRUE(std::equal(kept.begin(), kept.end(), all.begin())) << length;
+        append(journal, {"new"});
+        kept.push_back("new");
+        Journal elsewhere = std::move(journal);  // lets go of the file at the end of this turn
+        EXPECT_TRUE(read().empty()) << "another reader, while the file is in use";
+        fs::copy_file(path_, path_ + "-copy", fs::copy_options::overwrite_existing);
+        Journal copy(path_ + "-copy", "work");
+        EXPECT_EQ(read(copy), kept) << length;
+    }
+}
+
+TEST_F(Journals, WithAWrongByteStopThere) {
+    write({{"one"}, {"two"}, {"three"}});
+    std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    file.seekp(static_cast<std::streamoff>(bytes.find("two")));
+    file.put('x');
+    file.close();
+    EXPECT_EQ(read(), Texts{"one"});
+}
+
+TEST_F(Journals, OfOtherWorkCountAsNone) {
+    write({{"one"}});
+    EXPECT_TRUE(read("other work").empty());
+}
+
+TEST_F(Journals, ThatCannotBeWrittenSaySo) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "deep") << "a file where the folder should be";
+    EXPECT_THROW(write({{"one"}}), OutputError);
+}
+
+}  // namespace
+}  // namespace crescent

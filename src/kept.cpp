@@ -1,0 +1,96 @@
+#include "kept.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/errors.h"
+#include "version.h"
+
+namespace crescent {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunKey, arm, n, s, seed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeter, region, rmse, var, pixels)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMeter, key, regions, fireflies, horizon_frac, y_mean, rmse_frame, largest, bad)
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Which file the program is, and of when: what another build kept is not for this one.
+std::string build_mark() {
+    struct stat about {};
+    if (stat("/proc/self/exe", &about) != 0) return "";
+    return fmt::format("{:x}-{:x}-{:x}-{:x}.{:x}", about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec);
+}
+
+/// CBOR, which holds every double as it is, NaN and infinities too.
+std::vector<RunMeter> meters_of(Journal::Bytes record) {
+    const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
+    return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMeter>>();
+}
+
+std::string key_of(const Experiment& experiment, const std::string& instrument) {
+    return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), experiment.hash, instrument);
+}
+
+bool holds_files(const std::string& folder) {
+    std::error_code ignored;
+    return fs::exists(folder, ignored) && !fs::is_empty(folder, ignored);
+}
+
+}  // namespace
+
+Kept::Kept(const Experiment& experiment, const RunOptions& options, const std::string& instrument, Watch& watch)
+    : all_(options.out + "/.crescent-kept"), key_(key_of(experiment, instrument)), folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
+      patience_s_(options.keep_after_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_) {
+    journal_.read([this](Journal::Bytes record) {
+        for (RunMeter& meter : meters_of(record)) meters_.push_back(std::move(meter));
+    });
+    written_ = meters_.size();
+    if (holds_files(folder_)) watch_.say("going on from what a stopped run kept in " + folder_);
+}
+
+Kept::~Kept() {
+    if (holds_files(folder_)) watch_.say("what was finished is kept in " + folder_ + ": the same command goes on from there");
+}
+
+TileKeeper Kept::tiles(const std::string& name) { return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_}; }
+
+std::vector<RunMeter> Kept::meters(const Job& job) const {
+    std::vector<RunMeter> out;
+    for (const std::uint64_t n : job.n) {
+        const RunKey key{job.arm->name, n, job.s, job.seed};
+        const auto meter = std::find_if(meters_.begin(), meters_.end(), [&](const RunMeter& m) { return m.key == key; });
+        if (meter == meters_.end()) return {};
+        out.push_back(*meter);
+    }
+    return out;
+}
+
+void Kept::add(const std::vector<RunMeter>& meters) {
+    meters_.insert(meters_.end(), meters.begin(), meters.end());
+    if (!works_ || std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < patience_s_) return;
+    const std::vector<RunMeter> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
+    const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
+    try {
+        journal_.append({std::as_bytes(std::span(record))});
+        written_ = meters_.size();
+    } catch (const OutputError& e) {  // a full disk must not end a run that would fit on it
+        works_ = false;
+        watch_.say(std::string(e.what()) + "; if this run is stopped, it begins anew");
+    }
+}
+
+void Kept::forget() {
+    std::error_code ignored;
+    fs::remove_all(all_, ignored);
+}
+
+}  // namespace crescent

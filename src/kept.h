@@ -1,0 +1,45 @@
+// What a long run has finished, kept in OUT/.crescent-kept while it lasts, so that the same command goes on where a run
+// was stopped or killed: tiles of passes that take long, and the meters of finished passes. Gone once the outputs stand.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/journal.h"
+#include "base/watch.h"
+#include "estimator/tile_keeper.h"
+#include "meters/metrics.h"
+#include "run.h"
+
+namespace crescent {
+
+class Kept {
+public:
+    /// `instrument` as provenance names it. Says so where there is something to go on from.
+    Kept(const Experiment& experiment, const RunOptions& options, const std::string& instrument, Watch& watch);
+    /// Where the run ends before forget(): says what is kept.
+    ~Kept();
+    Kept(const Kept&) = delete;
+    Kept& operator=(const Kept&) = delete;
+
+    /// For the tiles of one pass; `name` tells it from the run's others.
+    TileKeeper tiles(const std::string& name);
+    /// The meters of a finished pass, one a rung; none where it is not finished.
+    std::vector<RunMeter> meters(const Job& job) const;
+    void add(const std::vector<RunMeter>& meters);
+    /// The outputs stand: nothing is needed any more.
+    void forget();
+
+private:
+    std::string all_, key_, folder_;  // all_: of any run into the same place
+    double patience_s_;
+    Watch& watch_;
+    std::chrono::steady_clock::time_point start_;
+    Journal journal_;
+    std::vector<RunMeter> meters_;
+    std::size_t written_ = 0;  // of meters_
+    bool works_ = true;
+};
+
+}  // namespace crescent
