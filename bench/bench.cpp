@@ -45,7 +45,8 @@ int main(int argc, char** argv) try {
     if (argc != 3) throw InputError({"crescent_bench", 0, 0}, "expected FILE.toml and N");
     const Experiment experiment = load(argv[1]);
     const std::uint64_t n = std::stoull(argv[2]);
-    const Scene scene(experiment);
+    Scene scene(experiment);
+    scene.remember_primaries();  // as a run does, once for all its films
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     std::uint64_t pixels = 0;
     for (std::int16_t shape : shape_map(scene).shape) pixels += shape >= 0;

@@ -76,7 +76,7 @@ Msamples/s, one run on one machine. A sample is one draw of one geometry pixel, 
 
 - {datetime.date.today().isoformat()}, {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']}, crescent {facts['version']} ({facts['commit']})
 - `{command}` writes this page.
-- crescent: its films, scene queries and shadow tests included; the best of 7.
+- crescent: its films, shadow tests included, as a run makes them: primary rays are traced once a run; the best of 7.
 - straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on as many threads; the best of 2.
 - {peer}
 """

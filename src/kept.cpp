@@ -47,9 +47,9 @@ bool holds_files(const std::string& folder) {
 
 }  // namespace
 
-Kept::Kept(const Experiment& experiment, const RunOptions& options, const std::string& instrument, Watch& watch)
-    : all_(options.out + "/.crescent-kept"), key_(key_of(experiment, instrument)), folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
-      patience_s_(options.keep_after_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_) {
+Kept::Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s, Watch& watch)
+    : all_(out + "/.crescent-kept"), key_(key_of(experiment, instrument)), folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
+      patience_s_(patience_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_) {
     journal_.read([this](Journal::Bytes record) {
         for (RunMeter& meter : meters_of(record)) meters_.push_back(std::move(meter));
     });

@@ -9,15 +9,16 @@
 #include "base/journal.h"
 #include "base/watch.h"
 #include "estimator/tile_keeper.h"
+#include "instruments.h"
 #include "meters/metrics.h"
-#include "run.h"
 
 namespace crescent {
 
 class Kept {
 public:
-    /// `instrument` as provenance names it. Says so where there is something to go on from.
-    Kept(const Experiment& experiment, const RunOptions& options, const std::string& instrument, Watch& watch);
+    /// Outputs go to `out`; nothing is kept before `patience_s` seconds; `instrument` as provenance names it. Says so where
+    /// there is something to go on from.
+    Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s, Watch& watch);
     /// Where the run ends before forget(): says what is kept.
     ~Kept();
     Kept(const Kept&) = delete;

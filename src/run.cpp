@@ -50,7 +50,7 @@ public:
         const auto start = Clock::now();
         look();
         Staging staging(options_.out);
-        kept_.emplace(experiment_, options_, instrument_->name(), watch_);
+        kept_.emplace(experiment_, instrument_->name(), options_.out, options_.keep_after_s, watch_);
         stage("references", [&] { references(); });
         stage("films", [&] { films(); });
         timing_.estimating_s = seconds_since(start);
