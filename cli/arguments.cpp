@@ -54,7 +54,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")->type_name("NAME")->check(CLI::IsMember({"egl", "osmesa"}));
     c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")->type_name("N")->check(CLI::Range(0, 1023));
-    c->add_option("--keep-after", f->keep_after, "work that takes longer is kept as it goes; default 10")->type_name("SECONDS")->check(CLI::NonNegativeNumber);
+    c->add_option("--keep-after", f->keep_after, "longer work is kept as it goes; default 10")->type_name("SECONDS")->check(CLI::NonNegativeNumber);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 
