@@ -33,6 +33,14 @@ Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,
 timing.json, plates/, films/. Each file appears whole or not at all. A long run
 that was stopped goes on where it was when the same command is given again.)";
 
+std::string told(const std::string& text) { return text.find_first_not_of(" \t") == std::string::npos ? "is empty" : ""; }
+
+std::string seconds(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end != text.c_str() && *end == 0 && value >= 0 && value <= 1e9 ? "" : "expected seconds, 0 to 1e9";
+}
+
 /// A command that fills in Flags and then runs `perform`.
 template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* name, const char* means, int (*perform)(const Flags&), std::shared_ptr<Flags>& flags) {
     flags = std::make_shared<Flags>();
@@ -46,7 +54,7 @@ void add_run(CLI::App& app, Work& work) {
     CLI::App* c = command(app, work, "run", "Run an experiment: films, meters, plates, report.", run, f);
     c->footer(run_footer);
     c->add_option("FILE", f->file, "the experiment, a TOML file")->required()->type_name("");
-    c->add_option("--out", f->out, "where the outputs go; default: out/ and FILE's name")->type_name("DIR");
+    c->add_option("--out", f->out, "where the outputs go; default: out/ and FILE's name")->type_name("DIR")->check(told);
     c->add_option("--set", f->overrides, "another value for a key; may be given again")->type_name("PATH=VALUE")->take_all()->expected(1)->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
     c->add_option("--threads", f->threads, "default: as many as the machine has")->type_name("N")->check(CLI::Range(1, 4096));
@@ -54,7 +62,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")->type_name("NAME")->check(CLI::IsMember({"egl", "osmesa"}));
     c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")->type_name("N")->check(CLI::Range(0, 1023));
-    c->add_option("--keep-after", f->keep_after, "longer work is kept as it goes; default 10")->type_name("SECONDS")->check(CLI::NonNegativeNumber);
+    c->add_option("--keep-after", f->keep_after, "longer work is kept as it goes; default 10")->type_name("SECONDS")->check(seconds);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 
@@ -87,7 +95,6 @@ void add_check(CLI::App& app, Work& work) {
     c->add_option("--seed", f->seed, "default 1")->type_name("N");
     auto* planted = c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which")->excludes(arm)->excludes(set);
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure the bench itself on so many seeds")->type_name("SEEDS")->check(CLI::Range(1, 100000))->excludes(arm)->excludes(set)->excludes(planted);
-    const auto told = [](const std::string& text) { return text.find_first_not_of(" \t") == std::string::npos ? std::string("is empty") : std::string(); };
     auto* exec = c->add_option("--exec", f->exec, "judge a program that answers over a pipe")->type_name("'PROGRAM ARGS'")->check(told);
     auto* samples = c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told);
     for (auto* other : {arm, set, planted, rates}) exec->excludes(other), samples->excludes(other);

@@ -11,6 +11,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "crescent.h"
+#include "signals.h"
 
 namespace crescent::cli {
 
@@ -54,6 +55,7 @@ int perform(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     crescent::cli::open_standard_streams();
-    std::signal(SIGPIPE, SIG_IGN);
+    for (const int failed_write : {SIGPIPE, SIGXFSZ}) std::signal(failed_write, SIG_IGN);  // write() says so too
+    crescent::cli::end_on_signals();
     return crescent::cli::perform(argc, argv);
 }

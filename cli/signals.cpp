@@ -15,7 +15,7 @@ namespace {
 
 std::atomic<Watch*> watched{nullptr};
 timer_t deadline;
-constexpr long patience_ns = 800'000'000;
+constexpr long patience_ns = 500'000'000;  // a large process takes a while to end
 
 // Both handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3).
 extern "C" void end_now(int) { ::_exit(interrupted); }
@@ -38,6 +38,12 @@ void handle(int signal, void (*handler)(int)) {
 
 }  // namespace
 
+void end_on_signals() {
+    struct sigaction before {};
+    for (const int signal : {SIGINT, SIGTERM}) handle(signal, end_now);
+    if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(SIGHUP, end_now);  // nohup
+}
+
 StopOnSignal::StopOnSignal(Watch& watch) {
     watched = &watch;
     sigevent event{};
@@ -45,11 +51,13 @@ StopOnSignal::StopOnSignal(Watch& watch) {
     event.sigev_signo = SIGALRM;
     ::timer_create(CLOCK_MONOTONIC, &event, &deadline);
     handle(SIGALRM, end_now);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, ask_to_stop);
+    struct sigaction before {};
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, ask_to_stop);
 }
 
 StopOnSignal::~StopOnSignal() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, SIG_DFL);
+    end_on_signals();
     ::timer_delete(deadline);
     watched = nullptr;
 }

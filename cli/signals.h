@@ -7,7 +7,10 @@ class Watch;
 
 namespace crescent::cli {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP sets watch.stop; 0.8 s later, or on a second signal, the process
+/// From here on SIGINT, SIGTERM and SIGHUP end the process at once with 130; SIGHUP not where it was ignored (nohup).
+void end_on_signals();
+
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP sets watch.stop; 0.5 s later, or on a second signal, the process
 /// ends at once with 130. Outputs appear by renaming, so ending at once leaves none half-written.
 class StopOnSignal {
 public:

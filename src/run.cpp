@@ -10,13 +10,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <thread>
 
 #include "base/files.h"
 #include "estimator/estimator.h"
 #include "estimator/reference.h"
+#include "experiment/names.h"
 #include "experiment/published.h"
 #include "films/exr.h"
 #include "jobs.h"
@@ -101,7 +101,7 @@ private:
         std::vector<double> exponents;
         for (const Job& job : jobs_of(experiment_, experiment_.seed))
             if (std::find(exponents.begin(), exponents.end(), job.s) == exponents.end()) exponents.push_back(job.s);
-        const double pixels = static_cast<double>(shapes_.shape.size());
+        const auto pixels = static_cast<double>(shapes_.shape.size());
         watch_.begin("reference by quadrature", pixels);
         TileKeeper quadrature = kept_->tiles("quadrature"), note = kept_->tiles("note");
         quadrature_ = quadrature_reference(scene_, exponents, watch_, &quadrature);
@@ -171,12 +171,12 @@ private:
         const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
         const std::size_t length = tail_length(pixels * n);
         std::uint64_t drawn = 0;
-        if (length == 0) return {};
-        return fit_pooled_tail(largest_samples(scene, job.arm->sampler, n, job.seed, box, length + 1, isa_, watch_, drawn));
+        return length == 0 ? std::nullopt : fit_pooled_tail(largest_samples(scene, job.arm->sampler, n, job.seed, box, length + 1, isa_, watch_, drawn));
     }
 
     void summarise() {
         metrics_.bands = bands(experiment_, metrics_.runs, published());
+        metrics_.published_seed = published_ ? published_->seed : std::nullopt;
         metrics_.ladders = ladders(experiment_, metrics_.runs);
         for (const auto& [key, film] : films_) metrics_.film_hashes[to_string(key)] = hash(film);
         for (const ReferenceFilm& film : quadrature_) metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
@@ -234,7 +234,7 @@ private:
     void write_films(Staging& staging) {
         std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
         for (const auto& [key, film] : films_) {
-            const std::string name = key.s == experiment_.s() ? key.arm : fmt::format("{}-s{}", key.arm, key.s);
+            const std::string name = film_file(key.arm, key.s, experiment_.s());
             if (files.empty() || files.back().first != name) files.push_back({name, {}});
             files.back().second.emplace_back(fmt::format("n={}", key.n), &film);
         }
@@ -245,7 +245,7 @@ private:
         std::vector<std::pair<std::string, const ReferenceFilm*>> parts;
         for (const ReferenceFilm& film : quadrature_) parts.emplace_back(fmt::format("quadrature s={}", film.s), &film);
         for (const ReferenceFilm& film : note_) parts.emplace_back(fmt::format("note s={}", film.s), &film);
-        write_exr(staging.path("films/reference.exr"), parts, attributes());
+        write_exr(staging.path(fmt::format("films/{}.exr", reference_file)), parts, attributes());
     }
 
     void judge_assertions() {
@@ -268,9 +268,7 @@ private:
         timing_.threads = threads_;
         timing_.isa = isa_;
         timing_.date = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
-        std::ifstream cpuinfo("/proc/cpuinfo");
-        for (std::string line; std::getline(cpuinfo, line);)
-            if (line.starts_with("model name") && line.find(": ") != std::string::npos) timing_.host_cpu = line.substr(line.find(": ") + 2);
+        timing_.host_cpu = host_cpu();
     }
 
     const Experiment& experiment_;

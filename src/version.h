@@ -1,4 +1,4 @@
-// Which crescent this is.
+// Which crescent this is, and what it runs on.
 #pragma once
 
 #include <string>
@@ -8,5 +8,6 @@ namespace crescent {
 std::string version();   // "0.1.0"
 std::string commit();    // as `git describe` says it, or "unknown"
 std::string compiler();  // "GNU 12.2.0"
+std::string host_cpu();  // as Linux names it, "" where it does not
 
 }  // namespace crescent

@@ -85,10 +85,16 @@ void Staging::write(const std::string& name, const std::string& text) {
 
 void Staging::commit() {
     std::error_code error;
-    for (const std::string& name : names_) {
+    for (const std::string& name : names_) {  // all of what can be known beforehand, before the first one moves
         const fs::path to = fs::path(folder_) / name;
         fs::create_directories(to.parent_path(), error);
-        if (!error) fs::rename(fs::path(stage_) / name, to, error);
+        if (!error && fs::is_directory(to)) error = std::make_error_code(std::errc::is_a_directory);
+        if (!error && !fs::exists(fs::path(stage_) / name)) error = std::make_error_code(std::errc::no_such_file_or_directory);
+        if (error) fail("cannot write", to, error.message());
+    }
+    for (const std::string& name : names_) {
+        const fs::path to = fs::path(folder_) / name;
+        fs::rename(fs::path(stage_) / name, to, error);
         if (error) fail("cannot write", to, error.message());
     }
     names_.clear();

@@ -33,7 +33,7 @@ public:
         const double y = luminance(mean);
         const double pivot = static_cast<double>(sites_.pivot[i]);
         const double off = y - pivot;
-        const double spread = m_.square[i] - n * off * off;  // sum of (X - mean)^2
+        const double spread = m_.largest[i] > 0 ? m_.square[i] - n * off * off : 0;  // sum of (X - mean)^2; 0 where every X is
         film_.r[at] = static_cast<float>(mean[0]);
         film_.g[at] = static_cast<float>(mean[1]);
         film_.b[at] = static_cast<float>(mean[2]);

@@ -121,8 +121,8 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     }
 }
 
-TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
-    const Experiment experiment = test::small_scene();
+/// Standard errors between the two references, over the whole image.
+double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
     Watch watch;
     const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0], note = note_reference(scene, {experiment.s()}, "", watch)[0];
@@ -131,7 +131,18 @@ TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
         difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
         variance += static_cast<double>(note.error[at]) * static_cast<double>(note.error[at]);
     }
-    EXPECT_LT(std::fabs(difference), 4 * std::sqrt(variance));
+    return std::fabs(difference) / std::sqrt(variance);
+}
+
+TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) { EXPECT_LT(references_apart(test::small_scene()), 4); }
+
+TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
+    Experiment experiment = test::small_scene();
+    DiskLight& near = experiment.disks[0];
+    DiskLight& far = experiment.disks[1];
+    near.center = {0, 2, 0}, near.normal = {0, -1, 0}, near.radius = 0.5, near.radiance = {5, 5, 5};
+    far.center = {0, 3, 0}, far.normal = {0, -1, 0}, far.radius = 0.6, far.radiance = {50, 50, 50};
+    EXPECT_LT(references_apart(experiment), 4);
 }
 
 TEST(Estimator, StopsWhenAsked) {

@@ -8,16 +8,16 @@
 
 namespace crescent {
 
-/// A at one angle: Phong by adaptive quadrature to about 1e-10, the half-vector lobes by a fixed rule to about 1e-4.
+/// A at one angle by adaptive quadrature: Phong to about 1e-10, the half-vector lobes to about 1e-6.
 double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o);
 
 /// The same for many angles: cubic interpolation between quadratures, refined until its own error is below 1e-7
-/// (1e-5 for the half-vector lobes).
+/// (1e-6 for the half-vector lobes) or the table is full: mirrors of alpha below 0.02 then state a larger one.
 class LobeAlbedo {
 public:
     LobeAlbedo(BrdfKind kind, double s, double alpha);
     double operator()(double cos_o) const;
-    /// Largest difference to quadrature seen between the nodes.
+    /// Largest difference to quadrature seen between the nodes, and the quadrature's own.
     double error() const { return error_; }
 
 private:

@@ -89,6 +89,27 @@ TEST(LobeAlbedo, IsOneForPhongFromAboveAndInterpolatesToItsStatedError) {
     for (double c = 0.01; c < 1; c += 0.0173) EXPECT_NEAR(table(c), lobe_albedo(BrdfKind::phong, 32, 0, c), 2e-7) << c;
 }
 
+TEST(LobeAlbedo, OfHalfVectorLobesIsThatOfAMillionDirections) {
+    const auto brute_force = [](const auto& lobe, double cos_o) {
+        constexpr int n = 1000;
+        const Vec3<double> wo = {std::sqrt(1 - cos_o * cos_o), 0, cos_o};
+        double sum = 0;
+        for (int i = 0; i < n; ++i) {
+            const double z = (i + 0.5) / n, r = std::sqrt(1 - z * z);
+            for (int k = 0; k < n; ++k) {
+                const double phi = pi * (k + 0.5) / n;
+                sum += lobe(wo, Vec3<double>{r * std::cos(phi), r * std::sin(phi), z}) * z;
+            }
+        }
+        return sum * 2 * pi / n / n;
+    };
+    for (double cos_o : {0.05, 0.5, 0.9}) {
+        for (double alpha : {0.3, 0.5, 0.9}) EXPECT_NEAR(lobe_albedo(BrdfKind::ggx, 0, alpha, cos_o), brute_force(GgxLobe<double>(0, alpha), cos_o), 2e-6) << alpha;
+        for (double s : {3.0, 40.0}) EXPECT_NEAR(lobe_albedo(BrdfKind::blinn_phong, s, 0, cos_o), brute_force(BlinnPhongLobe<double>(s, 0), cos_o), 2e-6) << s;
+    }
+    EXPECT_LT(LobeAlbedo(BrdfKind::ggx, 0, 0.5).error(), 3e-6);
+}
+
 TEST(LobeAlbedo, NeverReflectsMoreThanArrives) {
     for (double c = 0.05; c <= 1; c += 0.19) {
         EXPECT_LE(lobe_albedo(BrdfKind::phong, 32, 0, c), 1 + 1e-8);

@@ -82,17 +82,21 @@ std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& expo
     return scenes;
 }
 
-/// The same sites with lights that turn X into the wanted part: the disk by itself, or the fill on the lobe alone.
+/// The same sites with lights that turn X into the wanted part: disk k by itself, or the fill on the lobe alone. The
+/// other disks still stand before it, but carry nothing and are never aimed at.
 Sites only_disk(const Scene& scene, const Sites& all, std::size_t k) {
     Sites sites = all;
     const double over = luminance(scene.disks()[k].radiance) - luminance(scene.fill());
     const double full = luminance(scene.disks()[k].radiance);
-    sites.disks = {all.disks[k]};
-    DiskArrays& disk = sites.disks[0];
+    for (DiskArrays& other : sites.disks) {
+        other.power = 0;
+        for (auto* array : {&other.d, &other.s}) std::fill(array->begin(), array->end(), 0.0f);
+    }
+    DiskArrays& disk = sites.disks[k];
     disk.power = 1;
     for (std::size_t i = 0; i < sites.pixel.size(); ++i) {
-        disk.d[i] -= sites.fill_d[i];  // L_key - L_fill: the disk stands in for the fill behind it
-        disk.s[i] = full > 0 ? static_cast<float>(static_cast<double>(disk.s[i]) * over / full) : -sites.fill_s[i];
+        disk.d[i] = all.disks[k].d[i] - sites.fill_d[i];  // L_key - L_fill: the disk stands in for the fill behind it
+        disk.s[i] = full > 0 ? static_cast<float>(static_cast<double>(all.disks[k].s[i]) * over / full) : -sites.fill_s[i];
     }
     for (auto* array : {&sites.fill_d, &sites.fill_s, &sites.pivot}) std::fill(array->begin(), array->end(), 0.0f);
     return sites;
@@ -131,7 +135,7 @@ public:
         for (std::size_t k = 0; k < disks_.size(); ++k) {
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
-                part[c] = (scene_.disks()[k].radiance[c] - fill[c]) * (sites_.rho_d[i][c] / pi * disks_[k].disk_g[0][i] + rho_s * disks_[k].disk_g_lobe[0][i]);
+                part[c] = (scene_.disks()[k].radiance[c] - fill[c]) * (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * disks_[k].disk_g_lobe[k][i]);
                 out[c] += part[c] / disk_n_;
             }
             variance += variance_of_mean(luminance(part), disks_[k].square[i], disk_n_);

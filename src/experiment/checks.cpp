@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "experiment/draft.h"
 #include "experiment/names.h"
@@ -82,9 +83,22 @@ void check_material(Draft& draft, const Shape& shape) {
 
 void check_light(Draft& draft) {
     const Rgb& fill = draft.e.fill;
-    if (draft.e.disks.empty() && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") &&
+    const bool dark = std::all_of(draft.e.disks.begin(), draft.e.disks.end(), [](const DiskLight& d) { return d.radiance[0] + d.radiance[1] + d.radiance[2] <= 0; });
+    if (dark && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") &&
         fill[0] + fill[1] + fill[2] <= 0)
-        draft.complain("fill.radiance", "no light: expected a disk, or a fill.radiance above 0");
+        draft.complain("fill.radiance", "no light: expected a disk or the fill with a radiance above 0");
+}
+
+/// No two arms may write their films into one file.
+void check_film_files(Draft& draft) {
+    const Experiment& e = draft.e;
+    std::map<std::string, std::string, std::less<>> taken = {{std::string(reference_file), "the references"}};
+    if (e.exponent)
+        for (const double s : e.exponent->s)
+            if (s != e.s()) taken.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
+    for (const ArmPlan& arm : e.arms)
+        if (const auto other = taken.find(arm.name); other != taken.end())
+            draft.complain("arms." + arm.name, fmt::format("arms.{}: films/{}.exr is where those of {} go: expected another name", arm.name, arm.name, other->second));
 }
 
 }  // namespace
@@ -108,6 +122,7 @@ void check_names(Draft& draft) {
         draft.complain(r.path, fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64),
                                            listed(valid, ", "), hint(r.name, valid)));
     }
+    check_film_files(draft);
     for (const DiskLight& disk : draft.e.disks)
         if (const Shape* shape = draft.e.find_shape(disk.name))
             draft.complain("disks." + disk.name,

@@ -150,6 +150,7 @@ struct Experiment {
     std::string file;    // as given
     std::string title;
     std::uint64_t hash = 0;  // of the effective values, overrides included
+    std::vector<std::string> overrides;  // PATH=VALUE, as given
     std::uint32_t seed = 0;
     std::uint64_t n = 0;  // samples per pixel meant where a plate, a check or the exponent control names none; 0: none given
     int seeds = 1;       // how many seeds the bands are made of; the first is `seed`

@@ -29,6 +29,7 @@ void throw_if_any(std::vector<Complaint> all) {
 Draft draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
     Draft draft;
     draft.e.file = name;
+    draft.e.overrides = overrides;
     Node root = read_toml(text, name, &draft.complaints);
     apply_overrides(draft, root, overrides);
     read_tree(draft, root);

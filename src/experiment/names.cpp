@@ -1,6 +1,8 @@
 // The sampler words and what steers each of them.
 #include "experiment/names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace crescent {
@@ -30,5 +32,7 @@ bool sampler_needs_s(std::string_view sampler) {
     return std::any_of(std::begin(samplers), std::end(samplers),
                        [&](const Sampler& s) { return s.name == sampler && s.needs_s; });
 }
+
+std::string film_file(std::string_view arm, double s, double own_s) { return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s); }
 
 }  // namespace crescent

@@ -31,14 +31,20 @@ public:
         for (const auto& [key, value] : root.items()) {
             if (key == "source")
                 all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
+            else if (key == "seed")
+                all.seed = value.is_number_unsigned() ? value.get<std::uint32_t>() : (fail("/seed", "a seed, 0 to 4294967295", value), 0u);
             else if (key == "runs") runs(value, all);
             else if (key == "furnaces") furnaces(value, all);
-            else fail("/" + key, "one of the keys source, runs, furnaces", key);
+            else fail("/" + key, "one of the keys source, seed, runs, furnaces", key);
         }
         return all;
     }
 
 private:
+    static bool is_meter(const std::string& key) {
+        return key.starts_with("rmse.") || key.starts_with("var.") || key == "fireflies" || key == "horizon_frac" || key == "y_mean" || key == "rmse_frame";
+    }
+
     [[noreturn]] void fail(const std::string& at, const std::string& expected, const json& found) const {
         std::string text = found.dump(-1, ' ', false, json::error_handler_t::replace);
         if (text.size() > 40) text = text.substr(0, 37) + "...";
@@ -57,6 +63,7 @@ private:
             fail(at, "an object with arm (text), n (integer) and s (number)", run);
         for (const auto& [key, value] : run.items()) {
             if (key == "arm" || key == "n" || key == "s") continue;
+            if (!is_meter(key)) fail(at + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
             if (!value.is_number()) fail(at + "/" + key, "a number", value);
             const bool fresh =
                 all.runs

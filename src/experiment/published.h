@@ -1,5 +1,5 @@
 // Figures that someone published for an experiment, to stand beside the measured ones. JSON:
-//   {"source": "...", "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces": {"NAME": 0.29}}
+//   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces": {"NAME": 0.29}}
 // Meters are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
 #pragma once
 
@@ -15,6 +15,7 @@ namespace crescent {
 class Published {
 public:
     std::string source;
+    std::optional<std::uint32_t> seed;  // of the published run, where it is known
 
     std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& meter) const;
     std::optional<double> furnace(const std::string& name) const;

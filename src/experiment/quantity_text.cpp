@@ -119,6 +119,10 @@ private:
             why_ = fmt::format("expected {}, found {}", name == "n" ? "n from 1 to 16777216" : "s above 0", value);
             return false;
         }
+        if (name == "n" ? q.n > 0 : q.s > 0) {
+            why_ = fmt::format("expected one {}=, found two", name);
+            return false;
+        }
         if (name == "n") q.n = static_cast<std::uint64_t>(value);
         else q.s = value;
         return true;

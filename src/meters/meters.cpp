@@ -35,7 +35,7 @@ RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& fi
         m.region = region.name;
         m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
         m.rmse = rms_difference(film.y, reference.y, film.width, region.box);
-        m.var = box_mean(film.width, region.box, [&](std::size_t at) { return static_cast<double>(film.var[at]); });
+        m.var = film.n < 2 ? std::nan("") : box_mean(film.width, region.box, [&](std::size_t at) { return static_cast<double>(film.var[at]); });
         run.regions.push_back(m);
     }
     double y = 0, squares = 0, horizon = 0, geometry = 0;
@@ -133,6 +133,7 @@ std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<Run
     for (const RunMeter& run : runs) {
         if (run.key.seed != experiment.seed) continue;
         for (const std::string& meter : meter_names(experiment)) {
+            if (run.key.n < 2 && meter.starts_with("var.")) continue;  // one sample has no spread
             const std::vector<double> values = over_seeds(runs, run.key, meter);
             BandMeter b;
             b.key = run.key;
@@ -153,7 +154,7 @@ std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<Run
 namespace {
 
 struct Line {
-    double slope = 0, half_width = 0;  // 90 % half width from the residuals, 0 where there are none
+    double slope = 0, half_width = 0;  // 90 % half width from the residuals, NaN where there are none
 };
 
 /// Least squares of log y on log x.
@@ -165,7 +166,7 @@ Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y
         sx += a, sy += b, sxx += a * a, sxy += a * b;
     }
     const double spread = sxx - sx * sx / count;
-    Line line{(sxy - sx * sy / count) / spread, 0};
+    Line line{(sxy - sx * sy / count) / spread, std::nan("")};
     if (n.size() < 3) return line;
     double residual = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
@@ -187,7 +188,7 @@ Ladder ladder(const std::vector<RunMeter>& runs, const ArmPlan& arm, const std::
     std::vector<double> slopes;
     for (const auto& [_, values] : by_seed) slopes.push_back(fit_power(out.n, values).slope);
     const bool many = slopes.size() > 1;
-    out.slope = many ? quantile(slopes, 0.5) : own.slope;
+    out.slope = own.slope;
     out.low = many ? quantile(slopes, 0.05) : own.slope - own.half_width;
     out.high = many ? quantile(slopes, 0.95) : own.slope + own.half_width;
     return out;

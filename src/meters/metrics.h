@@ -21,7 +21,7 @@ struct Tail {
 struct RegionMeter {
     std::string region;
     double rmse = 0;             // against the reference, of Y
-    double var = 0;              // mean over pixels of the variance of the mean
+    double var = 0;              // mean over pixels of the variance of the mean; NaN where n = 1 leaves it unknown
     std::uint64_t pixels = 0;    // geometry pixels in the box count alike with misses: |box|
     std::optional<Tail> tail;    // of the samples X of the region; published seed only
 };
@@ -55,7 +55,8 @@ struct BandMeter {
     std::optional<double> published_rank;  // fraction of seeds below the published value
 };
 
-/// Least squares of log RMSE against log N: RMSE ~ N^slope. Interval: 5-95 % over seeds, or the fit's own with one seed.
+/// Least squares of log RMSE against log N at the published seed: RMSE ~ N^slope. Interval: 5-95 % of the same fit over
+/// seeds, or the fit's own 90 % with one seed. NaN: nothing to say, as where an RMSE is 0 or two rungs have one seed.
 struct Ladder {
     std::string arm, region;
     double s = 0;
@@ -102,6 +103,7 @@ struct Metrics {
     std::map<std::string, std::uint64_t> shape_pixels;
     std::map<std::string, std::string> film_hashes;  // "phong n=64 s=32" -> hash
     std::uint64_t geometry_pixels = 0;
+    std::optional<std::uint32_t> published_seed;     // of the published figures, where it is known
 
     const RunMeter* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
     bool all_hold() const;

@@ -75,6 +75,7 @@ std::string signed_number(double v) { return fmt::format("{}{:.2f}", v < 0 ? "âˆ
 
 std::string slope_text(const Ladder& l, const Experiment& e) {
     std::string name = arm_name(l.arm, e);
+    if (!std::isfinite(l.slope)) return name;
     return l.heavy ? name + ": heavy tail" : fmt::format("{}: N<sup> {}</sup>", name, signed_number(l.slope));
 }
 
@@ -107,7 +108,7 @@ void draw_names(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& l
         Text how = with(with(with_px(body_text, 17), arm_colour(l.arm, sheet.experiment())), Vertical::middle);
         how.least = 9;
         sheet.canvas.text(line, slope_text(l, sheet.experiment()), how);
-        if (!two || l.heavy) continue;
+        if (!two || l.heavy || !std::isfinite(l.low) || !std::isfinite(l.high)) continue;
         line.y += h - 2, line.h = 20;
         sheet.canvas.text(line, signed_number(l.low) + " to " + signed_number(l.high), small_text);
     }

@@ -1,5 +1,7 @@
 // metrics.json: every number of a run, as docs/metrics.schema.json describes it. Units are those of meters/metrics.h.
 // The same run gives the same bytes: keys in a fixed order, doubles in the shortest form that reads back the same.
+#include <cmath>
+
 #include "report/json_number.h"
 #include "report/report.h"
 
@@ -31,6 +33,7 @@ Json run_json(const RunMeter& run) {
 
 Json interval_json(const Band& band) {
     if (band.heavy) return heavy_tail;
+    if (band.seeds < 2) return nullptr;
     return Json::array({number(band.q05), number(band.q95)});
 }
 
@@ -51,7 +54,7 @@ Json band_json(const BandMeter& b) {
 
 Json ladder_json(const Ladder& l) {
     Json interval = heavy_tail;
-    if (!l.heavy) interval = Json::array({number(l.low), number(l.high)});
+    if (!l.heavy) interval = std::isfinite(l.low) && std::isfinite(l.high) ? Json::array({number(l.low), number(l.high)}) : Json(nullptr);
     return {{"arm", l.arm},
             {"region", l.region},
             {"s", number(l.s)},

@@ -46,7 +46,7 @@ struct Page {
 
     explicit Page(const ReportInputs& inputs) : in(inputs), find(inputs), figures(inputs) {}
     /// What the first seed is called: "published" where figures were published for it.
-    std::string seed_name() const { return find.anything_published() ? "published" : "first"; }
+    std::string seed_name() const { return in.metrics.published_seed == in.experiment.seed ? "published" : "first"; }
     /// Class of an arm's colour, the same in every chart.
     std::string colour(const std::string& arm) const;
 };

@@ -63,7 +63,7 @@ void material_rows(const Page& page, std::vector<Row>& rows) {
     const Shape* shape = glossy(page.in.experiment);
     if (!shape) return;
     rows.push_back({"A metal instead?", with(page, {fmt::format("shapes.{}.rho_d=[0, 0, 0]", shape->name)}),
-                    "Without its Lambert part the surface hides Failure B."});
+                    "Without its Lambert part the surface has no Failure B of its own; what is matt around it keeps its part."});
     if (!shape->material.s) return;
     const double s = *shape->material.s;
     rows.push_back({"More samples under the horizon?",

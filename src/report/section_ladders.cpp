@@ -14,7 +14,7 @@ using html::words;
 constexpr const char* ladder_prose = R"(
 <p>The samples of a rung are the first samples of the next. Where the variance of a sample is finite the
 error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the {seed}
-seed; the interval is the <span class="v">5–95 %</span> band of that slope over seeds. A heavy tail breaks the law: the rungs then jump whenever a
+seed; the interval is {interval}. A heavy tail breaks the law: the rungs then jump whenever a
 rare sample arrives, and the slope says more about luck than about the arm.</p>
 )";
 
@@ -33,6 +33,7 @@ std::vector<const Ladder*> ladders_in(const Page& page, const std::string& regio
 
 std::string slope_interval(const Ladder& l) {
     if (l.heavy) return html::heavy_tail();
+    if (!std::isfinite(l.low) || !std::isfinite(l.high)) return "–";
     return html::value(fmt::format("{:.3f} … {:.3f}", l.low, l.high));
 }
 
@@ -88,7 +89,7 @@ std::string slope_table(const Page& page) {
             table.row({html::heading(escape(l.region)),
                        words(escape(l.arm)),
                        html::figure(shortest(l.s)),
-                       html::figure(fmt::format("{:.3f}", l.slope)),
+                       html::figure(std::isfinite(l.slope) ? fmt::format("{:.3f}", l.slope) : "–"),
                        {slope_interval(l), true}});
     return table.str();
 }
@@ -102,7 +103,9 @@ PageSection ladders(Page& page) {
     if (charts.empty()) return {};
     const std::string published = page.find.anything_published() ? " Diamonds: published values." : "";
     std::string out =
-        fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())), fmt::arg("seed", page.seed_name()));
+        fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())), fmt::arg("seed", page.seed_name()),
+                    fmt::arg("interval", page.in.experiment.seeds > 1 ? "the <span class=\"v\">5–95 %</span> band of the same fit over seeds"
+                                                                      : "the fit’s own, from its residuals; two rungs leave none"));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
                               "RMSE against <i>N</i> at the " + page.seed_name() +
                                   " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,

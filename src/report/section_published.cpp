@@ -12,7 +12,7 @@ using html::words;
 
 constexpr const char* published_prose = R"(
 <p>A published figure is one draw from one stream of random numbers. What can be asked of it is whether it lies where draws
-lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the published seed ({seed})
+lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the {which} seed ({seed})
 and the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the tail index
 <i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
 )";
@@ -69,6 +69,16 @@ std::vector<std::string> meters_in_order(const Page& page) {
     return order;
 }
 
+/// What the command line changed of the experiment whose figures were published; "" where nothing.
+std::string changes(const Experiment& e) {
+    std::string list;
+    for (const std::string& change : e.overrides)
+        if (!change.starts_with("seed=") && !change.starts_with("seeds=")) list += (list.empty() ? "" : ", ") + ("<code>" + escape(change) + "</code>");
+    if (list.empty()) return {};
+    return "<p><strong>This run differs from the published one</strong> in " + list +
+           ": the published figures stand beside it to show what the change does, not to be met.</p>";
+}
+
 }  // namespace
 
 PageSection published(Page& page) {
@@ -87,9 +97,9 @@ PageSection published(Page& page) {
     if (table.empty()) return {};
     const std::string prose = published ? published_prose : measured_prose;
     const std::string intro = fmt::format(
-        fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")), fmt::arg("seed", e.seed));
+        fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")), fmt::arg("seed", e.seed), fmt::arg("which", page.seed_name()));
     return {"published", published ? "Published and measured" : "All meters",
-            intro + "<div class=\"wide\">" + table.str() + "</div>" + page.figures.plates(PlateKind::meters)};
+            (published ? changes(e) : "") + intro + "<div class=\"wide\">" + table.str() + "</div>" + page.figures.plates(PlateKind::meters)};
 }
 
 }  // namespace crescent

@@ -13,8 +13,8 @@ constexpr const char* question_prose = R"(
 brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives the
 right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the picture
 the noise sits.</p>
-<p>This run puts {arms} on trial against each other: {names}. They look at one scene through one camera, take the same
-number of samples and are fed the same random numbers, pixel by pixel and sample by sample. The density
+<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, takes the same number of
+samples and is fed the same random numbers, pixel by pixel and sample by sample. The density
 <math><mi>p</mi></math> is all that differs, so whatever differs in the films is its doing.{regions}</p>
 <p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out of
 many; the band beside it shows what other seeds give, and where the samples are too unruly for a band to mean anything the

@@ -54,7 +54,7 @@ std::string intro(const Page& page) {
 
 std::string furnace_point(Page& page) {
     const Evidence& e = page.in.evidence;
-    if (e.furnace.empty()) return {};
+    if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert nothing falls short
     const double k = (e.s - 1) / (e.s + 1);
     const M weight = row(
         {frac(row({mn("2"), sub(mi("ρ"), mi("d"))}), row({mi("s"), mo("+"), mn("1")})), sup(mi("u"), row({mo("−"), mi("k")}))});
