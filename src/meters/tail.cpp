@@ -49,7 +49,8 @@ template <class T> std::optional<Tail> fit(std::span<const T> largest) {
     const double n = static_cast<double>(x.size());
     constexpr double prior = 10;  // pseudo-exceedances at k = 1/2
     const double k = (n * mean_log1p(x, posterior_theta(x)) + prior * 0.5) / (n + prior);
-    return Tail{k, std::max(1 + k, 0.0) / std::sqrt(n), x.size()};
+    // The likelihood is regular for k > -1/2; below, what is left is the spread of the mean logarithm that k is.
+    return Tail{k, std::max(1 + k, -k) / std::sqrt(n), x.size()};
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ namespace crescent::plates {
 
 namespace {
 
+constexpr std::size_t most_regions = 3;  // with a column of their own
+
 struct Column {
     std::string meter, title;
 };
@@ -21,7 +23,7 @@ std::vector<Column> columns_of(const Experiment& e) {
     auto named = [](const char* what, const Region& r) {
         return std::string(what) + "<sub>" + escaped(r.name) + "</sub>";
     };
-    for (std::size_t i = 0; i < e.regions.size() && i < 3; ++i) {
+    for (std::size_t i = 0; i < e.regions.size() && i < most_regions; ++i) {
         c.push_back({"rmse." + e.regions[i].name, named("RMSE", e.regions[i])});
     }
     c.push_back({"fireflies", "fireflies"});
@@ -71,6 +73,7 @@ std::vector<const RunMeter*> rows_of(const Sheet& sheet) {
 // Under each measured value, as the number of rows allows: what was published, where anything was, and the band.
 struct Table {
     std::vector<const RunMeter*> rows;
+    std::size_t runs = 0;  // of which the rows are those that fit
     std::vector<Column> columns;
     bool published = false, band = false;
     double row_h = 0, head_h = 32, name_w = 250;
@@ -81,6 +84,7 @@ constexpr double value_h = 27, under_h = 19;
 Table plan_table(const Sheet& sheet) {
     Table t;
     t.rows = rows_of(sheet);
+    t.runs = t.rows.size();
     t.columns = columns_of(sheet.experiment());
     auto height = [&] { return value_h + under_h * (t.published + t.band) + (t.published || t.band ? 13 : 5); };
     auto too_high = [&] { return double(t.rows.size()) * height() > content_band.h - t.head_h; };
@@ -92,6 +96,13 @@ Table plan_table(const Sheet& sheet) {
     t.row_h = height();
     t.rows.resize(std::min(t.rows.size(), static_cast<std::size_t>((content_band.h - t.head_h) / t.row_h)));
     return t;
+}
+
+/// What there was no room for; the report has all of it.
+void note_what_is_left_out(Sheet& sheet, const Table& t) {
+    const std::size_t regions = sheet.experiment().regions.size();
+    if (t.rows.size() < t.runs) sheet.notes.push_back(fmt::format("{} of {} runs", t.rows.size(), t.runs));
+    if (regions > most_regions) sheet.notes.push_back(fmt::format("{} of {} regions", most_regions, regions));
 }
 
 Rect cell(const Table& t, std::size_t c, double y, double h) {
@@ -128,7 +139,7 @@ void draw_row(Sheet& sheet, const Table& t, const RunMeter& r, double y, int see
     for (std::size_t k = 0; k < t.columns.size(); ++k) {
         const std::string& meter = t.columns[k].meter;
         const BandMeter* b = band_of(sheet.in.metrics, r.key, meter);
-        c.text(cell(t, k, top, value_h), value(meter, meter_value(r, meter)), value_text);
+        c.text(cell(t, k, top, value_h), b ? value(meter, meter_value(r, meter)) : "–", value_text);
         double next = top + value_h;
         if (t.published) {
             c.text(cell(t, k, next, under_h + 2), b && b->published ? value(meter, *b->published) : "–", under);
@@ -172,6 +183,7 @@ void draw_meters(Sheet& sheet) {
     }
     Rect rest{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
     if (rest.h >= 170) draw_charts(sheet, rest);
+    note_what_is_left_out(sheet, t);
     if (seeds < 2) sheet.notes.push_back("one seed: no band");
     if (rest.h >= 170) sheet.notes.push_back(seeds > 1 ? "slopes: fit, and 5–95 % over seeds" : "slopes: fit and its interval");
     sheet.notes.push_back(fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "

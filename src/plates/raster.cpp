@@ -111,7 +111,9 @@ Fit fit(int w, int h, double slot_w, double slot_h) {
 }
 
 std::string to_string(const Fit& f) {
-    if (f.reduced) return fmt::format("×{:.2g}", std::max(double(f.out_w) / f.in_w, double(f.out_h) / f.in_h));
+    const double across = double(f.out_w) / f.in_w, down = double(f.out_h) / f.in_h;
+    if (f.reduced && std::max(across, down) > 1.15 * std::min(across, down)) return fmt::format("×{:.2g} across, ×{:.2g} up", across, down);
+    if (f.reduced) return fmt::format("×{:.{}g}", std::max(across, down), std::max(across, down) < 0.95 ? 2 : 3);
     return f.times == 1 ? "1:1" : fmt::format("×{}", f.times);
 }
 

@@ -26,7 +26,7 @@ struct Fit {
     int in_w = 0, in_h = 0;
 };
 Fit fit(int w, int h, double slot_w, double slot_h);
-/// "1:1", "×4" or "×0.41".
+/// "1:1", "×4", "×0.41"; "×0.06 across, ×0.12 up" where one pixel is the least that can be drawn.
 std::string to_string(const Fit& f);
 
 /// The box of all pixels.

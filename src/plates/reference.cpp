@@ -27,7 +27,11 @@ double mean(const View& v, const Box& box) {
 void region_facts(Sheet& sheet, const View& v, double y) {
     const auto& regions = sheet.experiment().regions;
     Rect line{facts_slot.x, y + 18, facts_slot.w, 24};
-    for (std::size_t i = 0; i < regions.size() && line.y + 98 <= facts_slot.bottom(); ++i) {
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        if (line.y + 98 > facts_slot.bottom()) {
+            sheet.notes.push_back(fmt::format("{} of {} regions listed", i, regions.size()));
+            break;
+        }
         const Box& b = regions[i].box;
         sheet.canvas.fill({line.x, line.y + 3, 18, 18}, region_colour(i));
         sheet.canvas.text({line.x + 28, line.y, line.w - 28, 24}, "region " + escaped(regions[i].name),
