@@ -115,7 +115,7 @@ const Mistake keys_and_types[] = {
     {"kind = \"sphere\"", "kind = \"spere\"", 12, 8, "did you mean 'sphere'?"},
     {"kind = \"box\"", "kind = 3", 19, 8, "expected one of sphere, box"},
     {"min = [-1, 0, -1]", "min = [-1, 0, -1]\nradius = 1", 21, 1, "a box has no key 'radius'"},
-    {"runs = [{", "runs = [3, {", 50, 9, "expected a table, found 3"},
+    {"runs = [{", "runs = [3, {", 50, 9, "plates.pair.runs.0: expected a table, found 3"},
     {"n = 4 }]", "n = 4, m = 2 }]", 50, 53, "unknown key 'm' in [plates.pair.runs.1]"},
     {"runs = [{ arm = \"cosine\" }, { arm = \"phong\", n = 4 }]", "runs = 3", 50, 8, "expected a list of tables, found 3"},
     {"[regions.H]", "[regions.\"H/I\"]", 42, 10, "become file names", 2},
@@ -123,6 +123,8 @@ const Mistake keys_and_types[] = {
     {"", "over = 3\n", 53, 1, "expected tables [assertions.NAME], found 3"},
     {"", "[[plates.pair.extra]]\n", 53, 15, "unknown key 'extra' in [plates.pair]"},
     {"rho_s = 0.1", "rho_s =", 16, 8, "not TOML"},
+    {"", "[assertions.a]\ncheck = \"y_mean(cosine) > 0\"\nname = \"b\"\n", 55, 1, "unknown key 'name' in [assertions.a]"},
+    {"", "[assertions.a]\ncheck = \"y_mean(cosine, n=4, n=16) > 0\"\n", 54, 9, "expected one n=, found two"},
 };
 
 const Mistake values[] = {
@@ -157,6 +159,8 @@ const Mistake values[] = {
     {"max = [1, 1, 1]", "max = [1, 0, 1]", 21, 7, "above min on every axis, found y no higher on y"},
     {"edge_v = [0, 1, 0]", "edge_v = [2, 0, 0]", 27, 10, "not parallel to edge_u"},
     {"edge_u = [1, 0, 0]", "edge_u = [0, 0, 0]", 26, 10, "expected an edge with a length"},
+    {"[furnaces.white]\narm = \"cosine\"", "[arms.reference]\nsampler = \"cosine\"\n[furnaces.white]\narm = \"cosine\"", 44, 7, "films/reference.exr is where those of the references go"},
+    {"[furnaces.white]\narm = \"cosine\"", "[arms.phong-s8]\nsampler = \"cosine\"\n[furnaces.white]\narm = \"cosine\"", 44, 7, "where those of phong at s = 8 go"},
 };
 
 const Mistake names[] = {

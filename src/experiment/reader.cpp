@@ -76,7 +76,7 @@ private:
         for (const Member& member : node.members) {
             const Key* key = section.find_key(member.key);
             if ((key && has_kind(*key, kind)) || section.find_section(member.key)) continue;
-            if (section.many == Many::titled && member.key == "name") continue;
+            if (section.many == Many::titled && in_list_ && member.key == "name") continue;
             const std::vector<std::string> valid = words_of(section, kind);
             const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
                                           : fmt::format("unknown key '{}'", member.key.substr(0, 64));
@@ -142,7 +142,7 @@ private:
             return table(section, node, path, member->at, section.add ? section.add(object, "", member->at) : object);
         if (section.need == Need::required && node.members.empty())
             return draft_.complain(path, member->at,
-                                   fmt::format("{}: expected at least one {}, found none", path, form(section, path)));
+                                   fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
         elements(section, node, path, object);
     }
 
@@ -179,10 +179,11 @@ private:
 
     void element(const Section& section, const Node& node, const Member& member, const std::string& path, std::size_t index,
                  void* object) {
+        const std::string label = node.is_array() ? fmt::format("{}.{}", path, index) : join(path, member.key);
         if (!member.value.is_table())
             return draft_.complain(
-                join(path, member.key), member.at,
-                fmt::format("{}: expected {}, found {}", join(path, member.key),
+                label, node.is_array() ? member.value.at : member.at,
+                fmt::format("{}: expected {}, found {}", label,
                             section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
         std::string name = member.key;
         Place at = member.at;
@@ -196,6 +197,7 @@ private:
         if (section.many == Many::titled && !one_line(name))
             draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
         draft_.e.places[own] = at;
+        in_list_ = node.is_array();
         table(section, member.value, own, at, section.add(object, name, at));
     }
 
@@ -222,6 +224,7 @@ private:
 
     Draft& draft_;
     std::map<std::string, Place> titles_;  // names of a list so far
+    bool in_list_ = false;                 // the table that is being read stands in one, and says its own name
 };
 
 }  // namespace

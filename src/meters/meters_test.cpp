@@ -101,27 +101,54 @@ TEST(Meters, ReadEveryNumberOffTheFloatFilm) {
     EXPECT_DOUBLE_EQ(run.rmse_frame, std::sqrt((4 + 4.5 * 4.5) / 8));
 }
 
+TEST(Meters, OfOneSampleHaveNoVariance) {
+    Known k;
+    k.film.n = 1;
+    const RunMeter run = measure(k.experiment, {"a", 1, 32, 0}, k.film, k.reference, k.shapes);
+    EXPECT_TRUE(std::isnan(run.region("left")->var));
+    for (const BandMeter& band : bands(k.experiment, {run}, nullptr)) EXPECT_NE(band.meter, "var.left");
+}
+
 TEST(Meters, ANaNInTheFilmShowsInTheNumber) {
     Known k;
     k.film.y[1] = std::nanf("");
     EXPECT_TRUE(std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
 }
 
-TEST(Ladders, FitTheSlopeOfAPowerLaw) {
+/// One arm with three rungs; seed k's RMSE falls as N^slopes[k].
+std::vector<Ladder> ladders_falling_as(const std::vector<double>& slopes, const std::vector<std::uint64_t>& rungs = {4, 16, 64}) {
     Experiment e;
     e.seed = 1;
-    e.arms = {{"a", "cosine", {4, 16, 64}, {}}};
+    e.arms = {{"a", "cosine", rungs, {}}};
     e.regions = {{"r", {0, 0, 1, 1}, {}}};
     std::vector<RunMeter> runs;
-    for (std::uint64_t n : e.arms[0].n) {
-        RunMeter run;
-        run.key = {"a", n, e.s(), 1};
-        run.regions = {{"r", 8 / std::sqrt(static_cast<double>(n)), 0, 4, {}}};
-        runs.push_back(run);
-    }
-    const Ladder ladder = ladders(e, runs)[0];
+    for (std::size_t k = 0; k < slopes.size(); ++k)
+        for (const std::uint64_t n : rungs) {
+            RunMeter run;
+            run.key = {"a", n, e.s(), static_cast<std::uint32_t>(k + 1)};
+            run.regions = {{"r", 8 * std::pow(static_cast<double>(n), slopes[k]), 0, 4, {}}};
+            runs.push_back(run);
+        }
+    return ladders(e, runs);
+}
+
+TEST(Ladders, FitTheSlopeOfAPowerLaw) {
+    const Ladder ladder = ladders_falling_as({-0.5})[0];
     EXPECT_NEAR(ladder.slope, -0.5, 1e-12);
     EXPECT_NEAR(ladder.high - ladder.low, 0, 1e-6);
+}
+
+TEST(Ladders, HaveTheSlopeOfTheSeedTheyStandBesideAndTheBandOfAll) {
+    const Ladder ladder = ladders_falling_as({-0.2, -0.5, -0.6})[0];
+    EXPECT_NEAR(ladder.slope, -0.2, 1e-12);
+    EXPECT_NEAR(ladder.low, -0.59, 1e-12);
+    EXPECT_NEAR(ladder.high, -0.23, 1e-12);
+}
+
+TEST(Ladders, OfTwoRungsAndOneSeedHaveNoInterval) {
+    const Ladder ladder = ladders_falling_as({-0.5}, {4, 16})[0];
+    EXPECT_NEAR(ladder.slope, -0.5, 1e-12);
+    EXPECT_TRUE(std::isnan(ladder.low) && std::isnan(ladder.high));
 }
 
 TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
