@@ -54,6 +54,11 @@ function(crescent_precompiled target)
   endif()
 endfunction()
 
+# Files that run once and take long to optimise, JSON above all. Without it they cannot use the precompiled headers.
+function(crescent_unoptimised)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # crescent_folder(NAME LIBS...): src/NAME/*.cpp is the target crescent_NAME; it may use every folder named before it.
 # *_test.cpp stand beside their sources and are collected for laws/CMakeLists.txt.
 set(crescent_folders "")
@@ -91,6 +96,7 @@ macro(crescent_public_library)
   target_include_directories(crescent_face PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
   target_link_libraries(crescent_face PUBLIC ${crescent_folders} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
+  crescent_unoptimised(${PROJECT_SOURCE_DIR}/src/kept.cpp)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/src/version.cpp PROPERTIES
     COMPILE_DEFINITIONS "${crescent_provenance}" INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/provenance)
   add_dependencies(crescent_face crescent_commit)

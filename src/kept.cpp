@@ -10,7 +10,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "base/errors.h"
 #include "version.h"
 
 namespace crescent {
@@ -49,7 +48,7 @@ bool holds_files(const std::string& folder) {
 
 Kept::Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s, Watch& watch)
     : all_(out + "/.crescent-kept"), key_(key_of(experiment, instrument)), folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
-      patience_s_(patience_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_) {
+      patience_s_(patience_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_, watch) {
     journal_.read([this](Journal::Bytes record) {
         for (RunMeter& meter : meters_of(record)) meters_.push_back(std::move(meter));
     });
@@ -76,16 +75,11 @@ std::vector<RunMeter> Kept::meters(const Job& job) const {
 
 void Kept::add(const std::vector<RunMeter>& meters) {
     meters_.insert(meters_.end(), meters.begin(), meters.end());
-    if (!works_ || std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < patience_s_) return;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < patience_s_) return;
     const std::vector<RunMeter> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
     const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
-    try {
-        journal_.append({std::as_bytes(std::span(record))});
-        written_ = meters_.size();
-    } catch (const OutputError& e) {  // a full disk must not end a run that would fit on it
-        works_ = false;
-        watch_.say(std::string(e.what()) + "; if this run is stopped, it begins anew");
-    }
+    journal_.append({std::as_bytes(std::span(record))});
+    written_ = meters_.size();
 }
 
 void Kept::forget() {

@@ -40,7 +40,6 @@ private:
     Journal journal_;
     std::vector<RunMeter> meters_;
     std::size_t written_ = 0;  // of meters_
-    bool works_ = true;
 };
 
 }  // namespace crescent

@@ -87,11 +87,12 @@ private:
     void look() {
         scene_.remember_primaries();
         shapes_ = shape_map(scene_);
-        for (const Shape& shape : experiment_.shapes) metrics_.shape_pixels[shape.name] = 0;
-        for (std::int16_t shape : shapes_.shape) {
-            if (shape < 0) continue;
-            ++metrics_.geometry_pixels;
-            ++metrics_.shape_pixels[experiment_.shapes[static_cast<std::size_t>(shape)].name];
+        std::vector<std::uint64_t> pixels(experiment_.shapes.size());
+        for (const std::int16_t shape : shapes_.shape)
+            if (shape >= 0) ++pixels[static_cast<std::size_t>(shape)];
+        for (std::size_t k = 0; k < pixels.size(); ++k) {
+            metrics_.shape_pixels[experiment_.shapes[k].name] = pixels[k];
+            metrics_.geometry_pixels += pixels[k];
         }
         if (metrics_.geometry_pixels == 0)
             throw InputError(experiment_.place_of("camera"), "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");

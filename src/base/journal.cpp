@@ -15,8 +15,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "base/errors.h"
-
 namespace crescent {
 
 namespace {
@@ -49,10 +47,10 @@ Journal::Bytes bytes_of(const std::string& text) { return std::as_bytes(std::spa
 
 }  // namespace
 
-Journal::Journal(std::string path, std::string key) : path_(std::move(path)), key_(std::move(key)) {}
+Journal::Journal(std::string path, std::string key, Watch& watch) : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
 
 Journal::Journal(Journal&& other) noexcept
-    : path_(std::move(other.path_)), key_(std::move(other.key_)), file_(std::exchange(other.file_, -1)), taken_(other.taken_) {}
+    : path_(std::move(other.path_)), key_(std::move(other.key_)), watch_(other.watch_), file_(std::exchange(other.file_, -1)), off_(other.off_) {}
 
 Journal::~Journal() {
     if (file_ >= 0) close(file_);
@@ -61,13 +59,13 @@ Journal::~Journal() {
 bool Journal::open(int flags) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | flags, 0666);
     if (file_ < 0) return false;
-    taken_ = flock(file_, LOCK_EX | LOCK_NB) != 0;
-    return !taken_;
+    off_ = flock(file_, LOCK_EX | LOCK_NB) != 0;
+    return true;
 }
 
 void Journal::read(const std::function<void(Bytes)>& take) {
     struct stat about {};
-    if (!open(0) || fstat(file_, &about) != 0) return;
+    if (!open(0) || off_ || fstat(file_, &about) != 0) return;
     const auto size = static_cast<std::uint64_t>(about.st_size);
     std::uint64_t whole = 0;
     std::vector<std::byte> record;
@@ -80,20 +78,22 @@ void Journal::read(const std::function<void(Bytes)>& take) {
 }
 
 void Journal::append(const std::vector<Bytes>& parts) {
-    if (taken_) return;
-    if (file_ < 0) {
-        std::error_code error;
-        std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), error);
-        if (!open(O_CREAT | O_TRUNC)) {
-            if (taken_) return;
-            throw OutputError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
-        }
-        write({bytes_of(key_)});
+    if (off_) return;
+    bool written = file_ >= 0;
+    if (!written) {
+        std::error_code ignored;  // open() will say what is wrong
+        std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), ignored);
+        written = open(O_CREAT);
+        if (off_) return;
+        written = written && ftruncate(file_, 0) == 0 && write({bytes_of(key_)});
     }
-    write(parts);
+    if (written && write(parts)) return;
+    watch_.say(fmt::format("cannot write {}: {}; if this run is stopped, it begins anew", path_, std::strerror(errno)));
+    remove();
+    off_ = true;
 }
 
-void Journal::write(const std::vector<Bytes>& parts) {
+bool Journal::write(const std::vector<Bytes>& parts) {
     std::vector<std::byte> all(sizeof(Head));
     for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
     const Head head = {all.size() - sizeof(Head), XXH3_64bits(all.data() + sizeof(Head), all.size() - sizeof(Head))};
@@ -101,13 +101,14 @@ void Journal::write(const std::vector<Bytes>& parts) {
     for (std::size_t done = 0; done < all.size();) {
         const ssize_t n = ::write(file_, all.data() + done, all.size() - done);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) throw OutputError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
+        if (n < 0) return false;
         done += static_cast<std::size_t>(n);
     }
+    return true;
 }
 
 void Journal::remove() {
-    if (taken_) return;
+    if (off_) return;
     ::unlink(path_.c_str());
     if (file_ >= 0) close(std::exchange(file_, -1));
 }

@@ -109,6 +109,16 @@ Sites only_lobe(const Sites& all) {
     return sites;
 }
 
+/// The arm that draws from a lobe itself.
+std::string_view lobe_sampler(int lobe) {
+    switch (static_cast<BrdfKind>(lobe)) {
+        case BrdfKind::phong: return "phong";
+        case BrdfKind::blinn_phong: return "blinn";
+        case BrdfKind::ggx: return "ggx-vndf";
+    }
+    return "cosine";
+}
+
 double variance_of_mean(double sum, double square, double n) {
     const double spread = square - sum * sum / n;
     return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0;
@@ -118,7 +128,7 @@ double variance_of_mean(double sum, double square, double n) {
 class NotePixels {
 public:
     NotePixels(const Scene& scene, const Sites& sites, const ReferencePlan& plan, const std::string& isa, Watch& watch) : scene_(scene), sites_(sites) {
-        if (sites.lobe >= 0) lobe_ = estimate_sites(only_lobe(sites), "phong", plan.lobe_spp, plan.seed, isa, &watch.stop);
+        if (sites.lobe >= 0) lobe_ = estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, plan.seed, isa, &watch.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         disk_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.disks().size(); ++k)

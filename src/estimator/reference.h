@@ -1,7 +1,7 @@
 // What the meters compare with.
 //   quadrature  deterministic: Lambert x fill in closed form, lobe x fill by a table of its albedo, every disk by
 //               DiskQuadrature; states its own error per pixel.
-//   note        the published recipe: analytic Lambert x fill, the lobe x fill by Phong sampling, the disks by
+//   note        the published recipe: analytic Lambert x fill, the lobe x fill by sampling the lobe, the disks by
 //               next-event estimation, on a seed of its own; states its standard error per pixel.
 #pragma once
 

@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "base/errors.h"
-
 namespace crescent {
 
 namespace {
@@ -26,7 +24,7 @@ template <class Work> void each_row(const TileOutputs& outputs, const TileBox& t
 }  // namespace
 
 TileKeeper::TileKeeper(std::string path, std::string key, double patience_s, Watch& watch)
-    : journal_(std::move(path), std::move(key)), patience_s_(patience_s), watch_(watch), start_(Clock::now()) {}
+    : journal_(std::move(path), std::move(key), watch), patience_s_(patience_s), watch_(watch), start_(Clock::now()) {}
 
 void TileKeeper::begin(std::vector<TileBox> tiles, TileOutputs outputs) {
     tiles_ = std::move(tiles);
@@ -62,18 +60,11 @@ void TileKeeper::restore(Journal::Bytes record) {
 
 void TileKeeper::add(std::size_t tile, double units) {
     const std::lock_guard guard(lock_);
-    if (!works_) return;
     units_[tile] = units;
     waiting_.push_back(tile);
     if (std::chrono::duration<double>(Clock::now() - start_).count() < patience_s_) return;
-    try {
-        for (const std::size_t finished : waiting_) write(finished);
-        waiting_.clear();
-    } catch (const OutputError& e) {  // a full disk must not end a run that would fit on it
-        works_ = false;
-        journal_.remove();
-        watch_.say(std::string(e.what()) + "; if this run is stopped, it begins anew");
-    }
+    for (const std::size_t finished : waiting_) write(finished);
+    waiting_.clear();
 }
 
 void TileKeeper::write(std::size_t tile) {

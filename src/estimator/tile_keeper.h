@@ -62,7 +62,6 @@ private:
     Clock::time_point start_;
     std::mutex lock_;                 // guards what follows and the journal
     std::vector<std::size_t> waiting_;  // finished, not yet written
-    bool works_ = true;
 };
 
 }  // namespace crescent

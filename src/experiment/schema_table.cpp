@@ -139,7 +139,7 @@ Section reference() {
              {"seed", Type::integer, seed_range, "", defaulted, "1",
               "Of the Monte Carlo reference.", to<&ReferencePlan::seed>},
              {"lobe_spp", Type::integer, count_range, "samples/pixel", defaulted, "32",
-              "Phong samples for lobe x fill.", to<&ReferencePlan::lobe_spp>},
+              "Samples of the lobe for lobe x fill.", to<&ReferencePlan::lobe_spp>},
              {"disk_spp", Type::integer, count_range, "samples/pixel", defaulted, "96",
               "Samples on each disk.", to<&ReferencePlan::disk_spp>}},
             {}};

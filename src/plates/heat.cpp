@@ -55,7 +55,8 @@ std::string reading(const Residual& r, const Box& box, double top, const Experim
     }
     std::vector<double> v = values(r, box);
     auto above = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
-    parts.push_back(fmt::format("{} % above scale", number(100.0 * double(above) / double(v.size()), 2)));
+    const double percent = 100.0 * double(above) / double(v.size());
+    parts.push_back(fmt::format("{} % above scale", number(percent, percent < 99.5 ? 2 : 3)));
     return joined(parts, ", ");
 }
 

@@ -70,7 +70,7 @@ constexpr const char* a_prose = R"(
 <p>A small bright disk fills little of the hemisphere. A density that spreads its rays over all of it meets the disk seldom;
 when one ray does, it carries the light of all those that missed. On a glossy highlight that one ray also meets the lobe at
 its height, which the density knows nothing of, so one sample can weigh as much as {largest} with {broad}, in a picture whose
-mean is {mean}. Most pixels come out too dark, a few far too bright. Counted as fireflies at <i>N</i> = {n} are
+mean is {mean}. Where that happens, most pixels come out too dark and a few far too bright. Counted as fireflies at <i>N</i> = {n} are
 {fireflies_broad} pixels with {broad} and {fireflies_narrow} with {narrow}.</p>
 )";
 
