@@ -37,6 +37,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
 /// A run in the making: what is kept from one stage to the next.
 class Run {
 public:

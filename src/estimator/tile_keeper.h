@@ -16,11 +16,12 @@ namespace crescent {
 
 /// What the tiles of a pass write into.
 struct TileOutputs {
-    int width = 0;                                       // pixels in a row of every plane
-    std::vector<std::span<std::byte>> planes;            // 4 bytes a pixel
-    std::vector<std::span<std::uint64_t>> counts;        // one entry a tile
+    int width = 0;                                 // pixels in a row of every plane
+    std::vector<std::span<std::byte>> planes;      // 4 bytes a pixel
+    std::vector<std::span<std::uint64_t>> counts;  // one entry a tile
 };
 
+/// All planes of films of one size, and counts of the tiles beside them.
 template <class F> TileOutputs outputs_of(std::vector<F>& films, std::span<std::vector<std::uint64_t>> counts = {}) {
     TileOutputs out;
     for (F& film : films) {
@@ -60,7 +61,7 @@ private:
     std::vector<double> units_;  // of each finished tile; -1: not finished
     double restored_ = 0;
     Clock::time_point start_;
-    std::mutex lock_;                 // guards what follows and the journal
+    std::mutex lock_;                   // guards what follows and the journal
     std::vector<std::size_t> waiting_;  // finished, not yet written
 };
 
