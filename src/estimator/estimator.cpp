@@ -33,7 +33,8 @@ public:
         const double y = luminance(mean);
         const double pivot = static_cast<double>(sites_.pivot[i]);
         const double off = y - pivot;
-        const double spread = m_.largest[i] > 0 ? m_.square[i] - n * off * off : 0;  // sum of (X - mean)^2; 0 where every X is
+        const bool dark = !(m_.largest[i] > 0) && m_.bad[i] == 0;      // every X is 0
+        const double spread = dark ? 0 : m_.square[i] - n * off * off;  // sum of (X - mean)^2
         film_.r[at] = static_cast<float>(mean[0]);
         film_.g[at] = static_cast<float>(mean[1]);
         film_.b[at] = static_cast<float>(mean[2]);

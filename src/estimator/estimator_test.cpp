@@ -121,6 +121,20 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     }
 }
 
+TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
+    const Scene scene(test::small_scene());
+    const Sites sites = sites_of(scene, {30, 20, 34, 23}, nullptr).front();
+    Moments moments;
+    moments.resize(sites.pixel.size(), sites.disks.size());
+    for (std::size_t i = 0; i < sites.count; ++i) moments.square[i] = 8 * sqr(static_cast<double>(sites.pivot[i])) * (1 + 1e-9);  // X = 0, rounded
+    moments.square[0] = moments.g[0] = std::nan("");
+    moments.bad[0] = 1;
+    Film film(67, 45, 8);
+    develop(scene, sites, moments, film);
+    EXPECT_TRUE(std::isnan(film.var[sites.pixel[0]]));
+    EXPECT_EQ(film.var[sites.pixel[1]], 0);
+}
+
 /// Standard errors between the two references, over the whole image.
 double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);

@@ -32,7 +32,7 @@ public:
             if (key == "source")
                 all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
             else if (key == "seed")
-                all.seed = value.is_number_unsigned() ? value.get<std::uint32_t>() : (fail("/seed", "a seed, 0 to 4294967295", value), 0u);
+                all.seed = value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xffffffffu ? value.get<std::uint32_t>() : (fail("/seed", "a seed, 0 to 4294967295", value), 0u);
             else if (key == "runs") runs(value, all);
             else if (key == "furnaces") furnaces(value, all);
             else fail("/" + key, "one of the keys source, seed, runs, furnaces", key);
