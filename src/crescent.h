@@ -4,6 +4,7 @@
 //   Scene             an Experiment -> what a pixel sees: surface point, normal, BRDF, lights, what blocks them
 //   Arms              the samplers on trial as a list of types; for_each_arm walks it
 //   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
+//   OpenPixel         one pixel of a scene -> each of its samples taken apart: direction, density, f, L, cosine, X
 //   judge             a sampler by itself -> ordered verdicts with their evidence; verdicts/gtest.h has the matchers
 //   find_instrument   what else can compute films, where a door has brought it
 //   run               an Experiment -> films, meters, plates and report under one folder
@@ -17,6 +18,7 @@
 #include "base/watch.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"
+#include "estimator/pixel.h"
 #include "experiment/experiment.h"
 #include "experiment/names.h"
 #include "experiment/quantity_text.h"

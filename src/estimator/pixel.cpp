@@ -1,0 +1,216 @@
+#include "estimator/pixel.h"
+
+#include <cmath>
+#include <optional>
+
+#include "arms/all.h"
+#include "base/errors.h"
+#include "estimator/disk_hit.h"
+#include "films/film.h"
+#include "scene/brdf.h"
+#include "simd/random.h"
+
+namespace crescent {
+
+namespace {
+
+template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
+Vec3d wide(Vec3f v) { return {double(v.x), double(v.y), double(v.z)}; }
+
+Vec3f at(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+    return {x[0], y[0], z[0]};
+}
+
+float lobe_of(const Sites& sites, Vec3f wi) {
+    const Vec3f wo = at(sites.wox, sites.woy, sites.woz);
+    const float s = sites.s[0], alpha = sites.alpha[0];
+    if (sites.lobe < 0) return 0;
+    switch (static_cast<BrdfKind>(sites.lobe)) {
+        case BrdfKind::phong: return PhongLobe<float>(s, alpha)(wo, wi);
+        case BrdfKind::blinn_phong: return BlinnPhongLobe<float>(s, alpha)(wo, wi);
+        case BrdfKind::ggx: return GgxLobe<float>(s, alpha)(wo, wi);
+    }
+    return 0;
+}
+
+std::vector<LocalDisk<float>> local_disks(const Sites& sites) {
+    std::vector<LocalDisk<float>> out;
+    for (const DiskArrays& d : sites.disks) {
+        const float sides = d.two_sided ? 1.0f : 0.0f;
+        out.push_back({at(d.cx, d.cy, d.cz), at(d.nx, d.ny, d.nz), d.radius, sides, d.power});
+    }
+    return out;
+}
+
+/// As the kernels ask it: the nearest disk first, then what stands before it.
+int met_by(const Sites& sites, const std::vector<LocalDisk<float>>& disks, Vec3f wi) {
+    float nearest = 1e30f;
+    int met = -1;
+    for (std::size_t k = 0; k < disks.size(); ++k) {
+        const FacingDisk<float> facing(disks[k]);
+        float v;
+        if (!DiskCone<float>(facing).holds(wi) || !meets_disk(facing, wi, v) || !(facing.k / v < nearest)) continue;
+        nearest = facing.k / v, met = static_cast<int>(k);
+    }
+    if (met < 0) return -1;
+    const Vec3f t = at(sites.tx, sites.ty, sites.tz), b = at(sites.bx, sites.by, sites.bz);
+    const Frame<float> frame = {t, b, at(sites.nx, sites.ny, sites.nz)};
+    const Vec3f o = at(sites.px, sites.py, sites.pz), d = frame.to_world(wi);
+    for (const OccluderF& body : sites.occluders)
+        if (body.shape != sites.shape[0] && blocked_by(body, o, d, nearest)) return -1;
+    return met;
+}
+
+/// f L of Lambert and of the lobe, as Y: X = (cos/p) (d + lobe s).
+struct Worth {
+    float d, s;
+};
+Worth worth(const Sites& sites, int disk) {
+    if (disk < 0) return {sites.fill_d[0], sites.fill_s[0]};
+    const DiskArrays& k = sites.disks[static_cast<std::size_t>(disk)];
+    return {k.d[0], k.s[0]};
+}
+
+/// f, per sr, of light that is `light` bright; where there is none, of grey light.
+double reflected(const Sites& sites, const Worth& w, float lobe, double light) {
+    if (light > 0) return double(w.d + lobe * w.s) / light;
+    return double(sites.diffuse[0]) / pi + double(sites.rho_s[0] * lobe);
+}
+
+/// Makes X of a direction, in the kernels' own order of operations.
+class Carrier {
+public:
+    using Locals = std::vector<LocalDisk<float>>;
+    Carrier(const Sites& sites, const Locals& disks, const std::vector<PixelDisk>& seen, double fill)
+        : sites_(sites), disks_(disks), seen_(seen), fill_(fill) {}
+
+    PixelSample operator()(Vec2<float> u, const Drawn<float>& drawn, float weight, int technique) const {
+        PixelSample out;
+        out.u = u, out.wi = drawn.wi, out.pdf = drawn.pdf.v, out.cos = drawn.wi.z;
+        out.weight = weight, out.technique = technique;
+        if (out.cos <= 0 || out.pdf == 0) return out;
+        const float g = weight * (out.cos / out.pdf), lobe = lobe_of(sites_, out.wi);
+        out.disk = met_by(sites_, disks_, out.wi);
+        const Worth w = worth(sites_, out.disk);
+        out.x = g * (w.d + lobe * w.s);
+        out.light = static_cast<float>(out.disk < 0 ? fill_ : seen_[static_cast<std::size_t>(out.disk)].light);
+        out.f = static_cast<float>(reflected(sites_, w, lobe, double(out.light)));
+        return out;
+    }
+
+private:
+    const Sites& sites_;
+    const Locals& disks_;
+    const std::vector<PixelDisk>& seen_;
+    double fill_;
+};
+
+/// Calls work.template operator()<A>() for the arm of that name.
+template <class Work> void with_arm(std::string_view sampler, Work&& work) {
+    bool found = false;
+    for_each_arm(Arms{}, [&]<template <class> class A>() {
+        if (A<float>::name != sampler) return;
+        found = true;
+        work.template operator()<A>();
+    });
+    ensure(found, "a sampler is a word of arms/all.h");
+}
+
+PixelDisk seen_disk(const DiskLight& light, const LocalDisk<float>& local) {
+    const Vec3d c = wide(local.to_center), n = wide(local.normal);
+    const double distance = length(c);
+    const double half = std::atan(light.radius / distance) * 180 / pi;
+    PixelDisk out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, false};
+    out.faces = dot(c, n) < 0 || light.two_sided;
+    const Frame<double> frame = frame_about(normalize(n));
+    constexpr int corners = 96;
+    for (int k = 0; k <= corners; ++k) {
+        const double a = 2 * pi * k / corners;
+        const Vec3d across = frame.t * std::cos(a) + frame.b * std::sin(a);
+        out.rim.push_back(normalize(c + across * light.radius));
+    }
+    return out;
+}
+
+Sites site_of(const Scene& scene, int i, int j) {
+    std::vector<Sites> groups = sites_of(scene, {i, j, i + 1, j + 1}, nullptr);
+    ensure(groups.size() == 1 && groups[0].count == 1, "an opened pixel sees a surface");
+    return std::move(groups[0]);
+}
+
+}  // namespace
+
+OpenPixel::OpenPixel(const Scene& scene, int i, int j)
+    : i_(i), j_(j), sites_(site_of(scene, i, j)), hit_(*scene.primary(i, j)), surface_(scene.surface(hit_)),
+      wo_(wide(at(sites_.wox, sites_.woy, sites_.woz))), fill_(luminance(scene.fill())), local_(local_disks(sites_)) {
+    for (std::size_t k = 0; k < local_.size(); ++k) disks_.push_back(seen_disk(scene.disks()[k], local_[k]));
+}
+
+Site<float> OpenPixel::aimed_from() const {
+    return {at(sites_.wox, sites_.woy, sites_.woz), sites_.s[0], sites_.alpha[0], sites_.diffuse[0], sites_.rho_s[0],
+            local_.data(), static_cast<int>(local_.size())};
+}
+
+Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
+
+int OpenPixel::disk_met(Vec3d wi) const { return wi.z > 0 ? met_by(sites_, local_, as<float>(wi)) : -1; }
+
+double OpenPixel::light(Vec3d wi) const {
+    const int disk = disk_met(wi);
+    return disk < 0 ? fill_ : disks_[static_cast<std::size_t>(disk)].light;
+}
+
+double OpenPixel::f(Vec3d wi, int disk) const {
+    if (!(wi.z > 0)) return 0;
+    const Worth w = worth(sites_, disk);
+    const double light = disk < 0 ? fill_ : disks_[static_cast<std::size_t>(disk)].light;
+    return reflected(sites_, w, lobe_of(sites_, as<float>(wi)), light);
+}
+
+double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
+    const Site<float> site = aimed_from();
+    double out = 0;
+    with_arm(sampler, [&]<template <class> class A>() {
+        const A<float> arm(site);
+        const Vec3f w = as<float>(wi);
+        if constexpr (requires { A<float>::techniques; }) out = double(arm.template pdf_technique<0>(site.wo, w).v);
+        else out = double(arm.pdf(site.wo, w).v);
+    });
+    return out;
+}
+
+std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
+    const Site<float> site = aimed_from();
+    const Carrier carry(sites_, local_, disks_, fill_);
+    std::vector<PixelSample> out;
+    with_arm(sampler, [&]<template <class> class A>() {
+        const A<float> arm(site);
+        for (std::uint64_t k = 0; k < n; ++k) {
+            const Vec2<float> u = draw(seed, sites_.pixel[0], k);
+            if constexpr (requires { A<float>::techniques; }) {
+                const Vec2<float> v = draw(seed, sites_.pixel[0], k, 1);
+                const Drawn<float> a = arm.template sample_technique<0>(site.wo, u);
+                const Drawn<float> b = arm.template sample_technique<1>(site.wo, v);
+                out.push_back(carry(u, a, arm.template weight<0>(site.wo, a), 0));
+                out.push_back(carry(v, b, arm.template weight<1>(site.wo, b), 1));
+            } else {
+                out.push_back(carry(u, arm.sample(site.wo, u), 1, 0));
+            }
+        }
+    });
+    return out;
+}
+
+std::vector<double> running_mean(const std::vector<PixelSample>& samples) {
+    std::vector<double> out;
+    double sum = 0;
+    for (const PixelSample& sample : samples) {
+        sum += static_cast<double>(sample.x);
+        if (sample.technique == 0) out.push_back(sum);
+        else out.back() = sum;
+    }
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] /= static_cast<double>(k + 1);
+    return out;
+}
+
+}  // namespace crescent
