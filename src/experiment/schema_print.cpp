@@ -1,7 +1,6 @@
-// `crescent schema`: the table as text of at most 80 columns, and as JSON.
+// `crescent schema`: the table as text of at most 80 columns. json_schema.cpp prints it for editors.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "experiment/names.h"
@@ -13,13 +12,6 @@ namespace crescent {
 namespace {
 
 constexpr std::size_t columns = 80;
-
-std::string type_name(Type type) {
-    static constexpr const char* names[] = {"text",     "check", "word",      "flag",  "integer",
-                                            "number",   "point", "direction", "color", "numbers",
-                                            "integers", "box",   "sampler",   "arm",   "shape"};
-    return names[static_cast<std::size_t>(type)];
-}
 
 std::string join(const std::string& path, std::string_view name) {
     return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
@@ -76,33 +68,6 @@ void print(const Section& section, const std::string& parent, std::string& out) 
     for (const Section& sub : section.sections) print(sub, path, out);
 }
 
-using nlohmann::ordered_json;
-
-ordered_json number_or_null(double x, bool there) { return there ? ordered_json(x) : ordered_json(nullptr); }
-
-void collect(const Section& section, const std::string& parent, ordered_json& keys, ordered_json& sections) {
-    const std::string path = path_of(section, parent);
-    sections.push_back({{"path", path}, {"required", section.need == Need::required}, {"means", section.means}});
-    for (const Key& key : section.keys) {
-        const bool ranged = key.range.low != key.range.high;
-        keys.push_back({{"key", join(path, key.name)},
-                        {"type", type_name(key.type)},
-                        {"expects", expectation(key)},
-                        {"unit", key.unit},
-                        {"range",
-                         {{"low", number_or_null(key.range.low, ranged)},
-                          {"low_open", key.range.low_open},
-                          {"high", number_or_null(key.range.high, ranged)},
-                          {"high_open", key.range.high_open}}},
-                        {"required", key.need == Need::required},
-                        {"default", key.need == Need::required ? ordered_json(nullptr) : ordered_json(key.fallback)},
-                        {"words", key.words},
-                        {"kinds", key.kinds},
-                        {"means", key.means}});
-    }
-    for (const Section& sub : section.sections) collect(sub, path, keys, sections);
-}
-
 }  // namespace
 
 std::string schema_text() {
@@ -112,17 +77,6 @@ std::string schema_text() {
     out += "\nQuantities of a check\n";
     for (const QuantityWord& word : quantity_words()) out += wrapped(form_of(word), 2) + wrapped(word.means, 6);
     return out;
-}
-
-std::string schema_json() {
-    ordered_json root = {{"keys", ordered_json::array()},
-                         {"sections", ordered_json::array()},
-                         {"samplers", sampler_names()},
-                         {"quantities", ordered_json::array()}};
-    collect(schema(), "", root["keys"], root["sections"]);
-    for (const QuantityWord& word : quantity_words())
-        root["quantities"].push_back({{"form", form_of(word)}, {"means", word.means}});
-    return root.dump(2) + "\n";
 }
 
 }  // namespace crescent

@@ -1,0 +1,34 @@
+#!/bin/bash
+# `crescent schema --json` is a JSON Schema: python3-jsonschema accepts it, every experiment of the tree and tiny.toml
+# obey it, and mistakes that the program refuses are refused by it too. docs/experiment.schema.json is what it prints.
+. "$(dirname "$0")/common.sh"
+/usr/bin/python3 -c 'import jsonschema, tomllib' 2>said || die "python3-jsonschema or tomllib is missing: $(cat said)"
+
+expect 0 "$CRESCENT" schema --json
+cp printed schema.json
+cmp -s schema.json "$CRESCENT_SOURCE/docs/experiment.schema.json" ||
+    die "docs/experiment.schema.json is old: build/crescent schema --json >docs/experiment.schema.json"
+
+# The tables of an experiment with one mistake; the program must refuse it as well.
+mistake() { sed "$1" "$tiny" >"mistake-$2.toml" && ! cmp -s "$tiny" "mistake-$2.toml" || die "no such line: $1"; }
+mistake 's/^width = .*/width = 0/' range
+mistake 's/^width = .*/widht = 8/' key
+mistake 's/kind = "sphere"/kind = "spheer"/' word
+mistake 's/^radius = .*/radius = "wide"/' type
+mistake '0,/^radius = .*/{/^radius = .*/d}' missing
+mistake 's/kind = "sphere"/kind = "sphere"\nedge_u = [1, 0, 0]/' foreign
+for file in mistake-*.toml; do expect 2 "$CRESCENT" run "$file" --out nowhere; done
+
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" "$tiny" <<'END'
+import glob, json, sys, tomllib
+import jsonschema
+schema = json.load(open("schema.json"))
+jsonschema.Draft7Validator.check_schema(schema)
+judge = jsonschema.Draft7Validator(schema)
+read = lambda path: tomllib.load(open(path, "rb"))
+for path in glob.glob(sys.argv[1] + "/experiments/*.toml") + [sys.argv[2]]:
+    assert open(path).readline().startswith("#:schema ") or path == sys.argv[2], f"{path} names no schema"
+    for error in judge.iter_errors(read(path)): sys.exit(f"{path}: {error.json_path}: {error.message}")
+for path in glob.glob("mistake-*.toml"):
+    assert not judge.is_valid(read(path)), f"{path} passes the schema"
+END

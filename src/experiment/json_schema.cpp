@@ -1,0 +1,146 @@
+// `crescent schema --json`: the table as a JSON Schema of draft 7, the draft that TOML editors read (Taplo, Even Better
+// TOML). It holds what one value can say of itself: type, range, words, which keys a kind of shape needs. What hangs on
+// several values (names that must exist, unit vectors, boxes inside the image) is for the reader to check.
+#include <nlohmann/json.hpp>
+
+#include "experiment/names.h"
+#include "experiment/quantity_text.h"
+#include "experiment/schema.h"
+
+namespace crescent {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$";  // names become file names
+constexpr int longest_text = 4096, longest_list = 64, longest_title = 200;
+
+/// A number of the key's range; box coordinates and counts are whole.
+Json number(const Key& key, bool whole) {
+    Json out = {{"type", whole ? "integer" : "number"}};
+    if (key.range.low == key.range.high) return out;
+    const auto bound = [&](double x) { return whole ? Json(static_cast<std::int64_t>(x)) : Json(x); };
+    out[key.range.low_open ? "exclusiveMinimum" : "minimum"] = bound(key.range.low);
+    out[key.range.high_open ? "exclusiveMaximum" : "maximum"] = bound(key.range.high);
+    return out;
+}
+
+Json list(const Json& item, int count) {
+    return {{"type", "array"}, {"items", item}, {"minItems", count}, {"maxItems", count}};
+}
+
+/// An ascending list, or a bare number for a list of one.
+Json one_or_more(const Json& item) {
+    Json many = {{"type", "array"}, {"items", item}, {"minItems", 1}, {"maxItems", longest_list}};
+    many["uniqueItems"] = true;
+    return {{"anyOf", {item, many}}};
+}
+
+Json type_of(const Key& key) {
+    switch (key.type) {
+        case Type::text:
+        case Type::check:
+        case Type::arm:
+        case Type::shape: return {{"type", "string"}, {"maxLength", longest_text}};
+        case Type::word: return {{"type", "string"}, {"enum", key.words}};
+        case Type::sampler: return {{"type", "string"}, {"enum", sampler_names()}};
+        case Type::flag: return {{"type", "boolean"}};
+        case Type::integer: return number(key, true);
+        case Type::number: return number(key, false);
+        case Type::point:
+        case Type::direction:
+        case Type::color: return list(number(key, false), 3);
+        case Type::box: return list(number(key, true), 4);
+        case Type::numbers: return one_or_more(number(key, false));
+        case Type::integers: return one_or_more(number(key, true));
+    }
+    return {};
+}
+
+/// What an editor shows beside the key.
+std::string description(const Key& key) {
+    std::string text = std::string(key.means) + " Expects " + expectation(key) + ".";
+    if (key.need != Need::required) text += " Default: " + std::string(key.fallback) + ".";
+    if (key.type != Type::check) return text;
+    text += " Quantities:";
+    for (const QuantityWord& word : quantity_words()) text += " " + form_of(word) + ";";
+    text.back() = '.';
+    return text;
+}
+
+Json property(const Key& key) {
+    Json out = type_of(key);
+    out["description"] = description(key);
+    if (key.need == Need::defaulted && key.type != Type::sampler) out["default"] = Json::parse(key.fallback);
+    return out;
+}
+
+/// For tables with a key `kind`: which keys that kind needs, and that it has none of the other kinds'.
+Json kinds_of(const Section& section, const std::vector<std::string>& kinds) {
+    Json rules = Json::array();
+    for (const std::string& kind : kinds) {
+        Json needed = Json::array(), foreign = Json::object();
+        for (const Key& key : section.keys) {
+            if (!has_kind(key, kind)) foreign[std::string(key.name)] = false;
+            else if (key.need == Need::required && !key.kinds.empty()) needed.push_back(key.name);
+        }
+        rules.push_back({{"if", {{"properties", {{"kind", {{"const", kind}}}}}, {"required", {"kind"}}}},
+                         {"then", {{"required", needed}, {"properties", foreign}}}});
+    }
+    return rules;
+}
+
+Json family(const Section& section);
+
+Json table(const Section& section) {
+    Json out = {{"type", "object"}, {"description", section.means}, {"properties", Json::object()}};
+    Json required = Json::array();
+    for (const Key& key : section.keys) {
+        out["properties"][std::string(key.name)] = property(key);
+        if (key.need == Need::required && key.kinds.empty()) required.push_back(key.name);
+    }
+    for (const Section& sub : section.sections) {
+        out["properties"][std::string(sub.name)] = family(sub);
+        if (sub.need == Need::required) required.push_back(sub.name);
+    }
+    out["additionalProperties"] = false;
+    if (!required.empty()) out["required"] = required;
+    const Key* kind = section.find_key("kind");
+    const auto of_some_kinds = [](const Key& k) { return !k.kinds.empty(); };
+    const bool by_kind = std::any_of(section.keys.begin(), section.keys.end(), of_some_kinds);
+    if (kind && by_kind) out["allOf"] = kinds_of(section, kind->words);
+    return out;
+}
+
+/// A table, tables under names of the user's choice, or a list of tables.
+Json family(const Section& section) {
+    const Json one = table(section);
+    const Json listed = {{"type", "array"}, {"items", one}, {"description", section.means}};
+    Json named = {{"type", "object"}, {"description", section.means}};
+    switch (section.many) {
+        case Many::one: return one;
+        case Many::list: return listed;
+        case Many::named:
+            named["patternProperties"] = {{name_pattern, one}};
+            named["additionalProperties"] = false;
+            if (section.need == Need::required) named["minProperties"] = 1;
+            return named;
+        case Many::titled: break;
+    }
+    named["additionalProperties"] = one;  // [assertions."any text"], or a list whose tables say their own name
+    Json item = one;
+    item["properties"]["name"] = {{"type", "string"}, {"minLength", 1}, {"maxLength", longest_title}};
+    item["required"].push_back("name");
+    return {{"anyOf", {named, Json{{"type", "array"}, {"items", item}}}}, {"description", section.means}};
+}
+
+}  // namespace
+
+std::string schema_json() {
+    Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "crescent experiment"}};
+    root.update(table(schema()));
+    return root.dump(2) + "\n";
+}
+
+}  // namespace crescent
