@@ -14,9 +14,9 @@ namespace {
 
 using Work = std::function<int()>;
 
-constexpr const char* footer = R"(Exit codes: 0 all holds; 1 an assertion fails; 2 wrong command line or
-experiment file; 3 an output cannot be written or a part is missing;
-4 inconclusive (check); 130 interrupted.
+constexpr const char* footer = R"(Exit codes: 0 all holds; 1 an assertion fails (check: wrong); 2 wrong command
+line or experiment file; 3 an output cannot be written, a part is missing or
+(check) the sampler broke off; 4 inconclusive (check); 130 interrupted.
 
   crescent run experiments/gallery.toml      the published experiment
   crescent run experiments/gallery.toml --set sphere.s=64 --set seed=7
@@ -80,7 +80,9 @@ void add_schema(CLI::App& app, Work& work) {
 
 constexpr const char* check_footer = R"(Nine verdicts, in order: valid, support, normalised, density, identity, physics,
 tail, mean, efficiency. Without ARM the whole list is judged, and 0 means that every
-arm gets what the list expects of it. Else: 0 right, 1 wrong, 4 inconclusive.
+arm gets what the list expects of it. Else: 0 right, 1 wrong, 3 error (the sampler
+crashed, fell silent or spoke another language), 4 inconclusive: something could not
+be told, or was not looked at. Wrong comes before error, error before inconclusive.
 docs/verdicts.md says what each verdict means and how --exec is spoken to.)";
 
 void add_check(CLI::App& app, Work& work) {
@@ -97,6 +99,8 @@ void add_check(CLI::App& app, Work& work) {
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure the bench itself on so many seeds")->type_name("SEEDS")->check(CLI::Range(1, 100000))->excludes(arm)->excludes(set)->excludes(planted);
     auto* exec = c->add_option("--exec", f->exec, "judge a program that answers over a pipe")->type_name("'PROGRAM ARGS'")->check(told);
     auto* samples = c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told);
+    c->add_option("--patience", f->patience, "s that --exec may take in all; default 120, with --full 3600")->type_name("SECONDS")->needs(exec)->check(CLI::Range(0.01, 1e6));
+    c->add_flag("--accept-few", f->accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
     for (auto* other : {arm, set, planted, rates}) exec->excludes(other), samples->excludes(other);
     exec->excludes(samples);
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")->type_name("FILE")->needs(samples)->check(told);

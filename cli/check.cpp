@@ -66,6 +66,7 @@ Rigour rigour_of(const CheckFlags& flags) {
     r.alpha = flags.alpha;
     r.seed = flags.seed;
     r.pictures = !flags.html.empty();
+    r.accept_few = flags.accept_few;
     return r;
 }
 
@@ -74,6 +75,7 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
         PipeLimits limits;
         limits.stop = &watch.stop;
         if (flags.full) limits.total_seconds = 3600;
+        if (flags.patience > 0) limits.total_seconds = flags.patience;
         return trials_of_subject(start_pipe(flags.exec, limits), flags.full);
     }
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
@@ -84,7 +86,7 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
     return {t};
 }
 
-int exit_of(State state) { return state == State::wrong ? failed : state == State::inconclusive ? inconclusive : held; }
+int exit_of(State state) { return state == State::wrong ? failed : state == State::error ? unwritable : state == State::inconclusive ? inconclusive : held; }
 
 /// Minutes of work are not lost to a folder that is not there: every file is opened before the first draw.
 void try_files(const CheckFlags& flags) {
@@ -146,15 +148,15 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
 Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
     Judgement j;
     j.alpha = flags.alpha;
-    j.state = dynamic_cast<const SubjectTooSlow*>(&fault) ? State::inconclusive : State::wrong;
+    j.state = dynamic_cast<const SubjectTooSlow*>(&fault) ? State::inconclusive : State::error;
     for (std::string_view name : verdict_names) {
         Verdict v;
         v.arm = flags.exec;
         v.trial = "start";
         v.name = name;
-        v.state = name == "valid" ? j.state : State::skipped;
-        v.say = name == "valid" ? fault.what() : "The program never came to be judged.";
-        v.expected = v.state == State::skipped;
+        v.state = j.state;
+        v.say = name == "valid" ? "The sampler never came to be judged: " + std::string(fault.what()) + "." : "It could not be asked: the sampler never came to be judged.";
+        v.expected = false;
         j.verdicts.push_back(v);
     }
     j.as_expected = false;

@@ -12,7 +12,7 @@ enum Exit : int {
     held = 0,          // done, and everything asserted holds (check: right)
     failed = 1,        // done, and an assertion fails (check: wrong)
     misused = 2,       // the command line or the experiment file is wrong; nothing was written
-    unwritable = 3,    // an output could not be written, or a needed part is missing
+    unwritable = 3,    // an output could not be written, a needed part is missing, or (check) the sampler broke off: an error
     inconclusive = 4,  // check: neither right nor wrong
     bug = 70,          // a claim of our own did not hold (EX_SOFTWARE of sysexits.h)
     interrupted = 130  // SIGINT or SIGTERM
@@ -46,9 +46,9 @@ struct CheckFlags {
     std::vector<std::string> settings;   // s=128
     std::string exec, samples, table, wo;
     std::string json, junit, html;       // files to write
-    double alpha = 1e-3;
+    double alpha = 1e-3, patience = 0;   // patience: s a program may take; 0: two minutes, with --full an hour
     unsigned seed = 1, error_rates = 0;  // error_rates: how many seeds; 0: not asked for
-    bool full = false, quick = false, planted = false, quiet = false;
+    bool full = false, quick = false, planted = false, quiet = false, accept_few = false;
 };
 int check(const CheckFlags& flags);
 

@@ -17,7 +17,7 @@ expect 0 "${CC:-cc}" -O2 -o bright bright.c -lm
 expect 1 "$CRESCENT" check --quiet --exec ./bright
 grep -q "creates energy" printed || die "nobody says that energy is created: $(cat printed)"
 expect 2 "$CRESCENT" check --quiet --exec ./nowhere
-expect 1 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
+expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
 grep -q "exit code 3" printed || die "nobody says how the program ended: $(cat printed)"
 
 python3 - <<'PY'

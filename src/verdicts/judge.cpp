@@ -6,17 +6,11 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "verdicts/ordered.h"
+#include "verdicts/outcome.h"
 
 namespace crescent {
 
 namespace {
-
-struct Outcome {
-    std::vector<Verdict> verdicts;
-    std::vector<BinMap> maps;
-    std::vector<WeightPicture> pictures;
-    std::optional<Efficiency> efficiency;
-};
 
 Verdict skipped(const Trial& trial, std::string_view name, std::string say) {
     Verdict v;
@@ -53,6 +47,71 @@ Rigour for_yardstick(const Trial& trial, Rigour rigour) {
     return rigour;
 }
 
+void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& watch) {
+    const Trial& trial = work.trial;
+    out.verdicts.push_back(judge_valid(work));
+    if (out.verdicts[0].state == State::wrong) return skip_rest(trial, out, "The sampler is not valid here.");
+    work.measure_density();
+    watch.check();
+    out.verdicts.push_back(judge_support(work));
+    out.verdicts.push_back(judge_normalised(work));
+    out.verdicts.push_back(judge_density(work));
+    watch.check();
+    out.verdicts.push_back(judge_identity(work));
+    out.verdicts.push_back(judge_physics(work));
+    out.verdicts.push_back(judge_tail(work));
+    out.verdicts.push_back(judge_mean(work));
+    if (trial.subject->has_f()) out.efficiency = measure_efficiency(work, index);
+}
+
+void settle(Judgement& j) {
+    bool wrong = false, error = false, doubt = false;
+    for (const Verdict& v : j.verdicts) {
+        wrong = wrong || v.state == State::wrong;
+        error = error || v.state == State::error;
+        doubt = doubt || v.state == State::inconclusive;
+        j.as_expected = j.as_expected && v.expected;
+    }
+    j.state = wrong ? State::wrong : error ? State::error : doubt ? State::inconclusive : State::right;
+}
+
+/// A program that broke off while it was asked for an arm to rank against: said where it is ranked, at the same w_o.
+void blame_yardsticks(std::span<const Trial> trials, std::span<const Outcome> outcomes, std::vector<Verdict>& ranks) {
+    std::size_t judged = 0;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        const std::optional<Cut>& cut = outcomes[i].cut;
+        if (!trials[i].yardstick) judged = i;
+        else if (cut && cut->state == State::error && !cut->evidence.empty()) ranks[judged].state = State::error, ranks[judged].say = cut->first;
+    }
+}
+
+/// Which verdicts of a trial there was no time for.
+void note_left_out(const Trial& trial, const Outcome& out, Judgement& j) {
+    if (!out.cut || out.cut->state == State::error) return;
+    LeftOut left{trial.arm, trial.text(), {}, out.cut->first};
+    for (std::size_t k = out.verdicts.size(); k < verdict_names.size(); ++k) left.verdicts.emplace_back(verdict_names[k]);
+    j.left_out.push_back(std::move(left));
+}
+
+}  // namespace
+
+Cut cut_by(const SubjectFault& fault) {
+    if (dynamic_cast<const SubjectTooSlow*>(&fault)) return {State::inconclusive, fault.what(), fault.what(), {}};
+    const std::string rest = "It could not be asked: the sampler broke off before.";
+    if (dynamic_cast<const SubjectGone*>(&fault)) return {State::error, rest, rest, {}};
+    return {State::error, fmt::format("The sampler broke off: {}.", fault.what()), rest, {{"first_fault", fault.what()}}};
+}
+
+void fill_up(const Trial& trial, Outcome& out) {
+    if (!out.cut) return;
+    for (bool first = true; out.verdicts.size() < verdict_names.size(); first = false) {
+        Verdict v = skipped(trial, verdict_names[out.verdicts.size()], first ? out.cut->first : out.cut->rest);
+        v.state = out.cut->state;
+        if (first) v.evidence = out.cut->evidence;
+        out.verdicts.push_back(std::move(v));
+    }
+}
+
 Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally, Watch& watch) {
     Outcome out;
     try {
@@ -61,53 +120,19 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
             return out;
         }
         Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
-        out.verdicts.push_back(judge_valid(work));
-        if (out.verdicts[0].state == State::wrong) {
-            skip_rest(trial, out, "The sampler is not valid here.");
-        } else {
-            work.measure_density();
-            watch.check();
-            out.verdicts.push_back(judge_support(work));
-            out.verdicts.push_back(judge_normalised(work));
-            out.verdicts.push_back(judge_density(work));
-            watch.check();
-            out.verdicts.push_back(judge_identity(work));
-            out.verdicts.push_back(judge_physics(work));
-            out.verdicts.push_back(judge_tail(work));
-            out.verdicts.push_back(judge_mean(work));
-            if (trial.subject->has_f()) out.efficiency = measure_efficiency(work, index);
-        }
+        judge_in_order(work, index, out, watch);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
     } catch (const SubjectFault& fault) {
-        if (trial.yardstick) return {};
-        out.verdicts.clear();
-        Verdict v = skipped(trial, "valid", fault.what());
-        const bool gone = dynamic_cast<const SubjectGone*>(&fault), slow = dynamic_cast<const SubjectTooSlow*>(&fault);
-        v.state = gone ? State::skipped : slow ? State::inconclusive : State::wrong;
-        if (!gone) v.evidence["first_fault"] = fault.what();
-        out.verdicts.push_back(v);
-        skip_rest(trial, out, "The sampler stopped answering as agreed.");
+        out.cut = cut_by(fault);
     }
     return out;
 }
 
-void settle(Judgement& j) {
-    bool wrong = false, doubt = false;
-    for (const Verdict& v : j.verdicts) {
-        wrong = wrong || v.state == State::wrong;
-        doubt = doubt || v.state == State::inconclusive;
-        j.as_expected = j.as_expected && v.expected;
-    }
-    j.state = wrong ? State::wrong : doubt ? State::inconclusive : State::right;
-}
-
-}  // namespace
-
 std::string what_is_wrong(const Judgement& judgement) {
     std::string out;
     for (const Verdict& v : judgement.verdicts)
-        if (v.state == State::wrong || v.state == State::inconclusive) out += fmt::format("{} [{}] {} {}: {}\n", v.arm, v.trial, v.name, word(v.state), v.say);
+        if (v.state != State::right && v.state != State::skipped) out += fmt::format("{} [{}] {} {}: {}\n", v.arm, v.trial, v.name, word(v.state), v.say);
     return out;
 }
 
@@ -117,6 +142,7 @@ std::string_view word(State state) {
         case State::wrong: return "wrong";
         case State::inconclusive: return "inconclusive";
         case State::skipped: return "skipped";
+        case State::error: return "error";
     }
     return "";
 }
@@ -133,18 +159,17 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     Rigour rigour = given;
     rigour.share(count_tests(trials));
     Tally tally;
-    std::vector<Outcome> outcomes(trials.size());
     watch.begin("verdicts", static_cast<double>(trials.size()));
-    const auto one = [&](std::size_t i) {
-        watch.check();
-        outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
-        watch.advance(1);
-    };
     const bool serial = std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); });
+    std::vector<Outcome> outcomes(trials.size());
     if (serial) {
-        for (std::size_t i = 0; i < trials.size(); ++i) one(i);
+        outcomes = judge_in_turn(trials, rigour, tally, watch);
     } else {
-        oneapi::tbb::parallel_for(std::size_t{0}, trials.size(), one);
+        oneapi::tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+            watch.check();
+            outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
+            watch.advance(1);
+        });
     }
     Judgement out;
     out.alpha = rigour.alpha;
@@ -155,9 +180,13 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     for (const Outcome& o : outcomes)
         if (o.efficiency) efficiencies.push_back(*o.efficiency);
     std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
+    blame_yardsticks(trials, outcomes, ranks);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].yardstick) continue;
-        outcomes[i].verdicts.push_back(std::move(ranks[i]));
+        note_left_out(trials[i], outcomes[i], out);
+        if (!outcomes[i].cut) outcomes[i].verdicts.push_back(std::move(ranks[i]));
+        fill_up(trials[i], outcomes[i]);
+        out.questions = std::max(out.questions, trials[i].subject->spending().answers);
         for (Verdict& v : outcomes[i].verdicts) {
             expect(trials[i], v);
             out.verdicts.push_back(std::move(v));

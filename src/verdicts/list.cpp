@@ -205,15 +205,7 @@ Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, doub
 
 std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full) {
     std::vector<Trial> trials;
-    std::vector<std::pair<double, double>> grid = wo_grid(full);
-    const double questions = full ? 4e6 : 2e5, seconds = full ? 600 : 60;  // of one w_o; of all
-    const std::size_t affordable = static_cast<std::size_t>(std::clamp(seconds * subject->answers_per_second() / questions, 2.0, 1e3));
-    if (affordable < grid.size()) {  // the middle first, then the grazing one
-        std::sort(grid.begin(), grid.end(), [](auto a, auto b) { return std::tuple(std::fabs(a.first - 45), a) < std::tuple(std::fabs(b.first - 45), b); });
-        if (grid.size() > 2) std::swap(grid[1], *std::find(grid.begin(), grid.end(), std::pair<double, double>{85, 75}));
-        grid.resize(affordable);
-    }
-    for (const auto& [theta, azimuth] : grid) {
+    for (const auto& [theta, azimuth] : wo_grid(full)) {
         trials.push_back(trial_of_subject(subject, theta, azimuth));
         if (!subject->has_f()) continue;
         const Vec3d wo = tilt(theta, azimuth);

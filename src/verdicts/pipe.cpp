@@ -42,7 +42,7 @@ public:
     std::string name() const override { return name_; }
     bool serial() const override { return true; }
     bool has_f() const override { return has_f_; }
-    double answers_per_second() const override { return rate_; }
+    Spending spending() const override { return {requests_, seconds_since(began_), limits_.total_seconds}; }
 
     void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
         ask(u.size(), "four numbers 'wix wiy wiz pdf'",
@@ -70,7 +70,7 @@ private:
     mutable std::string broken_;  // what went wrong; nothing is asked from then on
     bool greeted_ = false;
     Clock::time_point began_ = Clock::now();
-    double rate_ = 0;  // answers a second, as met when it started
+    mutable bool slow_ = false;  // given up for want of time alone
 
     static double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
@@ -154,14 +154,6 @@ private:
                 has_f_ = s != "-";
                 return !has_f_ || (take_float(s, v) && blank(s));
             });
-        for (std::size_t count : {16, 256, 4096}) {  // until a tenth of a second has passed
-            const Clock::time_point start = Clock::now();
-            const std::vector<Vec2d> u(count, {0.5, 0.5});
-            std::vector<Draw> out(count);
-            sample(0, {0, 0, 1}, u, out);
-            rate_ = static_cast<double>(count) / std::max(seconds_since(start), 1e-6);
-            if (seconds_since(start) > 0.1) break;
-        }
     }
 
     using Write = std::function<void(std::size_t, std::string&)>;
@@ -192,6 +184,7 @@ private:
 
     /// Writes all requests and reads all answers, whichever side is ready.
     void ask(std::size_t count, std::string_view expected, const Write& write, const Read& read) const {
+        if (slow_) throw SubjectTooSlow(broken_);
         if (!broken_.empty()) throw SubjectGone("the program was given up: " + broken_);
         std::string outgoing, line;
         std::size_t written = 0, sent = 0, answered = 0;
@@ -224,8 +217,9 @@ private:
                 throw Interrupted{};
             }
             if (seconds_since(began_) > limits_.total_seconds) {
-                broken_ = fmt::format("request {} of a program that is too slow to judge: {:.0f} s are spent and it gives {:.3g} answers a second", requests_ + answered + 1, limits_.total_seconds,
+                broken_ = fmt::format("the program is too slow to judge: {:g} s are spent and it gives {:.2g} answers a second", limits_.total_seconds,
                                       static_cast<double>(requests_ + answered) / seconds_since(began_));
+                slow_ = true;
                 throw SubjectTooSlow(broken_);
             }
             const double quiet = std::chrono::duration<double>(Clock::now() - last).count();

@@ -27,7 +27,7 @@ std::string escaped(std::string_view s) {
 }
 
 State worst(State a, State b) {
-    const auto rank = [](State s) { return s == State::wrong ? 3 : s == State::inconclusive ? 2 : s == State::right ? 1 : 0; };
+    const auto rank = [](State s) { return s == State::wrong ? 4 : s == State::error ? 3 : s == State::inconclusive ? 2 : s == State::right ? 1 : 0; };
     return rank(b) > rank(a) ? b : a;
 }
 
@@ -57,7 +57,7 @@ std::string verdict_table(const Judgement& judgement, bool all) {
     }
     std::map<std::string, int> expected;  // told once each, with how often
     for (const Verdict& v : judgement.verdicts) {
-        const bool notable = v.state == State::wrong || v.state == State::inconclusive || !v.expected;
+        const bool notable = v.state == State::wrong || v.state == State::error || v.state == State::inconclusive || !v.expected;
         if (v.expected && !v.why_expected.empty() && notable) ++expected[fmt::format("{}: {} {} as the list expects: {}", v.arm, word(v.state), v.name, v.why_expected)];
         else if (all || !v.expected || v.state == State::wrong) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), v.say);
     }
@@ -76,6 +76,9 @@ std::string verdict_json(const Judgement& judgement) {
     root["tests"] = judgement.tests;
     root["failed_once"] = judgement.screened;
     root["failed_twice"] = judgement.confirmed;
+    if (judgement.questions > 0) root["questions"] = judgement.questions;
+    root["left_out"] = nlohmann::ordered_json::array();
+    for (const LeftOut& l : judgement.left_out) root["left_out"].push_back({{"arm", l.arm}, {"case", l.trial}, {"verdicts", l.verdicts}, {"why", l.why}});
     root["verdicts"] = nlohmann::ordered_json::array();
     for (const Verdict& v : judgement.verdicts) {
         nlohmann::ordered_json one;
@@ -93,12 +96,15 @@ std::string verdict_json(const Judgement& judgement) {
 }
 
 std::string verdict_junit(const Judgement& judgement) {
-    std::size_t failures = 0, skipped = 0;
+    std::size_t failures = 0, errors = 0, skipped = 0;
     std::string cases;
     for (const Verdict& v : judgement.verdicts) {
         cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\">", escaped(v.arm), v.name, escaped(v.trial));
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
-        if (fails) {
+        if (v.state == State::error) {
+            ++errors;
+            cases += fmt::format("<error message=\"{}\">{}</error>", word(v.state), escaped(v.say));
+        } else if (fails) {
             ++failures;
             cases += fmt::format("<failure message=\"{}\">{}</failure>", word(v.state), escaped(v.say));
         } else if (v.state == State::skipped || v.state == State::inconclusive) {
@@ -107,7 +113,7 @@ std::string verdict_junit(const Judgement& judgement) {
         }
         cases += "</testcase>\n";
     }
-    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"crescent check\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n{}</testsuite>\n", judgement.verdicts.size(), failures,
+    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"crescent check\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}</testsuite>\n", judgement.verdicts.size(), failures, errors,
                        skipped, cases);
 }
 

@@ -34,6 +34,12 @@ struct Pair {
     Vec3d wo, wi;
 };
 
+/// Answers that a program gave, the time they took and the time it has in all, in s.
+struct Spending {
+    std::uint64_t answers = 0;
+    double seconds = 0, allowed = 0;  // allowed 0: it is never cut short
+};
+
 /// One density with its draws, or two where a pair of samples is weighed by MIS. Thread-safe unless `serial()`.
 class JudgedSampler {
 public:
@@ -64,8 +70,8 @@ public:
     virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.
     virtual bool draws_at_will() const { return true; }
-    /// What it can be asked in a second; a slow program is judged at fewer w_o.
-    virtual double answers_per_second() const { return 1e9; }
+    /// What was asked of a program so far, and how long that took.
+    virtual Spending spending() const { return {}; }
     /// Only one thread may call.
     virtual bool serial() const { return false; }
 };

@@ -9,7 +9,8 @@
 
 namespace crescent {
 
-enum class State { right, wrong, inconclusive, skipped };
+/// error: the sampler could not be asked; it crashed, threw, spoke another language or fell silent.
+enum class State { right, wrong, inconclusive, skipped, error };
 std::string_view word(State state);
 
 inline constexpr std::array<std::string_view, 9> verdict_names = {"valid",   "support", "normalised", "density",   "identity",
@@ -42,12 +43,21 @@ struct WeightPicture {
     std::vector<double> rose_p, rose_f;       // plane of incidence, from -90 to 90 deg of wi
 };
 
+/// What a call did not look at for want of time.
+struct LeftOut {
+    std::string arm, trial;
+    std::vector<std::string> verdicts;
+    std::string why;
+};
+
 struct Judgement {
     std::vector<Verdict> verdicts;
+    std::vector<LeftOut> left_out;
     std::vector<BinMap> maps;
     std::vector<WeightPicture> weights;
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
+    std::uint64_t questions = 0;  // that a program answered
     State state = State::right;  // of everything as drawn
     bool as_expected = true;     // of everything beside what the list expects
 };

@@ -23,6 +23,7 @@ struct Rigour {
     int rings = 20, sectors = 16;
     std::size_t evaluations = 80000;  // of one integral, at most
     bool pictures = false;             // keep maps and weights for the HTML page
+    bool accept_few = false;           // a program too slow for every w_o is judged by those that were looked at
     // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
     double screen = 1e-3, confirm = 1e-4;
     static Rigour quick() { return {}; }

@@ -1,0 +1,93 @@
+// A program is asked by one thread and has a limited time. Every w_o keeps at least `valid`; what else there was no time for
+// is inconclusive and says so, whatever the load of the machine.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+#include "verdicts/ordered.h"
+#include "verdicts/outcome.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr std::uint64_t few_draws = 256;
+
+/// The middle first, then the grazing one: between them they meet most faults. Yardsticks last.
+std::vector<std::size_t> order_of(std::span<const Trial> trials) {
+    std::vector<std::size_t> order(trials.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto rank = [&](std::size_t i) { return std::tuple(trials[i].yardstick, std::fabs(trials[i].theta_deg - 45), i); };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+    const auto grazing = std::find_if(order.begin(), order.end(), [&](std::size_t i) { return trials[i].theta_deg == 85 && !trials[i].yardstick; });
+    if (grazing != order.end() && grazing > order.begin()) std::rotate(order.begin() + 1, grazing, grazing + 1);
+    return order;
+}
+
+/// `valid` from a few draws.
+Outcome look(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally) {
+    Outcome out;
+    try {
+        const Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        out.verdicts.push_back(judge_valid(work));
+    } catch (const SubjectFault& fault) {
+        out.cut = cut_by(fault);
+    }
+    return out;
+}
+
+Cut left_out(const Trial& trial, const Rigour& rigour) {
+    const double seconds = trial.subject->spending().allowed;
+    const std::string say = fmt::format("Not looked at: {:g} s are too short for this program to be asked everything at every w_o. {} --accept-few judges by what was looked at.", seconds,
+                                        rigour.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you say;");
+    return {rigour.accept_few ? State::skipped : State::inconclusive, say, say, {}};
+}
+
+/// The dearest trial so far tells what the next one may cost; the first is tried in any case.
+bool affords(const Spending& now, std::uint64_t dearest) {
+    if (now.allowed <= 0 || dearest == 0) return true;
+    const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
+    return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
+}
+
+}  // namespace
+
+std::vector<Outcome> judge_in_turn(std::span<const Trial> trials, const Rigour& rigour, Tally& tally, Watch& watch) {
+    Rigour quick_look = rigour;
+    quick_look.draws = std::min(rigour.draws, few_draws);
+    quick_look.pictures = false;
+    std::vector<Outcome> outcomes(trials.size()), looks(trials.size());
+    const std::vector<std::size_t> order = order_of(trials);
+    for (std::size_t i : order) {
+        watch.check();
+        if (!trials[i].yardstick) looks[i] = look(trials[i], i, quick_look, tally);
+    }
+    std::uint64_t dearest = 0;
+    for (std::size_t i : order) {
+        watch.check();
+        const Spending before = trials[i].subject->spending();
+        if (looks[i].cut || !affords(before, trials[i].yardstick ? 0 : dearest)) {
+            outcomes[i] = std::move(looks[i]);
+            const bool slow = !outcomes[i].cut || outcomes[i].cut->state == State::inconclusive;
+            if (slow) outcomes[i].cut = left_out(trials[i], rigour);
+        } else {
+            outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
+            dearest = std::max(dearest, trials[i].subject->spending().answers - before.answers);
+            const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
+            if (cut_short) outcomes[i].cut = left_out(trials[i], rigour);
+            std::vector<Verdict>& verdicts = outcomes[i].verdicts;
+            const bool met = !looks[i].verdicts.empty() && (verdicts.empty() || looks[i].verdicts[0].state == State::wrong);
+            if (met && verdicts.empty()) verdicts = std::move(looks[i].verdicts);
+            else if (met) verdicts[0] = std::move(looks[i].verdicts[0]);
+        }
+        watch.advance(1);
+    }
+    std::size_t whole = 0;
+    for (std::size_t i : order) whole += !trials[i].yardstick && !outcomes[i].cut;
+    for (Outcome& o : outcomes)  // few may be accepted, none may not
+        if (whole == 0 && o.cut && o.cut->state == State::skipped) o.cut->state = State::inconclusive;
+    return outcomes;
+}
+
+}  // namespace crescent

@@ -1,0 +1,35 @@
+// What the judgement of one trial came to, and what became of a trial that could not be asked to its end.
+#pragma once
+
+#include <optional>
+
+#include "verdicts/judge.h"
+
+namespace crescent {
+
+/// Why a trial ended before its last verdict.
+struct Cut {
+    State state = State::error;  // of the verdicts that are missing
+    std::string first, rest;     // what the first of them says, and what the others say
+    nlohmann::ordered_json evidence = nlohmann::ordered_json::object();  // with the first
+};
+
+struct Outcome {
+    std::vector<Verdict> verdicts;
+    std::vector<BinMap> maps;
+    std::vector<WeightPicture> pictures;
+    std::optional<Efficiency> efficiency;
+    std::optional<Cut> cut;
+};
+
+/// All verdicts of one trial but efficiency, which needs the other trials.
+Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally, Watch& watch);
+/// Trials of a program, one after the other: first `valid` at every w_o from a few draws, then all verdicts, the middle of
+/// the hemisphere and the most grazing w_o first, as far as the program's time goes.
+std::vector<Outcome> judge_in_turn(std::span<const Trial> trials, const Rigour& rigour, Tally& tally, Watch& watch);
+/// What a sampler that can no more be asked leaves: an error, or too little time.
+Cut cut_by(const SubjectFault& fault);
+/// Adds the verdicts that are missing, as `cut` has them.
+void fill_up(const Trial& trial, Outcome& out);
+
+}  // namespace crescent
