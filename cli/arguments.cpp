@@ -66,6 +66,46 @@ void add_run(CLI::App& app, Work& work) {
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 
+constexpr const char* film_footer = R"(The film of an experiment: every picture, curve and number comes from the run
+that it is made with. Written under DIR as one: crescent.mp4, captions
+(.vtt, .srt), transcript (.txt), frames.json and a still of every shot.
+--still, --stills, --shot, --from and --to make a part of it alone.
+Frames are the same bits for any --threads and any --isa. Needs ffmpeg.)";
+
+std::string moment(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string minutes = colon == std::string::npos ? "0" : text.substr(0, colon);
+    const std::string rest = colon == std::string::npos ? text : text.substr(colon + 1);
+    const bool plain = !minutes.empty() && minutes.find_first_not_of("0123456789") == std::string::npos && minutes.size() < 4;
+    char* end = nullptr;
+    const double s = std::strtod(rest.c_str(), &end);
+    const bool seconds_too = !rest.empty() && rest.find_first_not_of("0123456789.") == std::string::npos && *end == 0;
+    return plain && seconds_too && (colon == std::string::npos || s < 60) ? "" : "expected MM:SS, as in 1:30";
+}
+
+void add_film(CLI::App& app, Work& work) {
+    std::shared_ptr<FilmFlags> f;
+    CLI::App* c = command(app, work, "film", "Make an explainer film of what a run measures.", film, f);
+    FilmOptions& o = f->options;
+    c->footer(film_footer);
+    c->add_option("FILE", f->file, "the experiment, a TOML file")->required()->type_name("");
+    c->add_option("--out", o.out, "where the outputs go; default: out/film")->type_name("DIR")->check(told);
+    c->add_option("--size", f->size, "1080p (default), 720p, 360p")->type_name("P")->check(CLI::IsMember({"1080p", "720p", "360p"}));
+    auto* still = c->add_option("--still", o.still, "the frame at this time alone, a PNG")->type_name("MM:SS")->check(moment);
+    auto* stills = c->add_flag("--stills", o.stills, "a PNG of every shot, no film")->excludes(still);
+    c->add_option("--shot", o.shot, "this shot alone")->type_name("K")->check(CLI::Range(1, 99));
+    auto* from = c->add_option("--from", o.from, "from this time on")->type_name("MM:SS")->check(moment);
+    auto* to = c->add_option("--to", o.to, "up to this time")->type_name("MM:SS")->check(moment);
+    for (auto* part : {from, to}) part->excludes(still)->excludes(stills);
+    c->add_option("--voice", o.voice, "speaks the captions: text in, WAV out")->type_name("'COMMAND'")->check(told);
+    c->add_flag("--webm", o.webm, "crescent.webm too (VP9)");
+    c->add_option("--set", f->overrides, "another value for a key; may be given again")->type_name("PATH=VALUE")->take_all()->expected(1)->allow_extra_args(false);
+    c->add_option("--seeds", f->seeds, "how many seeds (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
+    c->add_option("--threads", o.threads, "default: as many as the machine has")->type_name("N")->check(CLI::Range(1, 4096));
+    c->add_option("--isa", o.isa, "scalar, sse4, avx2, avx512; default: the best here")->type_name("NAME");
+    c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
+}
+
 void add_list(CLI::App& app, Work& work) {
     std::shared_ptr<ListFlags> f;
     CLI::App* c = command(app, work, "list", "What an experiment can name.", list, f);
@@ -157,6 +197,7 @@ std::function<int()> parse(int argc, char** argv) {
     app.require_subcommand(0, 1);
     Work work;
     add_run(app, work);
+    add_film(app, work);
     add_list(app, work);
     add_schema(app, work);
     add_check(app, work);

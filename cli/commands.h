@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "crescent.h"
+
 namespace crescent::cli {
 
 /// What the program returns to its caller; the same for every command.
@@ -30,6 +32,16 @@ struct RunFlags {
     bool quiet = false;
 };
 int run(const RunFlags& flags);
+
+struct FilmFlags {
+    std::string file;
+    std::vector<std::string> overrides;  // PATH=VALUE
+    std::string size = "1080p";
+    int seeds = 0;                       // 0: the file's
+    FilmOptions options;
+    bool quiet = false;
+};
+int film(const FilmFlags& flags);
 
 struct ListFlags {
     std::string what;  // "": all

@@ -5,19 +5,12 @@
 #include "crescent.h"
 #include "instruments.h"
 #include "progress.h"
+#include "quoted.h"
 #include "signals.h"
 
 namespace crescent::cli {
 
 namespace {
-
-std::string quoted(const std::string& word) {
-    const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") == std::string::npos;
-    if (plain && !word.empty()) return word;
-    std::string out = "'";
-    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
 
 /// The command that makes the outputs again. Where they go, threads and instruction set do not change them and are
 /// left out, so that equal runs state equal commands.

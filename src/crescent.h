@@ -7,6 +7,8 @@
 //   OpenPixel         one pixel of a scene -> each of its samples taken apart: direction, density, f, L, cosine, X
 //   judge             a sampler by itself -> ordered verdicts with their evidence; verdicts/gtest.h has the matchers
 //   find_instrument   what else can compute films, where a door has brought it
+//   film_maker        what makes an explainer of a run, where a door has brought it
+//   measure_in_memory an Experiment -> films, meters and evidence, nothing written
 //   run               an Experiment -> films, meters, plates and report under one folder
 //
 // Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
@@ -15,7 +17,9 @@
 
 #include "arms/all.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/watch.h"
+#include "display/turbo.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"
 #include "estimator/pixel.h"
@@ -23,11 +27,18 @@
 #include "experiment/names.h"
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
+#include "film_maker.h"
 #include "films/film.h"
 #include "instruments.h"
 #include "meters/evidence.h"
+#include "meters/meters.h"
 #include "meters/metrics.h"
+#include "plates/canvas.h"
+#include "plates/density.h"
 #include "plates/plates.h"
+#include "plates/raster.h"
+#include "plates/style.h"
+#include "plates/words.h"
 #include "report/report.h"
 #include "run.h"
 #include "scene/scene.h"

@@ -1,8 +1,13 @@
 #include "jobs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "estimator/estimator.h"
+#include "meters/tail.h"
+#include "simd/random.h"
+#include "version.h"
 
 namespace crescent {
 
@@ -36,6 +41,29 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
         if (!there) jobs.push_back({&*arm, {control.n}, s, seed, nullptr});
     }
     return jobs;
+}
+
+std::optional<Tail> region_tail(const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch) {
+    constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
+    const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
+    const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
+    const std::size_t length = tail_length(pixels * n);
+    std::uint64_t drawn = 0;
+    if (length == 0) return std::nullopt;
+    return fit_pooled_tail(largest_samples(scene, job.arm->sampler, n, job.seed, box, length + 1, isa, watch, drawn));
+}
+
+Provenance provenance_of(const Experiment& experiment, const Instrument& instrument, const std::string& command) {
+    Provenance p;
+    p.version = version();
+    p.commit = commit();
+    p.compiler = compiler();
+    p.experiment_file = experiment.file;
+    p.experiment_hash = fmt::format("{:016x}", experiment.hash);
+    p.instrument = instrument.name(), p.instrument_details = instrument.details();
+    p.command = command;
+    for (int k = 0; k < experiment.seeds; ++k) p.seeds.push_back(seed_of(experiment.seed, static_cast<std::uint32_t>(k)));
+    return p;
 }
 
 }  // namespace crescent

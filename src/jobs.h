@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "instruments.h"
+#include "report/report.h"
 
 namespace crescent {
 
@@ -14,5 +16,11 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed);
 
 /// The instrument that is built in; `isa` is a name of isas().
 std::shared_ptr<Instrument> cpu_instrument(std::string isa);
+
+/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too few
+/// spread.
+std::optional<Tail> region_tail(const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch);
+
+Provenance provenance_of(const Experiment& experiment, const Instrument& instrument, const std::string& command);
 
 }  // namespace crescent

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <thread>
 
@@ -25,7 +26,6 @@
 #include "meters/furnace.h"
 #include "meters/meters.h"
 #include "meters/quantity.h"
-#include "meters/tail.h"
 #include "plates/plates.h"
 #include "simd/random.h"
 #include "version.h"
@@ -47,19 +47,19 @@ public:
           threads_(options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency())),
           limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), published_(published_of(experiment)), scene_(experiment) {}
 
+    Measured in_memory() {
+        look();
+        compute(std::numeric_limits<double>::infinity());
+        judge_assertions();
+        auto& references = experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_;
+        return {std::move(metrics_), std::move(evidence_), std::move(provenance_), std::move(shapes_), std::move(films_), std::move(references)};
+    }
+
     RunResult operator()() {
         const auto start = Clock::now();
         look();
         Staging staging(options_.out);
-        kept_.emplace(experiment_, instrument_->name(), options_.out, options_.keep_after_s, watch_);
-        stage("references", [&] { references(); });
-        stage("films", [&] { films(); });
-        timing_.estimating_s = seconds_since(start);
-        stage("tails", [&] { tails(); });
-        stage("furnaces", [&] { metrics_.furnaces = furnaces(experiment_, published(), isa_, watch_); });
-        stage("evidence", [&] { evidence_ = measure_evidence(experiment_, isa_, watch_); });
-        stage("meters", [&] { summarise(); });
-        provenance();
+        compute(options_.keep_after_s);
         stage("plates and films on disk", [&] { draw_and_write(staging); });
         judge_assertions();
         stage("report", [&] { report(staging); });
@@ -73,11 +73,23 @@ public:
     }
 
 private:
+    /// Everything that is measured.
+    void compute(double keep_after_s) {
+        const auto start = Clock::now();
+        kept_.emplace(experiment_, instrument_->name(), options_.out, keep_after_s, watch_);
+        stage("references", [&] { references(); });
+        stage("films", [&] { films(); });
+        timing_.estimating_s = seconds_since(start);
+        stage("tails", [&] { tails(); });
+        stage("furnaces", [&] { metrics_.furnaces = furnaces(experiment_, published(), isa_, watch_); });
+        stage("evidence", [&] { evidence_ = measure_evidence(experiment_, isa_, watch_); });
+        stage("meters", [&] { summarise(); });
+        provenance();
+    }
     static std::optional<Published> published_of(const Experiment& experiment) {
         return experiment.published ? load_published(*experiment.published) : std::nullopt;
     }
     const Published* published() const { return published_ ? &*published_ : nullptr; }
-
     template <class Work> void stage(const char* name, Work&& work) {
         const auto start = Clock::now();
         work();
@@ -154,26 +166,17 @@ private:
         return out;
     }
 
-    /// The tail index of each region's samples at the published seed. It belongs to an arm and exponent, not to N: it is
-    /// read off as many samples as about four million a region allow, and stands beside every rung.
+    /// The tail index of each region's samples at the published seed. It belongs to an arm and exponent, not to N, and stands
+    /// beside every rung.
     void tails() {
         for (const Job& job : jobs_of(experiment_, experiment_.seed)) {
             const Scene scene = scene_.with_s(job.s);
             for (std::size_t r = 0; r < experiment_.regions.size(); ++r) {
-                const std::optional<Tail> tail = tail_of(scene, job, experiment_.regions[r].box);
+                const std::optional<Tail> tail = region_tail(scene, job, experiment_.regions[r].box, isa_, watch_);
                 for (RunMeter& run : metrics_.runs)
                     if (run.key.seed == job.seed && run.key.arm == job.arm->name && run.key.s == job.s) run.regions[r].tail = tail;
             }
         }
-    }
-
-    std::optional<Tail> tail_of(const Scene& scene, const Job& job, const Box& box) {
-        constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
-        const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
-        const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
-        const std::size_t length = tail_length(pixels * n);
-        std::uint64_t drawn = 0;
-        return length == 0 ? std::nullopt : fit_pooled_tail(largest_samples(scene, job.arm->sampler, n, job.seed, box, length + 1, isa_, watch_, drawn));
     }
 
     void summarise() {
@@ -188,14 +191,7 @@ private:
     }
 
     void provenance() {
-        provenance_.version = version();
-        provenance_.commit = commit();
-        provenance_.compiler = compiler();
-        provenance_.experiment_file = experiment_.file;
-        provenance_.experiment_hash = fmt::format("{:016x}", experiment_.hash);
-        provenance_.instrument = instrument_->name(), provenance_.instrument_details = instrument_->details();
-        provenance_.command = options_.command.empty() ? "crescent run " + experiment_.file : options_.command;
-        for (int k = 0; k < experiment_.seeds; ++k) provenance_.seeds.push_back(seed_of(experiment_.seed, static_cast<std::uint32_t>(k)));
+        provenance_ = provenance_of(experiment_, *instrument_, options_.command.empty() ? "crescent run " + experiment_.file : options_.command);
     }
 
     Attributes attributes() const {
@@ -296,5 +292,7 @@ private:
 }  // namespace
 
 RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch) { return Run(experiment, options, watch)(); }
+
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch) { return Run(experiment, options, watch).in_memory(); }
 
 }  // namespace crescent

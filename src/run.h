@@ -3,10 +3,14 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/watch.h"
 #include "experiment/experiment.h"
+#include "films/film.h"
 #include "instruments.h"
+#include "meters/evidence.h"
 #include "meters/metrics.h"
 #include "report/report.h"
 
@@ -27,6 +31,18 @@ struct RunResult {
     Provenance provenance;
     std::string summary;  // for the terminal
 };
+
+/// What a run measures, in memory.
+struct Measured {
+    Metrics metrics;  // assertions on plates fail: there are none
+    Evidence evidence;
+    Provenance provenance;
+    ShapeMap shapes;
+    std::vector<std::pair<RunKey, Film>> films;  // of the experiment's own seed
+    std::vector<ReferenceFilm> references;       // the kind that the meters use, one an exponent
+};
+/// Runs `experiment` and writes nothing.
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch);
 
 /// Runs `experiment` and writes everything under options.out; outputs appear whole or not at all.
 RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch);

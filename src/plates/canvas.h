@@ -50,6 +50,7 @@ struct Setting {
     Rect box, extents;   // what it was given and what it took
     double px = 0;       // the size it was set at
     bool ellipsized = false;
+    Colour ink;
 };
 
 /// 8-bit sRGB pixels, rows top-down.
@@ -66,8 +67,8 @@ struct Block {
 
 class Canvas {
 public:
-    /// Throws OutputError where the font Inter is missing.
-    Canvas(int width, int height, const Colour& ground);
+    /// Throws OutputError where the font Inter is missing. `scale`: pixels a unit; all that is drawn is given in units.
+    Canvas(int width, int height, const Colour& ground, double scale = 1);
     ~Canvas();
     Canvas(const Canvas&) = delete;
     Canvas& operator=(const Canvas&) = delete;
@@ -86,13 +87,27 @@ public:
     void polyline(const std::vector<Point>& points, const Colour& c, double width, double dash = 0);
     void polygon(const std::vector<Point>& points, const Colour& c);
     void dot(double x, double y, double radius, const Colour& c);
+    void circle(double x, double y, double radius, const Colour& c, double width, double dash = 0);
     void arrow(Point from, Point to, const Colour& c, double width);
 
     /// Copies pixels one to one with the top-left corner at (x, y), which are whole numbers on the canvas.
     void paint(const Block& block, int x, int y);
+    /// Repeats each pixel times x times units with the top-left corner at (x, y) in units, `alpha` over what is there. Where
+    /// that is no whole number of the canvas's pixels, those take the average of what they cover. Cut at the canvas's edge.
+    void paint(const Block& block, double x, double y, int times, double alpha);
+
+    /// What is drawn until unclip() shows within `r` alone; blocks are not cut.
+    void clip(const Rect& r);
+    void unclip();
+    /// The ground again, as if new; keeps the fonts that were opened.
+    void clear(const Colour& ground);
+    /// Text takes its place but leaves no ink: for tests, which ask what stands behind it.
+    void hide_text(bool hidden) { text_hidden_ = hidden; }
 
     int width() const { return width_; }
     int height() const { return height_; }
+    /// Rows of 32-bit pixels 0x??RRGGBB, top-down, `stride` bytes apart; until the next drawing.
+    const unsigned char* pixels(int& stride) const;
     const std::vector<Setting>& settings() const { return settings_; }
     const std::vector<Rect>& pictures() const { return pictures_; }
     Picture picture() const;
@@ -101,6 +116,7 @@ private:
     struct Surface;
     int width_, height_;
     std::unique_ptr<Surface> surface_;
+    bool text_hidden_ = false;
     std::vector<Setting> settings_;
     std::vector<Rect> pictures_;
 };

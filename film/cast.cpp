@@ -1,0 +1,68 @@
+#include "cast.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crescent::film {
+
+namespace {
+
+const ArmPlan* by_sampler(const Experiment& e, const std::string& sampler) {
+    const auto arm = std::ranges::find(e.arms, sampler, &ArmPlan::sampler);
+    return arm == e.arms.end() ? nullptr : &*arm;
+}
+
+/// The arm with this sampler; where there is none, a complaint with the nearest that the experiment has.
+std::string needed(const Experiment& e, const std::string& sampler, std::vector<Complaint>& wrong) {
+    if (const ArmPlan* arm = by_sampler(e, sampler)) return arm->name;
+    std::vector<std::string> there;
+    for (const ArmPlan& arm : e.arms) there.push_back(arm.sampler);
+    const std::string near = nearest(sampler, there);
+    wrong.push_back({e.place_of("arms"), fmt::format("the film compares 'cosine' with 'phong', and no arm here samples by '{}'{}; expected [arms.{}]", sampler,
+                                                     near.empty() ? "" : " (nearest: '" + near + "')", sampler)});
+    return "";
+}
+
+/// The arm with this sampler, made where there is none, with these rungs added.
+std::string added(Experiment& e, const std::string& sampler, const std::vector<std::uint64_t>& rungs) {
+    if (const ArmPlan* arm = by_sampler(e, sampler); arm && std::ranges::includes(arm->n, rungs)) return arm->name;
+    std::string name = sampler;
+    while (e.find_arm(name)) name += "-too";
+    e.arms.push_back({name, sampler, rungs, {}});
+    return name;
+}
+
+std::vector<std::uint64_t> shared(const ArmPlan& a, const ArmPlan& b) {
+    std::vector<std::uint64_t> both;
+    std::ranges::set_intersection(a.n, b.n, std::back_inserter(both));
+    return both;
+}
+
+}  // namespace
+
+Cast cast_of(Experiment& e) {
+    Cast c;
+    std::vector<Complaint> wrong;
+    c.cosine = needed(e, "cosine", wrong);
+    c.phong = needed(e, "phong", wrong);
+    if (const ArmPlan* arm = by_sampler(e, "uniform")) c.uniform = arm->name;
+    if (!c.cosine.empty() && !c.phong.empty()) {
+        c.rungs = shared(*e.find_arm(c.cosine), *e.find_arm(c.phong));
+        if (c.rungs.size() < 2) wrong.push_back({e.place_of("arms." + c.phong), fmt::format("the film follows '{}' and '{}' up one ladder; expected two n or more that both have", c.cosine, c.phong)});
+    }
+    if (e.regions.size() < 2) wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, the surround last"});
+    if (e.disks.empty()) wrong.push_back({e.place_of("disks"), "the film needs a disk light: it is what a cosine sample rarely meets"});
+    const bool lobe = std::ranges::any_of(e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == BrdfKind::phong; });
+    if (!lobe) wrong.push_back({e.place_of("shapes"), "the film needs a shape with a Phong lobe: rho_s above 0 and brdf = \"phong\""});
+    if (!wrong.empty()) throw InputError(std::move(wrong));
+
+    c.highlight = e.regions.front().name, c.surround = e.regions.back().name;
+    c.s = e.s(), c.seed = e.seed;
+    c.n = std::ranges::find(c.rungs, e.n) != c.rungs.end() ? e.n : c.rungs[c.rungs.size() / 2];
+    c.mixture = added(e, "mixture", {c.n});
+    c.mis = added(e, "mis-balance", c.n > 1 ? std::vector<std::uint64_t>{c.n / 2, c.n} : std::vector<std::uint64_t>{c.n});
+    return c;
+}
+
+}  // namespace crescent::film

@@ -1,0 +1,48 @@
+// Shot 1: the gallery comes out of the noise, one doubling of N after another, then its converged reference; the title.
+#include "shots.h"
+#include "style.h"
+
+namespace crescent::film {
+
+namespace {
+
+constexpr double first = 1.0, each = 0.8;  // s: when the first film shows, how long each stands
+
+}  // namespace
+
+Shot title(const Data& data) {
+    const Cast& cast = data.cast;
+    std::vector<Block> blocks;
+    std::vector<Words> labels;
+    const auto add = [&](const plates::View& view, Words label) {
+        blocks.push_back(photograph_of(data, view, plates::whole(view)));
+        labels.push_back(std::move(label));
+    };
+    for (const Film& film : data.opening) {
+        const RunKey key = data.key(cast.cosine, film.n);
+        add(plates::view(&film), Words(data.arm(cast.cosine), ", N = ", data.n_of(key)));
+    }
+    add(plates::view(&data.reference()), Words("converged reference"));
+
+    const double last = first + each * double(blocks.size() - 1);
+    Shot shot;
+    shot.name = "title";
+    shot.title = Words("Where the noise goes");
+    shot.seen = Words("A lacquer sphere on a plinth comes out of noise as the number of samples doubles; then the title.");
+    shot.seconds = last + 8;
+    shot.still = shot.seconds - 1.5;
+    shot.cues = {{0.5, Words("A picture is computed by aiming rays at random.")},
+                 {last - 1.5, Words("More rays, less noise. But how they are aimed decides where the noise goes.")}};
+    shot.draw = [=](Frame& f) {
+        const int n = static_cast<int>(blocks.size());
+        const int k = f.after(first) ? std::min(f.steps(first, first + each * n, n), n - 1) : 0;
+        const Block& block = blocks[std::size_t(k)];
+        const double in = f.ease(0, 0.8);
+        const Rect r = f.picture(block, (sheet_width - block.width * 1.0) / 2, 200, 1, in);
+        f.text({r.x, r.bottom() + 14, r.w, 44}, labels[std::size_t(k)], with(with(label_text, muted), Align::right), in);
+        f.text({r.x, r.y - 120, r.w, 100}, Words("Where the noise goes"), with(with_px(big_text, 80), Align::centre), f.ease(last, last + 0.8));
+    };
+    return shot;
+}
+
+}  // namespace crescent::film

@@ -1,0 +1,33 @@
+// What a canvas draws with: Cairo's surface and context, Pango's layout. For the files of this folder that draw.
+#pragma once
+
+#include <pango/pangocairo.h>
+
+#include <memory>
+#include <string>
+
+#include "plates/canvas.h"
+
+namespace crescent::plates {
+
+struct Unref {
+    void operator()(gpointer object) const { g_object_unref(object); }
+};
+
+struct Canvas::Surface {
+    cairo_surface_t* image = nullptr;
+    cairo_t* cr = nullptr;
+    double scale = 1;
+    std::unique_ptr<PangoLayout, Unref> layout;
+
+    Surface(int width, int height, double scale);
+    ~Surface();
+    Surface(const Surface&) = delete;
+    Surface& operator=(const Surface&) = delete;
+
+    void ink(const Colour& c) { cairo_set_source_rgba(cr, c.r, c.g, c.b, c.a); }
+    /// Lays markup out at `px`; width < 0: unbounded.
+    Rect lay(const std::string& markup, const Text& how, double px, double width);
+};
+
+}  // namespace crescent::plates
