@@ -19,7 +19,7 @@ int main(void) {
         } else if (sscanf(line, "pdf %lf %lf %lf %lf %lf %lf", &ox, &oy, &oz, &x, &y, &z) == 6) {
             printf("%a\n", z > 0 ? z / pi : 0.0);
         } else if (sscanf(line, "f %lf %lf %lf %lf %lf %lf", &ox, &oy, &oz, &x, &y, &z) == 6) {
-            printf("%a\n", 0.5 / pi);
+            printf("%a\n", z > 0 ? 0.5 / pi : 0.0);
         } else {
             printf("?\n");
         }

@@ -18,7 +18,7 @@ def answer(words):
     if verb == "pdf":
         return repr(max(x[5], 0.0) / math.pi)
     if verb == "f":
-        return repr(0.5 / math.pi)
+        return repr(0.5 / math.pi if x[5] > 0 else 0.0)
     return "?"
 
 

@@ -26,6 +26,7 @@ double Efficiency::high() const { return value() * std::exp(2 * std::hypot(relat
 Efficiency measure_efficiency(const Work& work, std::size_t trial) {
     Efficiency e;
     e.trial = trial;
+    e.whole = work.whole();
     const std::vector<double> x = first_weights(work, false);
     const Spread s = spread(x);
     double m4 = 0;
@@ -73,7 +74,7 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         }
         std::vector<std::string> better, worse, level;
         for (const Efficiency& o : all) {
-            if (o.trial == e.trial || company_of(trials[o.trial]) != company_of(trials[e.trial])) continue;
+            if (o.trial == e.trial || o.whole != e.whole || company_of(trials[o.trial]) != company_of(trials[e.trial])) continue;
             const std::string& name = trials[o.trial].arm;
             if (o.heavy || (o.low() <= e.high() && e.low() <= o.high())) level.push_back(name);
             else (e.high() < o.low() ? better : worse).push_back(name);

@@ -63,7 +63,7 @@ Mismatch pdf_twice(const Work& work, int t) {
     const Batchful& b = work.first(t);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const Draw& d = b.draws[i];
-        if (!(d.pdf > 0) || d.wi.z <= 0) continue;  // under the horizon a pdf weighs nothing
+        if (!(d.pdf > 0) || !work.counts(d.wi)) continue;  // elsewhere a pdf weighs nothing
         ++m.tried;
         if (close(d.pdf, b.pdf[i], 2 * work.subject.doubt(d.wi))) continue;
         if (m.count < 4096 && close(d.pdf, b.pdf[i], pdf_conditioning(work, t, d.wi, b.pdf[i]))) continue;
@@ -81,7 +81,7 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
     const std::vector<double>& value = work.f_of_drawn(b);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const Draw& d = b.draws[i];
-        if (!(d.pdf > 0) || d.wi.z <= 0) continue;
+        if (!(d.pdf > 0) || !work.counts(d.wi)) continue;
         wi.push_back(d.wi);
         draws.push_back(&d);
         f.push_back(value[i]);
@@ -89,11 +89,11 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
     const std::vector<double> ought = truth ? work.f(wi, true) : f;
     for (std::size_t i = 0; i < wi.size(); ++i) {
         ++m.tried;
-        const double g = wi[i].z / draws[i]->pdf;
+        const double cos = std::fabs(wi[i].z), g = cos / draws[i]->pdf;
         const double said = truth ? f[i] : draws[i]->weight.value_or(f[i] * g), asked = truth ? ought[i] : f[i] * g;
         if (close(said, asked)) continue;
         const double loose = f_conditioning(work, work.trial.wo, wi[i], f[i]);
-        if (m.count < 4096 && close(said, asked, truth ? loose : g * loose + 4 * work.grain() * std::fabs(asked) / wi[i].z)) continue;
+        if (m.count < 4096 && close(said, asked, truth ? loose : g * loose + 4 * work.grain() * std::fabs(asked) / cos)) continue;
         m.add(said, asked, wi[i]);
     }
     return m;

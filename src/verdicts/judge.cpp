@@ -47,6 +47,13 @@ Rigour for_yardstick(const Trial& trial, Rigour rigour) {
     return rigour;
 }
 
+/// f goes on under the surface and was not followed there.
+void own_up_to_one_half(const Work& work, Verdict& v) {
+    if (!work.below().transmits || work.whole() || v.state != State::right || (v.name != "physics" && v.name != "mean")) return;
+    v.state = State::inconclusive;
+    v.say = "f transmits, or does not return 0 under the surface; this is of the upper half only. " + v.say;
+}
+
 void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& watch) {
     const Trial& trial = work.trial;
     out.verdicts.push_back(judge_valid(work));
@@ -61,6 +68,7 @@ void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& wa
     out.verdicts.push_back(judge_physics(work));
     out.verdicts.push_back(judge_tail(work));
     out.verdicts.push_back(judge_mean(work));
+    for (Verdict& v : out.verdicts) own_up_to_one_half(work, v);
     if (trial.subject->has_f()) out.efficiency = measure_efficiency(work, index);
 }
 

@@ -34,7 +34,7 @@ struct Efficiency {
     std::size_t trial = 0;
     double variance = 0, relative_se = 0;  // of the variance
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error
-    bool heavy = false;
+    bool heavy = false, whole = false;     // whole: over the sphere, not its upper half
     double value() const { return variance * nanoseconds; }
     double low() const;
     double high() const;

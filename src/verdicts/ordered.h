@@ -35,6 +35,11 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
 double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
 double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f);
 
+/// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See transmission.cpp.
+Integral from_below(const Work& work, Vec3d b);
+/// Up to three directions under the surface that the sampler draws, the one of the highest pdf first.
+std::vector<Vec3d> drawn_below(const Work& work);
+
 /// What the warp's derivatives say; see jacobian.cpp.
 struct WarpFinding {
     std::size_t usable = 0, below = 0;   // points with a trusted |J|, and those with p |J| < 1

@@ -54,6 +54,29 @@ Reciprocity reciprocity(const Work& work) {
     return out;
 }
 
+/// More than there is, granted what eta^2 may do to what comes through (transmission.cpp).
+bool creates_energy(const Work& work, const Integral& albedo, Verdict& v) {
+    constexpr double allowed = 1 + 1e-4;
+    const double above = work.whole() ? albedo.bins[0] : albedo.value;
+    if (work.whole()) v.evidence["albedo_above"] = above, v.evidence["albedo_below"] = albedo.bins[1];
+    if (above - albedo.error > allowed) {
+        v.state = State::wrong;
+        v.say = fmt::format("The surface reflects {:.6f} of what it gets: f creates energy.", above);
+        return true;
+    }
+    if (!work.whole() || albedo.value - albedo.error <= allowed) return false;
+    for (Vec3d b : drawn_below(work)) {
+        const Integral through = from_below(work, b);
+        v.evidence["from_below"] = through.value;
+        if (through.value - through.error <= allowed) continue;
+        v.state = State::wrong;
+        v.say = fmt::format("The surface gives {:.6f} of an even light from both sides, and light from ({:.4g}, {:.4g}, {:.4g}) below comes up as {:.6f} of itself: f creates energy, whatever the indices are.",
+                            albedo.value, b.x, b.y, b.z, through.value);
+        return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 Verdict judge_physics(const Work& work) {
@@ -71,16 +94,13 @@ Verdict judge_physics(const Work& work) {
                             r.worst.wo.x, r.worst.wo.y, r.worst.wo.z, r.worst.wi.x, r.worst.wi.y, r.worst.wi.z, r.broken, r.tried);
         return v;
     }
-    if (albedo.value - albedo.error > 1 + 1e-4) {
-        v.state = State::wrong;
-        v.say = fmt::format("The surface reflects {:.6f} of what it gets: f creates energy.", albedo.value);
-        return v;
-    }
+    if (creates_energy(work, albedo, v)) return v;
     const std::vector<double> x = first_weights(work, true);
     const Spread s = spread(x);
     v.evidence["furnace_mean"] = s.mean;
     v.evidence["furnace_standard_error"] = s.sd / std::sqrt(s.n);
-    v.say = fmt::format("f is reciprocal over {} pairs and reflects {:.6f} of an even light", r.tried, albedo.value);
+    v.say = fmt::format("f is reciprocal over {} pairs and reflects {:.6f} of an even light", r.tried, work.whole() ? albedo.bins[0] : albedo.value);
+    if (work.whole()) v.say += fmt::format(", {:.6f} of one from below (reciprocity across the surface is not looked at: the index is not known)", albedo.bins[1]);
     const bool even = work.trial.light.fill > 0;  // an arm that aims at disks alone is not asked for an even light
     if (!even || !mean_is_testable(s, tail_of(x), work.trial.theory)) {
         v.say += even ? fmt::format("; the arm's white furnace reads {:.4g}, with too heavy a tail for a test.", s.mean) : ".";

@@ -41,7 +41,7 @@ std::string fault_of(const Work& work, int technique, const Batchful& b) {
     const std::vector<double>& f = work.f_of_drawn(b);
     for (std::size_t i = 0; i < f.size(); ++i) {
         const Draw& d = b.draws[i];
-        if (!(d.pdf > 0) || d.wi.z <= 0) continue;
+        if (!(d.pdf > 0) || !work.counts(d.wi)) continue;
         if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("{}f at {} is {:.9g}", at_place(work, b, i), told(d.wi), f[i]);
         if (!std::isfinite(f[i] * d.wi.z / d.pdf)) return fmt::format("the weight f cos / p at {} is not finite", told(d.wi));
     }
@@ -73,7 +73,7 @@ std::string fault_all_over(const Work& work, int technique) {
     for (std::size_t i = 0; i < wi.size(); ++i)
         if (!std::isfinite(p[i]) || p[i] < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(wi[i]), p[i]);
     if (!work.subject.has_f()) return "";
-    std::erase_if(wi, [](Vec3d w) { return w.z <= 0; });
+    std::erase_if(wi, [&](Vec3d w) { return !work.counts(w); });
     const std::vector<double> f = work.f(wi);
     for (std::size_t i = 0; i < wi.size(); ++i)
         if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {:.9g}", told(wi[i]), f[i]);
@@ -106,6 +106,14 @@ Verdict judge_valid(const Work& work) {
 
 Verdict judge_support(const Work& work) {
     if (!work.subject.has_f()) return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
+    const Work::Below& below = work.below();
+    if (below.transmits && !below.reached) {
+        Verdict v = work.verdict("support", State::inconclusive,
+                                 fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f transmits and none of that light is ever found, "
+                                             "or f ought to return 0 there, which would settle it.", below.f, told(below.at)));
+        v.evidence["f_below"] = below.f;
+        return v;
+    }
     const Integral all = work.incoming(Work::Where::everywhere, false);
     const Integral lost = work.incoming(Work::Where::lost, false);
     if (!(all.value > 0)) return work.verdict("support", State::skipped, "f L cos is 0 everywhere: nothing can be lost.");

@@ -53,6 +53,7 @@ void Rigour::share(std::uint64_t tests) {
 Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index) : trial(t), rigour(r), tally(counts), subject(*t.subject), index_(index), seed_(r.seed) {
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
     grain_ = grain_of(first_[0].draws);
+    look_below();
 }
 
 void Work::redraw(std::uint32_t seed) {
@@ -85,16 +86,16 @@ const std::vector<double>& Work::f_of_drawn(const Batchful& b) const {
     if (b.f.size() == b.draws.size()) return b.f;
     std::vector<Vec3d> wi;
     if (!subject.has_f()) {
-        for (const Draw& d : b.draws) b.f.push_back(d.pdf > 0 && d.wi.z > 0 ? d.f.value_or(0) : 0);
+        for (const Draw& d : b.draws) b.f.push_back(d.pdf > 0 && counts(d.wi) ? d.f.value_or(0) : 0);
         return b.f;
     }
     for (const Draw& d : b.draws)
-        if (d.pdf > 0 && d.wi.z > 0 && is_finite(d.wi)) wi.push_back(d.wi);
+        if (d.pdf > 0 && counts(d.wi) && is_finite(d.wi)) wi.push_back(d.wi);
     const std::vector<double> value = f(wi);
     b.f.assign(b.draws.size(), 0);
     std::size_t next = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i)
-        if (b.draws[i].pdf > 0 && b.draws[i].wi.z > 0 && is_finite(b.draws[i].wi)) b.f[i] = value[next++];
+        if (b.draws[i].pdf > 0 && counts(b.draws[i].wi) && is_finite(b.draws[i].wi)) b.f[i] = value[next++];
     return b.f;
 }
 
@@ -143,15 +144,15 @@ std::vector<double> Work::weights(std::span<const Batchful> techniques, bool eve
     for (std::size_t t = 0; t < techniques.size(); ++t) {
         const Batchful& b = techniques[t];
         std::vector<Pair> at;
-        for (const Draw& d : b.draws) at.push_back({trial.wo, d.pdf > 0 && d.wi.z > 0 ? d.wi : Vec3d{0, 0, 1}});
+        for (const Draw& d : b.draws) at.push_back({trial.wo, d.pdf > 0 && counts(d.wi) ? d.wi : Vec3d{0, 0, 1}});
         std::vector<double> mis(at.size());
         subject.mis_weight(static_cast<int>(t), at, mis);
         const std::vector<double>& value = f_of_drawn(b);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Draw& d = b.draws[i];
-            if (!(d.pdf > 0) || d.wi.z <= 0) continue;
-            const double of_one = d.weight ? *d.weight : value[i] * d.wi.z / d.pdf;
-            x[i] += mis[i] * of_one * (even ? 1 : trial.light(d.wi));
+            if (!(d.pdf > 0) || !counts(d.wi)) continue;
+            const double of_one = d.weight ? *d.weight : value[i] * std::fabs(d.wi.z) / d.pdf;
+            x[i] += mis[i] * of_one * (even ? 1 : light(d.wi));
         }
     }
     return x;

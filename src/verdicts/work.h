@@ -83,6 +83,20 @@ public:
     double grain() const { return grain_; }
     std::span<const Vec3d> guides() const { return guides_; }
 
+    /// Under the surface: whether f is not 0 there, most at `at` of those tried, and whether the sampler reaches it.
+    struct Below {
+        bool transmits = false, reached = false;
+        Vec3d at{};
+        double f = 0;
+    };
+    const Below& below() const { return below_; }
+    /// The whole sphere is judged, not its upper half alone.
+    bool whole() const { return below_.transmits && below_.reached; }
+    /// Light from wi counts.
+    bool counts(Vec3d wi) const { return wi.z > 0 || (wi.z < 0 && whole()); }
+    /// Radiance from wi; the fill shines from below too where that counts.
+    double light(Vec3d wi) const { return wi.z < 0 && whole() ? trial.light.fill : trial.light(wi); }
+
     /// f of every draw above the horizon, 0 elsewhere; a program behind a pipe is asked once.
     const std::vector<double>& f_of_drawn(const Batchful& b) const;
     std::vector<double> pdf_of_drawn(int technique, std::span<const Draw> draws) const;
@@ -93,7 +107,7 @@ public:
 
     /// X = sum over techniques of w f L cos / p, sample by sample; even: L = 1 in place of the light.
     std::vector<double> weights(std::span<const Batchful> pair, bool even) const;
-    /// int f L cos over the hemisphere, or only where any_pdf is (not) positive.
+    /// int f L |cos| over what counts, or only where any_pdf is (not) positive. bins: the upper and the lower half of the fill's part.
     enum class Where { everywhere, reached, lost };
     const Integral& incoming(Where where, bool even) const;
 
@@ -120,6 +134,8 @@ private:
     double grain_ = 0;
     mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
     Integral integrate_incoming(Where where, bool even) const;
+    Below below_;
+    void look_below();
     void find_guides();
     void find_rims(int technique);
     void add_rims(Density& d) const;

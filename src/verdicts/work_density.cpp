@@ -247,7 +247,7 @@ Integral Work::integrate_incoming(Where where, bool even) const {
         const std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
         for (std::size_t i = 0; i < out.size(); ++i) {
             const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
-            out[i] = counts && wi[i].z > 0 ? value[i] * wi[i].z : 0.0;
+            out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
         }
     };
     const TrialLight& light = trial.light;
@@ -255,7 +255,9 @@ Integral Work::integrate_incoming(Where where, bool even) const {
     Integral total;
     if (fill > 0) {
         const SphereMap map(Vec3d{0, 0, 1});
-        total = integrate(guided(graded_cells(1), map, guides_), 1,
+        std::vector<Rect> cells = graded_cells(1);
+        for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i) cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
+        total = integrate(guided(std::move(cells), map, guides_), whole() ? 2 : 1,
                           [&](std::span<const Vec2d> at, std::span<double> out) {
                               std::vector<Vec3d> wi;
                               for (Vec2d v : at) wi.push_back(map.direction(v));
