@@ -10,6 +10,7 @@
 #pragma once
 
 #include "base/vec.h"
+#include "math/functions.h"
 #include "simd/scalar.h"
 
 namespace crescent {
@@ -142,8 +143,8 @@ template <class F> CRESCENT_INLINE Power<F> root(F u, F y) {
     return exp2_split(shifted, x - (shifted - number<F>(round_magic)));
 }
 inline Power<double> root(double u, double y) {
-    const double l = y * std::log(u);
-    return {std::exp(l), -std::expm1(l)};
+    const double l = y * math::log(u);
+    return {math::exp(l), -math::expm1(l)};
 }
 
 /// (a.b)_+^s for unit a and b, through 1 - a.b = |a - b|^2 / 2, which loses nothing where a sharp lobe peaks.
@@ -155,19 +156,19 @@ template <class F> CRESCENT_INLINE F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
 
 inline SinCos<double> sincos_turns(double u) {
     const double a = 2 * pi * u;
-    return {std::sin(a), std::cos(a)};
+    return {math::sin(a), math::cos(a)};
 }
-inline double exp2(double x) { return std::exp2(x); }
-inline double pow(double x, double y) { return x > 0 ? std::pow(x, y) : 0.0; }
+inline double exp2(double x) { return math::exp2(x); }
+inline double pow(double x, double y) { return x > 0 ? math::pow(x, y) : 0.0; }
 inline Power<double> power(double x, double y) {
     if (!(x > 0)) return {0, 1};
-    const double l = y * std::log(x);
-    return {std::exp(l), -std::expm1(l)};
+    const double l = y * math::log(x);
+    return {math::exp(l), -math::expm1(l)};
 }
 inline double cosine_power(Vec3<double> a, Vec3<double> b, double s) {
     const Vec3<double> d = a - b;
     const double near = -0.5 * dot(d, d);
-    return near > -1 ? std::exp(s * std::log1p(near)) : 0.0;
+    return near > -1 ? math::exp(s * math::log1p(near)) : 0.0;
 }
 
 template <class F> CRESCENT_INLINE Vec3<F> normalize(Vec3<F> a) {

@@ -1,0 +1,56 @@
+// Elementary functions of doubles from + - x / and sqrt alone, so that they are the same bits on every machine: a C
+// library picks its own by the processor, and the last bit differs.
+//
+//   function        range                        error, ULP (bounds that functions_test.cpp holds)
+//   exp             all; > 0 from -745 on        0.54
+//   exp2            all                          0.54
+//   expm1           all                          0.75
+//   log, log10      x > 0                        0.51
+//   log1p           x > -1                       0.51
+//   pow             all                          0.75
+//   sin, cos        |x| < 2^50, else NaN         0.8
+//   tan             |x| < 2^50, else NaN         2
+//   atan2           all                          1.25
+//   asin, acos      [-1, 1], else NaN            2
+//   hypot           all                          0.51
+//
+// An ULP is that of the exact value; a value under 2^-1022 may be off by one of 2^-1074 more. Zeros, infinities and NaN
+// go in and come out as in C.
+//
+// Each is one step of a table and a short series whose coefficients are 1/k! or 1/k; tables and whatever must not be
+// rounded are kept in two doubles (two.h).
+#pragma once
+
+namespace crescent::math {
+
+double exp(double x);
+double exp2(double x);
+/// e^x - 1 without cancellation near 0.
+double expm1(double x);
+
+double log(double x);
+double log10(double x);
+/// log(1 + x) without cancellation near 0.
+double log1p(double x);
+
+/// x^y; a negative x has a power for whole y alone.
+double pow(double x, double y);
+
+double sin(double x);
+double cos(double x);
+double tan(double x);
+struct SinCos {
+    double sin, cos;
+};
+/// Both for little more than one.
+SinCos sincos(double x);
+
+double asin(double x);
+double acos(double x);
+/// The angle of (x, y) from the x axis, in [-pi, pi].
+double atan2(double y, double x);
+
+double hypot(double x, double y);
+double hypot(double x, double y, double z);
+
+}  // namespace crescent::math
