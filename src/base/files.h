@@ -21,6 +21,8 @@ public:
     std::string path(const std::string& name);
     void write(const std::string& name, std::span<const unsigned char> bytes);
     void write(const std::string& name, const std::string& text);
+    /// A folder for what is needed on the way; it goes with the stage.
+    const std::string& scratch() const { return stage_; }
     /// Moves every output to its place.
     void commit();
 

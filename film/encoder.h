@@ -1,0 +1,38 @@
+// ffmpeg, fed with raw frames over a pipe.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "process.h"
+#include "rasters.h"
+
+namespace crescent::film {
+
+/// Where everything lies that goes into the film; "" where there is none.
+struct Ingredients {
+    int width = 0, height = 0;
+    std::string captions, chapters, poster, voice;  // .srt, ffmetadata, .png, .wav
+    std::string mp4, webm;                          // to be written
+    std::string log;                                // what ffmpeg says
+};
+
+/// OutputError where ffmpeg or one of its parts is missing: told before the work.
+void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Watch& watch);
+
+class Encoder {
+public:
+    explicit Encoder(const Ingredients& in);
+    void take(const Raster& raster);
+    /// Waits for ffmpeg to finish. OutputError where it failed.
+    void finish(const Watch& watch);
+
+private:
+    [[noreturn]] void fail() const;
+
+    std::string log_;
+    Process process_;
+};
+
+}  // namespace crescent::film

@@ -1,0 +1,26 @@
+// Frames as an encoder takes them: planar Y'CbCr 4:2:0 of ITU-R BT.709, limited range, chroma sited left, in integers, so that
+// the same drawing gives the same bytes everywhere.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "painter.h"
+
+namespace crescent::film {
+
+struct Raster {
+    std::vector<unsigned char> bytes;  // Y, Cb, Cr
+    std::uint64_t hash = 0;            // XXH3-64 of the bytes
+};
+
+/// What stands on a canvas, whose sides are even.
+std::shared_ptr<const Raster> raster_of(const Canvas& canvas);
+
+/// Draws frames first .. last - 1 on all cores and hands them over one by one in their order. A frame that is like the one
+/// before it is handed over again without being drawn.
+void for_each_frame(const Timeline& timeline, int height, int first, int last, Watch& watch, const std::function<void(const Raster&)>& take);
+
+}  // namespace crescent::film
