@@ -46,6 +46,10 @@ Rect Frame::picture(const Block& block, double x, double y, int times, double al
     return r;
 }
 
+void Frame::field(const Block& block, Point corner, double alpha) {
+    canvas_.paint(block, std::round(corner.x), std::round(corner.y), 1, alpha);
+}
+
 void Frame::fill(const Rect& r, Colour c, double alpha) {
     if (alpha > 0) canvas_.fill(r, faded(c, alpha));
 }

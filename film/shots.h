@@ -9,8 +9,13 @@
 namespace crescent::film {
 
 Shot title(const Data& data);
+Shot one_pixel(const Data& data);
+Shot same_randoms(const Data& data);
+Shot firefly(const Data& data);
+Shot heavy_tail(const Data& data);
+Shot tilt(const Data& data);
 
-/// All of them, with what they show made ready.
+/// All of them, with what they show made ready; one that has nothing to show in this run lasts 0 s and is left out.
 std::vector<Shot> shots_of(const Data& data);
 
 }  // namespace crescent::film

@@ -33,6 +33,7 @@
 #include "meters/evidence.h"
 #include "meters/meters.h"
 #include "meters/metrics.h"
+#include "meters/tail.h"
 #include "plates/canvas.h"
 #include "plates/density.h"
 #include "plates/plates.h"

@@ -136,7 +136,8 @@ std::string number(double v, int digits) {
 std::string figure(double v, int digits) {
     if (!std::isfinite(v)) return not_finite_word(v);
     if (v == 0) return "0";
-    if (std::abs(v) >= std::pow(10.0, digits) && std::abs(v) < 1e7) return typeset(fmt::format("{:.0f}", v));
+    const double unit = std::pow(10.0, digits - 1);  // from here on all the digits stand before the point
+    if (std::abs(v) >= unit - 0.05 && std::abs(v) < 1e7) return typeset(fmt::format("{:.0f}", v));
     std::string text = typeset(fmt::format("{:#.{}g}", v, digits));
     if (text.back() == '.') text.pop_back();
     return text;

@@ -20,6 +20,10 @@ TEST(Words, Numbers_are_set_with_true_minus_and_powers) {
     EXPECT_EQ(number(-0.25), "−0.25");
     EXPECT_EQ(number(1.5e-9), "1.5·10<sup>−9</sup>");
     EXPECT_EQ(figure(2, 4), "2.000");
+    EXPECT_EQ(figure(889.708, 3), "890");
+    EXPECT_EQ(figure(99.97, 3), "100");
+    EXPECT_EQ(figure(99.94, 3), "99.9");
+    EXPECT_EQ(figure(1234.4, 4), "1234");
     EXPECT_EQ(figure(14402, 4).find('.'), std::string::npos);
     EXPECT_EQ(number(std::nan("")), "not a number");
 }

@@ -1,0 +1,48 @@
+// The upper hemisphere of a surface point as it is drawn: an orthographic view from `elevation` degrees above the
+// surface, turned so that a given direction leans to the right. Seen from straight above, area on the disc is share of
+// the light that a matt surface takes in (Nusselt). Directions local, n = +z; lengths in units of the sheet.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "frame.h"
+
+namespace crescent::film {
+
+class Hemisphere {
+public:
+    /// `centre`: of the base; `right`: a direction whose horizontal part points to the right.
+    Hemisphere(Point centre, double radius, double elevation_deg, Vec3d right);
+
+    Point at(Vec3d w, double reach = 1) const;
+    /// On the rim, counted in turns from the right, counter-clockwise.
+    Point rim(double turns) const;
+    /// On the side of the sphere that is turned to the viewer.
+    bool visible(Vec3d w) const;
+    double radius() const { return radius_; }
+    Point centre() const { return centre_; }
+
+    /// A picture of the hemisphere coloured by direction, its corner at corner(); the ground elsewhere.
+    Block field(const std::function<Srgb8(Vec3d)>& colour) const;
+    Point corner() const;
+
+    /// Rings and meridians every 30 degrees, the rim and the outline.
+    void grid(Frame& f, double alpha = 1) const;
+    /// The visible parts of a path.
+    void trace(Frame& f, const std::vector<Vec3d>& path, Colour ink, double line, double alpha = 1) const;
+    /// An arrow from the surface point through w, to `reach` radii, with words over its tip.
+    void arrow(Frame& f, Vec3d w, double reach, const Words& words, Colour ink, double alpha = 1) const;
+
+private:
+    Vec3d turned(Vec3d w) const;    // local -> drawing frame
+    Vec3d unturned(Vec3d w) const;  // and back
+    Point centre_;
+    double radius_, up_, away_;  // sine and cosine of the elevation
+    double cos_ = 1, sin_ = 0;   // of the turn about n
+};
+
+/// Unit direction at angles from n, in degrees, and about it from the direction's own x axis.
+Vec3d direction(double theta_deg, double phi_deg);
+
+}  // namespace crescent::film
