@@ -159,6 +159,7 @@ std::string fault_of(const std::string& command) {
 
 TEST(Verdicts, SayWhatAPipeDidWrongAndWhere) {
     EXPECT_NE(fault_of("sleep 20").find("request 1 ('hello 1'): expected 'hello 1 NAME', got nothing"), std::string::npos);
+    EXPECT_NE(fault_of("sleep 20 & exit 0").find("the program ended with exit code 0, and what it left running"), std::string::npos);
     EXPECT_NE(fault_of("echo hallo").find("got 'hallo'"), std::string::npos);
     EXPECT_NE(fault_of("exit 3").find("exit code 3"), std::string::npos);
     EXPECT_NE(fault_of("echo hello 1 x; echo 1; exit 0").find("request"), std::string::npos);

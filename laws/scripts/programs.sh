@@ -15,7 +15,7 @@ fields few.json "assert $everywhere and $some and 0 < len(j['left_out']) <= 8 an
 for file in printed few.xml few.html; do grep -q "Not looked at" $file || die "$file does not say what was not looked at"; done
 expect 0 check --exec './slow 150000' --patience 6 --accept-few --json few.json
 fields few.json "assert $everywhere and len(j['left_out']) > 0 and j['state'] == 'right'"
-expect 1 check --exec './slow 20000 nan' --patience 3  # the normal is among the w_o that there is no time for
+expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among the w_o that there is no time for
 
 # broken WORDS PROGRAM: an error, told with these words.
 broken() {
@@ -29,3 +29,48 @@ broken "loading weights" 'echo loading weights...; cat'
 broken "exit code 2" 'python3 nowhere.py'
 broken "signal 11" 'read hello; echo hello 1 x; read f; echo -; kill -SEGV $$'
 broken "got 'oops'" 'read hello; echo hello 1 x; read f; echo -; read sample; while echo 0 0 1 0.3; do read verb || exit 0; [ "${verb%% *}" = sample ] || { echo oops; break; }; done'
+
+# A number too large for a double is infinite, however it is written.
+for huge in 1e999 0x1p+5000 inf 123456789e400; do
+    expect 1 check --exec "./slow 10000000 $huge"
+    grep -q "pdf is infinite" printed || die "$huge is not infinite: $(cat printed)"
+done
+
+# Whatever a program calls itself and whatever a file is called, XML is well-formed, HTML is UTF-8 and nothing moves a cursor.
+well_formed() { python3 -c "import sys, xml.parsers.expat as x; x.ParserCreate().ParseFile(open(sys.argv[1], 'rb')); open(sys.argv[2], encoding='utf-8').read()" "$1" "$2" || die "$1 or $2"; }
+for name in 'a\033[31m\302\233<&"' "$(printf 'x%.0s' {1..59})\303\251\303\251" 'na\357ve'; do
+    expect 3 check --exec "read hello; printf 'hello 1 $name\n'; read f; echo -; exit 3" --junit name.xml --html name.html
+    well_formed name.xml name.html
+    ! LC_ALL=C grep -q "$(printf '\033\\|\302\233')" printed || die "a control character of the name: $(cat -v printed)"
+done
+
+# What a program started dies with it, a session of its own included; all of it dies with crescent.
+gone() {
+    for _ in $(seq 50); do
+        kill -0 "$(cat "$1")" 2>/dev/null || return 0
+        sleep 0.1
+    done
+    die "process $(cat "$1") lives on"
+}
+expect 3 check --exec 'setsid sh -c "echo \$\$ >session; exec sleep 300" & read hello; echo hello 1 x; while [ ! -s session ]; do :; done; exit 3'
+gone session
+"$CRESCENT" check --quiet --exec 'setsid sh -c "echo \$\$ >orphan; exec sleep 300"' >/dev/null 2>&1 &
+while [ ! -s orphan ]; do sleep 0.1; done
+kill -9 $!
+gone orphan
+
+# Files appear whole; nobody else's is touched, and no link is followed.
+echo mine >r.json.part && echo mine >victim && ln -s victim r.json
+expect 1 check --exec "./slow 10000000 -1" --json r.json
+[ "$(cat r.json.part victim)" = "mine
+mine" ] || die "a file of somebody else's was touched"
+fields r.json "assert j['state'] == 'wrong'"
+check --exec "./slow 10000000 -1" --json /dev/stdout 2>said | grep -q '"state": "wrong"' || die "nothing on /dev/stdout: $(cat said)"
+
+# A header of 60,000 blanks, where a matcher that recurses would run out of stack.
+python3 - <<'PY'
+header = b"{'descr':" + b" " * 60000 + b"'<f8', 'fortran_order': False, 'shape': (2, 6), }\n"
+open("blanks.npy", "wb").write(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header + b"\0" * 96)
+PY
+expect 2 check --samples blanks.npy --wo 0,0,1 --pdf-table blanks.npy
+grep -q "2 samples are too few" said || die "$(cat said)"

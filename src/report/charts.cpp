@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "report/escape.h"
+#include "base/text.h"
 #include "report/numbers.h"
 
 namespace crescent {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/escape.h"
+#include "base/text.h"
 
 namespace crescent::html {
 

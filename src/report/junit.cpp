@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "report/escape.h"
+#include "base/text.h"
 #include "report/numbers.h"
 #include "report/report.h"
 

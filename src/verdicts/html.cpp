@@ -2,17 +2,12 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "verdicts/print.h"
 
 namespace crescent {
 
 namespace {
-
-std::string escape(std::string_view s) {
-    std::string out;
-    for (char c : s) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-    return out;
-}
 
 /// Three maps, painted by the script at the head of the page from the counts themselves.
 std::string maps(const BinMap& m) {

@@ -1,9 +1,6 @@
 #include "verdicts/pipe.h"
 
 #include <cmath>
-#include <csignal>
-#include <cstring>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <functional>
 #include <poll.h>
@@ -11,6 +8,8 @@
 #include <unistd.h>
 
 #include "base/errors.h"
+#include "base/text.h"
+#include "verdicts/child.h"
 #include "verdicts/pipe_text.h"
 
 namespace crescent {
@@ -21,14 +20,13 @@ using Clock = std::chrono::steady_clock;
 
 class PipeSubject : public JudgedSampler {
 public:
-    PipeSubject(const std::string& command, const PipeLimits& limits) : limits_(limits) {
-        start(command);
+    PipeSubject(const std::string& command, const PipeLimits& limits) : limits_(limits), child_(command) {
         try {
             greet();
         } catch (const SubjectFault&) {
             const bool unknown = broken_.find("exit code 127") != std::string::npos || broken_.find("exit code 126") != std::string::npos;
             stop();
-            if (unknown && !greeted_) throw InputError({"--exec", 0, 0}, "the shell cannot start '" + command + "'");
+            if (unknown && !greeted_) throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
             throw;
         } catch (...) {
             stop();
@@ -62,8 +60,7 @@ private:
     PipeLimits limits_;
     std::string name_;
     bool has_f_ = false;
-    pid_t child_ = -1;
-    int to_ = -1, from_ = -1;
+    Child child_;
     mutable std::string incoming_;
     mutable std::size_t read_from_ = 0;
     mutable std::uint64_t requests_ = 0;
@@ -86,61 +83,14 @@ private:
             [&](std::size_t i, std::string_view s) { return take_float(s, out[i]) && blank(s); });
     }
 
-    void start(const std::string& command) {
-        std::signal(SIGPIPE, SIG_IGN);  // a program that closed its input shows as EPIPE
-        int in[2], out[2];
-        if (pipe2(in, O_CLOEXEC) != 0) throw SubjectFault(fmt::format("no pipe: {}", std::strerror(errno)));
-        if (pipe2(out, O_CLOEXEC) != 0) {
-            close(in[0]);
-            close(in[1]);
-            throw SubjectFault(fmt::format("no pipe: {}", std::strerror(errno)));
-        }
-        child_ = fork();
-        if (child_ == 0) {
-            setpgid(0, 0);
-            dup2(in[0], 0);
-            dup2(out[1], 1);
-            std::signal(SIGPIPE, SIG_DFL);
-            execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
-            _exit(127);
-        }
-        close(in[0]);
-        close(out[1]);
-        to_ = in[1];
-        from_ = out[0];
-        if (child_ < 0) {
-            stop();
-            throw SubjectFault(fmt::format("no process: {}", std::strerror(errno)));
-        }
-        setpgid(child_, child_);
-        fcntl(to_, F_SETFL, fcntl(to_, F_GETFL) | O_NONBLOCK);
-        fcntl(from_, F_SETFL, fcntl(from_, F_GETFL) | O_NONBLOCK);
-    }
-
-    void stop() {
-        if (!broken_.empty() && child_ > 0) kill(-child_, SIGKILL);  // it need not be told that nobody listens
-        if (to_ >= 0) close(to_);
-        if (from_ >= 0) close(from_);
-        to_ = from_ = -1;
-        if (child_ <= 0) return;
-        for (int i = 0; i < 50; ++i) {  // half a second to end by itself
-            if (waitpid(child_, nullptr, WNOHANG) == child_) {
-                kill(-child_, SIGKILL);  // what it started and left behind
-                child_ = -1;
-                return;
-            }
-            usleep(10000);
-        }
-        kill(-child_, SIGKILL);
-        waitpid(child_, nullptr, 0);
-        child_ = -1;
-    }
+    /// What it had time to say is read no more; half a second to end by itself, unless it was given up.
+    void stop() { child_.end(broken_.empty() ? 500 : 0); }
 
     void greet() {
         ask(1, "'hello 1 NAME'", [](std::size_t, std::string& line) { line = "hello 1"; },
             [&](std::size_t, std::string_view s) {
                 if (s.substr(0, 8) != "hello 1 " || blank(s.substr(8))) return false;
-                name_ = plain_name(s.substr(s.find_first_not_of(" \t", 8)));
+                name_ = printable(s.substr(s.find_first_not_of(" \t", 8)), 60);
                 return true;
             });
         greeted_ = true;
@@ -166,20 +116,23 @@ private:
         throw SubjectFault(broken_);
     }
 
-    static std::string exit_told(int code) {
+    /// "" while it runs.
+    std::string how_it_ended(int milliseconds) const {
+        const std::optional<int> status = child_.status(milliseconds);
+        if (!status) return "";
+        if (WIFSIGNALED(*status)) return fmt::format("the program was killed by signal {}", WTERMSIG(*status));
+        const int code = WEXITSTATUS(*status);
         return fmt::format("the program ended with exit code {}", code) + (code > 128 && code < 160 ? fmt::format(" (signal {})", code - 128) : "");
     }
-
-    std::string how_it_ended() const {
-        int status = 0;
-        for (int i = 0; i < 20; ++i) {
-            if (waitpid(child_, &status, WNOHANG | WNOWAIT) == child_) break;
-            siginfo_t info{};
-            if (waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child_)
-                return info.si_code == CLD_EXITED ? exit_told(info.si_status) : fmt::format("the program was killed by signal {}", info.si_status);
-            usleep(10000);
-        }
-        return "the program closed its output";
+    std::string why_closed() const {
+        const std::string how = how_it_ended(200);
+        return how.empty() ? "the program closed its output" : how;
+    }
+    /// Why nothing comes: a program that went on in the background and ended itself, or one that keeps its answers.
+    std::string why_silent() const {
+        const std::string how = how_it_ended(0);
+        if (!how.empty()) return ": " + how + ", and what it left running holds its output open and says nothing";
+        return pending().empty() ? " (does it flush every answer?)" : "; half a line stands there: " + shown(pending());
     }
 
     /// Writes all requests and reads all answers, whichever side is ready.
@@ -200,12 +153,12 @@ private:
                     outgoing += '\n';
                 }
             }
-            pollfd ends[2] = {{from_, POLLIN, 0}, {to_, static_cast<short>(sent < outgoing.size() ? POLLOUT : 0), 0}};
+            pollfd ends[2] = {{child_.output(), POLLIN, 0}, {child_.input(), static_cast<short>(sent < outgoing.size() ? POLLOUT : 0), 0}};
             const int ready = poll(ends, sent < outgoing.size() ? 2 : 1, 50);
             if (ready > 0 && (ends[1].revents & (POLLOUT | POLLERR)) != 0 && sent < outgoing.size()) {
-                const ssize_t n = ::write(to_, outgoing.data() + sent, outgoing.size() - sent);
+                const ssize_t n = ::write(child_.input(), outgoing.data() + sent, outgoing.size() - sent);
                 if (n > 0) sent += static_cast<std::size_t>(n);
-                else if (n < 0 && errno == EPIPE && (ends[0].revents & POLLIN) == 0) fault(write, answered, "but it closed its input: " + how_it_ended(), expected);
+                else if (n < 0 && errno == EPIPE && (ends[0].revents & POLLIN) == 0) fault(write, answered, "but it closed its input: " + why_closed(), expected);
             }
             if (ready > 0 && (ends[0].revents & (POLLIN | POLLHUP)) != 0) {
                 if (!fill()) fault(write, answered, end_of_output(), expected);
@@ -224,7 +177,7 @@ private:
             }
             const double quiet = std::chrono::duration<double>(Clock::now() - last).count();
             if (quiet > (greeted_ ? limits_.quiet_seconds : limits_.hello_seconds))
-                fault(write, answered, fmt::format("got nothing for {:.0f} s{}", quiet, pending().empty() ? " (does it flush every answer?)" : "; half a line stands there: " + shown(pending())), expected);
+                fault(write, answered, fmt::format("got nothing for {:.0f} s{}", quiet, why_silent()), expected);
         }
         if (!pending().empty() && pending().find('\n') != std::string_view::npos)
             fault(write, count - 1, "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))), expected);
@@ -232,7 +185,7 @@ private:
     }
 
     std::string end_of_output() const {
-        return fmt::format("but {}{}", how_it_ended(), pending().empty() ? "" : " in the middle of a line: " + shown(pending()));
+        return fmt::format("but {}{}", why_closed(), pending().empty() ? "" : " in the middle of a line: " + shown(pending()));
     }
     std::string_view pending() const { return std::string_view(incoming_).substr(read_from_); }
 
@@ -241,7 +194,7 @@ private:
         incoming_.erase(0, read_from_);
         read_from_ = 0;
         char buffer[1 << 16];
-        const ssize_t n = ::read(from_, buffer, sizeof buffer);
+        const ssize_t n = ::read(child_.output(), buffer, sizeof buffer);
         if (n < 0) return errno == EAGAIN || errno == EINTR;
         incoming_.append(buffer, static_cast<std::size_t>(n));
         return n > 0;

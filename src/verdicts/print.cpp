@@ -1,30 +1,13 @@
 #include "verdicts/print.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 
-#include "base/errors.h"
+#include "base/text.h"
 
 namespace crescent {
 
 namespace {
-
-std::string escaped(std::string_view s) {
-    std::string out;
-    for (char c : s) {
-        if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else if (c == '&') out += "&amp;";
-        else if (c == '"') out += "&quot;";
-        else if (static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t') out += '?';
-        else out += c;
-    }
-    return out;
-}
 
 State worst(State a, State b) {
     const auto rank = [](State s) { return s == State::wrong ? 4 : s == State::error ? 3 : s == State::inconclusive ? 2 : s == State::right ? 1 : 0; };
@@ -99,43 +82,22 @@ std::string verdict_junit(const Judgement& judgement) {
     std::size_t failures = 0, errors = 0, skipped = 0;
     std::string cases;
     for (const Verdict& v : judgement.verdicts) {
-        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\">", escaped(v.arm), v.name, escaped(v.trial));
+        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\">", escape(v.arm), v.name, escape(v.trial));
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         if (v.state == State::error) {
             ++errors;
-            cases += fmt::format("<error message=\"{}\">{}</error>", word(v.state), escaped(v.say));
+            cases += fmt::format("<error message=\"{}\">{}</error>", word(v.state), escape(v.say));
         } else if (fails) {
             ++failures;
-            cases += fmt::format("<failure message=\"{}\">{}</failure>", word(v.state), escaped(v.say));
+            cases += fmt::format("<failure message=\"{}\">{}</failure>", word(v.state), escape(v.say));
         } else if (v.state == State::skipped || v.state == State::inconclusive) {
             ++skipped;
-            cases += fmt::format("<skipped message=\"{}: {}\"/>", word(v.state), escaped(v.say));
+            cases += fmt::format("<skipped message=\"{}: {}\"/>", word(v.state), escape(v.say));
         }
         cases += "</testcase>\n";
     }
     return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"crescent check\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}</testsuite>\n", judgement.verdicts.size(), failures, errors,
                        skipped, cases);
-}
-
-void can_write(const std::string& path) {
-    const std::string beside = path + ".part";
-    std::FILE* file = std::fopen(beside.c_str(), "ab");
-    if (!file) throw OutputError("cannot write " + path + ": " + std::strerror(errno));
-    std::fclose(file);
-    std::remove(beside.c_str());
-    if (std::filesystem::is_directory(path)) throw OutputError("cannot write " + path + ": it is a folder");
-}
-
-void write_whole(const std::string& path, const std::string& text) {
-    const std::string beside = path + ".part";
-    std::FILE* file = std::fopen(beside.c_str(), "wb");
-    const bool written = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    const bool closed = file && std::fclose(file) == 0;
-    if (!written || !closed || std::rename(beside.c_str(), path.c_str()) != 0) {
-        const std::string why = std::strerror(errno);
-        std::remove(beside.c_str());
-        throw OutputError("cannot write " + path + ": " + why);
-    }
 }
 
 }  // namespace crescent

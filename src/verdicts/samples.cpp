@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "simd/scalar.h"
 #include "verdicts/table_file.h"
 
@@ -43,7 +44,7 @@ double turned(Vec3d w) { return turned(std::atan2(w.y, w.x)); }
 
 }  // namespace
 
-SampleFile::SampleFile(const std::string& samples, const std::string& table) : name_(samples) {
+SampleFile::SampleFile(const std::string& samples, const std::string& table) : name_(printable(samples)) {
     read_samples(samples);
     read_table(table);
     cells_ = agrees_as_cells();

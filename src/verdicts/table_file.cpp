@@ -6,7 +6,9 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
-#include <regex>
+
+#include "base/text.h"
+#include "verdicts/pipe_text.h"
 
 namespace crescent {
 
@@ -31,8 +33,8 @@ double number(Complaints& in, std::string_view word, unsigned line, unsigned col
     double v = 0;
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
-    if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) return 0;  // an underflow
-    if (error != std::errc{} || end != digits.data() + digits.size()) in.add(line, column, fmt::format("expected a number, not '{}'", word.substr(0, 40)));
+    if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) return (digits.starts_with('-') ? -1 : 1) * out_of_range(digits.substr(digits.starts_with('-')), false);
+    if (error != std::errc{} || end != digits.data() + digits.size()) in.add(line, column, fmt::format("expected a number, not '{}'", printable(word, 40)));
     return v;
 }
 
@@ -67,7 +69,7 @@ void name_columns(Complaints& in, const NumberTable& t, const std::vector<std::v
     if (std::any_of(layouts.begin(), layouts.end(), fits)) return;
     std::string expected;
     for (const auto& layout : layouts) expected += fmt::format("{}{}", expected.empty() ? "" : " or ", fmt::join(layout, ","));
-    in.add(1, 1, fmt::format("expected the header {}, not {}", expected, std::string(fmt::format("{}", fmt::join(t.columns, ","))).substr(0, 100)));
+    in.add(1, 1, fmt::format("expected the header {}, not {}", expected, printable(fmt::format("{}", fmt::join(t.columns, ",")), 100)));
     in.settle();
 }
 
@@ -75,6 +77,28 @@ struct NpyHeader {
     std::size_t rows = 0, columns = 0, size = 0;
     bool by_column = false;
 };
+
+std::string_view without_blanks(std::string_view s) { return s.substr(std::min(s.find_first_not_of(" \t\r\n"), s.size())); }
+
+/// What stands after a key of the header, which is a Python dictionary.
+std::string_view value_of(std::string_view header, std::string_view key) {
+    const std::size_t at = header.find(key);
+    return at == std::string_view::npos ? std::string_view() : without_blanks(header.substr(at + key.size()));
+}
+
+bool take(std::string_view& s, char c) {
+    if (!s.starts_with(c)) return false;
+    s = without_blanks(s.substr(1));
+    return true;
+}
+
+/// A count of at most fifteen digits.
+bool take_count(std::string_view& s, std::size_t& out) {
+    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), out);
+    if (error != std::errc{} || end - s.data() > 15) return false;
+    s = without_blanks(s.substr(static_cast<std::size_t>(end - s.data())));
+    return true;
+}
 
 NpyHeader npy_header(Complaints& in, std::istream& file) {
     char magic[10];
@@ -89,10 +113,14 @@ NpyHeader npy_header(Complaints& in, std::istream& file) {
     if (length > 65536) in.add(0, 0, "the NPY header is too long"), in.settle();
     std::string header(length, ' ');
     file.read(header.data(), static_cast<std::streamsize>(length));
-    std::smatch type, shape;
-    const bool known = std::regex_search(header, type, std::regex("'descr':\\s*'<f([48])'")) && std::regex_search(header, shape, std::regex("'shape':\\s*\\((\\d{1,15}),\\s*(\\d{1,15})\\)"));
-    if (!known) in.add(0, 0, fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", trimmed(header).substr(0, 100))), in.settle();
-    return {std::stoull(shape[1]), std::stoull(shape[2]), type[1] == "4" ? 4u : 8u, header.find("'fortran_order': True") != std::string::npos};
+    NpyHeader out;
+    std::string_view type = value_of(header, "'descr':"), shape = value_of(header, "'shape':");
+    if (type.starts_with("'<f4'")) out.size = 4;
+    if (type.starts_with("'<f8'")) out.size = 8;
+    const bool known = out.size > 0 && take(shape, '(') && take_count(shape, out.rows) && take(shape, ',') && take_count(shape, out.columns) && (take(shape, ','), take(shape, ')'));
+    if (!known) in.add(0, 0, fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", printable(trimmed(header), 100))), in.settle();
+    out.by_column = value_of(header, "'fortran_order':").starts_with("True");
+    return out;
 }
 
 NumberTable read_npy(Complaints& in, std::istream& file, const std::vector<std::vector<std::string>>& layouts) {

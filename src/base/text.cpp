@@ -1,4 +1,7 @@
-#include "report/escape.h"
+#include "base/text.h"
+
+#include <algorithm>
+#include <fmt/format.h>
 
 namespace crescent {
 namespace {
@@ -56,6 +59,24 @@ std::string escape(std::string_view text) {
         const std::string_view named = reference(text[i]);
         out += named.empty() ? text.substr(i, length) : named;
         i += length;
+    }
+    return out;
+}
+
+std::string printable(std::string_view text, std::size_t longest) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = sequence_length(text, i);
+        if (i + std::max<std::size_t>(length, 1) > longest) return out + "...";
+        const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[i + k])); };
+        unsigned c = byte(0);
+        if (length == 2) c = (c & 0x1F) << 6 | (byte(1) & 0x3F);
+        if (length == 3) c = (c & 0x0F) << 12 | (byte(1) & 0x3F) << 6 | (byte(2) & 0x3F);
+        const bool turns = length == 3 && ((c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069));
+        if (length == 0 || (length == 1 && (c < 0x20 || c == 0x7F))) out += fmt::format("\\x{:02x}", c);
+        else if (turns || (length == 2 && c < 0xA0)) out += fmt::format("\\u{{{:x}}}", c);
+        else out += text.substr(i, length);
+        i += std::max<std::size_t>(length, 1);
     }
     return out;
 }
