@@ -39,9 +39,14 @@ Rect Frame::text(const Rect& box, const Words& words, Text how, double alpha) {
     return canvas_.text(box, words.markup(), how);
 }
 
-Rect Frame::picture(const Block& block, double x, double y, int times, double alpha) {
+Rect Frame::field(const Block& block, double x, double y, int times, double alpha) {
     const Rect r{std::round(x), std::round(y), double(block.width) * times, double(block.height) * times};
     canvas_.paint(block, r.x, r.y, times, alpha);
+    return r;
+}
+
+Rect Frame::picture(const Block& block, double x, double y, int times, double alpha) {
+    const Rect r = field(block, x, y, times, alpha);
     if (alpha > 0) canvas_.outline(r.inset(-1), faded(plates::rule, alpha), 2);
     return r;
 }

@@ -47,6 +47,8 @@ public:
     Rect picture(const Block& block, double x, double y, int times, double alpha = 1);
     /// The same one to one without the hairline, for a block whose edge is the ground.
     void field(const Block& block, Point corner, double alpha = 1);
+    /// The same without the hairline.
+    Rect field(const Block& block, double x, double y, int times, double alpha = 1);
     void fill(const Rect& r, Colour c, double alpha = 1);
     void outline(const Rect& r, Colour c, double line, double alpha = 1);
     void line(Point a, Point b, Colour c, double line, double alpha = 1, double dash = 0);

@@ -5,9 +5,8 @@ namespace crescent::film {
 std::vector<Shot> shots_of(const Data& data) {
     using Make = Shot (*)(const Data&);
     constexpr Make makes[] = {
-        title,      // 1
-        one_pixel,  // 3
-        same_randoms, firefly, heavy_tail, tilt,
+        title,     columns,    one_pixel, same_randoms, firefly, ladder_cosine, ladder_phong, heat,
+        failure_b, heavy_tail, tilt,      exponent,     seeds,   beyond,        claims,       closing,
     };
     std::vector<Shot> shots;
     for (const Make make : makes)

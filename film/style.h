@@ -17,6 +17,9 @@ using plates::with;
 using plates::with_lines;
 using plates::with_px;
 
+/// The two regions, told apart from every arm.
+inline constexpr Colour highlight_ink = plates::series[3], surround_ink = plates::series[4];
+
 inline constexpr double least_px = 27;
 inline constexpr Text big_text{96, bright, Weight::semibold, Align::left, Vertical::top, 1, 40};
 inline constexpr Text title_text{40, bright, Weight::semibold, Align::left, Vertical::middle, 1, 30};

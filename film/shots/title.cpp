@@ -6,7 +6,7 @@ namespace crescent::film {
 
 namespace {
 
-constexpr double first = 1.0, each = 0.8;  // s: when the first film shows, how long each stands
+constexpr double first = 1.0, each = 0.7;  // s: when the first film shows, how long each stands
 
 }  // namespace
 
@@ -20,16 +20,18 @@ Shot title(const Data& data) {
     };
     for (const Film& film : data.opening) {
         const RunKey key = data.key(cast.cosine, film.n);
-        add(plates::view(&film), Words(data.arm(cast.cosine), ", N = ", data.n_of(key)));
+        add(plates::view(&film), Words(data.arm(cast.cosine), ", N\u00a0=\u00a0", data.n_of(key)));
     }
     add(plates::view(&data.reference()), Words("converged reference"));
 
+    const Words under("one integral, two ways of aiming, one N");
     const double last = first + each * double(blocks.size() - 1);
     Shot shot;
     shot.name = "title";
-    shot.title = Words("Where the noise goes");
+    shot.title = name(data.experiment.title).markup.empty() ? Words("The experiment") : Words(name(data.experiment.title));
+    shot.kind = Kind::photograph;
     shot.seen = Words("A lacquer sphere on a plinth comes out of noise as the number of samples doubles; then the title.");
-    shot.seconds = last + 8;
+    shot.seconds = last + 6.5;
     shot.still = shot.seconds - 1.5;
     shot.cues = {{0.5, Words("A picture is computed by aiming rays at random.")},
                  {last - 1.5, Words("More rays, less noise. But how they are aimed decides where the noise goes.")}};
@@ -38,9 +40,10 @@ Shot title(const Data& data) {
         const int k = f.after(first) ? std::min(f.steps(first, first + each * n, n), n - 1) : 0;
         const Block& block = blocks[std::size_t(k)];
         const double in = f.ease(0, 0.8);
-        const Rect r = f.picture(block, (sheet_width - block.width * 1.0) / 2, 200, 1, in);
-        f.text({r.x, r.bottom() + 14, r.w, 44}, labels[std::size_t(k)], with(with(label_text, muted), Align::right), in);
-        f.text({r.x, r.y - 120, r.w, 100}, Words("Where the noise goes"), with(with_px(big_text, 80), Align::centre), f.ease(last, last + 0.8));
+        const Rect r = f.picture(block, (sheet_width - block.width * 1.0) / 2, 300, 1, in);
+        f.text({r.x, r.bottom() + 10, r.w, 48}, labels[std::size_t(k)], with(with(label_text, muted), Align::right), in);
+        f.text({60, 120, sheet_width - 120, 110}, Words("Where the noise goes"), with(big_text, Align::centre), f.ease(last, last + 0.8));
+        f.text({60, 226, sheet_width - 120, 54}, under, with(with(label_text, muted), Align::centre), f.ease(last + 0.6, last + 1.4));
     };
     return shot;
 }

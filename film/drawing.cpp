@@ -1,0 +1,101 @@
+#include "drawing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crescent::film {
+
+Rect on_picture(const Rect& r, const Box& shown, const Box& box, int times) {
+    return {r.x + double(box.x0 - shown.x0) * times, r.y + double(shown.y1 - box.y1) * times, double(box.width()) * times, double(box.height()) * times};
+}
+
+void mark(Frame& f, const Rect& r, Colour ink, double alpha) {
+    f.outline(r.inset(-2), {0, 0, 0, 0.7}, 8, alpha);
+    f.outline(r.inset(-2), ink, 4, alpha);
+}
+
+void tag(Frame& f, Point at, const Words& words, Colour ink, double alpha) {
+    Text how = with(with(with(label_text, ground), Align::centre), Weight::semibold);
+    const double w = f.measure(words, how).w + 28, h = 48;
+    const Rect box{at.x, at.y - h, w, h};
+    f.fill(box, ink, alpha);
+    f.text(box.inset(2), words, how, alpha);
+}
+
+std::vector<double> residuals(const Film& film, const ReferenceFilm& reference, const Box& box) {
+    std::vector<double> out;
+    for (int y = box.y1; y >= box.y0; --y) {
+        for (int x = box.x0; x <= box.x1; ++x) {
+            const std::size_t i = std::size_t(y) * std::size_t(film.width) + std::size_t(x);
+            out.push_back(std::abs(double(film.y[i]) - double(reference.y[i])));
+        }
+    }
+    return out;
+}
+
+Block residual_of(const Film& film, const ReferenceFilm& reference, const Box& box, double top) {
+    Block block(box.width(), box.height());
+    const std::vector<double> values = residuals(film, reference, box);
+    for (int j = 0; j < box.height(); ++j)
+        for (int i = 0; i < box.width(); ++i) block.set(i, j, turbo(values[std::size_t(j) * std::size_t(box.width()) + std::size_t(i)] / top));
+    return block;
+}
+
+Point LogPlot::at(double x, double y) const {
+    const double u = std::log(x / x0) / std::log(x1 / x0), v = std::log(y / y0) / std::log(y1 / y0);
+    return {plot.x + plot.w * u, plot.bottom() - plot.h * v};
+}
+
+void LogPlot::axes(Frame& f, const std::vector<std::uint64_t>& at_x, const Words& x_name, const Words& y_name, double alpha) const {
+    f.line({plot.x, plot.bottom()}, {plot.right(), plot.bottom()}, muted, 2, alpha);
+    f.line({plot.x, plot.y}, {plot.x, plot.bottom()}, muted, 2, alpha);
+    const Text below = with(small_text, Align::centre), beside = with(small_text, Align::right);
+    for (const std::uint64_t n : at_x) {
+        const Point p = at(double(n), y0);
+        f.line({p.x, p.y}, {p.x, p.y + 8}, muted, 2, alpha);
+        f.text({p.x - 60, p.y + 12, 120, 36}, Words(count(n, "axis")), below, alpha);
+    }
+    for (double power = std::pow(10.0, std::floor(std::log10(y0))); power <= y1 * 1.001; power *= 10) {
+        for (const double lead : {1.0, 2.0, 5.0}) {
+            const double v = lead * power;
+            if (v < y0 * 0.999 || v > y1 * 1.001) continue;
+            const Point p = at(x0, v);
+            f.line({p.x, p.y}, {plot.right(), p.y}, rule, 1, alpha);
+            f.text({p.x - 130, p.y - 18, 116, 36}, Words(number(v, 3, "axis")), beside, alpha);
+        }
+    }
+    f.text({plot.x + 10, plot.bottom() + 48, plot.w - 10, 40}, x_name, with(small_text, Align::right), alpha);
+    f.text({plot.x - 120, plot.y - 56, plot.w, 42}, y_name, with(label_text, Weight::semibold), alpha);
+}
+
+std::vector<Point> begun(const std::vector<Point>& path, double part) {
+    double length = 0;
+    for (std::size_t k = 1; k < path.size(); ++k) length += std::hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y);
+    double left = part * length;
+    std::vector<Point> out;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        if (k == 0) {
+            out.push_back(path[0]);
+            continue;
+        }
+        const Point a = path[k - 1], b = path[k];
+        const double step = std::hypot(b.x - a.x, b.y - a.y);
+        if (step >= left) {
+            if (step > 0) out.push_back({a.x + (b.x - a.x) * left / step, a.y + (b.y - a.y) * left / step});
+            break;
+        }
+        out.push_back(b);
+        left -= step;
+    }
+    return out;
+}
+
+Rect column_of(double x, double w, double between, std::size_t k) { return {x + double(k) * (w + between), stage.y, w, stage.h}; }
+
+Order order_of(const Data& data, const RunKey& a, const RunKey& b, const std::string& region) {
+    const RegionMeter *ra = data.region(a, region), *rb = data.region(b, region);
+    ensure(ra && rb, "the film compares runs that were made");
+    return ra->rmse <= rb->rmse ? Order{a, b, ra->rmse, rb->rmse} : Order{b, a, rb->rmse, ra->rmse};
+}
+
+}  // namespace crescent::film

@@ -1,0 +1,110 @@
+#include "ladder_shot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drawing.h"
+#include "formulas.h"
+
+namespace crescent::film {
+
+namespace {
+
+constexpr double first = 4.6, each = 2.2;  // s: when the first rung shows, how long each has
+
+std::vector<Point> points_of(const Ladder& ladder, const LogPlot& plot) {
+    std::vector<Point> out;
+    for (std::size_t k = 0; k < ladder.n.size(); ++k)
+        if (ladder.rmse[k] > 0) out.push_back(plot.at(double(ladder.n[k]), ladder.rmse[k]));
+    return out;
+}
+
+LogPlot plot_of(const Data& data) {
+    LogPlot plot{{1080, 210, 700, 560}, 0, 0, 1e300, 0};
+    for (const std::string& arm : {data.cast.cosine, data.cast.phong}) {
+        const Ladder& ladder = ladder_of(data, arm);
+        for (const double v : ladder.rmse)
+            if (v > 0) plot.y0 = std::min(plot.y0, v), plot.y1 = std::max(plot.y1, v);
+        plot.x0 = double(ladder.n.front()), plot.x1 = double(ladder.n.back());
+    }
+    if (!(plot.y1 > plot.y0)) plot.y0 = 0.5, plot.y1 = 2;
+    plot.y0 /= 1.4, plot.y1 *= 1.4, plot.x0 /= 1.35, plot.x1 *= 1.35;
+    return plot;
+}
+
+/// The four rungs that are shown: of more, evenly chosen.
+std::vector<std::size_t> shown_of(const Ladder& ladder) {
+    std::vector<std::size_t> out;
+    const std::size_t count = std::min<std::size_t>(ladder.n.size(), 4);
+    for (std::size_t k = 0; k < count; ++k) out.push_back(count == 1 ? 0 : k * (ladder.n.size() - 1) / (count - 1));
+    return out;
+}
+
+}  // namespace
+
+const Ladder& ladder_of(const Data& data, const std::string& arm) {
+    const auto found = std::ranges::find_if(data.metrics.ladders, [&](const Ladder& l) { return l.arm == arm && l.region == data.cast.highlight && l.s == data.cast.s; });
+    ensure(found != data.metrics.ladders.end(), "both arms of the film have a ladder");
+    return *found;
+}
+
+Words slope_words(const Ladder& l) {
+    const std::string source = "ladder of " + l.arm + " in " + l.region;
+    Words words("slope ", figure(l.slope, 3, source));
+    if (l.heavy) return words << ", heavy tail: no interval";
+    if (std::isfinite(l.low) && std::isfinite(l.high)) words << " (" << figure(l.low, 3, source) << " to " << figure(l.high, 3, source) << ")";
+    return words;
+}
+
+Shot ladder_shot(const Data& data, const LadderStory& story) {
+    const Ladder& ladder = ladder_of(data, story.arm);
+    const LogPlot plot = plot_of(data);
+    const Box crop = around(data, data.box(data.cast.highlight), 76, 62);
+    std::vector<Block> blocks;
+    std::vector<Words> labels;
+    for (const std::size_t k : shown_of(ladder)) {
+        const RunKey key = data.key(story.arm, ladder.n[k]);
+        blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop));
+        labels.push_back(Words("N\u00a0=\u00a0", data.n_of(key), ", off by ", data.rmse(key, data.cast.highlight)));
+    }
+    const std::vector<Point> points = points_of(ladder, plot);
+    std::vector<Point> old;
+    if (!story.before.empty()) old = points_of(ladder_of(data, story.before), plot);
+    const Words slope = slope_words(ladder), name(data.arm(story.arm)), old_name(story.before.empty() ? Words() : Words(data.arm(story.before)));
+    const Colour ink = data.ink(story.arm), old_ink = story.before.empty() ? ink : data.ink(story.before);
+    std::vector<std::uint64_t> ticks = ladder.n;
+
+    Shot shot;
+    shot.kind = Kind::photograph;
+    const double line = first + each * double(blocks.size());
+    shot.cues = {{0.5, story.opening}};
+    for (std::size_t k = 0; k < story.after.size(); ++k) shot.cues.push_back({line + 5.6 * double(k), story.after[k]});
+    shot.seconds = line + 5.6 * double(story.after.size());
+    shot.still = shot.seconds - 0.8;
+    shot.draw = [=](Frame& f) {
+        plot.axes(f, ticks, Words("samples a pixel, N"), Words("RMSE in the highlight"), f.ease(0.4, 1));
+        if (!old.empty()) {
+            f.polyline(old, old_ink, 4, 0.55 * f.ease(0.6, 1.2));
+            for (const Point& p : old) f.dot(p, 7, old_ink, 0.55 * f.ease(0.6, 1.2));
+            f.text({old.back().x - 250, old.back().y - 96, 270, 44}, old_name, with(with(label_text, old_ink), Align::right), f.ease(0.6, 1.2));
+        }
+        for (std::size_t k = 0; k < blocks.size(); ++k) {
+            const double at = first + each * double(k), in = f.ease(at, at + 0.5);
+            const double x = 90 + 430.0 * double(k % 2), y = 122 + 388.0 * double(k / 2);
+            const Rect r = f.picture(blocks[k], x, y, 5, in);
+            f.text({r.x, r.bottom() + 8, r.w, 48}, labels[k], with(body_text, Vertical::middle), in);
+        }
+        const int n = f.steps(first, line, static_cast<int>(points.size()));
+        f.polyline(begun(points, f.ease(line, line + 1.5)), ink, 5);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double at = first + each * double(blocks.size()) * double(k) / double(points.size());
+            f.dot(points[k], 11, ink, f.ease(at + 0.4, at + 0.9));
+        }
+        if (n == 0 && points.empty()) return;
+        f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, name, with(label_text, ink), f.ease(first, first + 0.6));
+        f.text({plot.plot.x + 30, plot.plot.bottom() - 66, plot.plot.w - 40, 48}, slope, with_px(label_text, 34), f.ease(line + 1.2, line + 1.8));
+    };
+    return shot;
+}
+
+}  // namespace crescent::film

@@ -1,0 +1,57 @@
+// Shot 14: both densities at once, and the light too: what it brings in both regions, and what it costs in rays.
+#include "drawing.h"
+#include "shots.h"
+
+namespace crescent::film {
+
+namespace {
+
+struct Column {
+    Block block;
+    Words name, highlight, surround;
+};
+
+}  // namespace
+
+Shot beyond(const Data& data) {
+    const Cast& c = data.cast;
+    const Box crop = around(data, data.box(c.highlight), 426, 470);
+    std::vector<Column> cols;
+    for (const std::string& arm : {c.cosine, c.phong, c.mixture, c.mis}) {
+        const RunKey key = data.key(arm);
+        cols.push_back({photograph_of(data, plates::view(data.film(key)), crop), Words(data.arm(arm)), Words(data.rmse(key, c.highlight)),
+                        Words(data.rmse(key, c.surround))});
+    }
+    const RunKey mis = data.key(c.mis), half = data.key(c.mis, c.n > 1 ? c.n / 2 : c.n);
+    const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
+    const Order s = order_of(data, data.key(c.cosine), data.key(c.phong), c.surround);
+    const double mix_h = data.region(data.key(c.mixture), c.highlight)->rmse, mix_s = data.region(data.key(c.mixture), c.surround)->rmse;
+    const bool both = mix_h < h.high_value && mix_s < s.high_value;
+
+    Shot shot;
+    shot.name = "beyond", shot.title = Words("Both at once"), shot.kind = Kind::photograph;
+    shot.seen = Words("Four columns of one view: cosine, Phong, their mixture, and multiple importance sampling with the light; under each "
+                      "its error in both regions.");
+    shot.cues = {{0.5, Words("Two ways of aiming, each with its own failure. Can one estimator have both?"), true},
+                 {10, both ? Words("Toss a coin between both lobes and divide by the mixture: neither region is starved.")
+                           : Words("Toss a coin between both lobes and divide by the mixture of both densities.")},
+                 {16.5, Words("Aim at the light too, and weigh both kinds of ray: multiple importance sampling.")},
+                 {23, Words("It costs two rays a sample. At half the N, as many rays: ", data.rmse(half, c.highlight), " and ", data.rmse(half, c.surround), ".")}};
+    shot.seconds = 29, shot.still = 28;
+    shot.draw = [=](Frame& f) {
+        const double starts[] = {0.4, 0.4, 10, 16.5};
+        for (std::size_t k = 0; k < cols.size(); ++k) {
+            const Column& col = cols[k];
+            const double x = 60 + 458.0 * double(k), in = f.ease(starts[k], starts[k] + 0.7), told = f.ease(starts[k] + 1.2, starts[k] + 1.8);
+            f.text({x, 112, 426, 50}, col.name, with(title_text, Align::centre), in);
+            const Rect r = f.picture(col.block, x, 170, 1, in);
+            f.text({x, r.bottom() + 12, r.w, 64}, col.highlight, with(with_px(number_text, 50), highlight_ink), told);
+            f.text({x, r.bottom() + 74, r.w, 36}, Words("RMSE, highlight"), with(small_text, Align::centre), told);
+            f.text({x, r.bottom() + 112, r.w, 64}, col.surround, with(with_px(number_text, 50), surround_ink), told);
+            f.text({x, r.bottom() + 174, r.w, 36}, Words("RMSE, surround"), with(small_text, Align::centre), told);
+        }
+    };
+    return shot;
+}
+
+}  // namespace crescent::film

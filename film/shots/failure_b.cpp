@@ -1,0 +1,97 @@
+// Shot 9: Failure B. The question why not to aim at the mirror direction everywhere; the surround enlarged; the mean of the frame.
+#include <algorithm>
+
+#include "drawing.h"
+#include "shots.h"
+
+namespace crescent::film {
+
+namespace {
+
+double mean_of(const std::vector<float>& y) {
+    double sum = 0;
+    for (const float v : y) sum += v;
+    return sum / double(y.size());
+}
+
+struct Bar {
+    Words name, value;
+    double part = 0;  // of the longest
+    Colour ink;
+};
+
+std::vector<Bar> bars_of(const Data& data) {
+    const Cast& c = data.cast;
+    const double reference = mean_of(data.reference().y);
+    std::vector<std::pair<Bar, double>> all;
+    all.push_back({{Words("reference"), Words(figure(reference, 3, "mean Y of the reference")), 0, bright}, reference});
+    for (const std::string& arm : {c.cosine, c.phong}) {
+        const RunKey key = data.key(arm);
+        const double mean = data.meter(key)->y_mean;
+        all.push_back({{Words(data.arm(arm)), Words(figure(mean, 3, "y_mean of " + to_string(key))), 0, data.ink(arm)}, mean});
+    }
+    double most = 0;
+    for (const auto& [bar, value] : all) most = std::max(most, value);
+    std::vector<Bar> out;
+    for (auto& [bar, value] : all) bar.part = most > 0 ? value / most : 0, out.push_back(bar);
+    return out;
+}
+
+}  // namespace
+
+Shot failure_b(const Data& data) {
+    const Cast& c = data.cast;
+    const Image& image = data.experiment.image;
+    const Block whole = photograph_of(data, plates::view(data.film(data.key(c.phong))), {0, 0, image.width - 1, image.height - 1});
+    const Box crop = around(data, data.box(c.surround), 280, 184);
+    const std::vector<std::string> arms = {c.cosine, c.phong};
+    std::vector<Block> blocks;
+    std::vector<Words> names, errors;
+    std::vector<Colour> inks;
+    for (const std::string& arm : arms) {
+        const RunKey key = data.key(arm);
+        blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop));
+        names.push_back(Words(data.arm(arm), ", N\u00a0=\u00a0", data.n_of(key)));
+        errors.push_back(Words("RMSE, surround: ", data.rmse(key, c.surround)));
+        inks.push_back(data.ink(arm));
+    }
+    const std::vector<Bar> bars = bars_of(data);
+    const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
+    const Order s = order_of(data, data.key(c.cosine), data.key(c.phong), c.surround);
+    const double reference = mean_of(data.reference().y), phong = data.meter(data.key(c.phong))->y_mean;
+    const bool starved = s.high.arm == c.phong;
+
+    Shot shot;
+    shot.name = "failure-b", shot.kind = Kind::photograph;
+    shot.title = starved ? Words("Failure B: Phong starves the surround") : Words("The surround, both ways");
+    shot.seen = Words("The whole picture by the Phong arm. Then the surround enlarged, cosine beside Phong; then the mean of the frame as bars: "
+                      "reference, cosine, Phong.");
+    shot.cues = {{0.5, h.low.arm == c.phong ? Words("It wins the highlight. So why not aim along the mirror direction everywhere?")
+                                            : Words("And if every pixel is aimed along the mirror direction?"), true},
+                 {10.5, Words("Plinth and floor are matt: they gather light from the whole hemisphere.")},
+                 {16, starved ? Words("A lobe around one direction leaves the rest to rare, huge samples: specks.")
+                              : Words("Here the lobe does no worse than the cosine, at this seed.")},
+                 {21.5, phong < 0.9 * reference ? Words("And the whole picture is too dark: ", percent(1 - phong / reference, 2, "y_mean and reference"), " of its light is missing.")
+                                                : Words("The mean of the frame is close to the reference, at this seed.")}};
+    shot.seconds = 27.5, shot.still = 26.5;
+    shot.draw = [=](Frame& f) {
+        const double before = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), now = f.ease(10.4, 11.1);
+        if (before > 0) f.picture(whole, (sheet_width - image.width) / 2.0, 230, 1, before);
+        const double up = f.ease(20.9, 21.5);
+        for (std::size_t k = 0; k < blocks.size() && now > 0; ++k) {
+            const double x = 90 + 900.0 * double(k);
+            f.text({x, 112, 840, 46}, names[k], with(with(title_text, inks[k]), Align::centre), now);
+            const Rect r = f.picture(blocks[k], x, 162, 3, now);
+            f.text({x, r.bottom() + 6, r.w, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre), f.ease(16, 16.6) * (1 - up));
+        }
+        for (std::size_t k = 0; k < bars.size() && up > 0; ++k) {
+            const double y = 730 + 54.0 * double(k), grown = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));
+            f.text({90, y, 300, 44}, bars[k].name, with(label_text, bars[k].ink), up);
+            f.fill({400, y + 6, 1150 * bars[k].part * grown, 32}, bars[k].ink, up);
+            f.text({1600, y, 200, 44}, bars[k].value, label_text, up * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
+        }
+    };
+    return shot;
+}
+
+}  // namespace crescent::film

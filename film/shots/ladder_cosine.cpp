@@ -1,0 +1,26 @@
+// Shot 6: Failure A. The cosine arm up its ladder: the highlight keeps sparkling, and the error falls along a line.
+#include "ladder_shot.h"
+#include "shots.h"
+
+namespace crescent::film {
+
+Shot ladder_cosine(const Data& data) {
+    const Cast& c = data.cast;
+    const Ladder& l = ladder_of(data, c.cosine);
+    const RunKey low = data.key(c.cosine, l.n.front()), high = data.key(c.cosine, l.n.back());
+    const std::string source = "ladder of " + c.cosine;
+    const double more = double(high.n) / double(low.n), less = l.rmse.front() / l.rmse.back();
+    LadderStory story;
+    story.arm = c.cosine;
+    story.opening = Words("Failure A. Aim by the cosine and keep adding rays: does the highlight settle?");
+    story.after = {Words(number(more, 4, source), " times the rays, and the error falls ", figure(less, 3, source), " times."),
+                   l.slope < -0.35 && l.slope > -0.65
+                       ? Words("It falls like one over the root of N. To halve it you need four times the rays.")
+                       : Words("Its slope here is ", figure(l.slope, 3, source), "; the law for independent samples is minus a half.")};
+    Shot shot = ladder_shot(data, story);
+    shot.name = "ladder-cosine", shot.title = Words("Failure A: cosine, and the highlight sparkles");
+    shot.seen = Words("The highlight enlarged at four values of N, and beside it the error against N on two logarithmic axes, point by point.");
+    return shot;
+}
+
+}  // namespace crescent::film
