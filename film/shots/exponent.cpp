@@ -9,7 +9,7 @@ namespace crescent::film {
 
 namespace {
 
-constexpr double tilt = 0.6;  // rad, of R from n in the drawings of the lobe
+constexpr double leaning = 0.6;  // rad, of R from n in the drawings of the lobe
 
 /// The lobe's density as a curve around a foot, its peak `radius` long.
 std::vector<Point> lobe_of(const plates::Density& density, Point foot, double radius) {
@@ -53,7 +53,7 @@ Shot exponent(const Data& data) {
         const std::string sampler = data.experiment.find_arm(control->arm)->sampler;
         cols.push_back({photograph_of(data, plates::view(data.film(key)), crop), Words("s\u00a0=\u00a0", data.s_of(key)),
                         Words("highlight ", data.rmse(key, c.highlight)), Words("surround ", data.rmse(key, c.surround)),
-                        lobe_of(plates::Density(data.experiment, sampler, s, tilt), foot, 150), foot});
+                        lobe_of(plates::Density(data.experiment, sampler, s, leaning), foot, 150), foot});
         errors.push_back(data.region(key, c.highlight)->rmse);
     }
     const Colour ink = data.ink(control->arm);
