@@ -19,15 +19,15 @@ Tick tick(double v, int digits) { return {v, Words(number(v, digits, axis_source
 
 double Scale::part(double v) const {
     if (!log) return (v - lo) / (hi - lo);
-    return v > 0 ? std::log(v / lo) / std::log(hi / lo) : 0;
+    return v > 0 ? math::log(v / lo) / math::log(hi / lo) : 0;
 }
 
 std::vector<Tick> decades(const Scale& scale, int step) {
     std::vector<Tick> out;
-    const int first = static_cast<int>(std::ceil(std::log10(scale.lo) - 1e-9));
-    const int last = static_cast<int>(std::floor(std::log10(scale.hi) + 1e-9));
+    const int first = static_cast<int>(std::ceil(math::log10(scale.lo) - 1e-9));
+    const int last = static_cast<int>(std::floor(math::log10(scale.hi) + 1e-9));
     for (int k = first; k <= last; ++k) {
-        const double v = std::pow(10.0, k);
+        const double v = math::pow(10.0, k);
         if ((k - first) % step != 0) out.push_back({v, {}});
         else if (std::abs(k) <= 2) out.push_back(tick(v, 3));
         else
@@ -38,7 +38,7 @@ std::vector<Tick> decades(const Scale& scale, int step) {
 }
 
 std::vector<Tick> round_values(const Scale& scale, int most) {
-    const double least = (scale.hi - scale.lo) / most, power = std::pow(10, std::floor(std::log10(least)));
+    const double least = (scale.hi - scale.lo) / most, power = math::pow(10, std::floor(math::log10(least)));
     double step = 10 * power;
     for (const double lead : {5.0, 2.0, 1.0})
         if (lead * power >= least * (1 - 1e-9)) step = lead * power;

@@ -15,12 +15,15 @@ constexpr Colour thin{1, 1, 1, 0.28};
 
 Vec3d direction(double theta_deg, double phi_deg) {
     const double theta = theta_deg * degree, phi = phi_deg * degree;
-    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    return {math::sin(theta) * math::cos(phi), math::sin(theta) * math::sin(phi), math::cos(theta)};
 }
 
 Hemisphere::Hemisphere(Point centre, double radius, double elevation_deg, Vec3d right)
-    : centre_(centre), radius_(radius), up_(std::sin(elevation_deg * degree)), away_(std::cos(elevation_deg * degree)) {
-    const double across = std::hypot(right.x, right.y);
+    : centre_(centre),
+      radius_(radius),
+      up_(math::sin(elevation_deg * degree)),
+      away_(math::cos(elevation_deg * degree)) {
+    const double across = math::hypot(right.x, right.y);
     if (across > 1e-9) cos_ = right.x / across, sin_ = right.y / across;
 }
 
@@ -82,7 +85,7 @@ void Hemisphere::grid(Frame& f, double alpha) const {
     std::vector<Point> outline;
     for (int k = 0; k <= 180; ++k) {
         const double a = k * degree;
-        outline.push_back({centre_.x + radius_ * std::cos(a), centre_.y - radius_ * std::sin(a)});
+        outline.push_back({centre_.x + radius_ * math::cos(a), centre_.y - radius_ * math::sin(a)});
     }
     f.polyline(outline, muted, 3, alpha);
 }

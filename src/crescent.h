@@ -31,6 +31,7 @@
 #include "film_maker.h"
 #include "films/film.h"
 #include "instruments.h"
+#include "math/functions.h"
 #include "meters/evidence.h"
 #include "meters/meters.h"
 #include "meters/metrics.h"

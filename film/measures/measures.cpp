@@ -12,8 +12,8 @@ constexpr std::uint64_t long_series = 1 << 18;  // draws of one pixel: a share o
 constexpr std::uint64_t tail_draws = 1 << 20;   // 3072 of them are the tail
 constexpr std::uint64_t shown_directions = 1500, lost_draws = 100'000;
 
-double sine(double turns) { return std::sin(2 * pi * turns); }
-double cosine(double turns) { return std::cos(2 * pi * turns); }
+double sine(double turns) { return math::sin(2 * pi * turns); }
+double cosine(double turns) { return math::cos(2 * pi * turns); }
 
 /// Calls visit(w) with the middles of equal solid angles over the upper hemisphere, 2 pi / count each.
 template <class Visit>
@@ -30,7 +30,7 @@ std::size_t over_hemisphere(Visit&& visit) {
 /// Of the triangle of unit vectors: Van Oosterom & Strackee 1983, "The Solid Angle of a Plane Triangle".
 double solid_angle(Vec3d a, Vec3d b, Vec3d c) {
     const double volume = dot(a, cross(b, c));
-    return 2 * std::atan2(std::fabs(volume), 1 + dot(a, b) + dot(b, c) + dot(c, a));
+    return 2 * math::atan2(std::fabs(volume), 1 + dot(a, b) + dot(b, c) + dot(c, a));
 }
 
 double solid_angle(const PixelDisk& disk) {
@@ -107,7 +107,7 @@ LostSupport lost_in(const Data& data, const Box& box) {
     std::uint64_t lost = 0;
     for (const Vec3d& w : cosine_directions(data.cast.seed, lost_draws)) lost += dot(w, R) <= 0;
     const double p = static_cast<double>(lost) / lost_draws;
-    return {std::acos(c) * 180 / pi, p, std::sqrt(p * (1 - p) / lost_draws), (1 - c) / 2};
+    return {math::acos(c) * 180 / pi, p, std::sqrt(p * (1 - p) / lost_draws), (1 - c) / 2};
 }
 
 }  // namespace
@@ -127,11 +127,14 @@ std::pair<int, int> worst_pixel(const Film& film, const ReferenceFilm& reference
 }
 
 double WeightTail::edge(std::size_t bin) const {
-    return std::pow(10.0, first_log10 + static_cast<double>(bin) / decade_parts);
+    return math::pow(10.0, first_log10 + static_cast<double>(bin) / decade_parts);
 }
 
 double WeightTail::expected(std::size_t bin) const {
-    const auto above = [&](double x) { return x <= least ? 1 : std::pow(x / least, -1 / k); };
+    const auto above = [&](double x) {  // P(u^-k > x / least), u uniform in (0, 1)
+        if (k > 0) return x <= least ? 1 : math::pow(x / least, -1 / k);
+        return x >= least ? 0 : k < 0 ? 1 - math::pow(x / least, -1 / k) : 1;
+    };
     return static_cast<double>(n) * (above(edge(bin)) - above(edge(bin + 1)));
 }
 
@@ -147,10 +150,12 @@ WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
         const double p = static_cast<double>(drawn.pdf.v);
         weights.push_back(drawn.wi.z > 0 && p > 0 ? static_cast<double>(drawn.wi.z) / (pi * p) : 0);
     }
-    out.first_log10 = std::floor(std::log10(out.least) * out.decade_parts) / out.decade_parts;
+    double smallest = out.least;
+    for (const double w : weights) smallest = w > 0 ? std::min(smallest, w) : smallest;
+    out.first_log10 = std::floor(math::log10(smallest) * out.decade_parts) / out.decade_parts;
     for (const double w : weights) {
         if (!(w > 0)) continue;
-        const double at = (std::log10(w) - out.first_log10) * out.decade_parts;
+        const double at = (math::log10(w) - out.first_log10) * out.decade_parts;
         const std::size_t bin = static_cast<std::size_t>(std::max(at, 0.0));
         if (bin >= out.bins.size()) out.bins.resize(bin + 1);
         ++out.bins[bin];
@@ -166,7 +171,7 @@ Measures take_measures(const Data& data, const std::string&, Watch& watch) {
     Measures out;
     out.story = pixel_story(data);
     watch.check();
-    if (data.cast.s > 1) out.tail = weight_tail(data.cast.s, tail_draws, data.cast.seed);
+    out.tail = weight_tail(data.cast.s, tail_draws, data.cast.seed);
     out.cosine_directions = cosine_directions(data.cast.seed, shown_directions);
     out.surround_lost = lost_in(data, data.box(data.cast.surround));
     watch.check();

@@ -36,7 +36,7 @@ struct PixelStory {
 };
 
 /// Weights (n.w)/(pi p) of the lobe's arm on a matt surface seen from straight above, R = n, under even light: their
-/// mean is 1, their distribution Pareto's, P(X > x) = (x / least)^(-1/k).
+/// mean is 1, their law X = least u^-k for u in (0, 1): Pareto's where k > 0.
 struct WeightTail {
     double s = 0, k = 0, least = 0;  // k = (s-1)/(s+1), least = 2/(s+1)
     std::optional<Tail> fit;         // k-hat of the draws
@@ -52,7 +52,7 @@ struct WeightTail {
 
 struct Measures {
     PixelStory story;
-    std::optional<WeightTail> tail;        // none: nothing is aimed by a lobe sharper than s = 1
+    WeightTail tail;
     std::vector<Vec3d> cosine_directions;  // the first of those by which the lost part of the hemisphere is measured
     LostSupport surround_lost;             // at the median tilt of R in the surround region
 };

@@ -56,11 +56,11 @@ TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {
 }
 
 TEST(WeightTail, FollowsTheParetoLawItStates) {
-    for (const double s : {4.0, 32.0}) {
+    for (const double s : {0.5, 4.0, 32.0}) {
         const WeightTail tail = weight_tail(s, 1 << 18, 5);
         EXPECT_EQ(std::accumulate(tail.bins.begin(), tail.bins.end(), std::uint64_t{0}), tail.n);
-        ASSERT_TRUE(tail.fit);
-        EXPECT_NEAR(tail.fit->k, tail.k, 4 * tail.fit->se);
+        if (s > 1) ASSERT_TRUE(tail.fit);
+        if (s > 1) EXPECT_NEAR(tail.fit->k, tail.k, 4 * tail.fit->se);
         EXPECT_NEAR(tail.median, tail.least * std::exp2(tail.k), 0.01 * tail.median);
         for (std::size_t k = 0; k < tail.bins.size(); ++k)
             EXPECT_NEAR(double(tail.bins[k]), tail.expected(k), 5 * std::sqrt(tail.expected(k) + 1)) << "s = " << s;

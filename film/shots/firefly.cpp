@@ -14,8 +14,8 @@ namespace crescent::film {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double start = 1.2, giant = 5.6, apart = 10.2, sharp = 15.2, other = 19.8, rest = 25, end = 32.5;
-constexpr double before = 3.6, after = 4;  // how long the draws before and after the largest take
+constexpr double start = 0.6, giant = 3.9, apart = 7.2, sharp = 10.6, other = 15, rest = 19.4, end = 24.6;
+constexpr double before = 2.8, after = 3;  // how long the draws before and after the largest take
 constexpr Rect chart{200, 240, 860, 470};
 constexpr Rect table{1240, 470, 600, 340};
 constexpr int crop_side = 13, crop_times = 20;
@@ -82,7 +82,7 @@ private:
         f.picture(now->block, crop_corner.x, crop_corner.y, crop_times);
         f.outline(marked_.inset(-2), bright, 3);
         f.text({crop_corner.x - 20, crop_corner.y + side + 6, side + 40, 40},
-               Words("the picture at N = ", count(now->n, "samples of a rung")), with(small_text, Align::centre));
+               Words("photograph at N = ", count(now->n, "samples of a rung")), with(small_text, Align::centre));
     }
 
     /// X as a column of factors for an arm's largest sample.
@@ -107,7 +107,7 @@ private:
         const Words names[] = {Words(formulas::f), Words("× ", formulas::light), Words("× ", formulas::cosine),
                                Words("× ", formulas::one_over_density), Words("= X")};
         double lit[5] = {};
-        for (int k = 0; k < 3; ++k) lit[k] = f.during(apart + 0.4 + k, apart + 1.2 + k);
+        for (int k = 0; k < 3; ++k) lit[k] = f.during(apart + 0.4 + 0.9 * k, apart + 0.9 + 0.9 * k);
         lit[3] = f.ease(sharp, sharp + 0.4),
         lit[4] = std::max(f.during(giant + 1.4, apart), f.ease(other, other + 0.4));
         for (int k = 0; k < 5; ++k)
@@ -134,11 +134,11 @@ std::vector<Cue> Firefly::cues() const {
     const PixelSample& p = story_.phong.giant();
     const std::string of = "largest sample of " + arm_.arm;
     std::vector<Cue> out;
-    out.push_back({0.4, Words("The same pixel by ", data_.arm(arm_.arm), ", draw after draw.")});
+    out.push_back({0.3, Words("The same pixel by ", data_.arm(arm_.arm), ", draw after draw.")});
     out.push_back(
         {giant, Words("Draw ", count(arm_.largest + 1, of), s.disk >= 0 ? " meets the light" : " is the largest",
-                      ". This one sample weighs ", figure(double(s.x), 4, of), ".")});
-    out.push_back({apart, Words("Taken apart, nothing is wrong with f, nor with L, nor with cos θ.")});
+                      " and weighs ", figure(double(s.x), 4, of), ".")});
+    out.push_back({apart, Words("f, L and cos θ are as they should be.")});
     out.push_back(
         {sharp, Words("But ", data_.arm(arm_.arm), " seldom aims there: p is small, and X is divided by it.")});
     const double ratio = p.x > 0 ? double(s.x) / double(p.x) : 0;
@@ -160,6 +160,7 @@ Shot firefly(const Data& data) {
     const auto drawn = std::make_shared<const Firefly>(data);
     Shot shot;
     shot.name = "firefly";
+    shot.kind = Kind::instrument;
     shot.title = Words("A firefly is born");
     shot.seen =
         Words("The running mean of the pixel by ", data.arm(data.cast.cosine),

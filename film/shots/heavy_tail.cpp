@@ -15,7 +15,7 @@ namespace crescent::film {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double drawn = 1.6, halves = 7.6, law = 13, infinite = 18.6, furnace = 23.4, alike = 29.2, end = 34;
+constexpr double drawn = 0.8, halves = 4.4, law = 8.8, furnace = 14.4, alike = 18.8, end = 24;
 constexpr Rect left{190, 240, 760, 470}, right{1160, 240, 660, 470};
 
 /// The readings of one arithmetic, ascending in N.
@@ -28,7 +28,7 @@ std::vector<FurnaceQuantiles> readings(const Evidence& evidence, const std::stri
 
 class HeavyTail {
 public:
-    explicit HeavyTail(const Data& data) : data_(data), tail_(*data.measures->tail), phong_(data.cast.phong) {
+    explicit HeavyTail(const Data& data) : data_(data), tail_(data.measures->tail), phong_(data.cast.phong) {
         single_ = readings(data.evidence, "float32", 24), twofold_ = readings(data.evidence, "float64", 53);
         const double most = double(*std::max_element(tail_.bins.begin(), tail_.bins.end()));
         histogram_ = {left, {tail_.edge(0), tail_.edge(tail_.bins.size()), true}, {0.7, 40 * most, true}};
@@ -127,19 +127,19 @@ private:
 };
 
 std::vector<Cue> HeavyTail::cues() const {
-    const bool heavy = tail_.k >= 0.5;
+    const bool heavy = tail_.k >= 0.5;  // the variance is infinite from there on
     const double expected = data_.evidence.expected, one = single_.back().median, two = twofold_.back().median;
     const auto is_short = [&](double median) { return median < 0.98 * expected; };
     std::vector<Cue> out;
     out.push_back(
-        {0.4, Words(data_.arm(phong_), " on a matt surface, R = n, in even light: what do its samples weigh?"), true});
-    Words half("Half of them less than ", figure(tail_.median, 2, "median weight"), ". Their mean, ",
+        {0.3, Words("What samples of ", data_.arm(phong_), " weigh on a matt surface, R = n, in even light.")});
+    Words half("Half weigh under ", figure(tail_.median, 2, "median weight"), ". The mean, ",
                number(1, 1, "mean of the weights in theory"));
-    out.push_back({halves, heavy ? Words(half, ", rests on few and huge ones.") : Words(half, ", is not far above.")});
-    out.push_back({law, Words("The fall is a straight line. Its slope is ", formulas::tail_slope,
-                              ", with k = ", figure(tail_.k, 3, "tail index of the weights in theory"), ".")});
-    out.push_back({infinite, heavy ? Words("From k = ", formulas::half, " on, the variance is infinite, at any N.")
-                                   : Words("Below k = ", formulas::half, " the variance is finite, and N tames it.")});
+    out.push_back({halves, heavy ? Words(half, ", rests on few huge ones.") : Words(half, ", is not far above.")});
+    const Words slope("A straight fall of slope ", formulas::tail_slope,
+                      ", k = ", figure(tail_.k, 3, "tail index of the weights in theory"), ". ");
+    out.push_back({law, heavy ? Words(slope, "From ", formulas::half, " on the variance is infinite.")
+                              : Words(slope, "Below ", formulas::half, " the variance is finite.")});
     out.push_back(
         {furnace, Words("In white light the answer is known: ", figure(expected, 3, "expected reading of the furnace"),
                         is_short(one) ? ". Most runs read less." : ". Runs read it.")});
@@ -152,10 +152,11 @@ std::vector<Cue> HeavyTail::cues() const {
 }  // namespace
 
 Shot heavy_tail(const Data& data) {
-    if (data.evidence.furnace.empty() || !data.measures->tail) return {};
+    if (data.evidence.furnace.empty()) return {};
     const auto drawing = std::make_shared<const HeavyTail>(data);
     Shot shot;
     shot.name = "heavy-tail";
+    shot.kind = Kind::instrument;
     shot.title = Words("Why it does not go away");
     shot.seen = Words(
         "Left, on logarithmic axes, how many samples of ", data.arm(data.cast.phong),

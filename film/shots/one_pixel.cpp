@@ -14,8 +14,8 @@ namespace crescent::film {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double zoomed = 2.2, opening = 5.4, reflects = 12.2, lights = 17.2, leans = 22.4, product = 26.8,
-                 divided = 32.6, averaged = 34.2;
+constexpr double zoomed = 1.4, opening = 3.9, reflects = 10.4, lights = 13.6, leans = 17.2, product = 20.2,
+                 divided = 25, averaged = 26.4, end = 29.4;
 constexpr Rect photo_slot{120, 232, 960, 540};
 constexpr int crop_side = 24, crop_times = 20;
 constexpr Point crop_corner{1260, 262};
@@ -86,8 +86,8 @@ private:
         if (shown <= 0) return;
         f.picture(photo_, photo_slot.x, photo_slot.y, 1, shown);
         f.text({photo_slot.x, photo_slot.bottom() + 10, 960, 40},
-               Words(data_.arm(data_.cast.cosine), ",  N = ", data_.n_of(data_.key(data_.cast.cosine))), small_text,
-               shown);
+               Words("photograph: ", data_.arm(data_.cast.cosine), ", N = ", data_.n_of(data_.key(data_.cast.cosine))),
+               small_text, shown);
         const double near = shown * f.ease(zoomed, zoomed + 0.6);
         const Point a = in_photo(near_.x0, near_.y1), b = in_photo(near_.x1 + 1, near_.y0 - 1);
         f.outline({a.x, a.y, b.x - a.x, b.y - a.y}, bright, 2, near);
@@ -105,18 +105,18 @@ private:
 
     /// The pixel's outline becomes the rim of its hemisphere.
     void opened(Frame& f) const {
-        const double t = f.ease(opening + 0.6, opening + 2.2), alpha = f.ease(opening, opening + 0.6);
+        const double t = f.ease(opening + 0.6, opening + 2), alpha = f.ease(opening, opening + 0.6);
         if (alpha <= 0) return;
         const Rect q = square().inset(-2);
         std::vector<Point> loop;
         for (int k = 0; k <= 96; ++k) {
-            const double turns = k / 96.0, c = std::cos(2 * pi * turns), s = std::sin(2 * pi * turns);
+            const double turns = k / 96.0, c = math::cos(2 * pi * turns), s = math::sin(2 * pi * turns);
             const double reach = 1 / std::max(std::fabs(c), std::fabs(s));  // from the middle to the square's edge
             const Point from{q.x + q.w / 2 * (1 + c * reach), q.y + q.h / 2 * (1 - s * reach)};
             const Point to = dome_.rim(turns);
             loop.push_back({from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t});
         }
-        if (t < 1) f.polyline(loop, bright, 4, alpha);
+        f.polyline(loop, bright, 4, alpha * (1 - f.ease(opening + 2.6, opening + 3)));
     }
 
     void fields(Frame& f) const {
@@ -126,7 +126,7 @@ private:
             const double gone = k < 3 ? f.ease(starts[k + 1] + 0.8, starts[k + 1] + 0.81) : 0;
             if (shown > 0 && gone < 1) f.field(fields_[k].block, dome_.corner(), shown);
         }
-        const double dome = f.ease(opening + 2, opening + 2.8);
+        const double dome = f.ease(opening + 1.9, opening + 2.6);
         dome_.grid(f, dome);
         dome_.arrow(f, {0, 0, 1}, 1.62, Words("n"), bright, dome);
         dome_.arrow(f, pixel_.wo(), 1.6, Words("ω<sub>o</sub>, to the eye"), bright,
@@ -189,26 +189,26 @@ private:
 
 std::vector<Cue> OnePixel::cues() const {
     std::vector<Cue> out;
-    out.push_back({0.6, Words("The pixel of region ", name(data_.cast.highlight), " that ",
-                              data_.arm(data_.cast.cosine), " gets most wrong.")});
+    const std::string at = data_.cast.highlight;
+    out.push_back(
+        {0.4, Words("The pixel of region ", name(at), " that ", data_.arm(data_.cast.cosine), " gets most wrong.")});
     out.push_back({opening, Words("What light does it send to the eye?"), true});
-    out.push_back({reflects, Words("f: how much of the light from a direction goes on to the eye.")});
+    out.push_back({reflects, Words("f: what it passes on to the eye.")});
     if (story_.disk < 0) {
-        out.push_back({lights, Words("L: the light that comes from there, here alike all round.")});
+        out.push_back({lights, Words("L: what comes in, here alike all round.")});
     } else {
-        const PixelDisk& disk = pixel_.disks()[std::size_t(story_.disk)];
-        out.push_back({lights, Words("L: the light from there. Dim all round, but for a disk, radius ",
-                                     number(disk.angular_radius, 3, "angle of the disk light"), "°.")});
+        const double angle = pixel_.disks()[std::size_t(story_.disk)].angular_radius;
+        out.push_back({lights, Words("L: what comes in, dim but for a disk of ",
+                                     number(angle, 3, "angular radius of the disk light"), "° radius.")});
     }
-    out.push_back({leans, Words("cos θ: light that comes in low is spread thin.")});
+    out.push_back({leans, Words("cos θ: low light is spread thin.")});
+    const double part = story_.solid_angle / (2 * pi);
     if (story_.disk >= 0)
-        out.push_back(
-            {product, Words("Their product: ", percent(story_.disk_share, 2, "the disk's share of the pixel's light"),
-                            " of the light comes through ",
-                            percent(story_.solid_angle / (2 * pi), 2, "the disk's share of the hemisphere"),
-                            " of the hemisphere.")});
-    else out.push_back({product, Words("Their product is what must be summed over all directions.")});
-    out.push_back({divided, Words("So: draw directions, divide by their density p, and average.")});
+        out.push_back({product, Words("The product: ", percent(story_.disk_share, 2, "the disk's share of the light"),
+                                      " of the light comes through ",
+                                      percent(part, 2, "the disk's share of the hemisphere"), " of the hemisphere.")});
+    else out.push_back({product, Words("The product is what must be summed over all directions.")});
+    out.push_back({divided, Words("Draw directions, divide by their density p, average.")});
     return out;
 }
 
@@ -218,12 +218,13 @@ Shot one_pixel(const Data& data) {
     const auto drawn = std::make_shared<const OnePixel>(data);
     Shot shot;
     shot.name = "one-pixel";
+    shot.kind = Kind::instrument;
     shot.title = Words("One pixel, opened");
     shot.seen = Words(
         "A pixel of the crescent grows into the hemisphere above its surface point. Colours show in turn the "
         "reflectance f, "
         "the light L, the cosine and their product; the estimator is written beside them, term by term.");
-    shot.seconds = averaged + 4;
+    shot.seconds = end;
     shot.still = shot.seconds - 0.5;
     shot.cues = drawn->cues();
     shot.draw = [drawn](Frame& f) { drawn->draw(f); };

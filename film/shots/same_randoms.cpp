@@ -12,10 +12,10 @@ namespace crescent::film {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double appear = 0.6, appeared = 3.4, cosine_go = 5.4, cosine_met = 10.2, back = 14.6, phong_go = 16.4,
-                 phong_met = 20.8, in_the_long_run = 25.2, end = 31;
+constexpr double appear = 0.5, appeared = 2.6, cosine_go = 4.1, cosine_met = 8, back = 10.4, phong_go = 11.6,
+                 phong_met = 14.8, in_the_long_run = 16, end = 21.6;
 constexpr Rect square{190, 250, 500, 500};
-constexpr double one_way = 1.6, all_way = 3.0;  // of one point, of all
+constexpr double one_way = 1.4, all_way = 2.8;  // of one point, of all
 
 struct Traveller {
     Point from, cosine, phong;
@@ -57,13 +57,10 @@ public:
         std::vector<Cue> out;
         out.push_back(
             {appear, Words(data_.n_of(data_.key(cosine)), " pairs of random numbers: every arm gets the same.")});
-        out.push_back(
-            {cosine_go, Words(data_.arm(cosine), " makes directions of them. The hemisphere is seen from above.")});
-        out.push_back(
-            {cosine_met, Words(met(story_.cosine), " met the light. Its disk is small in so wide a spread.")});
-        out.push_back({back, Words("Back. The same pairs again, now by ", data_.arm(phong), ".")});
-        out.push_back(
-            {phong_met, Words("They gather about the mirror direction R. ", met(story_.phong), " met the light.")});
+        out.push_back({cosine_go, Words(data_.arm(cosine), " makes directions of them, seen from above.")});
+        out.push_back({cosine_met, Words(met(story_.cosine), " met the light.")});
+        out.push_back({back, Words("The same pairs by ", data_.arm(phong), " gather about R. ", met(story_.phong),
+                                   " met the light.")});
         out.push_back({in_the_long_run, Words("Only the map differs: in the long run ", one_in(story_.cosine),
                                               " meets the light, and then ", one_in(story_.phong), ".")});
         return out;
@@ -77,7 +74,8 @@ private:
     }
     Words one_in(const ArmAtPixel& arm) const {
         if (!(arm.share_met > 0)) return Words("none");
-        const double every = 1 / arm.share_met, unit = std::pow(10.0, std::max(0.0, std::floor(std::log10(every)) - 1));
+        const double every = 1 / arm.share_met,
+                     unit = math::pow(10.0, std::max(0.0, std::floor(math::log10(every)) - 1));
         const auto rounded = static_cast<std::uint64_t>(unit * std::round(every / unit));  // to two digits
         return Words("one in ", count(rounded, "share of a long series of " + arm.arm + " that met a disk light"));
     }
@@ -128,7 +126,7 @@ private:
             const Traveller& p = points_[std::size_t(k)];
             f.circle(p.from, 6, p.ink, 1.5, 0.5);
             const double out = f.ease(cosine_go + stagger * k, cosine_go + stagger * k + one_way),
-                         home = f.ease(back, back + 1.2);
+                         home = f.ease(back, back + 1);
             const double again = f.ease(phong_go + stagger * k, phong_go + stagger * k + one_way);
             const Point at =
                 again > 0 ? between(p.from, p.phong, again) : between(between(p.from, p.cosine, out), p.from, home);
@@ -167,6 +165,7 @@ Shot same_randoms(const Data& data) {
     const auto drawn = std::make_shared<const SameRandoms>(data);
     Shot shot;
     shot.name = "same-randoms";
+    shot.kind = Kind::instrument;
     shot.title = Words("The same random numbers, two maps");
     shot.seen = Words(
         "Dots in a square, one for each pair of random numbers, travel to the hemisphere seen from above: first by ",

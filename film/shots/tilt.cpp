@@ -14,7 +14,7 @@ namespace crescent::film {
 namespace {
 
 // Seconds from the shot's beginning.
-constexpr double leans = 1.4, leant = 4.4, never = 5.4, above = 10.6, sweep = 16, swept = 22.4, told = 23.4, end = 29.5;
+constexpr double leans = 0.8, leant = 2.8, never = 3.2, above = 7.8, sweep = 12.4, swept = 15.6, told = 16, end = 19.2;
 constexpr double degree = pi / 180;
 constexpr Point side_centre{330, 640}, disc_centre{920, 520};
 constexpr double side_radius = 250, disc_radius = 250;
@@ -34,9 +34,9 @@ public:
     }
 
     void draw(Frame& f) const {
-        const double first = f.ease(leans, leant) * shown_, home = f.ease(sweep, sweep + 1),
-                     up = f.ramp(sweep + 1.2, swept);
-        const double told_of = f.ease(told, told + 1),
+        const double first = f.ease(leans, leant) * shown_, home = f.ease(sweep, sweep + 0.7),
+                     up = f.ramp(sweep + 0.8, swept);
+        const double told_of = f.ease(told, told + 0.8),
                      last = most_ + (measures_.surround_lost.theta_R_deg - most_) * told_of;
         const double theta = told_of > 0 ? last : up > 0 ? up * most_ : first * (1 - home);
         from_the_side(f, theta);
@@ -48,8 +48,8 @@ public:
 private:
     const std::vector<LostSupport>& lost() const { return data_.evidence.lost; }
     /// R tilted from n in the plane of the drawing, and the edge of what is in front of it.
-    static Vec3d mirror(double theta) { return {-std::sin(theta * degree), 0, std::cos(theta * degree)}; }
-    static Vec3d edge(double theta) { return {std::cos(theta * degree), 0, std::sin(theta * degree)}; }
+    static Vec3d mirror(double theta) { return {-math::sin(theta * degree), 0, math::cos(theta * degree)}; }
+    static Vec3d edge(double theta) { return {math::cos(theta * degree), 0, math::sin(theta * degree)}; }
 
     void from_the_side(Frame& f, double theta) const {
         const double shown = f.ease(0, 0.6), gone = f.ease(never, never + 0.6);
@@ -61,7 +61,7 @@ private:
         f.line(side_.at({-1, 0, 0}, 1.1), side_.at({1, 0, 0}, 1.1), bright, 4, shown);
         std::vector<Point> lobe;
         for (int k = -90; k <= 90; ++k) {
-            const double reach = std::pow(std::cos(k * degree), data_.cast.s);
+            const double reach = math::pow(math::cos(k * degree), data_.cast.s);
             const Vec3d w = direction(k - theta, 0);
             if (w.z >= 0) lobe.push_back(side_.at(w, 0.92 * reach));
         }
@@ -83,8 +83,8 @@ private:
         std::vector<Point> lune;
         for (int k = 0; k <= 60; ++k) lune.push_back(disc_.rim(0.25 + 0.5 * k / 60));
         for (int k = 0; k <= 60; ++k) {
-            const double a = 3 * k * degree, s = std::sin(a);
-            lune.push_back(disc_.at({s * e.x, std::cos(a), s * e.z}));
+            const double a = 3 * k * degree, s = math::sin(a);
+            lune.push_back(disc_.at({s * e.x, math::cos(a), s * e.z}));
         }
         f.polygon(lune, alert, 0.3 * shown);
         for (const Vec3d& w : measures_.cosine_directions) f.dot(disc_.at(w), 3, dot(w, r) > 0 ? muted : alert, shown);
@@ -107,15 +107,15 @@ private:
         std::vector<Point> path;
         for (int k = 0; k <= 75 && k * most_ / 75 <= theta + 1e-9; ++k) {
             const double a = k * most_ / 75;
-            path.push_back(axes_.at(a, 50 * (1 - std::cos(a * degree))));
+            path.push_back(axes_.at(a, 50 * (1 - math::cos(a * degree))));
         }
         if (path.size() > 1) f.polyline(path, bright, 3);
         f.text({chart.x + 30, chart.y + 6, 320, 44}, Words(formulas::lost_support), label_text, shown);
         for (const LostSupport& l : lost())
-            if (l.theta_R_deg <= theta + 1e-9 && f.after(sweep + 1.2))
+            if (l.theta_R_deg <= theta + 1e-9 && f.after(sweep + 0.8))
                 f.dot(axes_.at(l.theta_R_deg, 100 * l.measured), 9, alert);
         const LostSupport& here = measures_.surround_lost;
-        const double at = f.ease(told + 1, told + 1.5);
+        const double at = f.ease(told + 0.8, told + 1.2);
         f.line(axes_.at(here.theta_R_deg, 0), axes_.at(here.theta_R_deg, 100 * here.measured), bright, 2, at, 8);
         f.circle(axes_.at(here.theta_R_deg, 100 * here.measured), 13, bright, 3, at);
         f.dot({chart.x + 40, chart.y + 76}, 9, alert, shown);
@@ -134,15 +134,14 @@ std::vector<Cue> Tilt::cues() const {
     const LostSupport& l = measures_.surround_lost;
     const Number tilt = number(l.theta_R_deg, 2, "median tilt of R in " + data_.cast.surround);
     std::vector<Cue> out;
-    out.push_back({0.4, Words("On most surfaces the mirror direction R leans away from n.")});
+    out.push_back({0.3, Words("On most surfaces R leans away from n.")});
     out.push_back(
         {never, Words("Behind it ", data_.arm(data_.cast.phong), " has no density: it never looks there, at any N.")});
-    out.push_back({above, Words("From above: the dots are what a matt surface asks for. The coloured ones are lost.")});
-    out.push_back({sweep, Words("Tilt further, and count what is never reached.")});
-    out.push_back({told, Words("In region ", name(data_.cast.surround), ", R leans by ", tilt,
-                               "° in the median: ", figure(100 * l.measured, 3, "share never reached"), " ± ",
-                               percent(l.se, 1, "standard error of the share never reached"),
-                               " is lost. Theory: ", percent(l.theory, 3, "share never reached, in theory"), ".")});
+    out.push_back({above, Words("From above, each dot is an equal share of light. The coloured are lost.")});
+    out.push_back({sweep, Words("In region ", name(data_.cast.surround), ", R leans by ", tilt,
+                                "° in the median: ", figure(100 * l.measured, 3, "share never reached"), " ± ",
+                                percent(l.se, 1, "standard error of the share never reached"),
+                                " is lost. Theory: ", percent(l.theory, 3, "share never reached, in theory"), ".")});
     return out;
 }
 
@@ -153,6 +152,7 @@ Shot tilt(const Data& data) {
     const auto drawn = std::make_shared<const Tilt>(data);
     Shot shot;
     shot.name = "tilt";
+    shot.kind = Kind::instrument;
     shot.title = Words("What is never reached");
     shot.seen = Words(
         "A hemisphere from the side and from above. As the mirror direction tilts, a growing part behind it is out of "

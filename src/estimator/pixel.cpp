@@ -7,6 +7,7 @@
 #include "base/errors.h"
 #include "estimator/disk_hit.h"
 #include "films/film.h"
+#include "math/functions.h"
 #include "scene/brdf.h"
 #include "simd/random.h"
 
@@ -119,14 +120,14 @@ template <class Work> void with_arm(std::string_view sampler, Work&& work) {
 PixelDisk seen_disk(const DiskLight& light, const LocalDisk<float>& local) {
     const Vec3d c = wide(local.to_center), n = wide(local.normal);
     const double distance = length(c);
-    const double half = std::atan(light.radius / distance) * 180 / pi;
+    const double half = math::atan2(light.radius, distance) * 180 / pi;
     PixelDisk out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, false};
     out.faces = dot(c, n) < 0 || light.two_sided;
     const Frame<double> frame = frame_about(normalize(n));
     constexpr int corners = 96;
     for (int k = 0; k <= corners; ++k) {
         const double a = 2 * pi * k / corners;
-        const Vec3d across = frame.t * std::cos(a) + frame.b * std::sin(a);
+        const Vec3d across = frame.t * math::cos(a) + frame.b * math::sin(a);
         out.rim.push_back(normalize(c + across * light.radius));
     }
     return out;
