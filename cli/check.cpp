@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "crescent.h"
 #include "laws/planted/planted.h"
+#include "laws/right/law.h"
 #include "progress.h"
 #include "signals.h"
 
@@ -161,6 +162,15 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     return all && rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha ? held : failed;
 }
 
+/// Exit 0 where no right sampler is accused more often than was promised.
+int check_right(const CheckFlags& flags, Watch& watch) {
+    const RightLaw law = measure_right(flags.first, flags.right, rigour_of(flags), watch);
+    std::string text;
+    for (const std::string& line : law.said) text += line;
+    print(text + right_law_text(law));
+    return rate_interval(law.accused, law.judged).first <= law.alpha ? held : failed;
+}
+
 /// A program that never came to be judged.
 Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
     Judgement j;
@@ -187,6 +197,7 @@ int check(const CheckFlags& flags) {
     StopOnSignal stop(watch);
     try_files(flags);
     if (flags.error_rates > 0) return check_error_rates(flags, watch);
+    if (flags.right > 0) return check_right(flags, watch);
     if (flags.planted) return check_planted(flags, watch);
     Judgement j;
     try {

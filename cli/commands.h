@@ -60,6 +60,7 @@ struct CheckFlags {
     std::string json, junit, html;       // files to write
     double alpha = 1e-3, patience = 0;   // patience: s a program may take; 0: two minutes, with --full an hour
     unsigned seed = 1, error_rates = 0;  // error_rates: how many seeds; 0: not asked for
+    unsigned right = 0, first = 0;       // right: how many right samplers; 0: not asked for
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false;
 };
 int check(const CheckFlags& flags);

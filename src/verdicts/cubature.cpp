@@ -44,6 +44,7 @@ void apply_rule(Cell& cell, std::span<const double> g) {
     cell.error = area * std::fabs(seven - five);
     const auto [low, high] = std::minmax_element(g.begin(), g.end());
     std::copy(g.begin() + 5, g.begin() + 13, cell.outer.begin());
+    std::copy(g.begin(), g.end(), cell.at.begin());
     cell.low = *low;
     cell.high = *high;
     const double ratio = (9.0 / 70) / 0.9;  // fourth differences along either axis choose the side to halve
@@ -113,14 +114,14 @@ bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, doub
         std::vector<std::pair<double, std::size_t>> order;
         edges = false;
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const bool at_edge = (cells[i].rough() || cells[i].rim_jumps) && cells[i].area() * cells[i].high < effort.edge_mass;
+            const bool at_edge = cells[i].cut || (cells[i].jumps() && cells[i].step() < effort.edge_mass);
             const double urge = std::max(at_edge ? 0 : cells[i].error, disagreement(cells[i], total));
-            edges = edges || at_edge;
+            edges = edges || (at_edge && !cells[i].cut);
             all += urge;
             order.emplace_back(urge, i);
         }
         out.settled = !(all > effort.tolerance);
-        if (out.settled || out.evaluations >= effort.most_evaluations) return edges || !out.settled;
+        if (out.settled || out.evaluations >= effort.most_evaluations) return edges;
         std::sort(order.begin(), order.end(), std::greater<>());
         const std::size_t room = (effort.most_evaluations - out.evaluations) / (2 * points) + 1;
         double covered = 0;  // the largest errors, to nine tenths of the whole
@@ -145,6 +146,31 @@ bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, doub
 
 }  // namespace
 
+namespace {
+
+/// The sum, and what it is known to: where the integrand is smooth by the rule's own estimate; along jumps, where errors have either
+/// sign, by the audit's differences; and never less than the audit's difference from the whole.
+void add_up(const std::vector<Cell>& cells, int bins, const Audit& look, Integral& out) {
+    const std::size_t n = static_cast<std::size_t>(bins);
+    out.evaluations += look.evaluations;
+    out.bins.assign(n, 0.0);
+    out.bin_errors.assign(n, 0.0);
+    for (const Cell& c : cells) {
+        out.bins[static_cast<std::size_t>(c.rect.bin)] += c.value;
+        if (c.jumpy()) continue;
+        out.error += c.error;
+        out.bin_errors[static_cast<std::size_t>(c.rect.bin)] += c.error;
+    }
+    for (double v : out.bins) out.value += v;
+    for (std::size_t i = 0; i < n; ++i) out.bin_errors[i] += std::sqrt(look.bin_squares[i]);
+    out.second = look.value;
+    out.second_se = std::sqrt(look.smooth + look.jumps);
+    const double off = std::fabs(out.second - out.value);
+    out.error = std::max(out.error + 2 * std::sqrt(look.jumps), off > 2 * out.second_se ? off : 0.0);
+}
+
+}  // namespace
+
 Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
     const double total = witnesses ? witnesses->total : 0;
     std::vector<Cell> cells = start_cells(start, bins, witnesses);
@@ -152,19 +178,17 @@ Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effo
     Integral out;
     out.evaluations = cells.size() * points;
     bool edges = refine(cells, g, effort, total, out);
-    for (int round = 0; edges && round < 12; ++round) {
-        bool found = false;
-        out.evaluations += try_rims(cells, g, effort.edge_mass, found);
-        if (!found || out.evaluations >= effort.most_evaluations) break;
+    for (std::uint32_t round = 0; round < 12 && out.evaluations < effort.most_evaluations; ++round) {
+        bool found = false;  // what the rule did not see: corners cut off, and whatever points at random come upon
+        if (edges) out.evaluations += try_rims(cells, g, effort.edge_mass, found);
+        const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, 0);
+        out.evaluations += look.evaluations;
+        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);  // those that have none are halved on
+        if (!edges && !look.found) break;
         edges = refine(cells, g, effort, total, out);
     }
-    if (edges) out.evaluations += cut_along_jumps(cells, g);
-    double at_jumps = 0;  // errors along a jump have either sign: they add up by their squares
-    for (const Cell& c : cells) (c.cut ? at_jumps : out.error) += c.cut ? sqr(c.error) : c.error;
-    out.error += std::sqrt(at_jumps);
-    out.bins.assign(static_cast<std::size_t>(bins), 0.0);
-    for (const Cell& c : cells) out.bins[static_cast<std::size_t>(c.rect.bin)] += c.value;
-    for (double v : out.bins) out.value += v;
+    if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);
+    add_up(cells, bins, audit(cells, bins, g, 99, 1e300, effort.most_evaluations / 4), out);
     return out;
 }
 

@@ -23,7 +23,9 @@ using Batch = std::function<void(std::span<const Vec2d> at, std::span<double> ou
 
 struct Integral {
     std::vector<double> bins;   // one a bin
-    double value = 0, error = 0;  // sum over bins and its estimated error
+    double value = 0, error = 0;  // sum over bins and its estimated error, no less than `second` differs from it
+    double second = 0, second_se = 0;  // by points at random in the same cells: unbiased, with its standard error
+    std::vector<double> bin_errors;    // what each bin is known to
     std::size_t evaluations = 0;
     bool settled = true;          // the tolerance was reached
 };

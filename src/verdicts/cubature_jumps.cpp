@@ -10,7 +10,7 @@ namespace crescent {
 
 namespace {
 
-constexpr int lines = 5, sides = 2, bisections = 14;
+constexpr int lines = 5, sides = 2, bisections = 13;
 constexpr double gauss5[lines] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683, 0.906179845938664};
 constexpr double weight5[lines] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189};
 constexpr double gauss2 = 0.577350269189626;
@@ -21,7 +21,6 @@ struct Line {
     bool along_a;
     double across;  // the other coordinate
     double t0 = 0, t1 = 1, g0 = 0, g1 = 0;  // the bracket of the jump
-    double first_gap = 0;
 };
 
 Vec2d at(const Rect& r, const Line& l, double t) {
@@ -38,10 +37,10 @@ std::array<Vec2d, 8> rim(const Rect& r) {
 }
 
 /// Lines through every cell that a jump seems to cross, along the side that sees more of the change.
-std::vector<Line> lines_through(const std::vector<Cell>& cells) {
+std::vector<Line> lines_through(const std::vector<Cell>& cells, double edge_mass) {
     std::vector<Line> out;
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (!cells[c].rough() && !cells[c].rim_jumps) continue;
+        if (!cells[c].jumps() || cells[c].step() >= edge_mass) continue;
         const std::array<double, 8>& v = cells[c].outer;
         const double along_a = std::fabs(v[4] - v[6]) + std::fabs(v[5] - v[7]) + std::fabs(v[0] - v[1]);
         const double along_b = std::fabs(v[4] - v[5]) + std::fabs(v[6] - v[7]) + std::fabs(v[2] - v[3]);
@@ -73,7 +72,6 @@ std::size_t bracket(std::vector<Line>& all, const std::vector<Cell>& cells, cons
     for (std::size_t i = 0; i < all.size(); ++i) {
         all[i].g0 = v[2 * i];
         all[i].g1 = v[2 * i + 1];
-        all[i].first_gap = std::fabs(all[i].g1 - all[i].g0);
     }
     for (int k = 0; k < bisections; ++k) {
         where.clear();
@@ -109,15 +107,15 @@ std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass,
         }
         std::copy(at_rim, at_rim + 8, c.outer.begin());
         at_rim += 8;
-        if (!c.rim_jumps || c.area() * c.high < edge_mass) continue;
+        if (!c.rim_jumps || c.step() < edge_mass) continue;
         c.error = std::max(c.error, 0.05 * c.area() * c.high);
         found = true;
     }
     return count;
 }
 
-std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g) {
-    std::vector<Line> all = lines_through(cells);
+std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edge_mass) {
+    std::vector<Line> all = lines_through(cells, edge_mass);
     std::size_t count = bracket(all, cells, g);
     std::vector<Vec2d> where;
     std::vector<double> v;
@@ -135,11 +133,12 @@ std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g) {
         bool jumps = false;
         for (std::size_t k = 0; k < lines; ++k) {
             const Line& l = all[i + k];
-            jumps = jumps || (l.first_gap > 0 && std::fabs(l.g1 - l.g0) > 0.5 * l.first_gap);
+            jumps = jumps || std::fabs(l.g1 - l.g0) > 0.01 * (cell.high - cell.low);  // smooth: 2^-13 of the cell's width
             const double jump = 0.5 * (l.t0 + l.t1);
             const double* p = &v[(i + k) * 2 * sides];
             sum += 0.5 * weight5[k] * 0.5 * (jump * (p[0] + p[1]) + (1 - jump) * (p[2] + p[3]));
         }
+        cell.smooth = !jumps;
         if (!jumps) continue;
         cell.value = cell.area() * sum;
         cell.error = 0.02 * std::fabs(cell.value);

@@ -19,7 +19,7 @@ struct Pearson {
 };
 
 /// Pools neighbours until 5 are expected. What cannot reach 5 in the end joins the last pool.
-/// `slack`: what each expectation is known to, where p was tabulated; it is taken off the difference.
+/// `slack`: what each expectation is known to, by cubature and where p was tabulated; it is taken off the difference.
 Pearson pearson(const std::vector<double>& observed, const std::vector<double>& expected, const std::vector<double>& slack) {
     struct Pool {
         double seen, due, slack;
@@ -81,8 +81,8 @@ Fit fit(const Density& d, const Batchful& b) {
     const bool table = d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;  // its sum says less than its bins
     const double scale = table ? n : n * (1 - d.nothing) / d.mass.value;
     std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors), slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
-    for (std::size_t i = 0; i < d.doubt.size(); ++i) {
-        slack[i] = scale * d.doubt[i];
+    for (std::size_t i = 0; i < slack.size(); ++i) {
+        slack[i] = scale * ((d.doubt.empty() ? 0 : d.doubt[i]) + 3 * d.mass.bin_errors[i]);
         slack_ring[i / sectors] += slack[i];
         slack_sector[i % sectors] += slack[i];
     }
@@ -123,22 +123,27 @@ Verdict judge_normalised(const Work& work) {
     Verdict v = work.verdict("normalised", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
-        const bool second = d.second && std::fabs(d.second->value + d.nothing - 1) < std::fabs(d.mass.value + d.nothing - 1);
-        const Integral& mass = second ? *d.second : d.mass;  // the one that speaks for the sampler
-        const double sum = mass.value + d.nothing, off = std::fabs(sum - 1);
         constexpr double allowed = 1e-4;
-        const double doubt = (mass.settled ? mass.error : 2 * mass.error) + d.doubts;
+        const auto excess_of = [&](const Integral& m) {  // what is left of the difference by the cubature and by its audit
+            const double off = std::min(std::fabs(m.value + d.nothing - 1), std::fabs(m.second + d.nothing - 1));
+            return std::max(off - allowed - d.doubts - std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se), 0.0);
+        };
+        const bool second = d.second && excess_of(*d.second) < excess_of(d.mass);
+        const Integral& mass = second ? *d.second : d.mass;  // the one that speaks for the sampler
+        const double sum = mass.value + d.nothing;
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         if (d.doubts > 0) v.evidence["table_known_to" + tag] = d.doubts;
         v.evidence["integral" + tag] = mass.value;
         v.evidence["quadrature_error" + tag] = mass.error;
         v.evidence["evaluations" + tag] = mass.evaluations;
-        if (d.second) v.evidence["second_quadrature" + tag] = d.second->value;
+        v.evidence["audit" + tag] = mass.second;
+        v.evidence["audit_se" + tag] = mass.second_se;
+        if (d.second) v.evidence["second_quadrature" + tag] = second ? d.mass.value : d.second->value;
         v.evidence["drawn_nothing" + tag] = d.nothing;
         v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
         const std::string told = d.nothing > 0 ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}", mass.value, d.nothing, sum)
                                                : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
-        const double excess = std::max(off - allowed - doubt, 0.0);
+        const double excess = excess_of(mass);
         bool wrong = !std::isfinite(sum) || (excess > 0 && d.nothing_se == 0 && work.subject.draws_at_will() && d.nothing == 0);
         if (!wrong && excess > 0 && d.nothing > 0) {  // the share that draws nothing is itself an estimate
             const double n = static_cast<double>(work.first(t).draws.size());

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/watch.h"
@@ -131,6 +132,7 @@ private:
     std::vector<Batchful> first_;
     std::vector<Density> density_;
     std::vector<Vec3d> guides_, rims_;
+    std::optional<Vec3d> circle_;  // the axis of a rim that is a circle
     double grain_ = 0;
     mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
     Integral integrate_incoming(Where where, bool even) const;
@@ -142,6 +144,10 @@ private:
     void sharpen(int technique, Density& d) const;
     Witnesses witnesses_of(int technique, const Density& d) const;
     Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
+    Density bins_about(Vec3d axis, bool about_n) const;
+    Batch batch_of(int technique, const SphereMap& map) const;
+    void grant_doubts(int technique, Density& d) const;
+    void share_nothing(int technique, Density& d) const;
     void find_nothing(int technique, Density& d, std::uint64_t points) const;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "simd/random.h"
+#include "verdicts/mesh.h"
 #include "verdicts/recorded.h"
 #include "verdicts/work.h"
 
@@ -10,11 +11,23 @@ namespace crescent {
 
 namespace {
 
+constexpr std::size_t fixed_guides = 768;
+
 /// Roberts' R2 sequence: even cover of the unit square, the same for every seed.
 Vec2d r2(std::uint64_t i, Vec2d shift) {
     const double x = shift.x + 0.7548776662466927 * static_cast<double>(i + 1), y = shift.y + 0.5698402909980532 * static_cast<double>(i + 1);
     const double top = 1 - 0x1p-24;
     return {std::min(x - std::floor(x), top), std::min(y - std::floor(y), top)};
+}
+
+/// The axis of the circle on which directions lie: the rim of a cone or a ring, whose jump is then a coordinate line.
+std::optional<Vec3d> axis_of_circle(std::span<const Vec3d> rim) {
+    const Vec3d p = rim[0], normal = cross(rim[rim.size() / 3] - p, rim[2 * rim.size() / 3] - p);
+    if (!(dot(normal, normal) > 1e-12)) return {};
+    const Vec3d axis = normalize(normal);
+    for (Vec3d w : rim)
+        if (std::fabs(dot(w - p, axis)) > 1e-7) return {};
+    return axis;
 }
 
 }  // namespace
@@ -36,11 +49,12 @@ void Work::find_guides() {
             if (d.pdf > 0 && is_finite(d.wi)) guides_.push_back(d.wi);
         if (subject.draws_at_will()) find_rims(t);
     }
-    const SphereMap about(mirror(trial.wo));
-    for (std::uint64_t i = 0; i < 384; ++i) {
-        const Vec2d v = r2(i, {0.1, 0.7});
-        guides_.push_back(about.direction({0.5 * std::pow(10.0, -7 * v.x), v.y}));
-    }
+    // About the mirror, where lobes stand, and about w_o, where 1 / (w_o.h) has a pole for half vectors along the surface.
+    for (const SphereMap& about : {SphereMap(mirror(trial.wo)), SphereMap(-trial.wo)})
+        for (std::uint64_t i = 0; i < fixed_guides / 2; ++i) {
+            const Vec2d v = r2(i, {0.1, 0.7});
+            guides_.push_back(about.direction({0.5 * std::pow(10.0, -7 * v.x), v.y}));
+        }
 }
 
 /// Where the sides of the unit square go: for most warps the rim of what is drawn, to the last digit.
@@ -57,6 +71,14 @@ void Work::find_rims(int technique) {
     subject.sample(technique, trial.wo, u, drawn);
     for (const Draw& d : drawn)
         if (d.pdf > 0 && is_finite(d.wi)) rims_.push_back(d.wi);
+    for (std::size_t side = 0; side < 4 && !circle_; ++side) {
+        std::vector<Vec3d> rim;
+        for (std::size_t i = 0; i < along; ++i) {
+            const Draw& d = drawn[(side / 2) * 2 * along + 2 * i + side % 2];
+            if (d.pdf > 0 && is_finite(d.wi)) rim.push_back(d.wi);
+        }
+        if (rim.size() == along) circle_ = axis_of_circle(rim);
+    }
 }
 
 void Work::measure_density() {
@@ -78,20 +100,63 @@ void Work::measure_density() {
         }
         const bool sharp = count > 0 && length(mean) / count > 0.9;
         const Vec3d n{0, 0, 1};
+        const Batch about_n = batch_of(t, SphereMap(n));
+        const std::optional<Mesh> mesh = find_mesh(about_n);
+        if (mesh && mesh->cells() <= (subject.serial() ? 200000u : 10000000u)) {
+            Density d = bins_about(n, true);
+            const Witnesses seen = witnesses_of(t, d);
+            const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
+            const Effort effort{2.5e-6, 6 * rigour.evaluations, 5e-5};
+            if (std::optional<Integral> mass = integrate_mesh(*mesh, d.rings, d.sectors, about_n, effort, crowd, &seen)) {
+                d.mass = std::move(*mass);
+                grant_doubts(t, d);
+                share_nothing(t, d);
+                density_.push_back(std::move(d));
+                continue;
+            }
+        }
         Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations) : density_about(t, n, true, rigour.evaluations);
+        if (d.mass.error > 5e-5 && circle_) {
+            Density other = density_about(t, *circle_, false, rigour.evaluations);
+            if (other.mass.error < d.mass.error) d = std::move(other);
+        }
         if (d.mass.error > 5e-5) {
             Density other = sharp ? density_about(t, n, true, rigour.evaluations) : density_about(t, normalize(peak), false, rigour.evaluations);
             if (other.mass.error < d.mass.error) d = std::move(other);
             if (d.mass.error > 1e-4) d = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations);
         }
-        if (b.nothing > 0 && subject.draws_at_will()) find_nothing(t, d, rigour.full ? 16384 : 2048);
-        else d.nothing = static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
-        // Too rare to have been met: half a million draws show a share of 5e-5 twenty times over.
-        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 && d.mass.value < 1 && subject.draws_at_will()) find_nothing(t, d, 32768);
+        share_nothing(t, d);
         if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5)  // nobody is accused on one quadrature's word
             d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
+}
+
+void Work::share_nothing(int technique, Density& d) const {
+    const Batchful& b = first(technique);
+    if (b.nothing > 0 && subject.draws_at_will()) find_nothing(technique, d, rigour.full ? 16384 : 2048);
+    else d.nothing = static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
+    // Too rare to have been met: half a million draws show a share of 5e-5 twenty times over.
+    if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 && d.mass.value < 1 && subject.draws_at_will()) find_nothing(technique, d, 32768);
+}
+
+/// 2 pi p over coordinates about an axis.
+Batch Work::batch_of(int technique, const SphereMap& map) const {
+    return [this, technique, map](std::span<const Vec2d> at, std::span<double> out) {
+        std::vector<Vec3d> wi;
+        for (Vec2d v : at) wi.push_back(map.direction(v));
+        const std::vector<double> p = pdf(technique, wi, true);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
+    };
+}
+
+void Work::grant_doubts(int technique, Density& d) const {
+    for (const Doubt& doubt : subject.doubts()) {
+        d.doubt.resize(d.mass.bins.size());
+        d.doubt[d.bin_of(d.map.coordinates(doubt.at))] += doubt.mass;
+        d.doubts += doubt.mass;
+    }
+    if (!d.doubt.empty()) sharpen(technique, d);
 }
 
 Witnesses Work::witnesses_of(int technique, const Density& d) const {
@@ -158,13 +223,14 @@ void Work::add_rims(Density& d) const {
     d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-13; }), d.rings.end());
 }
 
-Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
+/// Rings and sectors about an axis, narrow where draws crowd and where samplers go wrong.
+Density Work::bins_about(Vec3d axis, bool about_n) const {
     Density d;
     d.map = SphereMap(axis);
     d.about_n = about_n;
     d.sectors = rigour.sectors;
     std::vector<double> a;
-    for (Vec3d w : std::span(guides_).first(guides_.size() - 384)) a.push_back(d.map.coordinates(w).x);
+    for (Vec3d w : std::span(guides_).first(guides_.size() - fixed_guides)) a.push_back(d.map.coordinates(w).x);
     std::sort(a.begin(), a.end());
     d.rings = {0};
     if (!a.empty()) {
@@ -188,28 +254,20 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t
         if (!about_n && extra < 1.9) d.rings.push_back(extra);
     d.rings.push_back(2);
     add_rims(d);
+    return d;
+}
+
+Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
+    Density d = bins_about(axis, about_n);
     std::vector<Rect> cells;
     const int rings = static_cast<int>(d.rings.size()) - 1;
     for (int i = 0; i < rings; ++i)
         for (int k = 0; k < d.sectors; ++k)
             cells.push_back({d.rings[static_cast<std::size_t>(i)], d.rings[static_cast<std::size_t>(i) + 1], double(k) / d.sectors, double(k + 1) / d.sectors,
                              i * d.sectors + k});
-    const SphereMap map = d.map;
     const Witnesses witnesses = witnesses_of(technique, d);
-    d.mass = integrate(guided(std::move(cells), map, guides_), rings * d.sectors,
-                       [&](std::span<const Vec2d> at, std::span<double> out) {
-                           std::vector<Vec3d> wi;
-                           for (Vec2d v : at) wi.push_back(map.direction(v));
-                           const std::vector<double> p = pdf(technique, wi, true);
-                           for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
-                       },
-                       {edge_mass / 20, evaluations, edge_mass}, &witnesses);
-    for (const Doubt& doubt : subject.doubts()) {
-        d.doubt.resize(d.mass.bins.size());
-        d.doubt[d.bin_of(map.coordinates(doubt.at))] += doubt.mass;
-        d.doubts += doubt.mass;
-    }
-    if (!d.doubt.empty()) sharpen(technique, d);
+    d.mass = integrate(guided(std::move(cells), d.map, guides_), rings * d.sectors, batch_of(technique, d.map), {edge_mass / 20, evaluations, edge_mass}, &witnesses);
+    grant_doubts(technique, d);
     return d;
 }
 
@@ -232,65 +290,6 @@ void Work::find_nothing(int technique, Density& d, std::uint64_t n) const {
     }
     d.nothing = sum / shifts;
     d.nothing_se = std::sqrt(std::max(square / shifts - sqr(d.nothing), 0.0) / (shifts - 1));
-}
-
-const Integral& Work::incoming(Where where, bool even) const {
-    even = even && (trial.light.has_disk() || trial.light.fill != 1);  // the light may be even already
-    auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
-    if (!kept) kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even) : integrate_incoming(where, even);
-    return *kept;
-}
-
-Integral Work::integrate_incoming(Where where, bool even) const {
-    const auto of_light = [&](std::span<const Vec3d> wi, std::span<double> out) {
-        const std::vector<double> value = f(wi, true);
-        const std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
-            out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
-        }
-    };
-    const TrialLight& light = trial.light;
-    const double fill = even ? 1 : light.fill;
-    Integral total;
-    if (fill > 0) {
-        const SphereMap map(Vec3d{0, 0, 1});
-        std::vector<Rect> cells = graded_cells(1);
-        for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i) cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
-        total = integrate(guided(std::move(cells), map, guides_), whole() ? 2 : 1,
-                          [&](std::span<const Vec2d> at, std::span<double> out) {
-                              std::vector<Vec3d> wi;
-                              for (Vec2d v : at) wi.push_back(map.direction(v));
-                              of_light(wi, out);
-                              for (double& v : out) v *= 2 * pi * fill;
-                          },
-                          {5e-6, rigour.evaluations});
-    }
-    if (!even && light.has_disk()) {
-        const Frame<double> frame = frame_about(light.normal);
-        std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
-        for (int i = 0; i < 4; ++i)
-            for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
-        const Integral disk = integrate(cells, 1,
-                                        [&](std::span<const Vec2d> at, std::span<double> out) {
-                                            std::vector<Vec3d> wi;
-                                            std::vector<double> per_area;
-                                            for (Vec2d v : at) {
-                                                const double r = light.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
-                                                const Vec3d y = light.center + frame.t * (r * std::cos(phi)) + frame.b * (r * std::sin(phi));
-                                                wi.push_back(normalize(y));
-                                                per_area.push_back(std::max(-dot(wi.back(), light.normal), 0.0) / dot(y, y));
-                                            }
-                                            of_light(wi, out);
-                                            for (std::size_t i = 0; i < out.size(); ++i)
-                                                out[i] *= per_area[i] * pi * sqr(light.radius) * (light.radiance - fill);
-                                        },
-                                        {5e-6, rigour.evaluations / 4});
-        total.value += disk.value;
-        total.error += disk.error;
-        total.settled = total.settled && disk.settled;
-    }
-    return total;
 }
 
 }  // namespace crescent

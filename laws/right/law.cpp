@@ -1,0 +1,66 @@
+#include "laws/right/law.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include "simd/random.h"
+#include "verdicts/error_rates.h"
+
+namespace crescent {
+
+namespace {
+
+RightFamily& family_of(RightLaw& law, const std::string& name) {
+    for (RightFamily& f : law.families)
+        if (f.name == name) return f;
+    law.families.push_back({name, 0, 0, 0});
+    return law.families.back();
+}
+
+std::string rate(std::uint64_t hits, std::uint64_t of) {
+    const auto [low, high] = rate_interval(hits, of);
+    const double share = of ? static_cast<double>(hits) / static_cast<double>(of) : 0;
+    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of, share, low, high);
+}
+
+}  // namespace
+
+RightLaw measure_right(std::uint64_t first, std::uint64_t count, const Rigour& given, Watch& watch) {
+    std::vector<Judgement> all(count);
+    watch.begin("right samplers", static_cast<double>(count));
+    oneapi::tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
+        watch.check();
+        Rigour rigour = given;
+        rigour.seed = seed_of(given.seed, static_cast<std::uint32_t>(first + i));
+        const Trial trial = right_trial(first + i, given.seed);
+        Watch inner;
+        all[i] = judge({&trial, 1}, rigour, inner);
+        watch.advance(1);
+    });
+    RightLaw law;
+    law.alpha = given.alpha;
+    law.full = given.full;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        RightFamily& f = family_of(law, right_sampler(first + i, given.seed).family);
+        const bool wrong = all[i].state == State::wrong, open = all[i].state == State::inconclusive;
+        ++f.judged;
+        f.accused += wrong;
+        f.undecided += open;
+        ++law.judged;
+        law.accused += wrong;
+        law.undecided += open;
+        if (wrong || open) law.said.push_back(fmt::format("{}: {}", first + i, what_is_wrong(all[i])));
+    }
+    return law;
+}
+
+std::string right_law_text(const RightLaw& law) {
+    std::string out = "| family | judged | accused | inconclusive |\n|---|---|---|---|\n";
+    for (const RightFamily& f : law.families) out += fmt::format("| {} | {} | {} | {} |\n", f.name, f.judged, f.accused, f.undecided);
+    out += fmt::format("\nAccused in {} mode: {}; promised: at most {:g}. Inconclusive: {}.\n", law.full ? "full" : "quick",
+                       rate(law.accused, law.judged), law.alpha, rate(law.undecided, law.judged));
+    return out;
+}
+
+}  // namespace crescent

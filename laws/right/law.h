@@ -1,0 +1,27 @@
+// How often right samplers at random parameters are accused, by family: the law that `crescent check --right N` measures.
+#pragma once
+
+#include "laws/right/right.h"
+#include "verdicts/judge.h"
+
+namespace crescent {
+
+struct RightFamily {
+    std::string name;
+    std::uint64_t judged = 0, accused = 0, undecided = 0;
+};
+
+struct RightLaw {
+    std::vector<RightFamily> families;
+    std::uint64_t judged = 0, accused = 0, undecided = 0;
+    std::vector<std::string> said;  // of every verdict that is not right, a line each
+    double alpha = 0;
+    bool full = false;
+};
+
+/// Judges right samplers `first` to `first + count`, one w_o and one call each, on a seed of its own.
+RightLaw measure_right(std::uint64_t first, std::uint64_t count, const Rigour& rigour, Watch& watch);
+/// A table by family, and what was said.
+std::string right_law_text(const RightLaw& law);
+
+}  // namespace crescent

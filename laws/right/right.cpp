@@ -1,0 +1,59 @@
+#include "laws/right/right.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/list.h"
+
+namespace crescent {
+
+namespace {
+
+class FromRecipe : public JudgedSampler {
+public:
+    explicit FromRecipe(Recipe r) : recipe_(std::move(r)) {}
+    std::string name() const override { return recipe_.family + " (" + recipe_.parameters + ")"; }
+    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) out[i] = recipe_.sample(wo, u[i]);
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = recipe_.pdf(at[i].wo, at[i].wi);
+    }
+    bool has_f() const override { return static_cast<bool>(recipe_.f); }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = recipe_.f ? recipe_.f(at[i].wo, at[i].wi) : 0;
+    }
+
+private:
+    Recipe recipe_;
+};
+
+Dice dice_of(std::uint64_t index, std::uint32_t seed) { return Dice(0x9e3779b97f4a7c15u * (index + 1) + seed); }
+
+}  // namespace
+
+double Dice::log(double low, double high) { return low * std::exp(uniform(0, std::log(high / low))); }
+Vec3d Dice::direction(double least_cos, double most_cos) {
+    const double cos = uniform(least_cos, most_cos);
+    return about({0, 0, 1}, cos, uniform(0, 1));
+}
+
+std::shared_ptr<const JudgedSampler> subject_of(Recipe recipe) { return std::make_shared<FromRecipe>(std::move(recipe)); }
+
+Recipe right_sampler(std::uint64_t index, std::uint32_t seed) {
+    static const std::vector<Family> all = [] {
+        std::vector<Family> out;
+        for (const auto& some : {microfacet_families(), lobe_families(), table_families()}) out.insert(out.end(), some.begin(), some.end());
+        return out;
+    }();
+    Dice dice = dice_of(index, seed);
+    return all[index % all.size()](dice);
+}
+
+Trial right_trial(std::uint64_t index, std::uint32_t seed) {
+    Dice dice = dice_of(index, seed + 0x51u);
+    const double theta = dice.whole(0, 7) == 0 ? 0 : dice.whole(0, 3) ? dice.uniform(0.5, 80) : dice.uniform(80, 89);
+    return trial_of_subject(subject_of(right_sampler(index, seed)), theta, theta == 0 ? 0 : dice.uniform(0, 360));
+}
+
+}  // namespace crescent

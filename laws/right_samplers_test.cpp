@@ -1,0 +1,48 @@
+// Right samplers at random parameters are never accused. `crescent check --right N` judges as many as one likes, docs/error-rates.md
+// has what came of it; here a few of every family.
+#include <gtest/gtest.h>
+
+#include "laws/right/law.h"
+#include "verdicts/list.h"
+
+namespace crescent {
+namespace {
+
+std::string told(const RightLaw& law) {
+    std::string out;
+    for (const std::string& line : law.said) out += line;
+    return out;
+}
+
+TEST(RightSamplers, OfEveryFamilyAreLeftAloneInQuickMode) {
+    Watch watch;
+    const RightLaw law = measure_right(0, 60, Rigour::quick(), watch);
+    EXPECT_GE(law.families.size(), 20u);
+    EXPECT_EQ(law.accused, 0u) << told(law);
+}
+
+TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
+    Watch watch;
+    Rigour rigour = Rigour::thorough();
+    rigour.draws /= 8;  // as full mode integrates, with fewer draws
+    const RightLaw law = measure_right(1000, 20, rigour, watch);
+    EXPECT_EQ(law.accused, 0u) << told(law);
+}
+
+/// p jumps where the half vector crosses the horizon; the first sampler of their own that people bring.
+TEST(RightSamplers, WithAnisotropicVisibleNormalsAreLeftAlone) {
+    Watch watch;
+    const auto subject = subject_of(ggx_visible_at(0.1, 0.4));
+    const Judgement quick = judge(trials_of_subject(subject, false), Rigour::quick(), watch);
+    EXPECT_EQ(quick.state, State::right) << what_is_wrong(quick);
+    for (std::uint32_t seed : {2u, 3u}) {
+        Rigour rigour = Rigour::thorough();
+        rigour.seed = seed;
+        const Trial trial = trial_of_subject(subject, 60, 250);
+        const Judgement full = judge({&trial, 1}, rigour, watch);
+        EXPECT_EQ(full.state, State::right) << what_is_wrong(full);
+    }
+}
+
+}  // namespace
+}  // namespace crescent

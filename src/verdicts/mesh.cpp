@@ -1,0 +1,163 @@
+#include "verdicts/mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "simd/random.h"
+#include "simd/scalar.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr int parallels = 6, probes = 192, bisections = 44;
+constexpr int most_lines = 8192;  // of one kind
+
+/// Where g may jump between two points of one parallel or meridian.
+struct Gap {
+    bool along_a;
+    double across, t0, t1, g0 = 0, g1 = 0;
+    Vec2d at(double t) const { return along_a ? Vec2d{t, across} : Vec2d{across, t}; }
+};
+
+/// Neighbouring probes that differ, along a few lines of either kind.
+std::vector<Gap> gaps_of(const Batch& g) {
+    std::vector<Vec2d> where;
+    std::vector<Gap> lines;
+    for (int kind = 0; kind < 2; ++kind)
+        for (int i = 0; i < parallels; ++i) {
+            const double span = kind == 0 ? 2 : 1, across = (kind == 0 ? 1 : 2) * (i + 0.4142) / parallels;
+            for (int k = 0; k < probes; ++k) {
+                const double t = span * (k + 0.5) / probes;
+                lines.push_back({kind == 0, across, t, t + span / probes});
+                where.push_back(lines.back().at(t));
+            }
+        }
+    std::vector<double> v(where.size());
+    g(where, v);
+    std::vector<Gap> out;
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+        if (lines[i].along_a != lines[i + 1].along_a || lines[i].across != lines[i + 1].across) continue;
+        if (!(std::fabs(v[i] - v[i + 1]) > 1e-6 * std::max(v[i], v[i + 1]))) continue;
+        out.push_back(lines[i]);
+        out.back().g0 = v[i];
+        out.back().g1 = v[i + 1];
+    }
+    const std::size_t most = 240;  // evenly chosen among them
+    if (out.size() <= most) return out;
+    std::vector<Gap> some;
+    for (std::size_t i = 0; i < most; ++i) some.push_back(out[i * out.size() / most]);
+    return some;
+}
+
+/// Closes in on the larger change; what is left of it at 2^-44 of the gap is a jump.
+void close_in(std::vector<Gap>& gaps, const Batch& g) {
+    std::vector<Vec2d> where(gaps.size());
+    std::vector<double> v(gaps.size());
+    for (int k = 0; k < bisections && !gaps.empty(); ++k) {
+        for (std::size_t i = 0; i < gaps.size(); ++i) where[i] = gaps[i].at(0.5 * (gaps[i].t0 + gaps[i].t1));
+        g(where, v);
+        for (std::size_t i = 0; i < gaps.size(); ++i) {
+            Gap& x = gaps[i];
+            const double mid = 0.5 * (x.t0 + x.t1);
+            if (std::fabs(v[i] - x.g0) > std::fabs(v[i] - x.g1)) x.t1 = mid, x.g1 = v[i];
+            else x.t0 = mid, x.g0 = v[i];
+        }
+    }
+    std::erase_if(gaps, [](const Gap& x) { return !(std::fabs(x.g1 - x.g0) > 1e-5 * std::max(x.g0, x.g1)); });
+}
+
+/// The least N such that every position is a multiple of 1/N; 0: none.
+int spacing(const std::vector<double>& positions) {
+    if (positions.size() < 2) return positions.empty() ? 1 : 0;
+    for (int n = 1; n <= most_lines; ++n) {
+        bool fits = true;
+        for (std::size_t i = 0; i < positions.size() && fits; ++i) fits = std::fabs(positions[i] * n - std::round(positions[i] * n)) < 2e-5;
+        if (fits) return n;
+    }
+    return 0;
+}
+
+double theta_of(double a) { return 2 * std::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))); }
+
+/// Heights: in cos theta, or else in theta.
+std::vector<double> rows_of(const std::vector<double>& a) {
+    std::vector<double> cos, theta, out;
+    for (double v : a) cos.push_back(1 - v), theta.push_back(theta_of(v) / pi);
+    const int n = spacing(cos), m = spacing(theta);
+    if (n == 0 && m == 0) return out;
+    if (n > 0 && (m == 0 || n <= m))
+        for (int i = 0; i <= 2 * n; ++i) out.push_back(static_cast<double>(i) / n);
+    else
+        for (int i = 0; i <= m; ++i) out.push_back(2 * sqr(std::sin(0.5 * pi * i / m)));
+    return out;
+}
+
+std::vector<double> merged(std::vector<double> edges, std::span<const double> more) {
+    edges.insert(edges.end(), more.begin(), more.end());
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end(), [](double x, double y) { return y - x < 1e-13; }), edges.end());
+    return edges;
+}
+
+}  // namespace
+
+std::optional<Mesh> find_mesh(const Batch& g) {
+    std::vector<Gap> gaps = gaps_of(g);
+    close_in(gaps, g);
+    std::vector<double> a, b;
+    for (const Gap& x : gaps) (x.along_a ? a : b).push_back(0.5 * (x.t0 + x.t1));
+    if (a.size() + b.size() < 4) return {};
+    const int columns = spacing(b);
+    Mesh mesh{rows_of(a), {}};
+    if (columns < 2 || mesh.a.empty()) return {};  // what jumps at heights alone needs no mesh
+    for (int k = 0; k <= columns; ++k) mesh.b.push_back(static_cast<double>(k) / columns);
+    return mesh;
+}
+
+std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g, const Effort& effort,
+                                       const Prepare& prepare, const Witnesses* witnesses) {
+    std::vector<double> sides;
+    for (int k = 1; k < sectors; ++k) sides.push_back(static_cast<double>(k) / sectors);
+    const std::vector<double> a = merged(mesh.a, rings), b = merged(mesh.b, sides);
+    Integral out;
+    out.bins.assign((rings.size() - 1) * static_cast<std::size_t>(sectors), 0.0);
+    out.bin_errors = out.bins;
+    std::vector<Rect> rest;
+    std::vector<Vec2d> where(2 * (b.size() - 1));
+    std::vector<double> v(where.size());
+    for (std::size_t i = 0; i + 1 < a.size(); ++i) {
+        const std::size_t ring = static_cast<std::size_t>(std::upper_bound(rings.begin(), rings.end() - 1, 0.5 * (a[i] + a[i + 1])) - rings.begin()) - 1;
+        for (std::size_t k = 0; k + 1 < b.size(); ++k) {
+            const auto h = pcg4d<std::uint32_t>({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 0x3e58u, 1});
+            const double x = (h.x + 0.5) * 0x1p-32, y = (h.y + 0.5) * 0x1p-32;
+            where[2 * k] = {0.5 * (a[i] + a[i + 1]), 0.5 * (b[k] + b[k + 1])};
+            where[2 * k + 1] = {a[i] + x * (a[i + 1] - a[i]), b[k] + y * (b[k + 1] - b[k])};
+        }
+        g(where, v);
+        out.evaluations += where.size();
+        for (std::size_t k = 0; k + 1 < b.size(); ++k) {
+            const int sector = std::min(static_cast<int>(0.5 * (b[k] + b[k + 1]) * sectors), sectors - 1);
+            const int bin = static_cast<int>(ring) * sectors + sector;
+            if (std::fabs(v[2 * k] - v[2 * k + 1]) <= 1e-9 * std::fabs(v[2 * k])) out.bins[static_cast<std::size_t>(bin)] += (a[i + 1] - a[i]) * (b[k + 1] - b[k]) * v[2 * k];
+            else rest.push_back({a[i], a[i + 1], b[k], b[k + 1], bin});
+        }
+        if (17 * rest.size() > effort.most_evaluations) return {};
+    }
+    for (double m : out.bins) out.value += m;
+    out.second = out.value;
+    if (rest.empty()) return out;
+    if (prepare) rest = prepare(std::move(rest));
+    const Integral other = integrate(std::move(rest), static_cast<int>(out.bins.size()), g, effort, witnesses);
+    for (std::size_t i = 0; i < out.bins.size(); ++i) out.bins[i] += other.bins[i], out.bin_errors[i] += other.bin_errors[i];
+    out.value += other.value;
+    out.error = other.error;
+    out.second += other.second;
+    out.second_se = other.second_se;
+    out.settled = other.settled;
+    out.evaluations += other.evaluations;
+    return out;
+}
+
+}  // namespace crescent

@@ -1,0 +1,68 @@
+// What arrives: int f L cos over the hemisphere, or where p is (not) positive, by cubature.
+#include <algorithm>
+#include <cmath>
+
+#include "verdicts/work.h"
+
+namespace crescent {
+
+const Integral& Work::incoming(Where where, bool even) const {
+    even = even && (trial.light.has_disk() || trial.light.fill != 1);  // the light may be even already
+    auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
+    if (!kept) kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even) : integrate_incoming(where, even);
+    return *kept;
+}
+
+Integral Work::integrate_incoming(Where where, bool even) const {
+    const auto of_light = [&](std::span<const Vec3d> wi, std::span<double> out) {
+        const std::vector<double> value = f(wi, true);
+        const std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
+            out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
+        }
+    };
+    const TrialLight& light = trial.light;
+    const double fill = even ? 1 : light.fill;
+    Integral total;
+    if (fill > 0) {
+        const SphereMap map(Vec3d{0, 0, 1});
+        std::vector<Rect> cells = graded_cells(1);
+        for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i) cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
+        total = integrate(guided(std::move(cells), map, guides_), whole() ? 2 : 1,
+                          [&](std::span<const Vec2d> at, std::span<double> out) {
+                              std::vector<Vec3d> wi;
+                              for (Vec2d v : at) wi.push_back(map.direction(v));
+                              of_light(wi, out);
+                              for (double& v : out) v *= 2 * pi * fill;
+                          },
+                          {5e-6, rigour.evaluations});
+    }
+    if (!even && light.has_disk()) {
+        const Frame<double> frame = frame_about(light.normal);
+        std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
+        for (int i = 0; i < 4; ++i)
+            for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
+        const Integral disk = integrate(cells, 1,
+                                        [&](std::span<const Vec2d> at, std::span<double> out) {
+                                            std::vector<Vec3d> wi;
+                                            std::vector<double> per_area;
+                                            for (Vec2d v : at) {
+                                                const double r = light.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
+                                                const Vec3d y = light.center + frame.t * (r * std::cos(phi)) + frame.b * (r * std::sin(phi));
+                                                wi.push_back(normalize(y));
+                                                per_area.push_back(std::max(-dot(wi.back(), light.normal), 0.0) / dot(y, y));
+                                            }
+                                            of_light(wi, out);
+                                            for (std::size_t i = 0; i < out.size(); ++i)
+                                                out[i] *= per_area[i] * pi * sqr(light.radius) * (light.radiance - fill);
+                                        },
+                                        {5e-6, rigour.evaluations / 4});
+        total.value += disk.value;
+        total.error += disk.error;
+        total.settled = total.settled && disk.settled;
+    }
+    return total;
+}
+
+}  // namespace crescent
