@@ -54,7 +54,10 @@ Vec3d draw(const std::string& sampler, const Point& at, double u1, double u2, do
 }
 
 /// Does the segment from x to y cross the body? A chord of next to no length at y.
-bool blocks(const Occluder& body, Vec3d x, Vec3d y) { return !hidden(body, x, y, y + 1e-9 * frame_about(normalize(y - x)).t).empty(); }
+bool blocks(const Occluder& body, Vec3d x, Vec3d y) {
+    const auto parts = hidden(body, x, y, y + 1e-9 * frame_about(normalize(y - x)).t);
+    return !parts[0].empty() || !parts[1].empty();
+}
 
 Rgb incident(const Scene& scene, const Point& at, Vec3d wi) {
     double nearest = 1e30;

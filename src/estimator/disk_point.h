@@ -34,11 +34,12 @@ struct DiskPoint {
         }
         return 0;
     }
-    /// How many times the lobe's width goes into the angle t: decides how fine a rule must be.
+    /// How many times the lobe's width goes into the angle t. A lobe about the half vector is a streak at grazing wo.
     double sharpness(double t) const {
         if (!(surface.rho_s > 0)) return 0;
+        if (surface.brdf == BrdfKind::phong) return t * std::sqrt(surface.s);
         const double s = surface.brdf == BrdfKind::ggx ? 2 / sqr(surface.alpha) : surface.s;
-        return t * std::sqrt(s);
+        return t * std::sqrt(s) / wo.z;
     }
     /// Y of what the pair is worth under light of radiance 1.
     double weigh(Parts p) const { return luminance(surface.rho_d) * std::abs(p.real()) + surface.rho_s * std::abs(p.imag()); }

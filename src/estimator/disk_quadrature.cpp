@@ -1,125 +1,100 @@
 #include "estimator/disk_quadrature.h"
 
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "estimator/chords.h"
 #include "estimator/disk_point.h"
+#include "estimator/fans.h"
+#include "estimator/whole_disk.h"
 
 namespace crescent {
 
 namespace {
 
-/// Gauss-Legendre in r^2, evenly spaced in angle: nodes on the unit disk, weights summing to pi.
-struct PolarRule {
-    struct Node {
-        double x, y, weight;
-    };
-    std::vector<Node> nodes;
-
-    template <unsigned radial> static PolarRule make(int angular) {
-        PolarRule rule;
-        using G = boost::math::quadrature::gauss<double, radial>;
-        const auto ring = [&](double abscissa, double weight) {
-            const double r = std::sqrt(0.5 * (1 + abscissa));
-            for (int k = 0; k < angular; ++k) {
-                const double phi = 2 * pi * (k + 0.5) / angular;
-                rule.nodes.push_back({r * std::cos(phi), r * std::sin(phi), 0.5 * weight * pi / angular});
-            }
-        };
-        for (std::size_t k = 0; k < G::abscissa().size(); ++k) {
-            ring(G::abscissa()[k], G::weights()[k]);
-            if (G::abscissa()[k] != 0) ring(-G::abscissa()[k], G::weights()[k]);
-        }
-        return rule;
-    }
-};
-
-const std::vector<PolarRule>& polar_rules() {
-    static const std::vector<PolarRule> rules = {PolarRule::make<2>(5),   PolarRule::make<3>(7),   PolarRule::make<5>(12),  PolarRule::make<7>(17),
-                                                 PolarRule::make<10>(25), PolarRule::make<15>(36), PolarRule::make<25>(60), PolarRule::make<40>(96)};
-    return rules;
+/// A light whose plane passes through the point gives it nothing; relative to how far its points are.
+constexpr double in_plane = 1e-6;
+bool is_in_plane(const Occluder& light, Vec3d x) {
+    const Vec3d d = light.a - x;
+    return std::fabs(dot(d, light.b)) <= in_plane * (std::sqrt(dot(d, d)) + light.radius);
 }
 
-/// The whole disk is above the horizon and open, Lambert: integral of cos(theta_i) dw / pi in closed form. The light's
-/// vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view factors, elements
-/// parallel and perpendicular to a disk), written without cancellation.
-double whole_disk_diffuse(const DiskPoint& point, const DiskLight& disk) {
-    const Vec3d d = disk.center - point.x;
-    const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
-    const Vec3d axis = along < 0 ? -disk.normal : disk.normal;
-    const Vec3d aside = d - h * axis;
-    const double p2 = dot(aside, aside), a = p2 + h * h + r2;
-    const double root = std::sqrt(a * a - 4 * r2 * p2);
-    const double parallel = r2 * (1 - 2 * p2 / (a + root)) / root;
-    return dot(point.frame.n, axis) * parallel + dot(point.frame.n, aside) * (2 * h * r2 / (root * (a + root)));
+Occluder body_of(const DiskLight& light) {
+    return {Occluder::Kind::disk, -1, light.center, light.normal, {}, light.radius};
 }
 
-/// The same for the lobe: polar rules of rising order until two agree.
-DiskIntegral whole_disk(const DiskPoint& point, const DiskLight& disk, const Frame<double>& frame) {
-    DiskIntegral out;
-    out.diffuse = whole_disk_diffuse(point, disk);
-    if (!(point.surface.rho_s > 0)) return out;
-    const auto apply = [&](const PolarRule& rule) {
-        double sum = 0;
-        for (const auto& n : rule.nodes) sum += n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
-        return sum * sqr(disk.radius);
-    };
-    constexpr double good = 1e-5;  // relative, between two rules; the finer one, which is kept, is better by far
-    const auto& rules = polar_rules();
-    double coarse = apply(rules[0]);
-    for (std::size_t k = 1; k < rules.size(); ++k) {
-        out.lobe = apply(rules[k]);
-        out.lobe_error = std::fabs(out.lobe - coarse);
-        if (point.weigh({0, out.lobe_error}) <= good * point.weigh({out.diffuse, out.lobe})) break;
-        coarse = out.lobe;
-    }
+/// The disk seen from x as it is, `far` times as far away: a light in its plane stands before it there, or does not.
+DiskLight end_of_way(const DiskLight& disk, Vec3d x, double far) {
+    DiskLight out;
+    out.center = x + far * (disk.center - x), out.normal = disk.normal, out.radius = far * disk.radius;
     return out;
 }
 
-}  // namespace
-
-DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k)
-    : disk_(scene.disks()[k]), frame_(frame_about(scene.disks()[k].normal)), bodies_(scene.occluders()) {
-    for (std::size_t other = 0; other < scene.disks().size(); ++other) {
-        const DiskLight& d = scene.disks()[other];
-        if (other != k) bodies_.push_back({Occluder::Kind::disk, -2 - static_cast<int>(d.two_sided), d.center, d.normal, {}, d.radius});
-    }
-}
-
-namespace {
-
 /// Does one body hide the whole disk? Its shadow on the disk's plane is convex: if two opposite sides of the square
-/// around the disk lie in it, so does all between them.
-bool hides_all(const Occluder& body, Vec3d x, const DiskLight& disk, const Frame<double>& frame) {
+/// around the disk lie in it, so does all between them. From within a body the shadow is not convex.
+bool hides_all(const Blocker& blocker, Vec3d x, const DiskLight& disk, const Frame<double>& frame) {
+    if (holds(blocker.body, x)) return false;
     const Vec3d side = disk.radius * frame.t, up = disk.radius * frame.b;
     const auto whole = [&](Vec3d middle) {
-        const Interval part = hidden(body, x, middle - side, middle + side);
+        const Interval part = hidden(blocker.body, x, middle - side, middle + side, blocker.between)[0];
         return part.lo <= 0 && part.hi >= 1;
     };
     return whole(disk.center + up) && whole(disk.center - up);
 }
 
+/// Is the lobe wide against the disk as seen from the point, so that rules which know nothing of its peak see all of
+/// it?
+bool is_soft(const DiskPoint& point, const DiskLight& disk, double height) {
+    if (!(point.surface.rho_s > 0)) return true;
+    const Vec3d d = disk.center - point.x;
+    const double nearest = std::max(std::fabs(dot(d, disk.normal)), std::sqrt(dot(d, d)) - disk.radius);
+    const Vec3d r = point.frame.to_world(
+        mirror(point.wo));  // a Phong lobe of a small exponent ends with a jump at 90 degrees from it
+    if (point.surface.brdf == BrdfKind::phong && point.surface.s < 4 && dot(d, r) < disk.radius) return false;
+    return height > 0 && disk.radius < nearest && point.sharpness(disk.radius / nearest) < 2;
+}
+
 }  // namespace
 
+DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k)
+    : disk_(scene.disks()[k]), frame_(frame_about(disk_.normal)) {
+    for (const Occluder& body : scene.occluders()) blockers_.push_back({body});
+    for (std::size_t other = 0; other < scene.disks().size(); ++other) {
+        if (other == k) continue;
+        const DiskLight& light = scene.disks()[other];  // of two in one place the first is met
+        blockers_.push_back({body_of(light), {0, other < k ? 1 + at_an_end : 1 - at_an_end}, !light.two_sided});
+    }
+}
+
+bool DiskQuadrature::shines_on(const Hit& hit) const {
+    return !is_in_plane(body_of(disk_), hit.x) && (disk_.two_sided || dot(disk_.center - hit.x, disk_.normal) < 0);
+}
+
+std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit) const {
+    std::vector<const Blocker*> out;
+    for (const Blocker& b : blockers_) {
+        if (b.body.shape == hit.shape) continue;
+        const bool light = b.body.shape < 0;
+        if (light && (is_in_plane(b.body, hit.x) || (b.from_front_only && dot(b.body.a - hit.x, b.body.b) >= 0)))
+            continue;
+        if (!stands_clear(b.body, {hit.x}, light ? end_of_way(disk_, hit.x, b.between.to) : disk_)) out.push_back(&b);
+    }
+    return out;
+}
+
 DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) const {
-    const double c = dot(disk_.center - hit.x, disk_.normal);
-    if (!(c < 0 || (disk_.two_sided && c > 0))) return {};
+    if (!shines_on(hit)) return {};
     const double height = dot(disk_.center - hit.x, hit.n), tilt = dot(hit.n, disk_.normal);
     const double reach = disk_.radius * std::sqrt(std::max(0.0, 1 - tilt * tilt));
     if (height + reach <= 0) return {};
     const Frame<double> local = frame_about(hit.n);
     const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, disk_.normal};
-    std::vector<const Occluder*> near;
-    for (const Occluder& body : bodies_) {
-        const bool light_from_behind = body.shape == -2 && dot(body.a - hit.x, body.b) >= 0;
-        if (body.shape != hit.shape && !light_from_behind && !stands_clear(body, {hit.x}, disk_)) near.push_back(&body);
-    }
-    for (const Occluder* body : near)
-        if (hides_all(*body, hit.x, disk_, frame_)) return {};
-    if (near.empty() && height - reach > 0) return whole_disk(point, disk_, frame_);
-    return chord_by_chord(point, disk_, frame_, near);
+    const std::vector<const Blocker*> near = in_the_way(hit);
+    for (const Blocker* blocker : near)
+        if (hides_all(*blocker, hit.x, disk_, frame_)) return {};
+    const bool soft = is_soft(point, disk_, height);
+    const bool at_horizon = !(height - reach > 0);
+    if (near.empty() && soft && !at_horizon) return whole_disk(point, disk_, frame_);
+    return fan_by_fan(point, disk_, near, !soft, at_horizon);
 }
 
 }  // namespace crescent

@@ -10,10 +10,17 @@
 namespace crescent {
 
 /// Per unit radiance difference: the Lambert part (without rho_d) and the lobe part (without rho_s) of
-/// integral f cos dw over the visible disk, and an error bound from two rules of different order.
+/// integral f cos dw over the visible disk, and how far each may be off: differences of two rules, summed.
 struct DiskIntegral {
     double diffuse = 0, lobe = 0;
     double diffuse_error = 0, lobe_error = 0;
+};
+
+/// What may stand before a light: a body, or another light, which is nearer wherever it is met before.
+struct Blocker {
+    Occluder body;
+    Between between = before_light;
+    bool from_front_only = false;  // a light that shines from one side is not there from behind
 };
 
 class DiskQuadrature {
@@ -23,9 +30,12 @@ public:
     DiskIntegral operator()(const Hit& hit, const Surface& surface) const;
 
 private:
+    bool shines_on(const Hit& hit) const;
+    std::vector<const Blocker*> in_the_way(const Hit& hit) const;
+
     const DiskLight& disk_;
     Frame<double> frame_;
-    std::vector<Occluder> bodies_;
+    std::vector<Blocker> blockers_;
 };
 
 }  // namespace crescent

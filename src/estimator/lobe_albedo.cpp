@@ -1,6 +1,7 @@
 #include "estimator/lobe_albedo.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
@@ -29,14 +30,14 @@ double phong_albedo(double s, double cos_o) {
         }
         return std::pow(c, s) * std::sin(al) * band;
     };
-    const double horizon = std::asin(cos_o);  // al where the lobe first dips under the horizon
+    const double horizon = std::asin(cos_o);                      // al where the lobe first dips under the horizon
     const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
     const double cut = std::min(horizon, wide);
     return (s + 2) / (2 * pi) * (integrate(ring, 0, cut) + integrate(ring, cut, wide));
 }
 
-/// A lobe about the half vector m: with m drawn by the lobe's own distribution (cos(m) from u, azimuth phi, density p_m)
-/// and dwi = 4 (wo.m) dm, the integrand f cos(theta_i) 4 (wo.m) / p_m is smooth over those m whose wi is above the
+/// A lobe about the half vector m: with m drawn by the lobe's own distribution (cos(m) from u, azimuth phi, density
+/// p_m) and dwi = 4 (wo.m) dm, the integrand f cos(theta_i) 4 (wo.m) / p_m is smooth over those m whose wi is above the
 /// horizon: cos(phi) > (cos_o / (2 c) - cos_o c) / (sin_o sin_m). Gauss-Legendre in phi, cut there; adaptive in u.
 /// `below`: the u of an m at a given cosine.
 template <class L, class Height, class Below, class Density>
@@ -60,21 +61,24 @@ double half_vector_albedo(const L& lobe, double cos_o, Height height, Below belo
         const auto f = [&](double t) { return ring(a + (b - a) * t * t * (3 - 2 * t)) * (b - a) * 6 * t * (1 - t); };
         return b != a ? integrate(f, 0, 1, 1e-6) : 0.0;
     };
-    // u rises as m tilts away from n or towards it: from m = n to where the first wi dips, and on to where the last one has.
-    const double upright = below(1), dips = below(std::cos(0.5 * (pi / 2 - theta_o))), gone = below(std::cos(0.5 * (pi / 2 + theta_o)));
+    // u rises as m tilts away from n or towards it: from m = n to where the first wi dips, and on to where the last one
+    // has.
+    const double upright = below(1), dips = below(std::cos(0.5 * (pi / 2 - theta_o))),
+                 gone = below(std::cos(0.5 * (pi / 2 + theta_o)));
     return std::fabs(piece(upright, dips) + piece(dips, gone));
 }
 
 double blinn_albedo(double s, double cos_o) {
     return half_vector_albedo(
-        BlinnPhongLobe<double>(s, 0), cos_o, [s](double u) { return std::pow(u, 1 / (s + 1)); }, [s](double c) { return std::pow(c, s + 1); },
-        [s](double c) { return (s + 1) / (2 * pi) * std::pow(c, s); });
+        BlinnPhongLobe<double>(s, 0), cos_o, [s](double u) { return std::pow(u, 1 / (s + 1)); },
+        [s](double c) { return std::pow(c, s + 1); }, [s](double c) { return (s + 1) / (2 * pi) * std::pow(c, s); });
 }
 
 double ggx_albedo(double alpha, double cos_o) {
     const Ggx<double> ggx{alpha};
     return half_vector_albedo(
-        GgxLobe<double>(0, alpha), cos_o, [alpha](double u) { return std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)); },
+        GgxLobe<double>(0, alpha), cos_o,
+        [alpha](double u) { return std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)); },
         [alpha](double c) { return (1 - c * c) / (1 + (alpha * alpha - 1) * c * c); },
         [&](double c) { return ggx.D({std::sqrt(std::max(0.0, 1 - c * c)), 0, c}) * c; });
 }
@@ -91,33 +95,64 @@ double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o) {
     return 0;
 }
 
-LobeAlbedo::LobeAlbedo(BrdfKind kind, double s, double alpha) {
-    const auto exact = [&](double x, std::size_t cells) { return lobe_albedo(kind, s, alpha, std::cos(x / static_cast<double>(cells) * pi / 2)); };
-    const std::size_t first = 64, last = kind == BrdfKind::phong ? 4096 : 1024;
-    const double good = kind == BrdfKind::phong ? 1e-7 : 1e-6;  // half vectors take forty times as long
-    for (std::size_t k = 0; k <= first; ++k) values_.push_back(exact(static_cast<double>(k), first));
-    for (std::size_t cells = first;; cells *= 2) {  // the midpoints that measure the error become the next nodes
-        std::vector<double> finer(2 * cells + 1);
-        error_ = 0;
-        for (std::size_t k = 0; k <= cells; ++k) finer[2 * k] = values_[k];
-        tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t k) { finer[2 * k + 1] = exact(static_cast<double>(k) + 0.5, cells); });
-        for (std::size_t k = 0; k < cells; ++k) error_ = std::max(error_, std::fabs(interpolate(static_cast<double>(k) + 0.5) - finer[2 * k + 1]));
-        values_ = std::move(finer);
-        if (error_ < good || cells >= last) break;
-    }
-    error_ += kind == BrdfKind::phong ? 1e-10 : 1e-6;
+namespace {
+
+/// Lagrange through five even nodes, t from 0 to 4.
+double through_five(const std::array<double, 5>& v, double t) {
+    const double a = t, b = t - 1, c = t - 2, d = t - 3, e = t - 4;
+    return v[0] * b * c * d * e / 24 - v[1] * a * c * d * e / 6 + v[2] * a * b * d * e / 4 - v[3] * a * b * c * e / 6 +
+           v[4] * a * b * c * d / 24;
 }
 
-double LobeAlbedo::interpolate(double x) const {  // Lagrange through four neighbours
-    const std::size_t cells = values_.size() - 1;
-    const std::size_t k = std::min(static_cast<std::size_t>(std::max(x - 1, 0.0)), cells - 3);
-    const double t = x - static_cast<double>(k);
-    const double* v = values_.data() + k;
-    return v[0] * (t - 1) * (t - 2) * (t - 3) / -6 + v[1] * t * (t - 2) * (t - 3) / 2 + v[2] * t * (t - 1) * (t - 3) / -2 + v[3] * t * (t - 1) * (t - 2) / 6;
+}  // namespace
+
+LobeAlbedo::LobeAlbedo(BrdfKind kind, double s, double alpha) {
+    const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, std::cos(theta)); };
+    const double good = kind == BrdfKind::phong ? 1e-7 : 1e-6;  // half vectors take forty times as long
+    const double own = kind == BrdfKind::phong ? 1e-10 : 1e-6;
+    constexpr int even = 8, halvings = 12;
+    std::vector<Cell> open(even), next;
+    std::vector<std::array<double, 4>> between;
+    for (std::size_t k = 0; k < even; ++k) open[k] = {pi / 2 * static_cast<double>(k) / even, pi / 2 / even, {}, 0};
+    tbb::parallel_for(std::size_t{0}, open.size() * 5, [&](std::size_t i) {
+        open[i / 5].value[i % 5] = exact(open[i / 5].from + open[i / 5].size * static_cast<double>(i % 5) / 4);
+    });
+    for (int depth = 0; !open.empty(); ++depth, std::swap(open, next)) {
+        between.resize(open.size());  // what measures a cell's error is among its halves' nodes
+        tbb::parallel_for(std::size_t{0}, open.size() * 4, [&](std::size_t i) {
+            between[i / 4][i % 4] = exact(open[i / 4].from + open[i / 4].size * (static_cast<double>(i % 4) + 0.5) / 4);
+        });
+        next.clear();
+        for (std::size_t k = 0; k < open.size(); ++k) {
+            Cell& c = open[k];
+            const std::array<double, 5>& v = c.value;
+            const std::array<double, 4>& m = between[k];
+            for (std::size_t i = 0; i < 4; ++i)
+                c.error = std::max(c.error, std::fabs(through_five(v, static_cast<double>(i) + 0.5) - m[i]));
+            if (c.error < good || depth == halvings) {
+                c.error = 2 * c.error + own;  // midpoints are not quite where five nodes are worst
+                cells_.push_back(c);
+                continue;
+            }
+            next.push_back({c.from, c.size / 2, {v[0], m[0], v[1], m[1], v[2]}, 0});
+            next.push_back({c.from + c.size / 2, c.size / 2, {v[2], m[2], v[3], m[3], v[4]}, 0});
+        }
+    }
+    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.from < b.from; });
+}
+
+const LobeAlbedo::Cell& LobeAlbedo::cell(double theta) const {
+    const auto after =
+        std::upper_bound(cells_.begin() + 1, cells_.end(), theta, [](double t, const Cell& c) { return t < c.from; });
+    return *std::prev(after);
 }
 
 double LobeAlbedo::operator()(double cos_o) const {
-    return interpolate(std::acos(std::clamp(cos_o, -1.0, 1.0)) / (pi / 2) * static_cast<double>(values_.size() - 1));
+    const double theta = std::acos(std::clamp(cos_o, -1.0, 1.0));
+    const Cell& c = cell(theta);
+    return through_five(c.value, 4 * (theta - c.from) / c.size);
 }
+
+double LobeAlbedo::error(double cos_o) const { return cell(std::acos(std::clamp(cos_o, -1.0, 1.0))).error; }
 
 }  // namespace crescent

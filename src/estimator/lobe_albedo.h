@@ -2,6 +2,7 @@
 // hemisphere. A function of one angle for every isotropic lobe; tabulated once, in double precision.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "scene/scene.h"
@@ -11,19 +12,23 @@ namespace crescent {
 /// A at one angle by adaptive quadrature: Phong to about 1e-10, the half-vector lobes to about 1e-6.
 double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o);
 
-/// The same for many angles: cubic interpolation between quadratures, refined until its own error is below 1e-7
-/// (1e-6 for the half-vector lobes) or the table is full: mirrors of alpha below 0.02 then state a larger one.
+/// The same for many angles: interpolation through five quadratures a cell, cells halved until their own error is below
+/// 1e-7 (1e-6 for the half-vector lobes) or they are 2^-15 of a right angle: those that a lobe's edge runs through.
 class LobeAlbedo {
 public:
     LobeAlbedo(BrdfKind kind, double s, double alpha);
     double operator()(double cos_o) const;
-    /// Largest difference to quadrature seen between the nodes, and the quadrature's own.
-    double error() const { return error_; }
+    /// Largest difference to quadrature seen between the nodes about this angle, and the quadrature's own.
+    double error(double cos_o) const;
 
 private:
-    double interpolate(double x) const;
-    std::vector<double> values_;  // at theta = x pi/2 / (size - 1)
-    double error_ = 0;
+    struct Cell {
+        double from = 0, size = 0;  // theta_o
+        std::array<double, 5> value{};
+        double error = 0;
+    };
+    const Cell& cell(double theta) const;
+    std::vector<Cell> cells_;
 };
 
 }  // namespace crescent

@@ -53,7 +53,7 @@ public:
         if (surface.rho_s > 0) {
             const LobeAlbedo& table = albedos_.of(surface);
             albedo = table(dot(hit.n, hit.wo));
-            error = surface.rho_s * luminance(fill) * table.error();
+            error = surface.rho_s * luminance(fill) * table.error(dot(hit.n, hit.wo));
         }
         Rgb out{};
         for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * albedo);

@@ -1,9 +1,9 @@
-// Which part of a straight edge a body hides from a point. For a convex body and a point outside it, the hidden part
-// of a chord is one interval, found exactly: so a disk light can be integrated chord by chord with no guess about
-// where its shadow begins. Double precision.
+// Which parts of a straight edge a body hides from a point, found exactly: so a disk light can be integrated along
+// straight lines with no guess about where its shadows begin. Double precision.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "scene/scene.h"
@@ -16,8 +16,20 @@ struct Interval {
     bool empty() const { return !(lo < hi); }
 };
 
-/// The v for which the segment from x to y(v) crosses the body.
-Interval hidden(const Occluder& body, Vec3d x, Vec3d y0, Vec3d y1);
+/// The part of the way from the point (0) to the light (1) on which a surface stands in between. The ends are left out,
+/// so that rounding never decides whether a body hides what lies in its own face.
+struct Between {
+    double from = 0, to = 1;
+};
+inline constexpr double at_an_end = 1e-5;  // of the way; the kernels' share too
+inline constexpr Between before_light{at_an_end, 1 - at_an_end};
+
+/// The v for which the way from x to y(v) crosses the body's surface within `between`: one interval where x is outside
+/// the body, at most two else (what lies in one body sees each other).
+std::array<Interval, 2> hidden(const Occluder& body, Vec3d x, Vec3d y0, Vec3d y1, Between between = before_light);
+
+/// Is x in the sphere or box? Nothing lies in the flat ones.
+bool holds(const Occluder& body, Vec3d x);
 
 /// Points within a box: its middle and half its sides. A single point has no sides.
 struct Extent {

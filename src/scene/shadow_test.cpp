@@ -59,7 +59,8 @@ int hidden_segments(const Obstacle& s, Numbers& next, int segments) {
         const Vec3d x = s.from.middle + Vec3d{next() * s.from.half.x, next() * s.from.half.y, next() * s.from.half.z};
         const double r = s.disk.radius * std::sqrt(0.5 + 0.5 * next()), phi = pi * next();
         const Vec3d y = s.disk.center + frame.t * (r * std::cos(phi)) + frame.b * (r * std::sin(phi));
-        hidden_ones += !hidden(s.body, x, y, y + 1e-9 * frame.t).empty();
+        const auto parts = hidden(s.body, x, y, y + 1e-9 * frame.t);
+        hidden_ones += !parts[0].empty() || !parts[1].empty();
     }
     return hidden_ones;
 }

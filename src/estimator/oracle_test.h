@@ -1,0 +1,183 @@
+// A second opinion on a pixel, for tests: plain Monte Carlo in double, with rays of its own. Draws cosine-weighted,
+// from the lobe and on each disk, weighed by the balance heuristic (Veach 1997). Shares nothing with the quadrature but
+// brdf.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "films/film.h"
+#include "scene/brdf.h"
+#include "scene/scene.h"
+
+namespace crescent::test {
+
+/// Does the body's surface cross x + t d for a t in (lo, hi)?
+inline bool crosses(const Occluder& o, Vec3d x, Vec3d d, double lo, double hi) {
+    const auto in = [&](double t) { return t > lo && t < hi; };
+    const auto on_plane = [&](Vec3d p, Vec3d n) { return dot(n, d) == 0 ? -1 : dot(n, p - x) / dot(n, d); };
+    switch (o.kind) {
+        case Occluder::Kind::sphere: {
+            const Vec3d c = o.a - x;
+            const double foot = dot(c, d);
+            const Vec3d off = c - foot * d;
+            const double half2 = sqr(o.radius) - dot(off, off);
+            return half2 > 0 && (in(foot - std::sqrt(half2)) || in(foot + std::sqrt(half2)));
+        }
+        case Occluder::Kind::box: {
+            double near = -1e300, far = 1e300;
+            const auto slab = [&](double a, double b, double from, double v) {
+                const double t0 = (a - from) / v, t1 = (b - from) / v;  // v = 0 has probability 0
+                near = std::max(near, std::min(t0, t1)), far = std::min(far, std::max(t0, t1));
+            };
+            slab(o.a.x, o.b.x, x.x, d.x), slab(o.a.y, o.b.y, x.y, d.y), slab(o.a.z, o.b.z, x.z, d.z);
+            return near < far && (in(near) || in(far));
+        }
+        case Occluder::Kind::quad: {
+            const Vec3d n = cross(o.b, o.c);
+            const double t = on_plane(o.a, n);
+            const Vec3d p = x + t * d - o.a;
+            const double u = dot(cross(p, o.c), n) / dot(n, n), v = dot(cross(o.b, p), n) / dot(n, n);
+            return in(t) && u >= 0 && u <= 1 && v >= 0 && v <= 1;
+        }
+        case Occluder::Kind::disk: {
+            const double t = on_plane(o.a, o.b);
+            const Vec3d p = x + t * d - o.a;
+            return in(t) && dot(p, p) <= sqr(o.radius);
+        }
+        case Occluder::Kind::plane: return in(on_plane(o.a, o.b));
+    }
+    return false;
+}
+
+struct Opinion {
+    double y = 0, variance = 0, largest = 0;  // of the mean; the largest share of one sample in it
+};
+
+class Oracle {
+public:
+    Oracle(const Scene& scene, const Hit& hit, std::uint32_t seed)
+        : scene_(scene),
+          hit_(hit),
+          surface_(scene.surface(hit)),
+          frame_(frame_about(hit.n)),
+          wo_(frame_.to_local(hit.wo)),
+          next_(seed) {}
+
+    /// `n` draws of each technique. Lambert under the fill is known; all else is drawn.
+    Opinion operator()(int n) {
+        const std::size_t techniques = 2 + scene_.disks().size();
+        Opinion out;
+        double known = 0;
+        for (std::size_t c = 0; c < 3; ++c) known += luminance_weights[c] * surface_.rho_d[c] * scene_.fill()[c];
+        for (std::size_t k = 0; k < techniques; ++k) {
+            if (k == 1 && !(surface_.rho_s > 0)) continue;
+            double mean = 0, square = 0;
+            for (int j = 0; j < n; ++j) {
+                const Vec3d wi = k == 0 ? cosine() : k == 1 ? lobe() : on_disk(k - 2);
+                const double x = k < 2 || meets(scene_.disks()[k - 2], frame_.to_world(wi)) < 1e300
+                                     ? worth(wi)
+                                     : 0;  // a lamp's back is not aimed at
+                mean += x / n, square += x * x / n;
+                out.largest = std::max(out.largest, std::fabs(x) / n);
+            }
+            out.y += mean, out.variance += (square - mean * mean) / n;
+        }
+        out.y += known;
+        return out;
+    }
+
+private:
+    double u() { return std::uniform_real_distribution<double>(0, 1)(next_); }
+    static double pdf_of_half(double pdf_m, Vec3d wo, Vec3d m) { return pdf_m / (4 * std::fabs(dot(wo, m))); }
+
+    Vec3d polar(double cos, double sin) {
+        const double phi = 2 * pi * u();
+        return {sin * std::cos(phi), sin * std::sin(phi), cos};
+    }
+    Vec3d cosine() {
+        const double r2 = u();
+        return polar(std::sqrt(1 - r2), std::sqrt(r2));
+    }
+    /// cos^k about the pole, without cancellation: 1 - cos^2 = -expm1(2 log(v) / (k + 1)).
+    Vec3d power(double k) {
+        const double log_cos = std::log(1 - u()) / (k + 1);
+        return polar(std::exp(log_cos), std::sqrt(-std::expm1(2 * log_cos)));
+    }
+    Vec3d lobe() {
+        if (surface_.brdf == BrdfKind::phong) return frame_about(mirror(wo_)).to_world(power(surface_.s));
+        Vec3d m;
+        if (surface_.brdf == BrdfKind::blinn_phong)
+            m = power(surface_.s);
+        else {
+            const double v = u(), tan2 = sqr(surface_.alpha) * v / (1 - v), cos = 1 / std::sqrt(1 + tan2);
+            m = polar(cos, cos * std::sqrt(tan2));
+        }
+        return 2 * dot(wo_, m) * m - wo_;
+    }
+    double lobe_pdf(Vec3d wi) const {
+        if (!(surface_.rho_s > 0)) return 0;
+        const double s = surface_.s;
+        if (surface_.brdf == BrdfKind::phong) return (s + 1) / (s + 2) * PhongLobe<double>(s, 0)(wo_, wi);
+        const Vec3d sum = wo_ + wi, m = (1 / std::sqrt(dot(sum, sum))) * sum;
+        if (surface_.brdf == BrdfKind::blinn_phong)
+            return pdf_of_half((s + 1) / (2 * pi) * cosine_power(m, Vec3d{0, 0, 1}, s), wo_, m);
+        return pdf_of_half(Ggx<double>{surface_.alpha}.D(m) * m.z, wo_, m);
+    }
+    Vec3d on_disk(std::size_t k) {
+        const DiskLight& disk = scene_.disks()[k];
+        const Vec3d p = polar(0, disk.radius * std::sqrt(u()));
+        const Vec3d d = disk.center + frame_about(disk.normal).to_world(p) - hit_.x;
+        return frame_.to_local((1 / std::sqrt(dot(d, d))) * d);
+    }
+    /// t where d meets the disk, or none.
+    double meets(const DiskLight& disk, Vec3d d) const {
+        const Vec3d c = disk.center - hit_.x;
+        const double along = dot(c, disk.normal), v = dot(d, disk.normal), t = along / v;
+        if (std::fabs(along) <= 1e-6 * (std::sqrt(dot(c, c)) + disk.radius) || !(t > 0)) return 1e300;
+        if (along > 0 && !disk.two_sided) return 1e300;
+        const Vec3d p = t * d - c;
+        return dot(p, p) <= sqr(disk.radius) * (1 + 1e-12) ? t : 1e300;
+    }
+    double worth(Vec3d wi) const {
+        if (!(wi.z > 0)) return 0;
+        const Vec3d d = frame_.to_world(wi);
+        double pdf = wi.z / pi + lobe_pdf(wi), nearest = 1e300;
+        const DiskLight* met = nullptr;
+        for (const DiskLight& disk : scene_.disks()) {
+            const double t = meets(disk, d);
+            if (!(t < 1e300)) continue;
+            pdf += t * t / (std::fabs(dot(d, disk.normal)) * pi * sqr(disk.radius));
+            if (t < nearest * (1 - 1e-5)) nearest = t, met = &disk;
+        }
+        for (const Occluder& o : scene_.occluders())
+            if (met && o.shape != hit_.shape && crosses(o, hit_.x, d, 1e-5 * nearest, (1 - 1e-5) * nearest))
+                met = nullptr;
+        const double lobe = surface_.rho_s > 0 ? lobe_of(wi) : 0;
+        double x = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double fill = scene_.fill()[c], over = met ? met->radiance[c] - fill : 0;
+            x += luminance_weights[c] * (surface_.rho_d[c] / pi * over + surface_.rho_s * lobe * (over + fill));
+        }
+        return x * wi.z / pdf;
+    }
+    double lobe_of(Vec3d wi) const {
+        switch (surface_.brdf) {
+            case BrdfKind::phong: return PhongLobe<double>(surface_.s, 0)(wo_, wi);
+            case BrdfKind::blinn_phong: return BlinnPhongLobe<double>(surface_.s, 0)(wo_, wi);
+            case BrdfKind::ggx: return GgxLobe<double>(0, surface_.alpha)(wo_, wi);
+        }
+        return 0;
+    }
+
+    const Scene& scene_;
+    const Hit& hit_;
+    Surface surface_;
+    Frame<double> frame_;
+    Vec3d wo_;
+    std::mt19937_64 next_;
+};
+
+}  // namespace crescent::test
