@@ -148,9 +148,11 @@ void add_check(CLI::App& app, Work& work) {
     exec->excludes(samples);
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")->type_name("FILE")->needs(samples)->check(told);
     c->add_option("--wo", f->wo, "the w_o of --samples")->type_name("x,y,z")->needs(samples);
-    c->add_option("--json", f->json, "write every verdict with its evidence")->type_name("FILE");
-    c->add_option("--junit", f->junit, "write for a build server")->type_name("FILE");
-    c->add_option("--html", f->html, "write one page with maps, histograms and roses")->type_name("FILE");
+    for (auto* file : {c->add_option("--json", f->json, "write every verdict with its evidence; equal calls give equal bytes"),
+                       c->add_option("--timing", f->timing, "write what each verdict and each sample took"),
+                       c->add_option("--junit", f->junit, "write for a build server"),
+                       c->add_option("--html", f->html, "write one page with maps, histograms and roses")})
+        file->type_name("FILE")->excludes(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the table stays");
 }
 

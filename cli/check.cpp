@@ -9,6 +9,7 @@
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
 #include "progress.h"
+#include "quoted.h"
 #include "signals.h"
 
 namespace crescent::cli {
@@ -89,16 +90,33 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
 
 int exit_of(State state) { return state == State::wrong ? failed : state == State::error ? unwritable : state == State::inconclusive ? inconclusive : held; }
 
+/// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
+std::string command_of(const CheckFlags& f) {
+    std::string out = "crescent check";
+    if (!f.arm.empty()) out += " " + quoted(f.arm);
+    for (const std::string& text : f.settings) out += " --set " + quoted(text);
+    for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--samples", &f.samples}, {"--pdf-table", &f.table}, {"--wo", &f.wo}})
+        if (!value->empty()) out += std::string(" ") + flag + " " + quoted(*value);
+    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted}, {"--accept-few", f.accept_few}})
+        if (given) out += std::string(" ") + flag;
+    if (f.patience > 0) out += " --patience " + shortest(f.patience);
+    if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
+    if (f.seed != 1) out += " --seed " + std::to_string(f.seed);
+    return out;
+}
+
 /// Minutes of work are not lost to a folder that is not there: every file is opened before the first draw.
 void try_files(const CheckFlags& flags) {
-    for (const std::string& path : {flags.json, flags.junit, flags.html})
+    for (const std::string& path : {flags.json, flags.timing, flags.junit, flags.html})
         if (!path.empty()) can_write(path);
 }
 
 void write_files(const CheckFlags& flags, const Judgement& j) {
-    if (!flags.json.empty()) write_whole(flags.json, verdict_json(j));
+    const JudgementSource source{crescent::version(), crescent::commit(), command_of(flags)};
+    if (!flags.json.empty()) write_whole(flags.json, verdict_json(j, source));
+    if (!flags.timing.empty()) write_whole(flags.timing, verdict_timing(j, source));
     if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
-    if (!flags.html.empty()) write_whole(flags.html, verdict_html(j));
+    if (!flags.html.empty()) write_whole(flags.html, verdict_html(j, source));
 }
 
 /// What the faults came to, for the files: one verdict a fault, right where it is caught.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "simd/random.h"
 #include "verdicts/judge.h"
 #include "verdicts/ordered.h"
 
@@ -34,20 +35,35 @@ Efficiency measure_efficiency(const Work& work, std::size_t trial) {
     e.variance = sqr(s.sd);
     e.relative_se = e.variance > 0 ? std::sqrt(std::max(m4 / sqr(e.variance) - 1, 0.0) / s.n) : 0;
     e.heavy = !mean_is_testable(s, tail_of(x), work.trial.theory);
-    if (!work.subject.draws_at_will()) return e;
+    return e;
+}
+
+void measure_cost(const Trial& trial, const Rigour& rigour, Efficiency& e) {
     constexpr int repeats = 7;
-    const std::size_t n = std::min<std::size_t>(x.size(), 2048);
+    constexpr std::size_t n = 2048;
+    if (!trial.subject->draws_at_will()) return;
+    std::vector<Vec2d> u(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec2<float> v = draw(seed_of(rigour.seed, 0), static_cast<std::uint32_t>(e.trial), i, 0);
+        u[i] = {v.x, v.y};
+    }
     std::vector<double> times;
     std::vector<Draw> draws(n);
-    for (int k = 0; k < repeats; ++k) {
-        const auto start = std::chrono::steady_clock::now();
-        for (int t = 0; t < work.subject.techniques(); ++t) work.subject.sample(t, work.trial.wo, std::span(work.first(t).u).first(n), draws);
-        times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(n));
+    try {
+        for (int k = 0; k < repeats; ++k) {
+            const auto start = std::chrono::steady_clock::now();
+            for (int t = 0; t < trial.subject->techniques(); ++t) trial.subject->sample(t, trial.wo, u, draws);
+            times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(n));
+        }
+    } catch (const SubjectTooSlow&) {
+        return;
+    } catch (const SubjectFault& fault) {
+        e.fault = fault.what();
+        return;
     }
     std::sort(times.begin(), times.end());
     e.nanoseconds = times[repeats / 2];
     e.cost_se = 0.5 * (times[repeats - 2] - times[1]) / e.nanoseconds;
-    return e;
 }
 
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all) {
@@ -63,10 +79,13 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         Verdict& v = out[e.trial];
         v.evidence["variance"] = e.variance;
         v.evidence["variance_relative_se"] = e.relative_se;
-        v.evidence["nanoseconds"] = e.nanoseconds;
-        v.evidence["variance_x_cost"] = e.value();
-        v.evidence["low"] = e.low();
-        v.evidence["high"] = e.high();
+        if (!e.fault.empty()) {
+            v.state = State::error;
+            v.evidence["first_fault"] = e.fault;
+            v.say = "The sampler broke off: " + e.fault + ".";
+            continue;
+        }
+        v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
         if (e.heavy) {
             v.state = State::inconclusive;
             v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
@@ -74,17 +93,19 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         }
         std::vector<std::string> better, worse, level;
         for (const Efficiency& o : all) {
-            if (o.trial == e.trial || o.whole != e.whole || company_of(trials[o.trial]) != company_of(trials[e.trial])) continue;
+            if (o.trial == e.trial || !(o.nanoseconds > 0) || o.whole != e.whole || company_of(trials[o.trial]) != company_of(trials[e.trial])) continue;
             const std::string& name = trials[o.trial].arm;
             if (o.heavy || (o.low() <= e.high() && e.low() <= o.high())) level.push_back(name);
             else (e.high() < o.low() ? better : worse).push_back(name);
         }
         v.state = State::right;
-        v.say = fmt::format("Variance {:.4g} (+- {:.1f} %) x {:.3g} ns a sample", e.variance, 100 * e.relative_se, e.nanoseconds);
-        if (!better.empty()) v.say += fmt::format("; better than {}", fmt::join(better, ", "));
-        if (!worse.empty()) v.say += fmt::format("; worse than {}", fmt::join(worse, ", "));
-        if (!level.empty()) v.say += fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(level, ", "));
-        v.say += ".";
+        v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
+        if (!(e.nanoseconds > 0)) continue;
+        v.say_timed = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
+        if (!better.empty()) v.say_timed += fmt::format("; variance x time is better than that of {}", fmt::join(better, ", "));
+        if (!worse.empty()) v.say_timed += fmt::format("; worse than that of {}", fmt::join(worse, ", "));
+        if (!level.empty()) v.say_timed += fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(level, ", "));
+        v.say_timed += ".";
     }
     return out;
 }

@@ -1,8 +1,8 @@
 #include "verdicts/judge.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
-#include <mutex>
 #include <oneapi/tbb/parallel_for.h>
 
 #include "verdicts/ordered.h"
@@ -54,22 +54,25 @@ void own_up_to_one_half(const Work& work, Verdict& v) {
     v.say = "f transmits, or does not return 0 under the surface; this is of the upper half only. " + v.say;
 }
 
+/// One verdict with the time that it took.
+template <class Judge> void judge_next(Work& work, Outcome& out, const Watch& watch, Judge&& judge) {
+    watch.check();
+    const auto start = std::chrono::steady_clock::now();
+    Verdict v = judge(work);
+    own_up_to_one_half(work, v);
+    v.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    out.verdicts.push_back(std::move(v));
+}
+
 void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& watch) {
-    const Trial& trial = work.trial;
-    out.verdicts.push_back(judge_valid(work));
-    if (out.verdicts[0].state == State::wrong) return skip_rest(trial, out, "The sampler is not valid here.");
+    judge_next(work, out, watch, judge_valid);
+    if (out.verdicts[0].state == State::wrong) return skip_rest(work.trial, out, "The sampler is not valid here.");
     work.measure_density();
-    watch.check();
-    out.verdicts.push_back(judge_support(work));
-    out.verdicts.push_back(judge_normalised(work));
-    out.verdicts.push_back(judge_density(work));
-    watch.check();
-    out.verdicts.push_back(judge_identity(work));
-    out.verdicts.push_back(judge_physics(work));
-    out.verdicts.push_back(judge_tail(work));
-    out.verdicts.push_back(judge_mean(work));
-    for (Verdict& v : out.verdicts) own_up_to_one_half(work, v);
-    if (trial.subject->has_f()) out.efficiency = measure_efficiency(work, index);
+    for (auto* verdict : {+[](Work& w) { return judge_support(w); }, +[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); },
+                          +[](Work& w) { return judge_identity(w); }, +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_tail(w); },
+                          +[](Work& w) { return judge_mean(w); }})
+        judge_next(work, out, watch, verdict);
+    if (work.subject.has_f()) out.efficiency = measure_efficiency(work, index);
 }
 
 void settle(Judgement& j) {
@@ -137,13 +140,6 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
     return out;
 }
 
-std::string what_is_wrong(const Judgement& judgement) {
-    std::string out;
-    for (const Verdict& v : judgement.verdicts)
-        if (v.state != State::right && v.state != State::skipped) out += fmt::format("{} [{}] {} {}: {}\n", v.arm, v.trial, v.name, word(v.state), v.say);
-    return out;
-}
-
 std::string_view word(State state) {
     switch (state) {
         case State::right: return "right";
@@ -187,6 +183,10 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     std::vector<Efficiency> efficiencies;
     for (const Outcome& o : outcomes)
         if (o.efficiency) efficiencies.push_back(*o.efficiency);
+    for (Efficiency& e : efficiencies) {  // on a machine that does nothing else by now
+        watch.check();
+        measure_cost(trials[e.trial], rigour, e);
+    }
     std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
     blame_yardsticks(trials, outcomes, ranks);
     for (std::size_t i = 0; i < trials.size(); ++i) {

@@ -24,7 +24,7 @@ struct SubjectTooSlow : SubjectFault {
 
 /// Throws Interrupted when the watch says stop.
 Judgement judge(std::span<const Trial> trials, const Rigour& rigour, Watch& watch);
-/// The verdicts that are not right, a line each; "" where there are none.
+/// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
 std::string what_is_wrong(const Judgement& judgement);
 /// How many statistical tests the trials ask for.
 std::uint64_t count_tests(std::span<const Trial> trials);
@@ -36,10 +36,13 @@ struct Efficiency {
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error
     bool heavy = false, whole = false;     // whole: over the sphere, not its upper half
     double value() const { return variance * nanoseconds; }
+    std::string fault;                     // how the sampler broke off meanwhile
     double low() const;
     double high() const;
 };
 Efficiency measure_efficiency(const Work& work, std::size_t trial);
+/// The time of one sample, asked by one thread.
+void measure_cost(const Trial& trial, const Rigour& rigour, Efficiency& e);
 /// Ranks trials that differ by the arm alone.
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
 

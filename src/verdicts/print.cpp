@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/text.h"
+#include "verdicts/summary.h"
 
 namespace crescent {
 
@@ -17,9 +18,7 @@ State worst(State a, State b) {
 /// The worst state of each of the nine verdicts of one arm.
 using Row = std::map<std::string, State>;
 
-}  // namespace
-
-std::string verdict_table(const Judgement& judgement, bool all) {
+std::string rows_of(const Judgement& judgement) {
     std::vector<std::string> order;
     std::map<std::string, Row> rows;
     for (const Verdict& v : judgement.verdicts) {
@@ -38,21 +37,53 @@ std::string verdict_table(const Judgement& judgement, bool all) {
         }
         out += "\n";
     }
-    std::map<std::string, int> expected;  // told once each, with how often
-    for (const Verdict& v : judgement.verdicts) {
-        const bool notable = v.state == State::wrong || v.state == State::error || v.state == State::inconclusive || !v.expected;
-        if (v.expected && !v.why_expected.empty() && notable) ++expected[fmt::format("{}: {} {} as the list expects: {}", v.arm, word(v.state), v.name, v.why_expected)];
-        else if (all || !v.expected || v.state == State::wrong) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), v.say);
-    }
-    if (!expected.empty()) out += "\n";
-    for (const auto& [line, count] : expected) out += fmt::format("{} ({} cases)\n", line, count);
-    out += fmt::format("\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed\n", word(judgement.state), judgement.tests, judgement.alpha,
-                       judgement.screened, judgement.confirmed);
     return out;
 }
 
-std::string verdict_json(const Judgement& judgement) {
+std::string expected_ones(const Judgement& judgement) {
+    std::map<std::string, int> lines;  // told once each, with how often
+    for (const Verdict& v : judgement.verdicts)
+        if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
+            ++lines[fmt::format("{}: {} {} as the list expects: {}", v.arm, word(v.state), v.name, v.why_expected)];
+    std::string out = lines.empty() ? "" : "\n";
+    for (const auto& [line, count] : lines) out += fmt::format("{} ({} cases)\n", line, count);
+    return out;
+}
+
+nlohmann::ordered_json head_of(const char* format, const JudgementSource& source) {
     nlohmann::ordered_json root;
+    root["format"] = format;
+    for (const auto& [key, value] : {std::pair("version", &source.version), {"commit", &source.commit}, {"command", &source.command}})
+        if (!value->empty()) root[key] = *value;
+    return root;
+}
+
+std::string text_of(const nlohmann::ordered_json& root) { return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; }
+
+nlohmann::ordered_json cases_of(const Judgement& judgement) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const Verdict& v : judgement.verdicts)
+        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}}; out.empty() || out.back() != one) out.push_back(std::move(one));
+    return out;
+}
+
+}  // namespace
+
+std::string verdict_table(const Judgement& judgement, bool all) {
+    const std::string summary = summary_of(judgement);
+    const std::size_t details = std::min(summary.find("\n\n"), summary.size());
+    std::string out = summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(judgement) + expected_ones(judgement);
+    if (details < summary.size()) out += summary.substr(details + 1);
+    for (const Verdict& v : judgement.verdicts)
+        if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
+    const std::string asked = judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
+    out += fmt::format("\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n", word(judgement.state), judgement.tests, judgement.alpha,
+                       judgement.screened, judgement.confirmed, asked);
+    return out;
+}
+
+std::string verdict_json(const Judgement& judgement, const JudgementSource& source) {
+    nlohmann::ordered_json root = head_of("crescent check 1", source);
     root["state"] = word(judgement.state);
     root["as_expected"] = judgement.as_expected;
     root["alpha"] = judgement.alpha;
@@ -60,6 +91,7 @@ std::string verdict_json(const Judgement& judgement) {
     root["failed_once"] = judgement.screened;
     root["failed_twice"] = judgement.confirmed;
     if (judgement.questions > 0) root["questions"] = judgement.questions;
+    root["asked_for"] = cases_of(judgement);
     root["left_out"] = nlohmann::ordered_json::array();
     for (const LeftOut& l : judgement.left_out) root["left_out"].push_back({{"arm", l.arm}, {"case", l.trial}, {"verdicts", l.verdicts}, {"why", l.why}});
     root["verdicts"] = nlohmann::ordered_json::array();
@@ -75,29 +107,44 @@ std::string verdict_json(const Judgement& judgement) {
         one["evidence"] = v.evidence;
         root["verdicts"].push_back(std::move(one));
     }
-    return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return text_of(root);
+}
+
+std::string verdict_timing(const Judgement& judgement, const JudgementSource& source) {
+    nlohmann::ordered_json root = head_of("crescent check timing 1", source);
+    root["verdicts"] = nlohmann::ordered_json::array();
+    for (const Verdict& v : judgement.verdicts) {
+        nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}, {"name", v.name}, {"seconds", v.seconds}};
+        if (!v.say_timed.empty()) one["say"] = v.say_timed;
+        one.update(v.timing);
+        root["verdicts"].push_back(std::move(one));
+    }
+    return text_of(root);
 }
 
 std::string verdict_junit(const Judgement& judgement) {
     std::size_t failures = 0, errors = 0, skipped = 0;
+    double seconds = 0;
     std::string cases;
     for (const Verdict& v : judgement.verdicts) {
-        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\">", escape(v.arm), v.name, escape(v.trial));
+        seconds += v.seconds;
+        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\" time=\"{:.3f}\">", escape(v.arm), v.name, escape(v.trial), v.seconds);
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
+        const std::string message = escape(fmt::format("{}: {}", word(v.state), first_sentence(v.say)));
         if (v.state == State::error) {
             ++errors;
-            cases += fmt::format("<error message=\"{}\">{}</error>", word(v.state), escape(v.say));
+            cases += fmt::format("<error message=\"{}\">{}</error>", message, escape(v.say));
         } else if (fails) {
             ++failures;
-            cases += fmt::format("<failure message=\"{}\">{}</failure>", word(v.state), escape(v.say));
+            cases += fmt::format("<failure message=\"{}\">{}</failure>", message, escape(v.say));
         } else if (v.state == State::skipped || v.state == State::inconclusive) {
             ++skipped;
             cases += fmt::format("<skipped message=\"{}: {}\"/>", word(v.state), escape(v.say));
         }
         cases += "</testcase>\n";
     }
-    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"crescent check\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}</testsuite>\n", judgement.verdicts.size(), failures, errors,
-                       skipped, cases);
+    const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", judgement.verdicts.size(), failures, errors, skipped, seconds);
+    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent check\" {}>\n <testsuite name=\"crescent check\" {}>\n{} </testsuite>\n</testsuites>\n", counts, counts, cases);
 }
 
 }  // namespace crescent

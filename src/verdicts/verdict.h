@@ -23,6 +23,10 @@ struct Verdict {
     State state = State::right;
     std::string say;    // one sentence for the reader
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
+    // What varies from run to run, kept apart so that equal calls give equal verdicts.
+    double seconds = 0;
+    std::string say_timed;
+    nlohmann::ordered_json timing = nlohmann::ordered_json::object();
     bool expected = true;     // the list expects this state
     std::string why_expected;  // said where a wrong one is expected
 };

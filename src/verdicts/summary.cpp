@@ -1,0 +1,147 @@
+#include "verdicts/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+
+#include "verdicts/judge.h"
+
+namespace crescent {
+
+namespace {
+
+int rank(State s) { return s == State::wrong ? 0 : s == State::error ? 1 : 2; }
+
+/// How far off a verdict is, in whatever it measures: comparable within one verdict's name alone.
+double badness(const Verdict& v) {
+    const auto number = [&](const char* key) {
+        const auto at = v.evidence.find(key);
+        return at != v.evidence.end() && at->is_number() ? at->get<double>() : std::nan("");
+    };
+    for (const char* key : {"lost_fraction", "largest_relative_difference", "z", "k"})
+        if (const double x = std::fabs(number(key)); std::isfinite(x)) return x;
+    if (const double x = number("chi2") / number("degrees"); std::isfinite(x)) return x;
+    for (const char* key : {"integral", "smallest_p_jacobian"})
+        if (const double x = std::fabs(number(key) - 1); std::isfinite(x)) return x;
+    const double albedo = number("albedo");
+    return std::isfinite(albedo) ? albedo : 0;
+}
+
+using Key = std::pair<std::string, std::string>;  // arm and case
+
+std::map<Key, std::set<std::string>> left_out_of(const Judgement& j) {
+    std::map<Key, std::set<std::string>> out;
+    for (const LeftOut& l : j.left_out) out[{l.arm, l.trial}].insert(l.verdicts.begin(), l.verdicts.end());
+    return out;
+}
+
+struct Count {
+    std::size_t cases = 0;
+    bool by_wo = true;  // they differ by w_o alone
+};
+
+std::map<std::string, Count> count_cases(const Judgement& j) {
+    std::map<std::string, std::set<std::string>> cases;
+    for (const Verdict& v : j.verdicts) cases[v.arm].insert(v.trial);
+    std::map<std::string, Count> out;
+    for (const auto& [arm, trials] : cases)
+        out[arm] = {trials.size(), std::all_of(trials.begin(), trials.end(), [](const std::string& t) { return t.starts_with("w_o") && t.find(',') == std::string::npos; })};
+    return out;
+}
+
+void add(Finding& f, const Verdict& v) {
+    ++f.count;
+    if (!f.worst || badness(v) > badness(*f.worst)) f.worst = &v;
+}
+
+void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
+    for (const Verdict* v : all) {
+        if (v == f.worst) continue;
+        const std::string say = told(*v);
+        if (say == told(*f.worst)) continue;
+        const auto same = std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == say; });
+        if (same != f.sentences.end()) same->second.push_back(v->trial);
+        else f.sentences.push_back({say, {v->trial}});
+    }
+}
+
+}  // namespace
+
+std::string told(const Verdict& v) { return v.say + (v.say_timed.empty() ? "" : " " + v.say_timed); }
+
+std::string first_sentence(const std::string& text) {
+    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1))
+        if (at + 2 < text.size() && text[at + 2] >= 'A' && text[at + 2] <= 'Z') return text.substr(0, at + 1);
+    return text;
+}
+
+std::vector<Finding> findings_of(const Judgement& j) {
+    const auto left_out = left_out_of(j);
+    const std::map<std::string, Count> counts = count_cases(j);
+    std::map<std::tuple<std::string, std::string, State, bool>, std::size_t> place;
+    std::vector<Finding> out;
+    std::vector<std::vector<const Verdict*>> members;
+    for (const Verdict& v : j.verdicts) {
+        if (v.state == State::right || v.state == State::skipped) continue;
+        const auto left = left_out.find({v.arm, v.trial});
+        if (left != left_out.end() && left->second.count(v.name)) continue;
+        const bool expected = v.expected && !v.why_expected.empty();
+        const auto [at, fresh] = place.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
+        if (fresh) {
+            out.push_back({v.arm, v.name, v.state, expected, 0, counts.at(v.arm).cases, counts.at(v.arm).by_wo ? "w_o" : "cases", nullptr, {}});
+            members.emplace_back();
+        }
+        add(out[at->second], v);
+        members[at->second].push_back(&v);
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        if (out[i].state != State::error) list_sentences(out[i], members[i]);
+        else for (const Verdict* v : members[i])
+            if (v->evidence.contains("first_fault")) out[i].worst = v;
+        if (out[i].state == State::error) out[i].of = j.verdicts.size(), out[i].cases = "verdicts";
+    }
+    const auto order = [](const Finding& f) {
+        const auto name = std::find(verdict_names.begin(), verdict_names.end(), f.name);
+        return std::tuple(rank(f.state), f.arm, name - verdict_names.begin(), f.expected);
+    };
+    std::sort(out.begin(), out.end(), [&](const Finding& a, const Finding& b) { return order(a) < order(b); });
+    return out;
+}
+
+std::string told(const Finding& f) {
+    if (f.state == State::error) return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of, f.worst->trial, told(*f.worst));
+    const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
+    return fmt::format("{}: {} at {} of {} {}, {} {}. {}", f.name, word(f.state), f.count, f.of, f.cases, as, f.worst->trial, told(*f.worst));
+}
+
+std::string left_out_told(const Judgement& j) {
+    if (j.left_out.empty()) return "";
+    std::set<Key> cases;
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
+    std::vector<std::string> trials;
+    bool valid_alone = true;
+    for (const LeftOut& l : j.left_out) {
+        trials.push_back(l.trial);
+        valid_alone = valid_alone && l.verdicts.size() + 1 == verdict_names.size();
+    }
+    return fmt::format("Left out: {} at {} of {} w_o ({}). {}", valid_alone ? "all but valid" : "some verdicts", trials.size(), cases.size(), fmt::join(trials, "; "), j.left_out[0].why);
+}
+
+std::string summary_of(const Judgement& j) {
+    std::string out, details, arm;
+    for (const Finding& f : findings_of(j)) {
+        if (f.expected) continue;
+        out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", told(f));
+        if (f.sentences.empty()) continue;
+        details += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
+        for (const auto& [say, trials] : f.sentences) details += fmt::format("  [{}] {}\n", fmt::join(trials, "; "), say);
+    }
+    if (const std::string left = left_out_told(j); !left.empty()) out += left + "\n";
+    return out + details;
+}
+
+std::string what_is_wrong(const Judgement& judgement) { return summary_of(judgement); }
+
+}  // namespace crescent

@@ -1,0 +1,37 @@
+// What a judgement comes to, one line a finding over all w_o, worst first; and its details, each sentence once with the cases it is true of.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "verdicts/verdict.h"
+
+namespace crescent {
+
+/// One verdict of one arm in one state other than right or skipped, over all its cases.
+struct Finding {
+    std::string arm, name;
+    State state = State::wrong;
+    bool expected = false;  // the list expects it, and why stands in `worst`
+    std::size_t count = 0, of = 0;
+    const char* cases = "w_o";       // what is counted
+    const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
+    std::vector<std::pair<std::string, std::vector<std::string>>> sentences;  // each other than the worst's with its cases
+};
+
+/// Wrong ones first, then errors, then what is inconclusive. What was left out for want of time is not among them, and of
+/// the errors of one arm the first alone, which counts for all. Points into `judgement`.
+std::vector<Finding> findings_of(const Judgement& judgement);
+/// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
+std::string told(const Finding& finding);
+/// "Left out: all but valid at 3 of 8 cases (w_o 0 deg, ...). Not looked at: ..."; "" where nothing was.
+std::string left_out_told(const Judgement& judgement);
+/// The sentence of a verdict, with what it says of times.
+std::string told(const Verdict& verdict);
+/// The first sentence of a text.
+std::string first_sentence(const std::string& text);
+/// All findings but the expected ones, a line each, then what was left out, then the details.
+std::string summary_of(const Judgement& judgement);
+
+}  // namespace crescent
