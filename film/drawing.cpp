@@ -5,7 +5,27 @@
 
 namespace crescent::film {
 
-Rect on_picture(const Rect& r, const Box& shown, const Box& box, int times) {
+Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin) {
+    const auto times_for = [&](double w, double h) { return std::max(1, static_cast<int>(std::min(slot.w / w, slot.h / h))); };
+    Closeup c;
+    c.times = times_for(margin * of.width(), margin * of.height());
+    c.box = around(data, of, static_cast<int>(slot.w) / c.times, static_cast<int>(slot.h) / c.times);
+    c.times = times_for(c.box.width(), c.box.height());
+    return c;
+}
+
+Closeup whole_or_part(const Data& data, const Rect& slot) {
+    const Image& image = data.experiment.image;
+    if (image.width > slot.w || image.height > slot.h) return close_up(data, data.box(data.cast.highlight), slot, 1e6);
+    return close_up(data, {0, 0, image.width - 1, image.height - 1}, slot, 1);
+}
+
+Rect show(Frame& f, const Block& block, int times, const Rect& slot, double alpha) {
+    return f.picture(block, std::floor(slot.x + (slot.w - double(block.width) * times) / 2), slot.y, times, alpha);
+}
+
+Rect on_picture(const Rect& r, const Box& shown, const Box& box) {
+    const double times = r.w / shown.width();
     return {r.x + double(box.x0 - shown.x0) * times, r.y + double(shown.y1 - box.y1) * times, double(box.width()) * times, double(box.height()) * times};
 }
 

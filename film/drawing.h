@@ -10,8 +10,19 @@
 
 namespace crescent::film {
 
-/// Where image box `box` lies on a picture that shows `shown` from (r.x, r.y), `times` units a pixel.
-Rect on_picture(const Rect& r, const Box& shown, const Box& box, int times);
+/// Part of the image that fills a slot as well as whole-number enlargement allows.
+struct Closeup {
+    Box box;
+    int times = 1;
+};
+/// Around `of`, which with `margin` times its sides fits the slot where anything does.
+Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin);
+/// The whole image; what fits of it around the highlight where it is larger than the slot.
+Closeup whole_or_part(const Data& data, const Rect& slot);
+/// Paints the block in the middle of the slot's top.
+Rect show(Frame& f, const Block& block, int times, const Rect& slot, double alpha = 1);
+/// Where image box `box` lies on a picture `r` that shows `shown`.
+Rect on_picture(const Rect& r, const Box& shown, const Box& box);
 /// An outline that shows on light and on dark.
 void mark(Frame& f, const Rect& r, Colour ink, double alpha = 1);
 /// Words on a tag of their own, so that they can be read on a picture; its bottom-left corner.

@@ -59,12 +59,12 @@ Words slope_words(const Ladder& l) {
 Shot ladder_shot(const Data& data, const LadderStory& story) {
     const Ladder& ladder = ladder_of(data, story.arm);
     const LogPlot plot = plot_of(data);
-    const Box crop = around(data, data.box(data.cast.highlight), 76, 62);
+    const Closeup crop = close_up(data, data.box(data.cast.highlight), {0, 0, 380, 310}, 1.35);
     std::vector<Block> blocks;
     std::vector<Words> labels;
     for (const std::size_t k : shown_of(ladder)) {
         const RunKey key = data.key(story.arm, ladder.n[k]);
-        blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop));
+        blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop.box));
         labels.push_back(Words("N\u00a0=\u00a0", data.n_of(key), ", off by ", data.rmse(key, data.cast.highlight)));
     }
     const std::vector<Point> points = points_of(ladder, plot);
@@ -91,8 +91,8 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const double at = first + each * double(k), in = f.ease(at, at + 0.5);
             const double x = 90 + 430.0 * double(k % 2), y = 122 + 388.0 * double(k / 2);
-            const Rect r = f.picture(blocks[k], x, y, 5, in);
-            f.text({r.x, r.bottom() + 8, r.w, 48}, labels[k], with(body_text, Vertical::middle), in);
+            show(f, blocks[k], crop.times, {x, y, 380, 310}, in);
+            f.text({x, y + 318, 380, 48}, labels[k], with(body_text, Vertical::middle), in);
         }
         const int n = f.steps(first, line, static_cast<int>(points.size()));
         f.polyline(begun(points, f.ease(line, line + 1.5)), ink, 5);

@@ -15,11 +15,11 @@ struct Column {
 
 Shot beyond(const Data& data) {
     const Cast& c = data.cast;
-    const Box crop = around(data, data.box(c.highlight), 426, 470);
+    const Closeup crop = whole_or_part(data, {0, 0, 426, 470});
     std::vector<Column> cols;
     for (const std::string& arm : {c.cosine, c.phong, c.mixture, c.mis}) {
         const RunKey key = data.key(arm);
-        cols.push_back({photograph_of(data, plates::view(data.film(key)), crop), Words(data.arm(arm)), Words(data.rmse(key, c.highlight)),
+        cols.push_back({photograph_of(data, plates::view(data.film(key)), crop.box), Words(data.arm(arm)), Words(data.rmse(key, c.highlight)),
                         Words(data.rmse(key, c.surround))});
     }
     const RunKey mis = data.key(c.mis), half = data.key(c.mis, c.n > 1 ? c.n / 2 : c.n);
@@ -44,11 +44,11 @@ Shot beyond(const Data& data) {
             const Column& col = cols[k];
             const double x = 60 + 458.0 * double(k), in = f.ease(starts[k], starts[k] + 0.7), told = f.ease(starts[k] + 1.2, starts[k] + 1.8);
             f.text({x, 112, 426, 50}, col.name, with(title_text, Align::centre), in);
-            const Rect r = f.picture(col.block, x, 170, 1, in);
-            f.text({x, r.bottom() + 12, r.w, 64}, col.highlight, with(with_px(number_text, 50), highlight_ink), told);
-            f.text({x, r.bottom() + 74, r.w, 36}, Words("RMSE, highlight"), with(small_text, Align::centre), told);
-            f.text({x, r.bottom() + 112, r.w, 64}, col.surround, with(with_px(number_text, 50), surround_ink), told);
-            f.text({x, r.bottom() + 174, r.w, 36}, Words("RMSE, surround"), with(small_text, Align::centre), told);
+            show(f, col.block, crop.times, {x, 170, 426, 470}, in);
+            f.text({x, 652, 426, 64}, col.highlight, with(with_px(number_text, 50), highlight_ink), told);
+            f.text({x, 714, 426, 36}, Words("RMSE, highlight"), with(small_text, Align::centre), told);
+            f.text({x, 752, 426, 64}, col.surround, with(with_px(number_text, 50), surround_ink), told);
+            f.text({x, 814, 426, 36}, Words("RMSE, surround"), with(small_text, Align::centre), told);
         }
     };
     return shot;

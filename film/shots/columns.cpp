@@ -7,6 +7,8 @@ namespace crescent::film {
 
 namespace {
 
+constexpr Rect whole_slot{480, 200, 960, 540};
+
 struct Column {
     Block block;
     Words name, density, highlight, surround;
@@ -41,11 +43,9 @@ Words second_answer(const Data& data, const Order& h, const Order& s) {
 
 Shot columns(const Data& data) {
     const Cast& c = data.cast;
-    const Image& image = data.experiment.image;
-    const Box all{0, 0, image.width - 1, image.height - 1};
-    const Block whole = photograph_of(data, plates::view(&data.reference()), all);
-    const Box crop = around(data, data.box(c.highlight), 580, 500);
-    const std::vector<Column> cols = columns_of(data, crop);
+    const Closeup all = whole_or_part(data, whole_slot), crop = whole_or_part(data, {0, 0, 580, 500});
+    const Block whole = photograph_of(data, plates::view(&data.reference()), all.box);
+    const std::vector<Column> cols = columns_of(data, crop.box);
     const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
     const Order s = order_of(data, data.key(c.cosine), data.key(c.phong), c.surround);
     const Box box_h = data.box(c.highlight), box_s = data.box(c.surround);
@@ -65,10 +65,10 @@ Shot columns(const Data& data) {
     shot.draw = [=](Frame& f) {
         const double before = 1 - f.ease(17.2, 17.7), now = f.ease(17.8, 18.5);
         if (before > 0) {
-            const Rect r = f.picture(whole, (sheet_width - image.width) / 2.0, 200, 1, before * f.ease(0.2, 0.9));
-            mark(f, on_picture(r, all, box_h, 1), highlight_ink, before * f.ease(10.6, 11.1));
-            mark(f, on_picture(r, all, box_s, 1), surround_ink, before * f.ease(12, 12.5));
-            const Rect h_at = on_picture(r, all, box_h, 1), s_at = on_picture(r, all, box_s, 1);
+            const Rect r = show(f, whole, all.times, whole_slot, before * f.ease(0.2, 0.9));
+            mark(f, on_picture(r, all.box, box_h), highlight_ink, before * f.ease(10.6, 11.1));
+            mark(f, on_picture(r, all.box, box_s), surround_ink, before * f.ease(12, 12.5));
+            const Rect h_at = on_picture(r, all.box, box_h), s_at = on_picture(r, all.box, box_s);
             tag(f, {h_at.right() + 14, h_at.bottom()}, Words("here"), highlight_ink, before * f.ease(10.6, 11.1));
             tag(f, {s_at.right() + 14, s_at.bottom()}, Words("there"), surround_ink, before * f.ease(12, 12.5));
         }
@@ -78,9 +78,9 @@ Shot columns(const Data& data) {
             const Rect at = column_of(x0, w, between, k);
             const double in = f.ease(17.8 + 0.5 * double(k), 18.5 + 0.5 * double(k));
             f.text({at.x, 112, w, 50}, col.name, with(with(title_text, col.ink), Align::centre), in);
-            const Rect r = f.picture(col.block, at.x, 170, 1, in);
+            const Rect r = show(f, col.block, crop.times, {at.x, 170, w, 500}, in);
             const double lit_h = f.ease(23.5, 24), lit_s = f.ease(29, 29.5);
-            mark(f, on_picture(r, crop, box_h, 1), highlight_ink, lit_h);
+            mark(f, on_picture(r, crop.box, box_h), highlight_ink, lit_h);
             f.text({at.x, 684, w, 46}, col.density, with(with(with_px(body_text, 34), Align::centre), Vertical::middle), in * (1 - lit_h));
             f.text({at.x, 684, w, 72}, Words(col.highlight), with(number_text, highlight_ink), lit_h);
             f.text({at.x, 756, w, 40}, Words("RMSE, highlight"), with(small_text, Align::centre), lit_h);

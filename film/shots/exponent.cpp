@@ -41,7 +41,7 @@ Shot exponent(const Data& data) {
     const Cast& c = data.cast;
     const auto& control = data.experiment.exponent;
     if (!control || control->s.size() < 2) return shot;
-    const Box crop = around(data, data.box(c.highlight), 96, 66);
+    const Closeup crop = close_up(data, data.box(c.highlight), {0, 0, 576, 396}, 1.5);
     std::vector<Column> cols;
     const std::size_t count = std::min<std::size_t>(control->s.size(), 3);
     const double w = 576, between = 36, x0 = (sheet_width - w * double(count) - between * double(count - 1)) / 2;
@@ -51,7 +51,7 @@ Shot exponent(const Data& data) {
         const RunKey key = data.key(control->arm, control->n, s);
         const Point foot{x0 + (w + between) * double(k) + w / 2 - 60, 312};
         const std::string sampler = data.experiment.find_arm(control->arm)->sampler;
-        cols.push_back({photograph_of(data, plates::view(data.film(key)), crop), Words("s\u00a0=\u00a0", data.s_of(key)),
+        cols.push_back({photograph_of(data, plates::view(data.film(key)), crop.box), Words("s\u00a0=\u00a0", data.s_of(key)),
                         Words("highlight ", data.rmse(key, c.highlight)), Words("surround ", data.rmse(key, c.surround)),
                         lobe_of(plates::Density(data.experiment, sampler, s, leaning), foot, 150), foot});
         errors.push_back(data.region(key, c.highlight)->rmse);
@@ -75,10 +75,10 @@ Shot exponent(const Data& data) {
             f.polygon(col.lobe, ink, 0.3 * in);
             f.polyline(col.lobe, ink, 4, in);
             f.text({col.foot.x + 124, col.foot.y - 130, 200, 50}, col.name, with_px(title_text, 44), in);
-            const Rect r = f.picture(col.block, x, 342, 6, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
+            show(f, col.block, crop.times, {x, 342, w, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
             const double told = f.ease(11.5, 12.1);
-            f.text({x, r.bottom() + 10, r.w, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
-            f.text({x, r.bottom() + 58, r.w, 48}, col.surround, with(with(label_text, surround_ink), Align::centre), f.ease(14, 14.6));
+            f.text({x, 748, w, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
+            f.text({x, 796, w, 48}, col.surround, with(with(label_text, surround_ink), Align::centre), f.ease(14, 14.6));
         }
     };
     return shot;

@@ -8,6 +8,8 @@ namespace crescent::film {
 
 namespace {
 
+constexpr Rect whole_slot{480, 230, 960, 540};
+
 double mean_of(const std::vector<float>& y) {
     double sum = 0;
     for (const float v : y) sum += v;
@@ -41,16 +43,15 @@ std::vector<Bar> bars_of(const Data& data) {
 
 Shot failure_b(const Data& data) {
     const Cast& c = data.cast;
-    const Image& image = data.experiment.image;
-    const Block whole = photograph_of(data, plates::view(data.film(data.key(c.phong))), {0, 0, image.width - 1, image.height - 1});
-    const Box crop = around(data, data.box(c.surround), 280, 184);
+    const Closeup all = whole_or_part(data, whole_slot), crop = close_up(data, data.box(c.surround), {0, 0, 840, 552}, 0.98);
+    const Block whole = photograph_of(data, plates::view(data.film(data.key(c.phong))), all.box);
     const std::vector<std::string> arms = {c.cosine, c.phong};
     std::vector<Block> blocks;
     std::vector<Words> names, errors;
     std::vector<Colour> inks;
     for (const std::string& arm : arms) {
         const RunKey key = data.key(arm);
-        blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop));
+        blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop.box));
         names.push_back(Words(data.arm(arm), ", N\u00a0=\u00a0", data.n_of(key)));
         errors.push_back(Words("RMSE, surround: ", data.rmse(key, c.surround)));
         inks.push_back(data.ink(arm));
@@ -76,13 +77,13 @@ Shot failure_b(const Data& data) {
     shot.seconds = 27.5, shot.still = 26.5;
     shot.draw = [=](Frame& f) {
         const double before = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), now = f.ease(10.4, 11.1);
-        if (before > 0) f.picture(whole, (sheet_width - image.width) / 2.0, 230, 1, before);
+        if (before > 0) show(f, whole, all.times, whole_slot, before);
         const double up = f.ease(20.9, 21.5);
         for (std::size_t k = 0; k < blocks.size() && now > 0; ++k) {
             const double x = 90 + 900.0 * double(k);
             f.text({x, 112, 840, 46}, names[k], with(with(title_text, inks[k]), Align::centre), now);
-            const Rect r = f.picture(blocks[k], x, 162, 3, now);
-            f.text({x, r.bottom() + 6, r.w, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre), f.ease(16, 16.6) * (1 - up));
+            show(f, blocks[k], crop.times, {x, 162, 840, 552}, now);
+            f.text({x, 720, 840, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre), f.ease(16, 16.6) * (1 - up));
         }
         for (std::size_t k = 0; k < bars.size() && up > 0; ++k) {
             const double y = 730 + 54.0 * double(k), grown = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));

@@ -19,7 +19,8 @@ struct Map {
 
 Shot heat(const Data& data) {
     const Cast& c = data.cast;
-    const Box crop = around(data, data.box(c.highlight), 196, 156);
+    const Closeup close = close_up(data, data.box(c.highlight), {0, 0, 784, 624}, 3.6);
+    const Box crop = close.box;
     const ReferenceFilm& reference = data.reference();
     std::vector<double> pooled;
     for (const std::string& arm : {c.cosine, c.phong}) {
@@ -55,10 +56,10 @@ Shot heat(const Data& data) {
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < maps.size(); ++k) {
             const double in = k == 0 ? f.ease(0.3, 1) : f.ease(7.2, 8);
-            const Rect r = f.picture(maps[k].block, 70 + 824.0 * double(k), 182, 4, in);
-            f.text({r.x, 122, r.w, 50}, maps[k].name, with(with(title_text, maps[k].ink), Align::centre), in);
-            f.text({r.x, r.bottom() + 12, r.w, 48}, maps[k].above, with(with(body_text, Vertical::middle), Align::centre), k == 0 ? f.ease(4, 4.6) : f.ease(9, 9.6));
-            mark(f, on_picture(r, crop, box_h, 4), bright, f.ease(12.3, 12.8));
+            const Rect r = show(f, maps[k].block, close.times, {70 + 824.0 * double(k), 182, 784, 624}, in);
+            f.text({70 + 824.0 * double(k), 122, 784, 50}, maps[k].name, with(with(title_text, maps[k].ink), Align::centre), in);
+            f.text({70 + 824.0 * double(k), r.bottom() + 12, 784, 48}, maps[k].above, with(with(body_text, Vertical::middle), Align::centre), k == 0 ? f.ease(4, 4.6) : f.ease(9, 9.6));
+            mark(f, on_picture(r, crop, box_h), bright, f.ease(12.3, 12.8));
         }
         const double scale = f.ease(2, 2.6);
         const double x = 1722, y = 250, h_bar = 512;

@@ -1,12 +1,13 @@
 // Shot 1: the gallery comes out of the noise, one doubling of N after another, then its converged reference; the title.
+#include "drawing.h"
 #include "shots.h"
-#include "style.h"
 
 namespace crescent::film {
 
 namespace {
 
 constexpr double first = 1.0, each = 0.7;  // s: when the first film shows, how long each stands
+constexpr Rect slot{480, 300, 960, 540};
 
 }  // namespace
 
@@ -14,8 +15,9 @@ Shot title(const Data& data) {
     const Cast& cast = data.cast;
     std::vector<Block> blocks;
     std::vector<Words> labels;
+    const Closeup part = whole_or_part(data, slot);
     const auto add = [&](const plates::View& view, Words label) {
-        blocks.push_back(photograph_of(data, view, plates::whole(view)));
+        blocks.push_back(photograph_of(data, view, part.box));
         labels.push_back(std::move(label));
     };
     for (const Film& film : data.opening) {
@@ -40,8 +42,8 @@ Shot title(const Data& data) {
         const int k = f.after(first) ? std::min(f.steps(first, first + each * n, n), n - 1) : 0;
         const Block& block = blocks[std::size_t(k)];
         const double in = f.ease(0, 0.8);
-        const Rect r = f.picture(block, (sheet_width - block.width * 1.0) / 2, 300, 1, in);
-        f.text({r.x, r.bottom() + 10, r.w, 48}, labels[std::size_t(k)], with(with(label_text, muted), Align::right), in);
+        const Rect r = show(f, block, part.times, slot, in);
+        f.text({slot.x, r.bottom() + 10, slot.w, 48}, labels[std::size_t(k)], with(with(label_text, muted), Align::right), in);
         f.text({60, 120, sheet_width - 120, 110}, Words("Where the noise goes"), with(big_text, Align::centre), f.ease(last, last + 0.8));
         f.text({60, 226, sheet_width - 120, 54}, under, with(with(label_text, muted), Align::centre), f.ease(last + 0.6, last + 1.4));
     };

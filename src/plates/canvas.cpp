@@ -22,6 +22,7 @@ Canvas::Canvas(int width, int height, const Colour& ground, double scale)
 
 void Canvas::clear(const Colour& ground) {
     surface_->ink(ground);
+    cairo_set_line_join(surface_->cr, CAIRO_LINE_JOIN_MITER);  // polylines leave theirs behind
     cairo_paint(surface_->cr);
     settings_.clear();
     pictures_.clear();
