@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 cd "$CRESCENT_SOURCE" || exit 1
 
-doors='cli gl film python web'
+doors='cli gl explainer python web'
 awk '
     FILENAME == "CMakeLists.txt" { if (match($0, /^crescent_folder\([a-z]+/)) rank[substr($0, 17, RLENGTH - 16)] = ++count; next }
     !/^[ \t]*#[ \t]*include[ \t]*"/ { next }
@@ -14,7 +14,7 @@ awk '
         parts = split(FILENAME, from, "/")
         folder = index(target, "/") ? substr(target, 1, index(target, "/") - 1) : ""
         wrong = ""
-        if (folder == "cli" || folder == "gl" || folder == "film" || folder == "python" || folder == "web") { if (from[1] != folder) wrong = "a door is included" }
+        if (folder == "cli" || folder == "gl" || folder == "explainer" || folder == "python" || folder == "web") { if (from[1] != folder) wrong = "a door is included" }
         else if (from[1] == "src" && parts > 2) {
             if (folder == "") { if (system("test -f src/" from[2] "/" target) != 0) wrong = "a file of src/ itself is included from a folder" }
             else if (!(folder in rank)) wrong = "not a folder of src/"
