@@ -7,6 +7,11 @@ build_example my_sampler
 expect 0 my_sampler/build/my_sampler
 [ ! -e my_sampler/build/my_sampler_test ] || expect 0 my_sampler/build/my_sampler_test
 
+printf '%s\n' '#include "verdicts/user.h"' 'struct V { double x, y, z; };' \
+    'struct S { struct D { V wi; double pdf; }; D sample(V, V) const; double pdf(V, V) const; };' 'auto j = crescent::judge_sampler("s", S{});' >three.cpp
+! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" three.cpp >said 2>&1 || die "a u of three members compiles"
+grep -q "the u of sample(wo, u) has three members" said && [ "$(grep -c 'error:' said)" -eq 1 ] || die "no sentence: $(grep error: said)"
+
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
 expect 0 "$CRESCENT" check --quiet --exec ./cosine --json c.json --junit c.xml --html c.html

@@ -8,6 +8,14 @@
 
 #include "verdicts/user.h"
 
+/// In place of the bytes of a struct that has no operator<<.
+template <class S>
+    requires(std::is_class_v<S> && crescent::user::Callable<S> && !crescent::user::TakesThree<S> && !requires(std::ostream& out, const S s) { out << s; })
+class testing::internal::UniversalPrinter<S> {
+public:
+    static void Print(const S&, std::ostream* out) { *out << "a sampler"; }
+};
+
 namespace crescent {
 
 MATCHER(IsARightSampler, negation ? "is not a right sampler" : "is a right sampler") {
@@ -20,6 +28,13 @@ MATCHER(IsNotAWrongSampler, negation ? "is a wrong sampler" : "is not a wrong sa
     const Judgement j = judge_sampler("sampler", arg);
     if (j.state == State::wrong) *result_listener << "\n" << what_is_wrong(j);
     return j.state != State::wrong;
+}
+
+/// With levels, draws and seed of one's own: EXPECT_THAT(MySampler{}, crescent::IsARightSamplerBy(crescent::Rigour::thorough())).
+MATCHER_P(IsARightSamplerBy, rigour, negation ? "is not a right sampler" : "is a right sampler") {
+    const Judgement j = judge_sampler("sampler", arg, rigour);
+    if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);
+    return j.state == State::right;
 }
 
 }  // namespace crescent
