@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace crescent::film {
 
@@ -60,6 +61,15 @@ ArmAtPixel arm_at(const Data& data, const OpenPixel& pixel, const std::string& a
     return out;
 }
 
+/// The same direction with another arm's density.
+PixelSample weighed(const OpenPixel& pixel, PixelSample sample, const std::string& sampler) {
+    const double p = pixel.pdf(sampler, {double(sample.wi.x), double(sample.wi.y), double(sample.wi.z)});
+    sample.pdf = static_cast<float>(p);
+    sample.x = p > 0 ? static_cast<float>(double(sample.f) * double(sample.light) * double(sample.cos) / p)
+                     : std::numeric_limits<float>::infinity();
+    return sample;
+}
+
 PixelStory pixel_story(const Data& data) {
     PixelStory out;
     const RunKey key = data.key(data.cast.cosine);
@@ -70,7 +80,8 @@ PixelStory pixel_story(const Data& data) {
     out.cosine = arm_at(data, *out.pixel, data.cast.cosine);
     out.phong = arm_at(data, *out.pixel, data.cast.phong);
     out.disk = out.cosine.giant().disk >= 0 ? out.cosine.giant().disk : out.pixel->disks().empty() ? -1 : 0;
-    if (out.disk >= 0) out.solid_angle = solid_angle(out.pixel->disks()[std::size_t(out.disk)]);
+    for (const PixelDisk& disk : out.pixel->disks()) out.solid_angle += disk.faces ? solid_angle(disk) : 0;
+    out.by_phong = weighed(*out.pixel, out.cosine.giant(), out.phong.sampler);
     double under_fill = 0;
     const std::size_t parts = over_hemisphere([&](Vec3d w) {
         const double f = out.pixel->f(w);

@@ -29,8 +29,9 @@ struct PixelStory {
     std::shared_ptr<const OpenPixel> pixel;
     double reference = 0;  // Y
     ArmAtPixel cosine, phong;
+    PixelSample by_phong;    // the largest of the cosine arm, had the phong arm drawn it; pdf 0: it could not
     int disk = -1;           // the disk light that counts: the largest sample's, else the first; -1: there is none
-    double solid_angle = 0;  // of that disk, sr
+    double solid_angle = 0;  // of all disk lights that face the pixel, sr
     double disk_share = 0;   // of the pixel's light, what does not come from the fill
     double top_f = 0;        // largest f over the hemisphere
 };

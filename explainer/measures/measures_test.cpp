@@ -41,6 +41,18 @@ TEST(Measures, TheOpenedPixelIsTheWorstOfItsRegion) {
             EXPECT_LE(error(std::size_t(j) * std::size_t(film.width) + std::size_t(i)), error(at(film, pixel)));
 }
 
+TEST(Measures, TheLargestSampleWeighedByTheOtherArmKeepsAllButItsDensity) {
+    const PixelStory& story = test::small_data().measures->story;
+    const PixelSample &a = story.cosine.giant(), &b = story.by_phong;
+    EXPECT_EQ(a.f, b.f);
+    EXPECT_EQ(a.light, b.light);
+    EXPECT_EQ(a.cos, b.cos);
+    EXPECT_NEAR(double(a.x) * double(a.pdf), double(b.x) * double(b.pdf), 1e-5 * double(a.x) * double(a.pdf));
+    for (const PixelSample& s : story.phong.samples)  // where the arm draws, it is weighed as it was drawn
+        EXPECT_NEAR(story.pixel->pdf("phong", {double(s.wi.x), double(s.wi.y), double(s.wi.z)}), double(s.pdf),
+                    1e-3 * double(s.pdf));
+}
+
 TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {
     const PixelStory& story = test::small_data().measures->story;
     const double n = double(story.cosine.long_series), hits = n * story.cosine.share_met;

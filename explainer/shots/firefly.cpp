@@ -1,6 +1,7 @@
 // A firefly is born: the running mean of the opened pixel, draw after draw, and its largest sample taken apart.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "../axes.h"
 #include "../estimator_formula.h"
@@ -55,7 +56,7 @@ private:
         const double level = axes_.y(story_.reference);
         f.line({chart.x, level}, {chart.right(), level}, bright, 2, shown, 12);
         f.text({chart.right() - 330, level - 46, 330, 40},
-               Words("right: ", figure(story_.reference, 3, "reference of the opened pixel")),
+               Words("reference: ", figure(story_.reference, 3, "reference of the opened pixel")),
                with(with(small_text, bright), Align::right), shown);
         std::vector<Point> path;
         for (int k = 0; k < drawn; ++k) {
@@ -80,21 +81,21 @@ private:
         if (!now) return;
         const double side = crop_side * crop_times;
         f.picture(now->block, crop_corner.x, crop_corner.y, crop_times);
-        f.outline(marked_.inset(-2), bright, 3);
+        f.outline(marked_.inset(-3), highlight_ink, 6);
         f.text({crop_corner.x - 20, crop_corner.y + side + 6, side + 40, 40},
                Words("photograph at N = ", count(now->n, "samples of a rung")), with(small_text, Align::centre));
     }
 
-    /// X as a column of factors for an arm's largest sample.
-    void column(Frame& f, const ArmAtPixel& arm, double x, double alpha, const double (&lit)[5]) const {
-        const PixelSample& s = arm.giant();
-        const std::string of = "largest sample of " + arm.arm + " in the opened pixel";
+    /// X of a direction as a column of factors, as an arm would weigh it.
+    void column(Frame& f, const std::string& arm, const PixelSample& s, double x, double alpha,
+                const double (&lit)[5]) const {
+        const std::string of = "largest sample of " + arm_.arm + ", weighed by " + arm;
         const double row = table.h / 6;
+        const double over_p = s.pdf > 0 ? 1 / double(s.pdf) : std::numeric_limits<double>::infinity();
         const Number values[] = {figure(double(s.f), 3, of), figure(double(s.light), 3, of),
-                                 figure(double(s.cos), 3, of), figure(s.pdf > 0 ? 1 / double(s.pdf) : 0, 3, of),
-                                 figure(double(s.x), 3, of)};
-        f.text({x, table.y, 220, row}, Words(data_.arm(arm.arm)),
-               with(with(label_text, data_.ink(arm.arm)), Align::centre), alpha);
+                                 figure(double(s.cos), 3, of), figure(over_p, 3, of), figure(double(s.x), 3, of)};
+        f.text({x, table.y, 220, row}, Words(data_.arm(arm)), with(with(label_text, data_.ink(arm)), Align::centre),
+               alpha);
         for (int k = 0; k < 5; ++k)
             draw_term(f, {x + 20, table.y + row * (k + 1) + 3, 180, row - 6}, Words(values[k]),
                       with(label_text, Align::centre), {alpha, lit[k]});
@@ -113,8 +114,8 @@ private:
         for (int k = 0; k < 5; ++k)
             f.text({table.x - 20, table.y + row * (k + 1), 160, row}, names[k], label_text, shown);
         f.line({table.x - 20, table.y + 5 * row}, {table.right(), table.y + 5 * row}, muted, 2, shown);
-        column(f, arm_, table.x + 130, shown, lit);
-        column(f, story_.phong, table.x + 370, second, lit);
+        column(f, arm_.arm, arm_.giant(), table.x + 130, shown, lit);
+        column(f, story_.phong.arm, story_.by_phong, table.x + 370, second, lit);
     }
 
     struct Crop {
@@ -131,7 +132,7 @@ private:
 
 std::vector<Cue> Firefly::cues() const {
     const PixelSample& s = arm_.giant();
-    const PixelSample& p = story_.phong.giant();
+    const PixelSample& p = story_.by_phong;
     const std::string of = "largest sample of " + arm_.arm;
     std::vector<Cue> out;
     out.push_back({0.3, Words("The same pixel by ", data_.arm(arm_.arm), ", draw after draw.")});
@@ -141,11 +142,12 @@ std::vector<Cue> Firefly::cues() const {
     out.push_back({apart, Words("f, L and cos θ are as they should be.")});
     out.push_back(
         {sharp, Words("But ", data_.arm(arm_.arm), " seldom aims there: p is small, and X is divided by it.")});
-    const double ratio = p.x > 0 ? double(s.x) / double(p.x) : 0;
-    if (ratio > 1)
-        out.push_back({other, Words(data_.arm(story_.phong.arm), " aims there on purpose: its largest is ",
-                                    number(ratio, 2, "ratio of largest samples"), " times smaller.")});
-    else out.push_back({other, Words("The largest by ", data_.arm(story_.phong.arm), " is no smaller in this pixel.")});
+    const Number phong = data_.arm(story_.phong.arm);
+    if (p.pdf > 0)
+        out.push_back(
+            {other, Words("The same direction, drawn by ", phong, ", would weigh ",
+                          figure(double(p.x), 3, of + ", weighed by " + story_.phong.arm), ". Only p differs.")});
+    else out.push_back({other, Words(phong, " would never draw this direction.")});
     const double error = std::fabs(arm_.mean.back() - story_.reference);
     const bool firefly = error > data_.experiment.firefly_k * story_.reference;
     out.push_back({rest, Words("More draws wear it down only as ", formulas::one_over_n,
@@ -162,11 +164,11 @@ Shot firefly(const Data& data) {
     shot.name = "firefly";
     shot.kind = Kind::instrument;
     shot.title = Words("A firefly is born");
-    shot.seen =
-        Words("The running mean of the pixel by ", data.arm(data.cast.cosine),
-              " against the number of draws leaps at one of them. "
-              "That sample is written as the product of f, L, the cosine and one over p, beside the largest one of ",
-              data.arm(data.cast.phong), ".");
+    shot.seen = Words("The running mean of the pixel by ", data.arm(data.cast.cosine),
+                      " against the number of draws leaps at one of them. "
+                      "That sample is written as the product of f, L, the cosine and one over p, and beside it as it "
+                      "would weigh if drawn by ",
+                      data.arm(data.cast.phong), ".");
     shot.seconds = end;
     shot.still = end - 0.5;
     shot.cues = drawn->cues();

@@ -36,7 +36,7 @@ public:
         for (const auto* list : {&single_, &twofold_})
             for (const FurnaceQuantiles& q : *list) top = std::max(top, q.q95);
         readings_ = {
-            right, {0.05 * double(single_.front().n), 2 * double(single_.back().n), true}, {0, 1.1 * top, false}};
+            right, {0.03 * double(single_.front().n), 2 * double(single_.back().n), true}, {0, 1.1 * top, false}};
     }
 
     void draw(Frame& f) const {
@@ -48,8 +48,8 @@ public:
 private:
     void weights(Frame& f) const {
         const double shown = f.ease(0, 0.6);
-        histogram_.draw(f, decades(histogram_.across, 2), decades(histogram_.up, 2), Words("weight X of a sample"),
-                        Words("samples of ", count(tail_.n, "draws of the weights")), shown);
+        histogram_.draw(f, decades(histogram_.across, 2), decades(histogram_.up, 2), Words("weight of a sample"),
+                        Words("how many samples of ", count(tail_.n, "draws of the weights")), shown);
         const int bars = f.steps(drawn, drawn + 3, int(tail_.bins.size()));
         const Colour ink = data_.ink(phong_);
         for (std::size_t k = 0; k < std::size_t(bars); ++k) {
@@ -97,7 +97,7 @@ private:
         const double level = readings_.y(data_.evidence.expected);
         f.line({right.x, level}, {right.right(), level}, bright, 2, shown, 12);
         f.text({right.x + 16, level - 44, 300, 40},
-               Words("right: ", figure(data_.evidence.expected, 3, "expected reading of the furnace")),
+               Words("answer: ", figure(data_.evidence.expected, 3, "expected reading of the furnace")),
                with(small_text, bright), shown);
         series(f, single_, -11, data_.ink(phong_), f.steps(furnace + 0.8, furnace + 3, int(single_.size())));
         series(f, twofold_, 11, bright, f.steps(alike, alike + 2, int(twofold_.size())));

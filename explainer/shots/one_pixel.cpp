@@ -90,12 +90,12 @@ private:
                small_text, shown);
         const double near = shown * f.ease(zoomed, zoomed + 0.6);
         const Point a = in_photo(near_.x0, near_.y1), b = in_photo(near_.x1 + 1, near_.y0 - 1);
-        f.outline({a.x, a.y, b.x - a.x, b.y - a.y}, bright, 2, near);
+        f.outline({a.x, a.y, b.x - a.x, b.y - a.y}, highlight_ink, 4, near);
         const double side = crop_side * crop_times;
         f.line({b.x, a.y}, crop_corner, rule, 2, near);
         f.line({b.x, b.y}, {crop_corner.x, crop_corner.y + side}, rule, 2, near);
         f.picture(crop_, crop_corner.x, crop_corner.y, crop_times, near);
-        f.outline(square().inset(-2), bright, 4, near);
+        f.outline(square().inset(-3), highlight_ink, 6, near);
         f.text(
             {crop_corner.x, crop_corner.y + side + 10, side, 40},
             Words("pixel ", count(std::uint64_t(pixel_.i()), "the opened pixel"), ", ",
@@ -196,6 +196,8 @@ std::vector<Cue> OnePixel::cues() const {
     out.push_back({reflects, Words("f: what it passes on to the eye.")});
     if (story_.disk < 0) {
         out.push_back({lights, Words("L: what comes in, here alike all round.")});
+    } else if (const std::size_t disks = pixel_.disks().size(); disks > 1) {
+        out.push_back({lights, Words("L: what comes in, dim but for ", count(disks, "disk lights"), " disks.")});
     } else {
         const double angle = pixel_.disks()[std::size_t(story_.disk)].angular_radius;
         out.push_back({lights, Words("L: what comes in, dim but for a disk of ",

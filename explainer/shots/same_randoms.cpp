@@ -61,8 +61,9 @@ public:
         out.push_back({cosine_met, Words(met(story_.cosine), " met the light.")});
         out.push_back({back, Words("The same pairs by ", data_.arm(phong), " gather about R. ", met(story_.phong),
                                    " met the light.")});
-        out.push_back({in_the_long_run, Words("Only the map differs: in the long run ", one_in(story_.cosine),
-                                              " meets the light, and then ", one_in(story_.phong), ".")});
+        out.push_back(
+            {in_the_long_run, Words("Only the map differs: by ", data_.arm(cosine), " ", one_in(story_.cosine),
+                                    " meets the light, by ", data_.arm(phong), " ", one_in(story_.phong), ".")});
         return out;
     }
 

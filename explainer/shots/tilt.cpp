@@ -30,7 +30,9 @@ public:
         double top = 0;
         for (const LostSupport& l : lost())
             most_ = std::max(most_, l.theta_R_deg), top = std::max({top, l.theory, l.measured});
-        axes_ = {chart, {0, most_, false}, {0, 110 * top, false}};
+        const LostSupport& here = measures_.surround_lost;
+        top = std::max({top, here.theory, here.measured});
+        axes_ = {chart, {0, std::max(most_, here.theta_R_deg), false}, {0, 110 * top, false}};
     }
 
     void draw(Frame& f) const {
