@@ -99,6 +99,34 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
     return m;
 }
 
+/// The same u in the opposite order: answers that differ come from something else than wo and u.
+struct Repeated {
+    std::size_t tried = 0, other = 0;
+    Vec2d u{};
+    Vec3d first{}, again{};
+};
+
+Repeated ask_again(const Work& work, int technique) {
+    Repeated out;
+    if (!work.subject.draws_at_will() || work.subject.own_random()) return out;
+    const Batchful& b = work.first(technique);
+    out.tried = std::min<std::size_t>(b.u.size(), 256);
+    std::vector<Vec2d> u(b.u.begin(), b.u.begin() + static_cast<std::ptrdiff_t>(out.tried));
+    std::reverse(u.begin(), u.end());
+    std::vector<Draw> again(out.tried);
+    work.subject.sample(technique, work.trial.wo, u, again);
+    for (std::size_t i = 0; i < out.tried; ++i) {
+        const Draw &x = b.draws[i], &y = again[out.tried - 1 - i];
+        const bool nothing = !(x.pdf > 0) && !(y.pdf > 0);
+        if (nothing || (x.pdf == y.pdf && x.wi.x == y.wi.x && x.wi.y == y.wi.y && x.wi.z == y.wi.z)) continue;
+        if (out.other++ > 0) continue;
+        out.u = b.u[i];
+        out.first = x.wi;
+        out.again = y.wi;
+    }
+    return out;
+}
+
 Mismatch mis_sum(const Work& work, const Batchful& b) {
     Mismatch m;
     std::vector<Pair> at;
@@ -147,6 +175,15 @@ Verdict judge_identity(const Work& work) {
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Batchful& b = work.first(t);
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
+        if (const Repeated r = ask_again(work, t); r.other > 0) {
+            v.state = State::wrong;
+            v.evidence["asked_again"] = r.tried;
+            v.evidence["answered_otherwise"] = r.other;
+            v.say = fmt::format("The same u gives another answer when it is asked again, {} of {} times; at u = ({:.9g}, {:.9g}) first ({:.6g}, {:.6g}, {:.6g}), then ({:.6g}, {:.6g}, {:.6g}). "
+                                "The sampler is no function of w_o and u: it keeps a state, or answers out of turn.",
+                                r.other, r.tried, r.u.x, r.u.y, r.first.x, r.first.y, r.first.z, r.again.x, r.again.y, r.again.z);
+            return v;
+        }
         if (const Mismatch m = pdf_twice(work, t); m.matters()) return wrong(work, v, m, "The pdf that came with the draw", "pdf(w)");
         if (work.subject.has_f()) {
             if (const Mismatch m = weight_twice(work, b, false); m.matters()) return wrong(work, v, m, "The weight", "f cos / p");

@@ -66,7 +66,7 @@ template <class Judge> void judge_next(Work& work, Outcome& out, const Watch& wa
 
 void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& watch) {
     judge_next(work, out, watch, judge_valid);
-    if (out.verdicts[0].state == State::wrong) return skip_rest(work.trial, out, "The sampler is not valid here.");
+    if (out.verdicts[0].state == State::wrong && !out.verdicts[0].evidence.contains("usable")) return skip_rest(work.trial, out, "The sampler is not valid here.");
     work.measure_density();
     for (auto* verdict : {+[](Work& w) { return judge_support(w); }, +[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); },
                           +[](Work& w) { return judge_identity(w); }, +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_tail(w); },

@@ -72,6 +72,8 @@ public:
     virtual bool draws_at_will() const { return true; }
     /// What was asked of a program so far, and how long that took.
     virtual Spending spending() const { return {}; }
+    /// It draws random numbers of its own: the same u may give another answer.
+    virtual bool own_random() const { return false; }
     /// Only one thread may call.
     virtual bool serial() const { return false; }
 };

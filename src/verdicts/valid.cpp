@@ -1,6 +1,7 @@
 // valid: what comes back can be used at all. support: p reaches wherever f L cos is not 0.
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 #include "verdicts/ordered.h"
 
@@ -60,6 +61,37 @@ Batchful corners(const Work& work, int technique) {
     return b;
 }
 
+/// Faults at corners of u, and how often a generator of 24 bits comes upon such a u.
+struct CornerFaults {
+    std::string first;
+    std::size_t count = 0, tried = 0;
+    double chance = 0;  // of one sample
+};
+
+CornerFaults corner_faults(const Work& work, int technique) {
+    CornerFaults out;
+    if (!work.subject.draws_at_will()) return out;
+    const Batchful all = corners(work, technique);
+    const std::size_t side = static_cast<std::size_t>(std::sqrt(static_cast<double>(all.u.size())));
+    std::vector<std::size_t> rows(side), columns(side);
+    for (std::size_t i = 0; i < all.u.size(); ++i) {
+        Batchful one;
+        one.u = {all.u[i]};
+        one.draws = {all.draws[i]};
+        one.pdf = {all.pdf[i]};
+        const std::string fault = fault_of(work, technique, one);
+        if (fault.empty()) continue;
+        if (out.count++ == 0) out.first = fault;
+        ++rows[i / side];
+        ++columns[i % side];
+    }
+    out.tried = all.u.size();
+    for (const auto& lines : {rows, columns})  // a whole side or line of the square, or single points of it
+        for (std::size_t n : lines) out.chance += n == side ? 0x1p-24 : 0;
+    if (out.chance == 0) out.chance = static_cast<double>(out.count) * 0x1p-48;
+    return out;
+}
+
 /// pdf(w) and f(w) all over the sphere, near the horizon on both sides and near the normal, whether drawn or not.
 std::string fault_all_over(const Work& work, int technique) {
     std::vector<Vec3d> wi;
@@ -80,13 +112,35 @@ std::string fault_all_over(const Work& work, int technique) {
     return "";
 }
 
+/// What is wrong at corners of u or for a few draws alone leaves the rest to be judged.
+std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
+    const CornerFaults at = corner_faults(work, technique);
+    const Batchful& b = work.first(technique);
+    if (at.count == 0 && b.dropped.empty()) return {};
+    Verdict v = work.verdict("valid", State::wrong, "");
+    v.evidence["usable"] = true;
+    if (at.count > 0) {
+        v.say = fmt::format("What the sampler returns cannot be used {}: so at {} of {} corners of u. Random numbers of 24 bits come upon one in {:.3g} samples.", at.first, at.count, at.tried, 1 / at.chance);
+        v.evidence["first_fault"] = at.first;
+        v.evidence["corners"] = at.count;
+        v.evidence["chance_of_a_sample"] = at.chance;
+    }
+    if (!b.dropped.empty()) {
+        const std::string fault = fmt::format("at {}: {}", told(b.dropped[0].first), fault_of(b.dropped[0].second, 0));
+        v.say += fmt::format("{}{} of {} draws cannot be used, first {}.", at.count ? " " : "", b.dropped.size(), b.draws.size(), fault);
+        if (at.count == 0) v.evidence["first_fault"] = fault;
+        v.evidence["draws_dropped"] = b.dropped.size();
+    }
+    v.say += " The other verdicts are of the draws that can be used.";
+    return v;
+}
+
 }  // namespace
 
 Verdict judge_valid(const Work& work) {
     std::uint64_t draws = 0, drawn = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
-        std::string fault = work.subject.draws_at_will() ? fault_of(work, t, corners(work, t)) : "";
-        if (fault.empty()) fault = fault_of(work, t, work.first(t));
+        std::string fault = fault_of(work, t, work.first(t));
         if (fault.empty() && !work.subject.draws_at_will()) fault = fault_of(work, t, work.draw(t, 1));
         if (fault.empty()) fault = fault_all_over(work, t);
         if (!fault.empty()) {
@@ -94,6 +148,7 @@ Verdict judge_valid(const Work& work) {
             v.evidence["first_fault"] = fault;
             return v;
         }
+        if (std::optional<Verdict> rare = judge_rare_faults(work, t)) return *rare;
         draws += work.first(t).draws.size();
         for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0;
     }

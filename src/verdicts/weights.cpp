@@ -84,10 +84,14 @@ std::optional<Tail> tail_of(std::span<const double> x) {
     return fit_tail(std::span<const double>(largest).first(length));
 }
 
+/// A tail with k >= 1/2 has a largest weight of the order of sqrt(n) means; one of a few means among thousands is bounded, whatever
+/// a fit to the few weights that stand out may say.
+bool is_bounded(const Spread& s) { return s.n >= 1000 && s.largest <= std::min(4.0, 0.1 * std::sqrt(s.n)) * s.mean; }
+
 bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory) {
     const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
     const bool seen = s.skew < 0 || s.skew / std::sqrt(s.n) < 0.1;  // rare large weights have been met often enough
-    return !infinite && seen && (!tail || tail->k + 2 * tail->se < 0.5);
+    return !infinite && seen && (!tail || tail->k + 2 * tail->se < 0.5 || is_bounded(s));
 }
 
 double mean_p(const Spread& s, const Integral& expected) {
@@ -137,16 +141,19 @@ Verdict judge_tail(Work& work) {
         if (theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *theory.tail_k);
         v.say += ". ";
     }
-    if (infinite || (tail && tail->k - 2 * tail->se >= 0.5)) {
+    const bool bounded = !infinite && is_bounded(s);
+    if (bounded) v.say += fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", x.size(), s.largest / s.mean);
+    if (!bounded && (infinite || (tail && tail->k - 2 * tail->se >= 0.5))) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
         v.say += infinite || !theory.bounded
                      ? "Heavy tail: the variance is infinite or looks so, no number of samples gives 1 %, and no interval means anything."
                      : "Heavy tail at this number of samples; the weight is bounded, so the variance is finite, but it is not seen yet.";
-    } else if (tail && tail->k + 2 * tail->se >= 0.5) {
+    } else if (!bounded && tail && tail->k + 2 * tail->se >= 0.5) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
-        v.say += "Too close to 1/2 to tell whether the variance is finite.";
+        v.say += "Too close to 1/2 to tell whether the variance is finite";
+        v.say += work.rigour.full ? "." : "; --full asks for sixteen times as many draws.";
     } else {
         v.evidence["samples_for_1_percent"] = std::stod(samples_for(s.sd, s.mean > 0 ? s.mean : 1));
         v.say += fmt::format("The variance is finite: about {} samples give 1 %.", samples_for(s.sd, s.mean > 0 ? s.mean : 1));

@@ -32,6 +32,25 @@ double grain_of(std::span<const Draw> all) {
     return 0x1p-24;
 }
 
+bool is_usable(const Draw& d) { return std::isfinite(d.pdf) && d.pdf >= 0 && (d.pdf == 0 || is_finite(d.wi)) && (!d.weight || std::isfinite(*d.weight)); }
+
+/// Up to one draw in ten thousand hides no other fault: it is put aside, and `valid` tells of it.
+void drop_unusable(Batchful& b) {
+    std::size_t bad = 0;
+    for (const Draw& d : b.draws) bad += !is_usable(d);
+    if (bad == 0 || 10000 * bad > b.draws.size()) return;
+    const std::size_t good = static_cast<std::size_t>(std::find_if(b.draws.begin(), b.draws.end(), is_usable) - b.draws.begin());
+    for (std::size_t i = 0, last = good; i < b.draws.size(); ++i) {
+        if (is_usable(b.draws[i])) {
+            last = i;
+            continue;
+        }
+        b.dropped.emplace_back(b.u[i], b.draws[i]);
+        b.draws[i] = b.draws[last];
+        b.u[i] = b.u[last];
+    }
+}
+
 }  // namespace
 
 Rigour Rigour::thorough() {
@@ -76,6 +95,7 @@ Batchful Work::draw(int technique, int round) const {
         }
         subject.sample(technique, trial.wo, b.u, b.draws);
     }
+    drop_unusable(b);
     b.pdf = pdf_of_drawn(technique, b.draws);
     for (std::size_t i = 0; i < b.draws.size(); ++i)
         if (is_nothing(b.draws[i], b.pdf[i])) ++b.nothing;

@@ -44,6 +44,7 @@ struct Batchful {
     std::vector<Draw> draws;
     std::vector<double> pdf;  // pdf(w) asked afterwards, as the sampler's own arithmetic says it
     mutable std::vector<double> f;  // f of every draw above the horizon, once asked for
+    std::vector<std::pair<Vec2d, Draw>> dropped;  // draws that cannot be used, too few to matter; a neighbour stands in for each
     std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0
 };
 

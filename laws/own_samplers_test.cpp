@@ -1,0 +1,154 @@
+// Samplers as people bring them: with a state, with a NaN that hides in a corner, with sharp lobes, with tables.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/right/right.h"
+#include "verdicts/error_rates.h"
+#include "verdicts/list.h"
+#include "verdicts/mesh.h"
+
+namespace crescent {
+namespace {
+
+Judgement judged(std::shared_ptr<const JudgedSampler> subject, double theta = 45) {
+    Watch watch;
+    const Trial trial = trial_of_subject(subject, theta, 130);
+    return judge({&trial, 1}, Rigour::quick(), watch);
+}
+
+const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no such verdict");
+}
+
+Recipe cosine() {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
+    r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.5 / pi : 0.0; };
+    r.sample = [](Vec3d, Vec2d u) {
+        const double r = std::sqrt(u.x), phi = 2 * pi * u.y, z = std::sqrt(1 - u.x);
+        return Draw{{r * std::cos(phi), r * std::sin(phi), z}, z / pi, {}, {}};
+    };
+    return r;
+}
+
+class Delayed : public JudgedSampler {
+public:
+    std::string name() const override { return "answers with its previous draw"; }
+    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            out[i] = last_;
+            last_ = cosine_.sample(wo, u[i]);
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = cosine_.pdf(at[i].wo, at[i].wi);
+    }
+    bool serial() const override { return true; }
+
+private:
+    Recipe cosine_ = cosine();
+    mutable Draw last_ = cosine_.sample({0, 0, 1}, {0.5, 0.5});
+};
+
+TEST(OwnSamplers, ThatKeepAStateAreToldSo) {
+    const Judgement j = judged(std::make_shared<Delayed>());
+    EXPECT_EQ(named(j, "identity").state, State::wrong);
+    EXPECT_NE(named(j, "identity").say.find("another answer when it is asked again"), std::string::npos) << named(j, "identity").say;
+}
+
+TEST(OwnSamplers, WithANaNInOneCornerAreStillJudgedWhole) {
+    Recipe r = cosine();
+    r.sample = [right = r.sample](Vec3d wo, Vec2d u) {
+        Draw d = right(wo, u);
+        if (u.x == 0 && u.y == 0) d.pdf = std::nan("");
+        return d;
+    };
+    const Judgement j = judged(subject_of(r));
+    EXPECT_EQ(named(j, "valid").state, State::wrong);
+    EXPECT_NE(named(j, "valid").say.find("u = (0, 0)"), std::string::npos) << named(j, "valid").say;
+    EXPECT_DOUBLE_EQ(named(j, "valid").evidence["chance_of_a_sample"].get<double>(), 0x1p-48);
+    for (const char* name : {"support", "normalised", "density", "identity", "physics", "tail", "mean"})
+        EXPECT_EQ(named(j, name).state, State::right) << name << ": " << named(j, name).say;
+}
+
+TEST(OwnSamplers, WithANaNInAFewDrawsAreJudgedByTheRest) {
+    Recipe r = cosine();
+    r.sample = [right = r.sample](Vec3d wo, Vec2d u) {
+        Draw d = right(wo, u);
+        if (u.x > 0.5 && u.x < 0.5 + 4e-5) d.wi.x = std::nan("");
+        return d;
+    };
+    const Judgement j = judged(subject_of(r));
+    EXPECT_EQ(named(j, "valid").state, State::wrong);
+    EXPECT_NE(named(j, "valid").say.find("draws cannot be used"), std::string::npos) << named(j, "valid").say;
+    EXPECT_EQ(named(j, "density").state, State::right) << named(j, "density").say;
+    EXPECT_EQ(named(j, "mean").state, State::right) << named(j, "mean").say;
+}
+
+TEST(OwnSamplers, WithSharpLobesAndBoundedWeightsHaveNoHeavyTail) {
+    for (double alpha : {0.02, 0.005})
+        for (double theta : {0.0, 30.0, 75.0}) {
+            const Judgement j = judged(subject_of(ggx_visible_at(alpha, alpha * 3)), theta);
+            EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+        }
+}
+
+/// 12 x 20 cells of cos theta x phi over the upper hemisphere.
+double in_cells(double a, double b) { return a >= 1 ? 0 : 1 + (int((1 - a) * 12) * 7 + int(b * 20) * 5) % 11; }
+
+TEST(Meshes, AreFoundInATableAndSummedExactly) {
+    const Batch g = [](std::span<const Vec2d> at, std::span<double> out) {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = in_cells(at[i].x, at[i].y);
+    };
+    const std::optional<Mesh> mesh = find_mesh(g);
+    ASSERT_TRUE(mesh);
+    double sum = 0;
+    for (int i = 0; i < 12; ++i)
+        for (int k = 0; k < 20; ++k) sum += in_cells(1 - (i + 0.5) / 12, (k + 0.5) / 20) / 240;
+    const double rings[] = {0, 0.31, 1.3, 2};
+    const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->value, sum, 1e-12);
+    EXPECT_EQ(found->error, 0);
+}
+
+TEST(Meshes, AreNotSeenInASmoothDensityOrInACone) {
+    const Batch smooth = [](std::span<const Vec2d> at, std::span<double> out) {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = 1 + at[i].x + std::sin(2 * pi * at[i].y);
+    };
+    EXPECT_FALSE(find_mesh(smooth));
+    const SphereMap map(Vec3d{0, 0, 1});
+    const Batch cone = [&map](std::span<const Vec2d> at, std::span<double> out) {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = dot(map.direction(at[i]), tilt(40, 70)) > 0.6 ? 1 : 0;
+    };
+    EXPECT_FALSE(find_mesh(cone));
+}
+
+TEST(ErrorRates, HaveTheIntervalOfClopperAndPearson) {
+    EXPECT_NEAR(rate_interval(0, 100).second, 0.03622, 1e-5);
+    EXPECT_NEAR(rate_interval(5, 100).first, 0.01643, 1e-5);
+    EXPECT_NEAR(rate_interval(5, 100).second, 0.11283, 1e-5);
+    EXPECT_EQ(rate_interval(7, 7).second, 1);
+}
+
+TEST(Efficiencies, AreRankedOnlyWhereIntervalsAreApart) {
+    std::vector<Trial> trials;
+    for (const char* name : {"good", "poor", "alike"}) {
+        trials.push_back(trial_of_subject(subject_of(cosine()), 45, 0));
+        trials.back().arm = name;
+    }
+    std::vector<Efficiency> all(3);
+    const double variance[] = {1, 10, 1.01};
+    for (std::size_t i = 0; i < 3; ++i) all[i].trial = i, all[i].variance = variance[i], all[i].relative_se = 0.02, all[i].nanoseconds = 10, all[i].cost_se = 0.02;
+    const std::vector<Verdict> v = judge_efficiency(trials, all);
+    EXPECT_EQ(v[0].state, State::right);
+    all[1].heavy = true;
+    EXPECT_EQ(judge_efficiency(trials, all)[1].state, State::inconclusive);
+    EXPECT_GT(all[1].low(), all[0].high());
+    EXPECT_GT(all[2].high(), all[0].low());
+}
+
+}  // namespace
+}  // namespace crescent
