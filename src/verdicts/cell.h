@@ -21,7 +21,7 @@ struct Cell {
     bool cut = false;               // integrated on both sides of a jump
     bool smooth = false;            // looked at for a jump, and none is there
     int suspected = 0;              // how often it was halved on the witnesses' word alone
-    std::vector<Vec2d> inside;      // witnesses
+    std::vector<Witness> inside;
 
     Cell(const Rect& r, int suspicion) : rect(r), suspected(suspicion) {}
     double area() const { return (rect.a1 - rect.a0) * (rect.b1 - rect.b0); }

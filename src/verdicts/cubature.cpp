@@ -66,12 +66,16 @@ void evaluate(std::span<Cell> cells, const Batch& g) {
     for (std::size_t c = 0; c < cells.size(); ++c) apply_rule(cells[c], std::span(values).subspan(c * points, points));
 }
 
-/// What the draws say of a cell, where it differs from its integral by more than chance allows: six standard deviations.
+/// What the draws say of a cell, where it differs from its integral by more than chance allows: six standard deviations; or where they
+/// fell higher than the rule has seen.
 double disagreement(const Cell& cell, double total) {
     constexpr int patience = 14;  // halvings; a density that is wrong never comes to agree
     if (total <= 0 || cell.suspected > patience) return 0;
     const double seen = static_cast<double>(cell.inside.size()), due = cell.value * total;
-    return std::fabs(seen - due) > 6 * std::sqrt(std::max(due, 0.0)) + 2 ? std::fabs(seen - due) / total : 0;
+    double higher = 0;  // draws at which the integrand is more than the rule knows of: a sliver behind a jump
+    for (const Witness& w : cell.inside) higher += w.g > 1.3 * cell.high;
+    const bool off = std::fabs(seen - due) > 6 * std::sqrt(std::max(due, 0.0)) + 2;
+    return std::max(off ? std::fabs(seen - due) : 0.0, higher) / total;
 }
 
 std::array<Cell, 2> halve(Cell& cell, double total) {
@@ -80,7 +84,7 @@ std::array<Cell, 2> halve(Cell& cell, double total) {
     else lower.b1 = upper.b0 = 0.5 * (cell.rect.b0 + cell.rect.b1);
     const int suspected = cell.suspected + (disagreement(cell, total) > 0);
     std::array<Cell, 2> out = {Cell(lower, suspected), Cell(upper, suspected)};
-    for (Vec2d at : cell.inside) out[(cell.split_a ? at.x < lower.a1 : at.y < lower.b1) ? 0 : 1].inside.push_back(at);
+    for (const Witness& w : cell.inside) out[(cell.split_a ? w.at.x < lower.a1 : w.at.y < lower.b1) ? 0 : 1].inside.push_back(w);
     return out;
 }
 
@@ -92,11 +96,11 @@ std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const Wi
         cells.emplace_back(r, 0);
     }
     for (std::size_t b = 0; witnesses && b < of_bin.size(); ++b)
-        for (Vec2d at : witnesses->bins[b])
+        for (const Witness& w : witnesses->bins[b])
             for (std::size_t c : of_bin[b]) {
                 const Rect& r = cells[c].rect;
-                if (at.x < r.a0 || at.x > r.a1 || at.y < r.b0 || at.y > r.b1) continue;
-                cells[c].inside.push_back(at);
+                if (w.at.x < r.a0 || w.at.x > r.a1 || w.at.y < r.b0 || w.at.y > r.b1) continue;
+                cells[c].inside.push_back(w);
                 break;
             }
     return cells;

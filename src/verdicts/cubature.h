@@ -36,9 +36,14 @@ struct Effort {
     double edge_mass = 1e-4;           // cells cut by a jump of the integrand are halved down to this, then cut along it
 };
 
-/// Where draws of a density fell: a cell that 17 points find empty and draws do not is halved until both agree.
+/// Where draws of a density fell, and the integrand there: a cell that 17 points find empty, or lower than draws do, is halved until
+/// both agree.
+struct Witness {
+    Vec2d at;
+    double g = 0;
+};
 struct Witnesses {
-    std::vector<std::vector<Vec2d>> bins;  // by bin
+    std::vector<std::vector<Witness>> bins;  // by bin
     double total = 0;                      // draws, those in no bin included
 };
 

@@ -101,8 +101,17 @@ TEST(Cubature, CutsACellOnBothSidesOfAJump) {
 
 TEST(Cubature, SeesASpikeThatDrawsFell) {
     const auto g = [](double a, double b) { return std::exp(-(sqr(a - 0.3371) + sqr(b - 0.7113)) / sqr(2e-3)) / (pi * sqr(2e-3)); };
-    Witnesses fell{{std::vector<Vec2d>(1000, Vec2d{0.33712, 0.71127})}, 1000};
+    Witnesses fell{{std::vector<Witness>(1000, Witness{{0.33712, 0.71127}, 0})}, 1000};
     EXPECT_NEAR(integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell).value, 1, 1e-4);
+}
+
+/// A sliver of a bright disc in the corner of a dark cell, where neither the rule nor its rim looks.
+TEST(Cubature, BelievesADrawThatFellHigherThanItSaw) {
+    const auto g = [](double a, double b) { return in_disc(a, b, 0.52, 0.55, 0.004) * 2000 + 0.9; };
+    Witnesses fell{{{}}, 1000};
+    for (int i = 0; i < 100; ++i) fell.bins[0].push_back({{0.52 + 0.0003 * (i % 10 - 5), 0.55 + 0.0003 * (i / 10 - 5)}, 2000.9});
+    const Integral found = integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell);
+    EXPECT_NEAR(found.value, 0.9 + 2000 * pi * sqr(0.004), 2e-4);
 }
 
 }  // namespace

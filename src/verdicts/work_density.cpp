@@ -168,7 +168,7 @@ Witnesses Work::witnesses_of(int technique, const Density& d) const {
     for (std::size_t i = 0; i < n; ++i) {
         if (is_nothing(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
-        out.bins[d.bin_of(at)].push_back(at);
+        out.bins[d.bin_of(at)].push_back({at, 2 * pi * b.pdf[i]});
     }
     return out;
 }
