@@ -10,7 +10,7 @@ namespace crescent::film {
 
 namespace {
 
-constexpr double first = 4.6, each = 2.2;  // s: when the first rung shows, how long each has
+constexpr double first = 5, each = 2;  // s: when the first rung shows, how long each has
 
 std::vector<Point> points_of(const Ladder& ladder, const LogPlot& plot) {
     std::vector<Point> out;
@@ -78,8 +78,8 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
     shot.kind = Kind::photograph;
     const double line = first + each * double(blocks.size());
     shot.cues = {{0.5, story.opening}};
-    for (std::size_t k = 0; k < story.after.size(); ++k) shot.cues.push_back({line + 5.6 * double(k), story.after[k]});
-    shot.seconds = line + 5.6 * double(story.after.size());
+    for (std::size_t k = 0; k < story.after.size(); ++k) shot.cues.push_back({line + 5.4 * double(k), story.after[k]});
+    shot.seconds = line + 5.4 * double(story.after.size());
     shot.still = shot.seconds - 0.8;
     shot.draw = [=](Frame& f) {
         plot.axes(f, ticks, Words("samples a pixel, N"), Words("RMSE in the highlight"), f.ease(0.4, 1));

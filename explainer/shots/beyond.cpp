@@ -35,11 +35,11 @@ Shot beyond(const Data& data) {
     shot.cues = {{0.5, Words("Two ways of aiming, each with its own failure. Can one estimator have both?"), true},
                  {10, both ? Words("Toss a coin between both lobes and divide by the mixture: neither region is starved.")
                            : Words("Toss a coin between both lobes and divide by the mixture of both densities.")},
-                 {16.5, Words("Aim at the light too, and weigh both kinds of ray: multiple importance sampling.")},
-                 {23, Words("It costs two rays a sample. At half the N, as many rays: ", data.rmse(half, c.highlight), " and ", data.rmse(half, c.surround), ".")}};
-    shot.seconds = 29, shot.still = 28;
+                 {15.8, Words("Aim at the light too, and weigh both kinds of ray: multiple importance sampling.")},
+                 {21.4, Words("It costs two rays a sample. At half the N, as many rays: ", data.rmse(half, c.highlight), " and ", data.rmse(half, c.surround), ".")}};
+    shot.seconds = 27, shot.still = 26;
     shot.draw = [=](Frame& f) {
-        const double starts[] = {0.4, 0.4, 10, 16.5};
+        const double starts[] = {0.4, 0.4, 10, 15.8};
         for (std::size_t k = 0; k < cols.size(); ++k) {
             const Column& col = cols[k];
             const double x = 60 + 458.0 * double(k), in = f.ease(starts[k], starts[k] + 0.7), told = f.ease(starts[k] + 1.2, starts[k] + 1.8);

@@ -47,12 +47,12 @@ Shot heat(const Data& data) {
     shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::instrument;
     shot.seen = Words("Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue for little, red for much, "
                       "on one scale; first for the cosine arm, then for the Phong arm.");
-    shot.cues = {{0.5, Words("How far is each pixel from the reference? Blue is little, red is much.")},
+    shot.cues = {{0.5, Words("How far each pixel is from the reference: blue is little, red is much.")},
                  {7, maps[1].part < maps[0].part ? Words("Now aimed along the mirror direction, on the same scale: the heat leaves.")
                                                  : Words("Now aimed along the mirror direction, on the same scale.")},
-                 {12.5, Words("Off by ", data.rmse(h.low, c.highlight), " inside the frame with ", data.arm(h.low.arm), ", by ", data.rmse(h.high, c.highlight), " with ",
+                 {11.5, Words("Off by ", data.rmse(h.low, c.highlight), " inside the frame with ", data.arm(h.low.arm), ", by ", data.rmse(h.high, c.highlight), " with ",
                               data.arm(h.high.arm), ".")}};
-    shot.seconds = 18.5, shot.still = 17.5;
+    shot.seconds = 17, shot.still = 16;
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < maps.size(); ++k) {
             const double in = k == 0 ? f.ease(0.3, 1) : f.ease(7.2, 8);

@@ -12,7 +12,7 @@ Shot ladder_cosine(const Data& data) {
     const double more = double(high.n) / double(low.n), less = l.rmse.front() / l.rmse.back();
     LadderStory story;
     story.arm = c.cosine;
-    story.opening = Words("Failure A. Aim by the cosine and keep adding rays: does the highlight settle?");
+    story.opening = Words("Failure A. Aim by the cosine, and watch the highlight as rays are added.");
     story.after = {Words(number(more, 4, source), " times the rays, and the error falls ", figure(less, 3, source), " times."),
                    l.slope < -0.35 && l.slope > -0.65
                        ? Words("It falls like one over the root of N. To halve it you need four times the rays.")

@@ -90,13 +90,13 @@ Shot seeds(const Data& data) {
     shot.seen = Words("A row for each figure and arm: a dot a seed, a bar over the middle nine tenths of them, a diamond for the published figure, "
                       "and the verdict.");
     shot.cues = {{0.5, Words("One run is one draw. Each dot is the same figure from another seed.")},
-                 {7, published ? Words("The diamond is the published figure, the bar the middle nine tenths of the seeds.")
+                 {6, published ? Words("The diamond is the published figure, the bar the middle nine tenths of the seeds.")
                                : Words("The bar spans the middle nine tenths of the seeds.")}};
-    if (published) shot.cues.push_back({13, counted(rows)});
-    shot.seconds = published ? 19.5 : 13, shot.still = shot.seconds - 1;
+    if (published) shot.cues.push_back({11.8, counted(rows)});
+    shot.seconds = published ? 17 : 11.8, shot.still = shot.seconds - 1;
     const std::vector<Row> drawn = rows;
     shot.draw = [=](Frame& f) {
-        const double bars = f.ease(7, 7.6), diamonds = f.ease(8.5, 9.1);
+        const double bars = f.ease(6, 6.6), diamonds = f.ease(7, 7.6);
         f.text({570, 838, 200, 40}, Words("÷ ", number(span, 2, "scale of the strips")), small_text, f.ease(0.5, 1.1));
         f.text({870, 838, 220, 40}, Words("median"), with(small_text, Align::centre), f.ease(0.5, 1.1));
         f.text({1190, 838, 200, 40}, Words("× ", number(span, 2, "scale of the strips")), with(small_text, Align::right), f.ease(0.5, 1.1));
@@ -108,7 +108,7 @@ Shot seeds(const Data& data) {
             strip(f, row, {570, y, 820, 70}, in, bars, diamonds);
             const Colour ink = row.verdict == Verdict::reproduced ? plates::series[4] : row.verdict == Verdict::outside ? plates::series[3] : muted;
             const Words verdict = told(row.verdict);
-            if (!verdict.empty()) f.text({1420, y, 440, 70}, verdict, with(with_px(label_text, 32), ink), f.ease(9.2 + 0.35 * double(k), 9.6 + 0.35 * double(k)));
+            if (!verdict.empty()) f.text({1420, y, 440, 70}, verdict, with(with_px(label_text, 32), ink), f.ease(8 + 0.35 * double(k), 8.4 + 0.35 * double(k)));
         }
     };
     return shot;
