@@ -26,7 +26,7 @@ Arguments arguments(const Ingredients& in) {
     // The words stand in the picture too: the track is there for those who ask for it, and off for all others.
     append(a, {"-map_metadata", "2", "-map_chapters", "2", "-c:s", "mov_text", "-metadata:s:s:0", "language=eng", "-disposition:s:0", "0"});
     append(a, {"-c:v:0", "libx264", "-preset", "medium", "-crf", "18", "-profile:v:0", "high", "-pix_fmt:v:0", "yuv420p", "-g", "300", "-threads:v:0", "2"});
-    append(a, {"-x264-params", "chromaloc=0"});
+    append(a, {"-x264-params", "chromaloc=0:rc-lookahead=20"});
     append(a, colour);
     append(a, {"-c:v:1", "mjpeg", "-q:v:1", "3", "-pix_fmt:v:1", "yuvj420p", "-disposition:v:1", "attached_pic"});
     append(a, {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-flags:a", "+bitexact", "-movflags", "+faststart", "-f", "mp4", in.mp4});

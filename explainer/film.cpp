@@ -151,10 +151,11 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Watch
 
     RunOptions run;
     run.out = options.out, run.threads = options.threads, run.isa = options.isa, run.command = options.command;
-    const Data data = collect(experiment, run, watch);
+    Data data = collect(experiment, run, watch);
     Voice voice(options.voice, staging.scratch(), watch);
     if (!options.voice.empty()) watch.begin("the voice", 1);
     const Timeline timeline(shots_of(data), options.voice.empty() ? nullptr : std::function<double(const Words&)>([&](const Words& w) { return voice.seconds(w); }));
+    data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
     Making making(data, timeline, options, staging, watch);
     const std::string said = !options.still.empty() ? making.one_still() : options.stills ? making.stills(part) : making.film(part, options.voice.empty() ? nullptr : &voice);

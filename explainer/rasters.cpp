@@ -13,7 +13,7 @@ namespace crescent::film {
 
 namespace {
 
-constexpr int chunk = 15;  // frames that one thread draws in a row
+constexpr int chunk = 10;  // frames that one thread draws in a row
 
 // BT.709-6, table 3: E'Y = 0.2126 R + 0.7152 G + 0.0722 B; 8-bit limited range of table 4, in 16 fractional bits.
 constexpr int fixed(double v) { return static_cast<int>(v * 65536 + (v < 0 ? -0.5 : 0.5)); }
