@@ -187,7 +187,7 @@ private:
         for (const ReferenceFilm& film : quadrature_) metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
         for (const ReferenceFilm& film : note_) metrics_.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
         for (const ReferenceFilm& q : quadrature_)
-            for (const Region& region : experiment_.regions) metrics_.references.push_back(compare(q, *find(note_, q.s), region, films_));
+            for (const Region& region : experiment_.regions) metrics_.references.push_back(compare(q, *find(note_, q.s), region, films_, experiment_.reference.kind));
     }
 
     void provenance() {

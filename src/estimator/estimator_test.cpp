@@ -9,6 +9,7 @@
 #include "estimator/furnace_sites.h"
 #include "estimator/reference.h"
 #include "estimator/test_scene.h"
+#include "simd/random.h"
 
 namespace crescent {
 namespace {
@@ -157,6 +158,41 @@ TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     near.center = {0, 2, 0}, near.normal = {0, -1, 0}, near.radius = 0.5, near.radiance = {5, 5, 5};
     far.center = {0, 3, 0}, far.normal = {0, -1, 0}, far.radius = 0.6, far.radiance = {50, 50, 50};
     EXPECT_LT(references_apart(experiment), 4);
+    Experiment alone = experiment;
+    alone.disks.erase(alone.disks.begin());
+    Watch watch;
+    const Scene both(experiment), bare(alone);
+    const ReferenceFilm with = quadrature_reference(both, {both.experiment().s()}, watch)[0];
+    const ReferenceFilm without = quadrature_reference(bare, {bare.experiment().s()}, watch)[0];
+    int darker = 0;  // ten times less radiant than what it hides
+    for (std::size_t at = 0; at < with.size(); ++at) darker += with.y[at] < 0.7f * without.y[at];
+    EXPECT_GT(darker, 100);
+}
+
+/// Correlation of what two films are off by, over the pixels that see a shape.
+double correlation(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& truth) {
+    double aa = 0, bb = 0, ab = 0;
+    for (std::size_t at = 0; at < truth.size(); ++at) {
+        const double x = static_cast<double>(a[at] - truth[at]), y = static_cast<double>(b[at] - truth[at]);
+        aa += x * x, bb += y * y, ab += x * y;
+    }
+    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
+    Experiment experiment = test::small_scene();
+    experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
+    const Scene scene(experiment);
+    Watch watch;
+    const std::vector<double> s = {experiment.s()};
+    const ReferenceFilm truth = quadrature_reference(scene, s, watch)[0], note = note_reference(scene, s, "", watch)[0];
+    for (std::uint32_t k = 0; k < 4; ++k)
+        for (const char* arm : {"phong", "light-area"}) {
+            const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", watch)[0];
+            EXPECT_LT(std::fabs(correlation(note.y, film.y, truth.y)), 0.15) << arm << ", seed " << k;
+        }
+    for (std::uint32_t k = 0; k < 64; ++k)
+        for (std::uint32_t a = 0; a < 4; ++a) EXPECT_NE(reference_seed(experiment, k), seed_of(experiment.seed, a));
 }
 
 TEST(Estimator, StopsWhenAsked) {

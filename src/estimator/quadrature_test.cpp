@@ -82,6 +82,35 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
     EXPECT_GT(dark, 50);
 }
 
+/// A lamp of half-angle `half` right above a point that is seen from above, through a body that hides half of it or not.
+Experiment lamp_above(double half, bool hidden) {
+    Experiment e = test::small_scene();
+    e.shapes.resize(2);
+    e.shapes[0].kind = ShapeKind::plane, e.shapes[0].point = {0, 0, 0}, e.shapes[0].normal = {0, 1, 0};
+    e.shapes[1].kind = ShapeKind::quad, e.shapes[1].corner = {0, 0.5, -9}, e.shapes[1].edge_u = {9, 0, 0}, e.shapes[1].edge_v = {0, 0, 18};
+    e.shapes[1].occludes = hidden;
+    e.disks.resize(1);
+    e.disks[0].center = {0, 1, 0}, e.disks[0].normal = {0, -1, 0}, e.disks[0].radius = std::tan(half);
+    return e;
+}
+
+TEST(DiskQuadrature, StatesNoLessThanItsErrorWhereTheIntegralIsKnown) {
+    const Hit hit = {0, false, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}};
+    for (const double half : {1e-6, 1e-3, 0.03, 0.3, 1.0, 1.5})
+        for (const double s : {0.01, 1.0, 32.0, 1e3, 1e5, 1e6})
+            for (const bool hidden : {false, true}) {
+                const Scene scene(lamp_above(half, hidden));
+                Surface surface;
+                surface.rho_d = {0.3, 0.3, 0.3}, surface.rho_s = 0.5, surface.s = s;
+                const DiskIntegral got = DiskQuadrature(scene, 0)(hit, surface);
+                const double share = hidden ? 0.5 : 1;  // lobe: (s+2) integral cos^(s+1) sin
+                const double diffuse = share * sqr(std::sin(half)), lobe = -share * std::expm1(0.5 * (s + 2) * std::log1p(-sqr(std::sin(half))));
+                EXPECT_LE(std::fabs(got.diffuse - diffuse), got.diffuse_error + 1e-8 * diffuse) << half << " " << s << " " << hidden;
+                EXPECT_LE(std::fabs(got.lobe - lobe), got.lobe_error + 1e-8 * lobe) << half << " " << s << " " << hidden;
+                EXPECT_LE(got.diffuse_error + got.lobe_error, 1e-3 * (diffuse + lobe)) << half << " " << s << " " << hidden;
+            }
+}
+
 TEST(LobeAlbedo, IsOneForPhongFromAboveAndInterpolatesToItsStatedError) {
     for (double s : {1.0, 8.0, 32.0, 128.0, 5000.0}) EXPECT_NEAR(lobe_albedo(BrdfKind::phong, s, 0, 1.0), 1, 1e-8) << s;
     const LobeAlbedo table(BrdfKind::phong, 32, 0);

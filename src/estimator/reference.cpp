@@ -1,5 +1,6 @@
 #include "estimator/reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -124,15 +125,28 @@ double variance_of_mean(double sum, double square, double n) {
     return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0;
 }
 
+/// May the lobe of site i peak in the disk, and be so narrow against it that fewer than ten of n samples would meet it?
+bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, double n) {
+    const Vec3d c = {disk.cx[i], disk.cy[i], disk.cz[i]}, wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
+    const auto kind = static_cast<BrdfKind>(sites.lobe);
+    const double s = kind == BrdfKind::ggx ? 2 / sqr(static_cast<double>(sites.alpha[i])) : static_cast<double>(sites.s[i]);
+    const double across = kind == BrdfKind::phong ? 1 : wo.z, far = std::sqrt(dot(c, c)), radius = static_cast<double>(disk.radius);
+    const double off = std::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
+    const bool peak_is_near = off < std::atan2(radius, far) + 8 / std::sqrt(s);
+    return peak_is_near && n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
+}
+
 /// The note's reference over one group of sites.
 class NotePixels {
 public:
-    NotePixels(const Scene& scene, const Sites& sites, const ReferencePlan& plan, const std::string& isa, Watch& watch) : scene_(scene), sites_(sites) {
-        if (sites.lobe >= 0) lobe_ = estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, plan.seed, isa, &watch.stop);
+    NotePixels(const Scene& scene, const Sites& sites, const std::string& isa, Watch& watch) : scene_(scene), sites_(sites) {
+        const ReferencePlan& plan = scene.experiment().reference;
+        const auto seed = [&](std::uint32_t k) { return reference_seed(scene.experiment(), k); };
+        if (sites.lobe >= 0) lobe_ = estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, seed(0), isa, &watch.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         disk_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.disks().size(); ++k)
-            disks_.push_back(estimate_sites(only_disk(scene, sites, k), "light-area", plan.disk_spp, seed_of(plan.seed, static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
+            disks_.push_back(estimate_sites(only_disk(scene, sites, k), "light-area", plan.disk_spp, seed(static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
     }
 
     void write(std::size_t i, ReferenceFilm& film) const {
@@ -149,6 +163,8 @@ public:
                 out[c] += part[c] / disk_n_;
             }
             variance += variance_of_mean(luminance(part), disks_[k].square[i], disk_n_);
+            if (sites_.lobe >= 0 && may_be_missed(sites_, i, sites_.disks[k], disk_n_))
+                variance += sqr(rho_s * (luminance(scene_.disks()[k].radiance) - luminance(fill)));
         }
         store(film, sites_.pixel[i], out, std::sqrt(variance));
     }
@@ -180,6 +196,18 @@ void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
 }
 
 }  // namespace
+
+std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
+    constexpr std::uint32_t salt = 0x4ef1ce;
+    const auto drawn_from = [&](std::uint32_t seed) {
+        for (int a = 0; a < experiment.seeds; ++a)
+            if (seed_of(experiment.seed, static_cast<std::uint32_t>(a)) == seed) return true;
+        return false;
+    };
+    std::uint32_t seed = pcg4d(Vec4u<std::uint32_t>{experiment.reference.seed, k, salt, 0u}).x;
+    while (drawn_from(seed)) ++seed;
+    return seed;
+}
 
 std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper) {
     const Experiment& experiment = scene.experiment();
@@ -215,7 +243,7 @@ std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<
                     for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
                     continue;
                 }
-                const NotePixels pixels(scenes[e], sites, experiment.reference, isa, watch);
+                const NotePixels pixels(scenes[e], sites, isa, watch);
                 for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
             }
         }

@@ -2,9 +2,11 @@
 //   quadrature  deterministic: Lambert x fill in closed form, lobe x fill by a table of its albedo, every disk by
 //               DiskQuadrature; states its own error per pixel.
 //   note        the published recipe: analytic Lambert x fill, the lobe x fill by sampling the lobe, the disks by
-//               next-event estimation, on a seed of its own; states its standard error per pixel.
+//               next-event estimation, on streams that no arm has; states its standard error per pixel, and all that a
+//               lobe may hold where it is too narrow for that many samples on a disk.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/watch.h"
@@ -13,6 +15,9 @@
 #include "films/film.h"
 
 namespace crescent {
+
+/// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from.
+std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
 /// One film per exponent, in order. `keeper`: keeps finished tiles.
 std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper = nullptr);

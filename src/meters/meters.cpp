@@ -64,7 +64,8 @@ double rms(const std::vector<float>& a, int width, const Box& box) {
     return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at])); }));
 }
 
-ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region, const std::vector<std::pair<RunKey, Film>>& films) {
+ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region,
+                       const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
     ReferenceMeter m;
     m.s = q.s, m.region = region.name;
     m.rms_difference = rms_difference(q.y, note.y, q.width, region.box);
@@ -74,6 +75,9 @@ ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const 
         if (key.s != q.s) continue;
         const double a = rms_difference(film.y, q.y, q.width, region.box), b = rms_difference(film.y, note.y, q.width, region.box);
         if (a > 0) m.rmse_unlike = std::max(m.rmse_unlike, std::fabs(b - a) / a);
+        const bool quadrature = used == ReferenceKind::quadrature;
+        const double error = quadrature ? m.quadrature_error : m.rms_standard_error, rmse = quadrature ? a : b;
+        if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
     }
     return m;
 }

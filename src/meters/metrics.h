@@ -81,6 +81,7 @@ struct AssertionResult {
     bool pass = false;
     double measured = 0, bound = 0;
     std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
+    bool reference_good = true;  // where not, an RMSE in it is no longer than a few errors of the reference: it does not pass
 };
 
 /// How far the note's Monte Carlo reference is from the quadrature, per region and exponent.
@@ -91,7 +92,11 @@ struct ReferenceMeter {
     double rms_standard_error = 0;  // what the note's reference says of itself
     double quadrature_error = 0;    // rms of the quadrature's own stated error
     double rmse_unlike = 0;         // largest relative change of any arm's RMSE here if the note's reference is used
+    double error_share = 0;         // of the reference that the meters use: its own error over the smallest RMSE here
 };
+
+/// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares 1/16.
+inline constexpr double most_error_share = 0.25;
 
 struct Metrics {
     std::vector<RunMeter> runs;           // every arm, n, s, seed

@@ -67,6 +67,18 @@ TEST(Quantities, AreReadFromTheRunTheyName) {
     EXPECT_FALSE(verdict("plate_bytes(rose) > 0"));
 }
 
+TEST(Assertions, OnAnRmseThatTheReferencesOwnErrorMayMakeDoNotPass) {
+    Metrics m = measured();
+    m.references.resize(1);
+    m.references[0].s = 32, m.references[0].region = "H", m.references[0].quadrature_error = 0.1, m.references[0].rms_standard_error = 9;
+    EXPECT_TRUE(verdict("rmse.H(a, n=4) < 1", false, m)) << "0.5 is five times the error";
+    EXPECT_FALSE(verdict("rmse.H(a, n=16) < 1", false, m)) << "0.125 is not";
+    EXPECT_FALSE(verdict("rmse.H(a, n=16) < rmse.H(a, n=4)", false, m));
+    const AssertionResult told = judge(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
+    EXPECT_FALSE(told.reference_good);
+    EXPECT_NE(told.text.find("not good enough"), std::string::npos) << told.text;
+}
+
 TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
     EXPECT_FALSE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)"));
     EXPECT_TRUE(verdict("rmse.H(b, n=4) < rmse.H(a, n=4)", true));

@@ -11,7 +11,8 @@ namespace crescent {
 namespace {
 
 std::string failure(const AssertionResult& a) {
-    const std::string message = fmt::format("measured {}, must be {} {}", shortest(a.measured), a.op, shortest(a.bound));
+    const std::string message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op, shortest(a.bound),
+                                            a.reference_good ? "" : "; the reference is not good enough");
     return fmt::format("      <failure type=\"assertion\" message=\"{}\">{}</failure>\n", escape(message),
                        escape(a.text + ": " + message));
 }

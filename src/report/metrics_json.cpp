@@ -86,7 +86,8 @@ Json reference_json(const ReferenceMeter& r) {
             {"rms_difference", number(r.rms_difference)},
             {"rms_standard_error", number(r.rms_standard_error)},
             {"quadrature_error", number(r.quadrature_error)},
-            {"rmse_unlike", number(r.rmse_unlike)}};
+            {"rmse_unlike", number(r.rmse_unlike)},
+            {"error_share", number(r.error_share)}};
 }
 
 Json assertion_json(const AssertionResult& a) {

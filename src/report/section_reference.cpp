@@ -28,7 +28,12 @@ std::string verdict(const std::vector<ReferenceMeter>& all) {
     out += explained ? " Everywhere the two differ by no more than twice what the random one says of itself."
                      : " Somewhere they differ by more than twice what the random one says of itself: its standard error is "
                        "too small there, or its tail too long.";
-    return html::p(out);
+    std::string coarse;
+    for (const ReferenceMeter& r : all)
+        if (r.error_share > most_error_share)
+            coarse += fmt::format(" <b>It is not good enough in region {} at <i>s</i> = {}</b>: its own error is {} of the smallest RMSE there.",
+                                  escape(r.region), shortest(r.s), percent(r.error_share, 2));
+    return html::p(out) + (coarse.empty() ? "" : html::p("The reference that the meters use states its own error." + coarse));
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint)
     if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", all.size())) + "\n";
     std::string out = paint(red, failures_line(failed, all.size())) + "\n";
     for (const AssertionResult* a : failed) {
-        const std::string values = fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound));
+        const std::string values = a->reference_good ? fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound))
+                                                     : ": the reference is not good enough";
         out += fmt::format("  {}{}\n", clip(a->name, columns - 2 - width(values)), values);
     }
     return out;
