@@ -26,7 +26,13 @@ std::string needed(const Experiment& e, const std::string& sampler, std::vector<
 
 /// The arm with this sampler, made where there is none, with these rungs added.
 std::string added(Experiment& e, const std::string& sampler, const std::vector<std::uint64_t>& rungs) {
-    if (const ArmPlan* arm = by_sampler(e, sampler); arm && std::ranges::includes(arm->n, rungs)) return arm->name;
+    for (ArmPlan& arm : e.arms) {
+        if (arm.sampler != sampler) continue;
+        std::vector<std::uint64_t> all;
+        std::ranges::set_union(arm.n, rungs, std::back_inserter(all));
+        arm.n = all;
+        return arm.name;
+    }
     std::string name = sampler;
     while (e.find_arm(name)) name += "-too";
     e.arms.push_back({name, sampler, rungs, {}});
@@ -51,13 +57,15 @@ Cast cast_of(Experiment& e) {
         c.rungs = shared(*e.find_arm(c.cosine), *e.find_arm(c.phong));
         if (c.rungs.size() < 2) wrong.push_back({e.place_of("arms." + c.phong), fmt::format("the film follows '{}' and '{}' up one ladder; expected two n or more that both have", c.cosine, c.phong)});
     }
-    if (e.regions.size() < 2) wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, the surround last"});
+    if (e.regions.size() < 2) wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
     if (e.disks.empty()) wrong.push_back({e.place_of("disks"), "the film needs a disk light: it is what a cosine sample rarely meets"});
     const bool lobe = std::ranges::any_of(e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == BrdfKind::phong; });
     if (!lobe) wrong.push_back({e.place_of("shapes"), "the film needs a shape with a Phong lobe: rho_s above 0 and brdf = \"phong\""});
     if (!wrong.empty()) throw InputError(std::move(wrong));
 
-    c.highlight = e.regions.front().name, c.surround = e.regions.back().name;
+    c.highlight = e.regions.front().name;
+    const auto area = [](const Region& r) { return r.box.width() * r.box.height(); };
+    c.surround = std::ranges::max_element(e.regions.begin() + 1, e.regions.end(), {}, area)->name;
     c.s = e.s(), c.seed = e.seed;
     c.n = std::ranges::find(c.rungs, e.n) != c.rungs.end() ? e.n : c.rungs[c.rungs.size() / 2];
     c.mixture = added(e, "mixture", {c.n});

@@ -13,7 +13,7 @@ struct Cast {
     std::string uniform;              // "": the experiment has no such arm
     std::string cosine, phong;        // the two arms of the story
     std::string mixture, mis;         // what goes beyond it; the film adds them where the experiment has none
-    std::string highlight, surround;  // regions: the first, the last
+    std::string highlight, surround;  // regions: the first, the largest of the others
     double s = 0;                     // the experiment's
     std::uint64_t n = 0;              // samples a pixel where none is named
     std::uint32_t seed = 0;

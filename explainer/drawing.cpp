@@ -6,7 +6,7 @@
 namespace crescent::film {
 
 Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin) {
-    const auto times_for = [&](double w, double h) { return std::max(1, static_cast<int>(std::min(slot.w / w, slot.h / h))); };
+    const auto times_for = [&](double w, double h) { return std::clamp(static_cast<int>(std::min(slot.w / w, slot.h / h)), 1, 12); };
     Closeup c;
     c.times = times_for(margin * of.width(), margin * of.height());
     c.box = around(data, of, static_cast<int>(slot.w) / c.times, static_cast<int>(slot.h) / c.times);

@@ -1,6 +1,7 @@
 // Shot 1: the gallery comes out of the noise, one doubling of N after another, then its converged reference; the title.
 #include "drawing.h"
 #include "shots.h"
+#include "timeline.h"
 
 namespace crescent::film {
 
@@ -30,7 +31,7 @@ Shot title(const Data& data) {
     const double last = first + each * double(blocks.size() - 1);
     Shot shot;
     shot.name = "title";
-    shot.title = name(data.experiment.title).markup.empty() ? Words("The experiment") : Words(name(data.experiment.title));
+    shot.title = length(data.experiment.title) > 50 ? Words("The experiment") : Words(name(data.experiment.title));
     shot.kind = Kind::photograph;
     shot.seen = Words("A lacquer sphere on a plinth comes out of noise as the number of samples doubles; then the title.");
     shot.seconds = last + 6.5;
