@@ -58,7 +58,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--set", f->overrides, "another value for a key; may be given again")->type_name("PATH=VALUE")->take_all()->expected(1)->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
     c->add_option("--threads", f->threads, "default: as many as the machine has")->type_name("N")->check(CLI::Range(1, 4096));
-    c->add_option("--isa", f->isa, "scalar, sse4, avx2, avx512; default: the best here")->type_name("NAME");
+    c->add_option("--isa", f->isa, all_isas() + "; default: the best here")->type_name("NAME");
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")->type_name("NAME")->check(CLI::IsMember({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")->type_name("NAME")->check(CLI::IsMember({"egl", "osmesa"}));
     c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")->type_name("N")->check(CLI::Range(0, 1023));
@@ -102,7 +102,7 @@ void add_film(CLI::App& app, Work& work) {
     c->add_option("--set", f->overrides, "another value for a key; may be given again")->type_name("PATH=VALUE")->take_all()->expected(1)->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
     c->add_option("--threads", o.threads, "default: as many as the machine has")->type_name("N")->check(CLI::Range(1, 4096));
-    c->add_option("--isa", o.isa, "scalar, sse4, avx2, avx512; default: the best here")->type_name("NAME");
+    c->add_option("--isa", o.isa, all_isas() + "; default: the best here")->type_name("NAME");
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 

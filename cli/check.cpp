@@ -83,7 +83,7 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
     if (flags.wo.empty() || flags.table.empty()) throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
     const Vec3d wo = direction_of(flags.wo);
-    Trial t = trial_of_subject(std::make_shared<SampleFile>(flags.samples, flags.table), std::acos(std::min(wo.z, 1.0)) * 180 / pi, std::atan2(wo.y, wo.x) * 180 / pi);
+    Trial t = trial_of_subject(std::make_shared<SampleFile>(flags.samples, flags.table), math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
     t.wo = wo;
     return {t};
 }

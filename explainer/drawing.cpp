@@ -62,7 +62,7 @@ Block residual_of(const Film& film, const ReferenceFilm& reference, const Box& b
 }
 
 Point LogPlot::at(double x, double y) const {
-    const double u = std::log(x / x0) / std::log(x1 / x0), v = std::log(y / y0) / std::log(y1 / y0);
+    const double u = math::log(x / x0) / math::log(x1 / x0), v = math::log(y / y0) / math::log(y1 / y0);
     return {plot.x + plot.w * u, plot.bottom() - plot.h * v};
 }
 
@@ -75,7 +75,7 @@ void LogPlot::axes(Frame& f, const std::vector<std::uint64_t>& at_x, const Words
         f.line({p.x, p.y}, {p.x, p.y + 8}, muted, 2, alpha);
         f.text({p.x - 60, p.y + 12, 120, 36}, Words(count(n, "axis")), below, alpha);
     }
-    for (double power = std::pow(10.0, std::floor(std::log10(y0))); power <= y1 * 1.001; power *= 10) {
+    for (double power = math::pow(10.0, std::floor(math::log10(y0))); power <= y1 * 1.001; power *= 10) {
         for (const double lead : {1.0, 2.0, 5.0}) {
             const double v = lead * power;
             if (v < y0 * 0.999 || v > y1 * 1.001) continue;
@@ -90,7 +90,7 @@ void LogPlot::axes(Frame& f, const std::vector<std::uint64_t>& at_x, const Words
 
 std::vector<Point> begun(const std::vector<Point>& path, double part) {
     double length = 0;
-    for (std::size_t k = 1; k < path.size(); ++k) length += std::hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y);
+    for (std::size_t k = 1; k < path.size(); ++k) length += math::hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y);
     double left = part * length;
     std::vector<Point> out;
     for (std::size_t k = 0; k < path.size(); ++k) {
@@ -99,7 +99,7 @@ std::vector<Point> begun(const std::vector<Point>& path, double part) {
             continue;
         }
         const Point a = path[k - 1], b = path[k];
-        const double step = std::hypot(b.x - a.x, b.y - a.y);
+        const double step = math::hypot(b.x - a.x, b.y - a.y);
         if (step >= left) {
             if (step > 0) out.push_back({a.x + (b.x - a.x) * left / step, a.y + (b.y - a.y) * left / step});
             break;

@@ -80,6 +80,17 @@ follow() {
     return 0
 }
 
+# build_core MACHINE: the numerical core alone for another machine, laws/core/MACHINE.cmake.
+build_core() {
+    local dir="$root/build-$1" log="$log_dir/$1.log" start=$SECONDS
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/laws/core" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
+    [ -f "$dir/build.ninja" ] || cmake -S "$root/laws/core" -B "$dir" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$root/laws/core/$1.cmake" >"$log" 2>&1 ||
+        fail 3 "$log" "configuring laws/core for $1 failed"
+    ninja -C "$dir" 2>&1 | follow "$1" "$log" >>"$log"
+    [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building the core for $1 failed"
+    [ $((SECONDS - start)) -lt 2 ] || say "built $1 in $((SECONDS - start)) s"
+}
+
 # build PRESET [TARGET...]: configures where it has not been, then brings the targets (default: all) up to date.
 build() {
     local preset=$1 dir log start=$SECONDS

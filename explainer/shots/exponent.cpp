@@ -22,7 +22,7 @@ std::vector<Point> lobe_of(const plates::Density& density, Point foot, double ra
     std::vector<Point> out{foot};
     for (const auto& [angle, p] : values) {
         const double r = peak > 0 ? radius * p / peak : 0;
-        out.push_back({foot.x + r * std::sin(angle), foot.y - r * std::cos(angle)});
+        out.push_back({foot.x + r * math::sin(angle), foot.y - r * math::cos(angle)});
     }
     return out;
 }

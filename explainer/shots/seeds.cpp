@@ -22,7 +22,7 @@ struct Row {
 
 constexpr double span = 4;  // the strip goes from a quarter of the median to four times it
 
-double across(double ratio) { return 0.5 + 0.5 * std::log(std::clamp(ratio, 1 / span, span)) / std::log(span); }
+double across(double ratio) { return 0.5 + 0.5 * math::log(std::clamp(ratio, 1 / span, span)) / math::log(span); }
 
 Verdict verdict_of(const BandMeter& b) {
     if (!b.published) return Verdict::none;

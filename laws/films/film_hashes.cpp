@@ -1,13 +1,21 @@
-// film_hashes FILE.toml...: the hash of every film of an experiment at its own seed, for each instruction set of this
-// machine, and of its references, and of the functions of math/. Two builds of crescent agree where this prints the same; it needs none of the folders
-// that draw and report, so that a second compiler has little to build.
+// The bits of what crescent computes: functions of math/, and, for every experiment, each film at its own seed on each
+// instruction set of this machine, and its references. Two builds agree where this prints the same; it needs none of the
+// folders that draw and report, so that a second compiler has little to build.
+//
+//   film_hashes FILE.toml...            the hashes
+//   film_hashes --fewer FILE.toml...    of small images and few samples
+//   film_hashes --plain FILE.toml...    no hashes: the (small) experiments as plain numbers, for another machine's
+//   film_hashes < PLAIN                 which prints the hashes of them
+#define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "estimator/estimator.h"
 #include "estimator/reference.h"
 #include "experiment/experiment.h"
+#include "laws/films/plain.h"
 #include "math/functions.h"
 
 namespace {
@@ -19,7 +27,8 @@ template <class Function> void print_function(const char* name, Function f, doub
     std::vector<double> values;
     constexpr int count = 4096;
     for (int k = 0; k <= count; ++k) values.push_back(f(a + (b - a) * k / count));
-    std::cout << "function " << name << ' ' << std::hex << XXH3_64bits(values.data(), values.size() * sizeof(double)) << std::dec << '\n';
+    const std::uint64_t bits = XXH3_64bits(values.data(), values.size() * sizeof(double));
+    std::cout << "function " << name << ' ' << std::hex << bits << std::dec << '\n';
 }
 
 void print_functions() {
@@ -39,26 +48,53 @@ void print_functions() {
     print_function("hypot", [](double x) { return math::hypot(x, 2, 1 / x); }, -3, 3.1);
 }
 
-void print(const std::string& file) {
-    const Experiment experiment = load(file);
+void print(const Experiment& experiment) {
     const Scene scene(experiment);
     Watch watch;
     for (const std::string& isa : isas())
         for (const ArmPlan& arm : experiment.arms)
             for (const Film& film : estimate_films(scene, arm.sampler, arm.n, experiment.seed, isa, watch))
-                std::cout << file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film) << '\n';
+                std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film) << '\n';
     for (const std::string& isa : isas())
         for (const ReferenceFilm& film : note_reference(scene, {experiment.s()}, isa, watch))
-            std::cout << file << ' ' << isa << " note-reference " << hash(film) << '\n';
+            std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
     for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, watch))
-        std::cout << file << " quadrature " << hash(film) << '\n';
+        std::cout << experiment.file << " quadrature " << hash(film) << '\n';
+}
+
+/// 24 pixels across, at most 16 samples.
+[[maybe_unused]] void make_small(Experiment& e) {
+    e.image.height = std::max(1, e.image.height * 24 / e.image.width), e.image.width = 24;
+    for (ArmPlan& arm : e.arms) {
+        std::erase_if(arm.n, [](std::uint64_t n) { return n > 16; });
+        if (arm.n.empty()) arm.n = {16};
+    }
+}
+
+void print_what_stdin_has() {
+    plain::Reader reader{std::cin};
+    while (std::cin.peek() != std::char_traits<char>::eof()) {
+        Experiment experiment;
+        plain::visit(reader, experiment);
+        print(experiment);
+    }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-    print_functions();
-    for (int k = 1; k < argc; ++k) print(argv[k]);
+    const std::string mode = argc > 1 ? argv[1] : "";
+    if (mode != "--plain") print_functions();
+    if (argc == 1) print_what_stdin_has();
+#ifndef CRESCENT_NO_FILES
+    const bool small = mode == "--plain" || mode == "--fewer";
+    for (int k = small ? 2 : 1; k < argc; ++k) {
+        Experiment experiment = load(argv[k]);
+        if (small) make_small(experiment);
+        plain::Writer writer{std::cout};
+        mode == "--plain" ? plain::visit(writer, experiment) : print(experiment);
+    }
+#endif
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';
     return 2;

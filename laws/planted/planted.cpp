@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "laws/planted/wrap.h"
+#include "math/functions.h"
 #include "verdicts/list.h"
 
 namespace crescent {
@@ -20,10 +21,10 @@ struct Plan {
     std::function<Bend(const SurfaceSetup&)> bend;
 };
 
-double power_cos(Vec3d a, Vec3d b, double s) { return std::pow(std::max(dot(a, b), 0.0), s); }
+double power_cos(Vec3d a, Vec3d b, double s) { return math::pow(std::max(dot(a, b), 0.0), s); }
 Vec3d spherical(double cos, double turns) {
     const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
-    return {sin * std::cos(2 * pi * turns), sin * std::sin(2 * pi * turns), cos};
+    return {sin * math::cos(2 * pi * turns), sin * math::sin(2 * pi * turns), cos};
 }
 Vec3d about(Vec3d axis, double cos, double turns) { return frame_about(axis).to_world(spherical(cos, turns)); }
 /// In a tenth of the sphere about a direction that is no axis of anything.
@@ -71,7 +72,7 @@ void density_faults(std::vector<Plan>& out) {
                    }});
     out.push_back({"1/(s+2) for 1/(s+1) in the warp", "phong", phong, false, "fill", 32, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
-                           d.wi = about(mirror(wo), std::pow(u.x, 1 / (s + 2)), u.y);
+                           d.wi = about(mirror(wo), math::pow(u.x, 1 / (s + 2)), u.y);
                            d.pdf = (s + 1) / (2 * pi) * power_cos(d.wi, mirror(wo), s);
                        });
                    }});
@@ -82,7 +83,7 @@ void density_faults(std::vector<Plan>& out) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
                            for (int k = 0; k < 64 && d.wi.z <= 0; ++k) {  // drawn again until it is above, as if it had not been
                                u = {std::fmod(u.x * 97.13 + 0.31, 1.0), std::fmod(u.y * 89.7 + 0.73, 1.0)};
-                               d.wi = about(mirror(wo), std::pow(u.x, 1 / (s + 1)), u.y);
+                               d.wi = about(mirror(wo), math::pow(u.x, 1 / (s + 1)), u.y);
                            }
                            d.pdf = (s + 1) / (2 * pi) * power_cos(d.wi, mirror(wo), s);
                        });
@@ -107,7 +108,7 @@ void density_faults(std::vector<Plan>& out) {
                    }});
     out.push_back({"axis about n but pdf about R", "phong", phong, false, "fill", 32, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
-                           d.wi = spherical(std::pow(u.x, 1 / (s + 1)), u.y);
+                           d.wi = spherical(math::pow(u.x, 1 / (s + 1)), u.y);
                            d.pdf = (s + 1) / (2 * pi) * power_cos(d.wi, mirror(wo), s);
                        });
                    }});
@@ -142,7 +143,7 @@ void warp_faults(std::vector<Plan>& out) {
                    }});
     out.push_back({"float cancellation at the pole", "phong", phong, false, "fill", 1e5, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
-                           const double cos = rounded(std::pow(u.x, 1 / (s + 1)));  // sin from a cosine that float has rounded
+                           const double cos = rounded(math::pow(u.x, 1 / (s + 1)));  // sin from a cosine that float has rounded
                            d.wi = about(mirror(wo), cos, u.y);
                        });
                    }});
@@ -150,7 +151,7 @@ void warp_faults(std::vector<Plan>& out) {
                        return with_draw([](Vec3d, Vec2d u, Draw& d) {
                            // A basis built for n.z > -1: at -z both tangents fall together and the disk becomes a line.
                            const double r = 0.6 * std::sqrt(u.x);
-                           const Vec3d y = Vec3d{0.1, -0.05, 2} + Vec3d{1, 0, 0} * (r * std::cos(2 * pi * u.y)) + Vec3d{1, 0, 0} * (r * std::sin(2 * pi * u.y));
+                           const Vec3d y = Vec3d{0.1, -0.05, 2} + Vec3d{1, 0, 0} * (r * math::cos(2 * pi * u.y)) + Vec3d{1, 0, 0} * (r * math::sin(2 * pi * u.y));
                            d.wi = normalize(y);
                        });
                    }});

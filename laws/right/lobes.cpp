@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include "laws/right/right.h"
+#include "math/functions.h"
 #include "scene/frame.h"
 
 namespace crescent {
 
 Vec3d about(Vec3d axis, double cos, double turns) {
     const double sin = std::sqrt(std::max(1 - cos * cos, 0.0)), phi = 2 * pi * turns;
-    return frame_about(axis).to_world({sin * std::cos(phi), sin * std::sin(phi), cos});
+    return frame_about(axis).to_world({sin * math::cos(phi), sin * math::sin(phi), cos});
 }
 
 namespace {
@@ -35,8 +36,8 @@ Recipe of_lobe(std::string family, std::string parameters, Lobe lobe, bool clipp
 }
 
 Lobe power(Vec3d axis, double s) {
-    return {axis, [s](double u) { return std::pow(u, 1 / (s + 1)); },
-            [s](double c) { return c > 0 ? (s + 1) / (2 * pi) * std::pow(std::min(c, 1.0), s) : 0.0; }};
+    return {axis, [s](double u) { return math::pow(u, 1 / (s + 1)); },
+            [s](double c) { return c > 0 ? (s + 1) / (2 * pi) * math::pow(std::min(c, 1.0), s) : 0.0; }};
 }
 /// Uniform in solid angle from cos `low` to cos `high`. The rim itself is granted a rounding: it belongs to the draws.
 Lobe band(Vec3d axis, double low, double high) {
@@ -45,14 +46,14 @@ Lobe band(Vec3d axis, double low, double high) {
 }
 /// von Mises & Fisher.
 Lobe fisher(Vec3d axis, double k) {
-    const double tail = std::exp(-2 * k);
-    return {axis, [k, tail](double u) { return 1 + std::log(u + (1 - u) * tail) / k; },
-            [k, tail](double c) { return k / (2 * pi * (1 - tail)) * std::exp(k * (c - 1)); }};
+    const double tail = math::exp(-2 * k);
+    return {axis, [k, tail](double u) { return 1 + math::log(u + (1 - u) * tail) / k; },
+            [k, tail](double c) { return k / (2 * pi * (1 - tail)) * math::exp(k * (c - 1)); }};
 }
 /// Henyey & Greenstein 1941.
 Lobe greenstein(Vec3d axis, double g) {
     return {axis, [g](double u) { return (1 + g * g - sqr((1 - g * g) / (1 - g + 2 * g * u))) / (2 * g); },
-            [g](double c) { return (1 - g * g) / (4 * pi * std::pow(std::max(1 + g * g - 2 * g * c, 1e-300), 1.5)); }};
+            [g](double c) { return (1 - g * g) / (4 * pi * math::pow(std::max(1 + g * g - 2 * g * c, 1e-300), 1.5)); }};
 }
 
 Recipe cosine_power(Dice& d) {
@@ -159,12 +160,12 @@ Recipe plastic(Dice& d) {
     r.sample = [s, share, pdf](Vec3d wo, Vec2d u) {
         const bool flat = u.x < share;
         u.x = flat ? u.x / share : (u.x - share) / (1 - share);
-        const Vec3d wi = flat ? about({0, 0, 1}, std::sqrt(std::max(1 - u.x, 0.0)), u.y) : about({-wo.x, -wo.y, wo.z}, std::pow(u.x, 1 / (s + 1)), u.y);
+        const Vec3d wi = flat ? about({0, 0, 1}, std::sqrt(std::max(1 - u.x, 0.0)), u.y) : about({-wo.x, -wo.y, wo.z}, math::pow(u.x, 1 / (s + 1)), u.y);
         return Draw{wi, pdf(wo, wi), {}, {}};
     };
     r.f = [s, rho_d, rho_s](Vec3d wo, Vec3d wi) {
         if (!(wo.z > 0 && wi.z > 0)) return 0.0;
-        return rho_d / pi + rho_s * (s + 2) / (2 * pi) * std::pow(std::clamp(dot(wi, Vec3d{-wo.x, -wo.y, wo.z}), 0.0, 1.0), s);
+        return rho_d / pi + rho_s * (s + 2) / (2 * pi) * math::pow(std::clamp(dot(wi, Vec3d{-wo.x, -wo.y, wo.z}), 0.0, 1.0), s);
     };
     return r;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "laws/right/right.h"
+#include "math/functions.h"
 #include "simd/scalar.h"
 
 namespace crescent {
@@ -43,15 +44,15 @@ template <class F> struct Ggx2 {
         const Vec3<F> v = unit(Vec3<F>{ax * o.x, ay * o.y, o.z});
         const F size = sqr(v.x) + sqr(v.y);
         const Vec3<F> t1 = size > 0 ? Vec3<F>{-v.y, v.x, 0} * (1 / std::sqrt(size)) : Vec3<F>{1, 0, 0}, t2 = cross(v, t1);
-        const F r = std::sqrt(u1), phi = turn<F> * u2, x = r * std::cos(phi), s = (1 + v.z) / 2;
-        const F y = (1 - s) * std::sqrt(std::max(1 - x * x, F(0))) + s * r * std::sin(phi);
+        const F r = std::sqrt(u1), phi = turn<F> * u2, x = r * math::cos(phi), s = (1 + v.z) / 2;
+        const F y = (1 - s) * std::sqrt(std::max(1 - x * x, F(0))) + s * r * math::sin(phi);
         const Vec3<F> n = t1 * x + t2 * y + v * std::sqrt(std::max(1 - x * x - y * y, F(0)));
         return unit(Vec3<F>{ax * n.x, ay * n.y, std::max(n.z, F(0))});
     }
     /// All normals: h.z D(h).
     Vec3<F> normal(F u1, F u2) const {
         const F r = std::sqrt(u1 / (1 - u1)), phi = turn<F> * u2;
-        return unit(Vec3<F>{ax * r * std::cos(phi), ay * r * std::sin(phi), 1});
+        return unit(Vec3<F>{ax * r * math::cos(phi), ay * r * math::sin(phi), 1});
     }
 };
 
@@ -61,11 +62,11 @@ template <class F> struct Beckmann2 {
     F D(Vec3<F> h) const {
         if (!(h.z > 0)) return 0;
         const F t = (sqr(h.x / ax) + sqr(h.y / ay)) / sqr(h.z);
-        return std::exp(-t) / (static_cast<F>(pi) * ax * ay * sqr(sqr(h.z)));
+        return math::exp(-t) / (static_cast<F>(pi) * ax * ay * sqr(sqr(h.z)));
     }
     Vec3<F> normal(F u1, F u2) const {
-        const F r = std::sqrt(-std::log1p(-u1)), phi = turn<F> * u2;
-        return unit(Vec3<F>{ax * r * std::cos(phi), ay * r * std::sin(phi), 1});
+        const F r = std::sqrt(-math::log1p(-u1)), phi = turn<F> * u2;
+        return unit(Vec3<F>{ax * r * math::cos(phi), ay * r * math::sin(phi), 1});
     }
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "math/functions.h"
 #include "verdicts/list.h"
 
 namespace crescent {
@@ -32,7 +33,7 @@ Dice dice_of(std::uint64_t index, std::uint32_t seed) { return Dice(0x9e3779b97f
 
 }  // namespace
 
-double Dice::log(double low, double high) { return low * std::exp(uniform(0, std::log(high / low))); }
+double Dice::log(double low, double high) { return low * math::exp(uniform(0, math::log(high / low))); }
 Vec3d Dice::direction(double least_cos, double most_cos) {
     const double cos = uniform(least_cos, most_cos);
     return about({0, 0, 1}, cos, uniform(0, 1));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "laws/right/right.h"
+#include "math/functions.h"
 #include "simd/scalar.h"
 
 namespace crescent {
@@ -44,12 +45,12 @@ struct Table {
 };
 
 double turns_of(Vec3d w) {
-    const double t = std::atan2(w.y, w.x) / (2 * pi);
+    const double t = math::atan2(w.y, w.x) / (2 * pi);
     return t < 0 ? t + 1 : t;
 }
 Vec3d spherical(double cos, double turns) {
     const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
-    return {sin * std::cos(2 * pi * turns), sin * std::sin(2 * pi * turns), cos};
+    return {sin * math::cos(2 * pi * turns), sin * math::sin(2 * pi * turns), cos};
 }
 int cell(double v, int count) { return std::clamp(static_cast<int>(v * count), 0, count - 1); }
 
@@ -83,14 +84,14 @@ Recipe cells(Dice& d) {
 Recipe even_texels(Dice& d) {
     const int rows = d.whole(4, 64), columns = 2 * rows;
     std::vector<double> w = weights(d, rows, columns, d.log(1.5, 100), d.whole(0, 1) == 0);
-    const auto edge = [rows](int i) { return std::cos(pi * i / rows); };
+    const auto edge = [rows](int i) { return math::cos(pi * i / rows); };
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) w[static_cast<std::size_t>(i * columns + j)] *= edge(i) - edge(i + 1);
     const auto t = std::make_shared<Table>(rows, columns, std::move(w));
     Recipe r{"even texels", fmt::format("{} x {}", rows, columns), {}, {}, {}};
     const auto value = [t, edge](int i, int j) { return t->at(i, j) * t->columns / (2 * pi * (edge(i) - edge(i + 1))); };
     r.pdf = [t, value](Vec3d, Vec3d wi) {
-        return value(cell(std::acos(std::clamp(wi.z, -1.0, 1.0)) / pi, t->rows), cell(turns_of(wi), t->columns));
+        return value(cell(math::acos(std::clamp(wi.z, -1.0, 1.0)) / pi, t->rows), cell(turns_of(wi), t->columns));
     };
     r.sample = [t, edge, value](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
@@ -104,18 +105,18 @@ Recipe texels(Dice& d) {
     const int rows = d.whole(4, 24), columns = 2 * rows;
     std::vector<double> w = weights(d, rows, columns, d.log(1.5, 30), d.whole(0, 3) == 0);
     for (int i = 0; i < rows; ++i)
-        for (int j = 0; j < columns; ++j) w[static_cast<std::size_t>(i * columns + j)] *= std::sin(pi * (i + 0.5) / rows);
+        for (int j = 0; j < columns; ++j) w[static_cast<std::size_t>(i * columns + j)] *= math::sin(pi * (i + 0.5) / rows);
     const auto t = std::make_shared<Table>(rows, columns, std::move(w));
     Recipe r{"texels over sin theta", fmt::format("{} x {}", rows, columns), {}, {}, {}};
     const auto value = [t](int i, int j, double sin) { return sin > 0 ? t->at(i, j) * t->rows * t->columns / (2 * pi * pi * sin) : 0.0; };
     r.pdf = [t, value](Vec3d, Vec3d w2) {
-        const double theta = std::atan2(std::hypot(w2.x, w2.y), w2.z);
-        return value(cell(theta / pi, t->rows), cell(turns_of(w2), t->columns), std::sin(theta));
+        const double theta = math::atan2(math::hypot(w2.x, w2.y), w2.z);
+        return value(cell(theta / pi, t->rows), cell(turns_of(w2), t->columns), math::sin(theta));
     };
     r.sample = [t, value](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
-        const double theta = pi * (s.i + s.x) / t->rows, phi = 2 * pi * (s.j + s.y) / t->columns, sin = std::sin(theta);
-        return Draw{{sin * std::cos(phi), sin * std::sin(phi), std::cos(theta)}, value(s.i, s.j, sin), {}, {}};
+        const double theta = pi * (s.i + s.x) / t->rows, phi = 2 * pi * (s.j + s.y) / t->columns, sin = math::sin(theta);
+        return Draw{{sin * math::cos(phi), sin * math::sin(phi), math::cos(theta)}, value(s.i, s.j, sin), {}, {}};
     };
     return r;
 }

@@ -1,5 +1,8 @@
 #include "base/journal.h"
 
+#include <utility>
+
+#ifndef CRESCENT_NO_FILES
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -10,12 +13,20 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <utility>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#endif
+
 namespace crescent {
+
+Journal::Journal(std::string path, std::string key, Watch& watch) : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
+
+Journal::Journal(Journal&& other) noexcept
+    : path_(std::move(other.path_)), key_(std::move(other.key_)), watch_(other.watch_), file_(std::exchange(other.file_, -1)), off_(other.off_) {}
+
+#ifndef CRESCENT_NO_FILES
 
 namespace {
 
@@ -46,11 +57,6 @@ bool next_record(int file, std::uint64_t left, std::vector<std::byte>& record) {
 Journal::Bytes bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
 }  // namespace
-
-Journal::Journal(std::string path, std::string key, Watch& watch) : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
-
-Journal::Journal(Journal&& other) noexcept
-    : path_(std::move(other.path_)), key_(std::move(other.key_)), watch_(other.watch_), file_(std::exchange(other.file_, -1)), off_(other.off_) {}
 
 Journal::~Journal() {
     if (file_ >= 0) close(file_);
@@ -112,5 +118,14 @@ void Journal::remove() {
     ::unlink(path_.c_str());
     if (file_ >= 0) close(std::exchange(file_, -1));
 }
+
+#else  // where there are no files, nothing is kept
+
+Journal::~Journal() = default;
+void Journal::read(const std::function<void(Bytes)>&) {}
+void Journal::append(const std::vector<Bytes>&) {}
+void Journal::remove() {}
+
+#endif
 
 }  // namespace crescent

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
+
 namespace crescent {
 
 namespace {
@@ -50,12 +52,12 @@ Rgb neutral(const Rgb& colour) {
 
 double srgb_encode(double linear) {
     double x = std::clamp(linear, 0.0, 1.0);
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * math::pow(x, 1 / 2.4) - 0.055;
 }
 
 double srgb_decode(double encoded) {
     double x = std::clamp(encoded, 0.0, 1.0);
-    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+    return x <= 0.04045 ? x / 12.92 : math::pow((x + 0.055) / 1.055, 2.4);
 }
 
 unsigned char srgb_byte(double linear) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "math/functions.h"
+
 namespace crescent {
 
 namespace {
@@ -24,9 +26,9 @@ Azimuths of_ellipse(Flat p, Flat u, Flat v) {
     const double xx = p.x * p.x - u.x * u.x - v.x * v.x, yy = p.y * p.y - u.y * u.y - v.y * v.y,
                  xy = p.x * p.y - u.x * u.y - v.x * v.y;
     if (!(outside > 0)) return {};
-    const double middle = 0.5 * std::atan2(2 * xy, xx - yy),
-                 half = 0.5 * std::atan2(std::sqrt(outside), 0.5 * (xx + yy));
-    const bool ahead = dot(p, {std::cos(middle), std::sin(middle)}) > 0;
+    const double middle = 0.5 * math::atan2(2 * xy, xx - yy),
+                 half = 0.5 * math::atan2(std::sqrt(outside), 0.5 * (xx + yy));
+    const bool ahead = dot(p, {math::cos(middle), math::sin(middle)}) > 0;
     return {ahead ? middle : middle + pi, half};
 }
 
@@ -35,11 +37,11 @@ Azimuths of_corners(std::span<const Flat> corners) {
     for (const Flat& c : corners) middle.x += c.x, middle.y += c.y;
     double lo = pi, hi = -pi;
     for (const Flat& c : corners) {
-        const double off = std::atan2(cross(middle, c), dot(middle, c));
+        const double off = math::atan2(cross(middle, c), dot(middle, c));
         lo = std::min(lo, off), hi = std::max(hi, off);
     }
     if (!(hi - lo < pi)) return {};
-    return {std::atan2(middle.y, middle.x) + 0.5 * (lo + hi), 0.5 * (hi - lo)};
+    return {math::atan2(middle.y, middle.x) + 0.5 * (lo + hi), 0.5 * (hi - lo)};
 }
 
 }  // namespace

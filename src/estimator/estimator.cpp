@@ -1,15 +1,12 @@
 #include "estimator/estimator.h"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <mutex>
 #include <numeric>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 
 namespace crescent {
 
@@ -81,7 +78,7 @@ void develop(const Scene& scene, const Sites& sites, const Moments& moments, Fil
 }
 
 void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* keeper, const std::function<double(std::size_t)>& work) {
-    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         if (watch.stop.load(std::memory_order_relaxed) || (keeper && keeper->holds(k))) return;
         const double units = work(k);
         if (watch.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
@@ -96,10 +93,10 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
     const Image& image = scene.experiment().image;
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
-    tbb::parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) { films[r] = Film(image.width, image.height, n[r]); });
+    parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) { films[r] = Film(image.width, image.height, n[r]); });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (keeper) keeper->begin(tiles, outputs_of(films, bad));
-    tbb::enumerable_thread_specific<std::vector<Moments>> scratch(n.size());  // a thread's tiles follow one another in it
+    PerThread<std::vector<Moments>> scratch([&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
     for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
@@ -122,7 +119,7 @@ ShapeMap shape_map(const Scene& scene) {
     const Image& image = scene.experiment().image;
     ShapeMap map{image.width, image.height, {}};
     map.shape.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), -1);
-    tbb::parallel_for(0, image.height, [&](int j) {
+    parallel_for(0, image.height, [&](int j) {
         for (int i = 0; i < image.width; ++i)
             if (const auto hit = scene.primary(i, j))
                 map.shape[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i)] = static_cast<std::int16_t>(hit->shape);
@@ -142,11 +139,11 @@ Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64
 std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const Box& box,
                                    std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn) {
     std::vector<float> all;
-    std::mutex lock;
+    Mutex lock;
     drawn = 0;
     std::vector<TileBox> tiles;
     for (const TileBox& t : tiles_of(box.width(), box.height())) tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
-    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
             if (watch.stop.load(std::memory_order_relaxed)) return;
             std::vector<float> samples(sites.count * n);
@@ -157,7 +154,7 @@ std::vector<float> largest_samples(const Scene& scene, std::string_view sampler,
                 std::nth_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count), samples.end(), std::greater<>());
                 samples.resize(count);
             }
-            const std::lock_guard guard(lock);
+            const Guard guard(lock);
             drawn += here;
             all.insert(all.end(), samples.begin(), samples.end());
         }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
+
 namespace crescent {
 
 namespace {
@@ -18,7 +20,7 @@ double sector(const Direction& d) {
 }  // namespace
 
 Fan::Fan(const DiskPoint& point, const DiskLight& disk, const Frame<double>& about, double azimuth)
-    : axis(about.n), aside(std::cos(azimuth) * about.t + std::sin(azimuth) * about.b), to0(disk.center - point.x) {
+    : axis(about.n), aside(math::cos(azimuth) * about.t + math::sin(azimuth) * about.b), to0(disk.center - point.x) {
     const Vec3d center = to0, k = cross(axis, aside), across = k - dot(k, disk.normal) * disk.normal;
     const double size2 = dot(across, across), off = dot(k, center);
     if (!(size2 * sqr(disk.radius) > sqr(off))) return;
@@ -37,13 +39,13 @@ Fan::Fan(const DiskPoint& point, const DiskLight& disk, const Frame<double>& abo
 Direction Fan::at(double v) const {
     const Vec3d d = to0 + v * step;
     const double sin = std::max(0.0, dot(d, aside)), cos = dot(d, axis), size = 1 / std::sqrt(sin * sin + cos * cos);
-    return {sin * size, cos * size, std::atan2(sin, cos)};
+    return {sin * size, cos * size, math::atan2(sin, cos)};
 }
 
 void Fan::rise_above(const DiskPoint& point, Direction& from, Direction& to) const {  // cos(al - top) > 0
     const double along = dot(point.frame.n, axis), across = dot(point.frame.n, aside),
                  size = std::sqrt(along * along + across * across);
-    double top = std::atan2(across, along);
+    double top = math::atan2(across, along);
     if (top < -pi / 2) top += 2 * pi;
     if (from.al < top - pi / 2) from = {-along / size, across / size, top - pi / 2};
     if (to.al > top + pi / 2) to = {along / size, -across / size, top + pi / 2};

@@ -7,6 +7,7 @@
 #include "estimator/fan.h"
 #include "estimator/kronrod.h"
 #include "estimator/lobe_along.h"
+#include "math/functions.h"
 
 namespace crescent {
 
@@ -90,7 +91,7 @@ public:
                 hidden_.push_back(part);
         const bool lobe = point_.surface.rho_s > 0;
         const Vec3d axis = point_.frame.to_local(fan.axis), aside = point_.frame.to_local(fan.aside);
-        const double width = about_lobe_ ? shape_.width_at(std::cos(phi)) : shape_.width;
+        const double width = about_lobe_ ? shape_.width_at(math::cos(phi)) : shape_.width;
         Sum sum;
         each_open_part(hidden_, [&](Interval open) {
             Direction from = fan.at(open.lo), to = fan.at(open.hi);
@@ -102,7 +103,7 @@ public:
             const Measured along = lobe_along(point_, axis, aside, part, width);
             sum.lobe += along.value, sum.inner += along.error;
         });
-        return light_.whole() ? sum : (light_.half * std::cos(tau)) * sum;
+        return light_.whole() ? sum : (light_.half * math::cos(tau)) * sum;
     }
 
 private:
@@ -110,10 +111,10 @@ private:
         const Blocker* blocker;
         Azimuths azimuths;
     };
-    double azimuth(double tau) const { return light_.middle + (light_.whole() ? tau : light_.half * std::sin(tau)); }
+    double azimuth(double tau) const { return light_.middle + (light_.whole() ? tau : light_.half * math::sin(tau)); }
     void cut(double phi, std::vector<double>& at) const {
         const double off = std::remainder(phi - light_.middle, 2 * pi);
-        if (std::fabs(off) < light_.half) at.push_back(light_.whole() ? off : std::asin(off / light_.half));
+        if (std::fabs(off) < light_.half) at.push_back(light_.whole() ? off : math::asin(off / light_.half));
     }
 
     const DiskPoint& point_;

@@ -2,13 +2,14 @@
 
 #include "arms/all.h"
 #include "base/errors.h"
+#include "estimator/isas.h"
 
 namespace crescent {
 
 KernelTable scalar_kernels();
-KernelTable sse4_kernels();
-KernelTable avx2_kernels();
-KernelTable avx512_kernels();
+#define CRESCENT_DECLARE(name, needs) KernelTable name##_kernels();
+CRESCENT_ISAS(CRESCENT_DECLARE)
+#undef CRESCENT_DECLARE
 
 void Moments::resize(std::size_t sites, std::size_t disks) {
     for (auto* sums : {&g, &g_lobe, &square}) sums->resize(sites);
@@ -20,42 +21,64 @@ void Moments::resize(std::size_t sites, std::size_t disks) {
     for (auto* counts : {&horizon, &hits, &bad}) counts->resize(sites);
 }
 
-std::vector<std::string> isas() {
-    std::vector<std::string> out = {"scalar"};
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("sse4.2")) out.push_back("sse4");
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c")) out.push_back("avx2");
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd"))
-        out.push_back("avx512");
-#endif
-    return out;
-}
-
 namespace {
 
-// Each maker is compiled for its own instruction set, so only those that this machine has may be called.
+struct Isa {
+    const char* name;
+    bool here;
+    KernelTable (*kernels)();  // compiled for this set: called where the machine has it alone
+};
+
+const std::vector<Isa>& built() {
+    static const std::vector<Isa> all = [] {
+        std::vector<Isa> list = {{"scalar", true, scalar_kernels}};
+#define has CRESCENT_MACHINE_HAS
+#define CRESCENT_ADD(name, needs) list.push_back({#name, needs, name##_kernels});
+        CRESCENT_ISAS(CRESCENT_ADD)
+#undef CRESCENT_ADD
+#undef has
+        return list;
+    }();
+    return all;
+}
+
 std::vector<KernelTable> tables_here() {
     std::vector<KernelTable> tables;
-    for (const std::string& isa : isas()) {
-        tables.push_back(isa == "avx512" ? avx512_kernels() : isa == "avx2" ? avx2_kernels() : isa == "sse4" ? sse4_kernels() : scalar_kernels());
-    }
+    for (const Isa& isa : built())
+        if (isa.here) tables.push_back(isa.kernels());
     return tables;
 }
 
 }  // namespace
 
+std::vector<std::string> isas() {
+    std::vector<std::string> out;
+    for (const Isa& isa : built())
+        if (isa.here) out.push_back(isa.name);
+    return out;
+}
+
+std::string all_isas() {
+    std::string out;
+    for (const Isa& isa : built()) out += (out.empty() ? "" : ", ") + std::string(isa.name);
+    return out;
+}
+
 const KernelTable& kernels_for(const std::string& isa) {
     static const std::vector<KernelTable> tables = tables_here();
     const std::string wanted = isa.empty() ? std::string(tables.back().isa) : isa;
-    for (const KernelTable& table : tables) {
+    for (const KernelTable& table : tables)
         if (table.isa == wanted) return table;
+    std::vector<std::string> names;
+    for (const Isa& known : built()) {
+        names.push_back(known.name);
+        if (wanted != known.name) continue;
+        throw InputError({"--isa", 0, 0},
+                         "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
     }
-    for (const char* known : {"scalar", "sse4", "avx2", "avx512"}) {
-        if (wanted == known) throw InputError({"--isa", 0, 0}, "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
-    }
-    const std::string near = nearest(wanted, {"scalar", "sse4", "avx2", "avx512"});
-    throw InputError({"--isa", 0, 0}, "expected scalar, sse4, avx2 or avx512, not '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    const std::string near = nearest(wanted, names);
+    const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
+    throw InputError({"--isa", 0, 0}, "expected one of " + all_isas() + ", not '" + wanted + "'" + hint);
 }
 
 int arm_index(std::string_view sampler) {

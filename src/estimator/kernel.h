@@ -48,8 +48,10 @@ struct KernelTable {
     std::array<std::array<Kernel, 4>, Arms::count> kernels;
 };
 
-/// scalar, sse4, avx2, avx512: those this machine can run, best last.
+/// The instruction sets of isas.h that this machine can run, best last.
 std::vector<std::string> isas();
+/// All that this build has kernels for, for messages: "scalar, sse4, avx2, avx512".
+std::string all_isas();
 /// The table for a name of isas(); "" means the best. Throws InputError for an unknown or unsupported name.
 const KernelTable& kernels_for(const std::string& isa);
 /// Index in the list of arms, or -1.

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <oneapi/tbb/parallel_for.h>
 
+#include "base/parallel.h"
+#include "math/functions.h"
+#include "math/gauss.h"
 #include "scene/brdf.h"
 
 namespace crescent {
@@ -22,15 +23,15 @@ template <class Call> double integrate(Call&& f, double a, double b, double tole
 double phong_albedo(double s, double cos_o) {
     const double sin_o = std::sqrt(1 - cos_o * cos_o);
     const auto ring = [&](double al) {
-        const double c = std::cos(al), a = c * cos_o, b = std::sin(al) * sin_o;
+        const double c = math::cos(al), a = c * cos_o, b = math::sin(al) * sin_o;
         double band = 2 * pi * a;
         if (b > a) {
-            const double phi = std::acos(-a / b);
-            band = 2 * (a * phi + b * std::sin(phi));
+            const double phi = math::acos(-a / b);
+            band = 2 * (a * phi + b * math::sin(phi));
         }
-        return std::pow(c, s) * std::sin(al) * band;
+        return math::pow(c, s) * math::sin(al) * band;
     };
-    const double horizon = std::asin(cos_o);                      // al where the lobe first dips under the horizon
+    const double horizon = math::asin(cos_o);                      // al where the lobe first dips under the horizon
     const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
     const double cut = std::min(horizon, wide);
     return (s + 2) / (2 * pi) * (integrate(ring, 0, cut) + integrate(ring, cut, wide));
@@ -42,15 +43,15 @@ double phong_albedo(double s, double cos_o) {
 /// `below`: the u of an m at a given cosine.
 template <class L, class Height, class Below, class Density>
 double half_vector_albedo(const L& lobe, double cos_o, Height height, Below below, Density density) {
-    using Rule = boost::math::quadrature::gauss<double, 30>;
-    const double theta_o = std::acos(cos_o), sin_o = std::sin(theta_o);
+    using Rule = math::Gauss<30>;
+    const double theta_o = math::acos(cos_o), sin_o = math::sin(theta_o);
     const Vec3<double> wo = {sin_o, 0, cos_o};
     const auto ring = [&](double u) {
         const double c = height(u), sin = std::sqrt(std::max(0.0, 1 - c * c));
         const double cut = (0.5 / c - c) * cos_o, all = sin_o * sin;
-        const double last = cut <= -all ? pi : cut >= all ? 0 : std::acos(cut / all);
+        const double last = cut <= -all ? pi : cut >= all ? 0 : math::acos(cut / all);
         const auto at = [&](double phi) {
-            const Vec3<double> m = {sin * std::cos(phi), sin * std::sin(phi), c};
+            const Vec3<double> m = {sin * math::cos(phi), sin * math::sin(phi), c};
             const double d = dot(wo, m);
             const Vec3<double> wi = 2 * d * m - wo;
             return d > 0 && wi.z > 0 ? lobe(wo, wi) * wi.z * 4 * d / density(c) : 0.0;
@@ -63,15 +64,15 @@ double half_vector_albedo(const L& lobe, double cos_o, Height height, Below belo
     };
     // u rises as m tilts away from n or towards it: from m = n to where the first wi dips, and on to where the last one
     // has.
-    const double upright = below(1), dips = below(std::cos(0.5 * (pi / 2 - theta_o))),
-                 gone = below(std::cos(0.5 * (pi / 2 + theta_o)));
+    const double upright = below(1), dips = below(math::cos(0.5 * (pi / 2 - theta_o))),
+                 gone = below(math::cos(0.5 * (pi / 2 + theta_o)));
     return std::fabs(piece(upright, dips) + piece(dips, gone));
 }
 
 double blinn_albedo(double s, double cos_o) {
     return half_vector_albedo(
-        BlinnPhongLobe<double>(s, 0), cos_o, [s](double u) { return std::pow(u, 1 / (s + 1)); },
-        [s](double c) { return std::pow(c, s + 1); }, [s](double c) { return (s + 1) / (2 * pi) * std::pow(c, s); });
+        BlinnPhongLobe<double>(s, 0), cos_o, [s](double u) { return math::pow(u, 1 / (s + 1)); },
+        [s](double c) { return math::pow(c, s + 1); }, [s](double c) { return (s + 1) / (2 * pi) * math::pow(c, s); });
 }
 
 double ggx_albedo(double alpha, double cos_o) {
@@ -107,19 +108,19 @@ double through_five(const std::array<double, 5>& v, double t) {
 }  // namespace
 
 LobeAlbedo::LobeAlbedo(BrdfKind kind, double s, double alpha) {
-    const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, std::cos(theta)); };
+    const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta)); };
     const double good = kind == BrdfKind::phong ? 1e-7 : 1e-6;  // half vectors take forty times as long
     const double own = kind == BrdfKind::phong ? 1e-10 : 1e-6;
     constexpr int even = 8, halvings = 12;
     std::vector<Cell> open(even), next;
     std::vector<std::array<double, 4>> between;
     for (std::size_t k = 0; k < even; ++k) open[k] = {pi / 2 * static_cast<double>(k) / even, pi / 2 / even, {}, 0};
-    tbb::parallel_for(std::size_t{0}, open.size() * 5, [&](std::size_t i) {
+    parallel_for(std::size_t{0}, open.size() * 5, [&](std::size_t i) {
         open[i / 5].value[i % 5] = exact(open[i / 5].from + open[i / 5].size * static_cast<double>(i % 5) / 4);
     });
     for (int depth = 0; !open.empty(); ++depth, std::swap(open, next)) {
         between.resize(open.size());  // what measures a cell's error is among its halves' nodes
-        tbb::parallel_for(std::size_t{0}, open.size() * 4, [&](std::size_t i) {
+        parallel_for(std::size_t{0}, open.size() * 4, [&](std::size_t i) {
             between[i / 4][i % 4] = exact(open[i / 4].from + open[i / 4].size * (static_cast<double>(i % 4) + 0.5) / 4);
         });
         next.clear();
@@ -148,11 +149,11 @@ const LobeAlbedo::Cell& LobeAlbedo::cell(double theta) const {
 }
 
 double LobeAlbedo::operator()(double cos_o) const {
-    const double theta = std::acos(std::clamp(cos_o, -1.0, 1.0));
+    const double theta = math::acos(std::clamp(cos_o, -1.0, 1.0));
     const Cell& c = cell(theta);
     return through_five(c.value, 4 * (theta - c.from) / c.size);
 }
 
-double LobeAlbedo::error(double cos_o) const { return cell(std::acos(std::clamp(cos_o, -1.0, 1.0))).error; }
+double LobeAlbedo::error(double cos_o) const { return cell(math::acos(std::clamp(cos_o, -1.0, 1.0))).error; }
 
 }  // namespace crescent

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/kronrod.h"
+#include "math/functions.h"
 
 namespace crescent {
 
@@ -46,8 +47,8 @@ double LobeShape::width_at(double c) const {  // (al cos / width)^2 + (al sin / 
 
 Measured lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width) {
     const auto f = [&](double al) {
-        const double sin = std::sin(al);
-        const Vec3d wi = std::cos(al) * axis + sin * aside;
+        const double sin = math::sin(al);
+        const Vec3d wi = math::cos(al) * axis + sin * aside;
         return wi.z > 0 ? point.lobe(wi) * wi.z * sin : 0.0;
     };
     if (part.hi - part.lo < 0.3 * width) return panel(kronrod_7, f, part.lo, part.hi, 0, 2);

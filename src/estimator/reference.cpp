@@ -8,6 +8,7 @@
 #include "estimator/disk_quadrature.h"
 #include "estimator/estimator.h"
 #include "estimator/lobe_albedo.h"
+#include "math/functions.h"
 #include "simd/random.h"
 
 namespace crescent {
@@ -131,8 +132,8 @@ bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, do
     const auto kind = static_cast<BrdfKind>(sites.lobe);
     const double s = kind == BrdfKind::ggx ? 2 / sqr(static_cast<double>(sites.alpha[i])) : static_cast<double>(sites.s[i]);
     const double across = kind == BrdfKind::phong ? 1 : wo.z, far = std::sqrt(dot(c, c)), radius = static_cast<double>(disk.radius);
-    const double off = std::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
-    const bool peak_is_near = off < std::atan2(radius, far) + 8 / std::sqrt(s);
+    const double off = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
+    const bool peak_is_near = off < math::atan2(radius, far) + 8 / std::sqrt(s);
     return peak_is_near && n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
 }
 

@@ -59,7 +59,7 @@ void TileKeeper::restore(Journal::Bytes record) {
 }
 
 void TileKeeper::add(std::size_t tile, double units) {
-    const std::lock_guard guard(lock_);
+    const Guard guard(lock_);
     units_[tile] = units;
     waiting_.push_back(tile);
     if (std::chrono::duration<double>(Clock::now() - start_).count() < patience_s_) return;

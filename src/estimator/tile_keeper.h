@@ -3,12 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/journal.h"
+#include "base/parallel.h"
 #include "base/watch.h"
 #include "estimator/sites.h"
 
@@ -61,7 +61,7 @@ private:
     std::vector<double> units_;  // of each finished tile; -1: not finished
     double restored_ = 0;
     Clock::time_point start_;
-    std::mutex lock_;                   // guards what follows and the journal
+    Mutex lock_;                   // guards what follows and the journal
     std::vector<std::size_t> waiting_;  // finished, not yet written
 };
 

@@ -1,9 +1,10 @@
 #include "estimator/whole_disk.h"
 
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "math/functions.h"
+#include "math/gauss.h"
 
 namespace crescent {
 
@@ -18,12 +19,12 @@ struct PolarRule {
 
     template <unsigned radial> static PolarRule make(int angular) {
         PolarRule rule;
-        using G = boost::math::quadrature::gauss<double, radial>;
+        using G = math::Gauss<radial>;
         const auto ring = [&](double abscissa, double weight) {
             const double r = std::sqrt(0.5 * (1 + abscissa));
             for (int k = 0; k < angular; ++k) {
                 const double phi = 2 * pi * (k + 0.5) / angular;
-                rule.nodes.push_back({r * std::cos(phi), r * std::sin(phi), 0.5 * weight * pi / angular});
+                rule.nodes.push_back({r * math::cos(phi), r * math::sin(phi), 0.5 * weight * pi / angular});
             }
         };
         for (std::size_t k = 0; k < G::abscissa().size(); ++k) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "experiment/draft.h"
+#include "math/functions.h"
 
 namespace crescent {
 
@@ -125,7 +126,7 @@ private:
 
     bool unit() {
         std::vector<double>& v = value_.numbers;
-        const double length = std::hypot(v[0], v[1], v[2]);
+        const double length = math::hypot(v[0], v[1], v[2]);
         if (length == 0) return fail("expected a unit vector, found the zero vector");
         if (std::abs(length - 1) > unit_tolerance)
             return fail(

@@ -16,9 +16,11 @@ namespace crescent::math {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-constexpr Two pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53}, half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
+constexpr Two pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
+constexpr Two half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr double third_of_half_pi = -0x1.f1976b7ed8fbcp-110;  // what pi/2 has beyond half_pi
-constexpr double upper = 0x1.921fb544p+0, middle = 0x1.0b4611a6p-34, lower = 0x1.3198a2e037073p-69;  // pi/2, 33 bits a part
+// pi/2 once more: 33 bits, 32 bits, the rest.
+constexpr double upper = 0x1.921fb544p+0, middle = 0x1.0b4611a6p-34, lower = 0x1.3198a2e037073p-69;
 constexpr double round_magic = 0x1.8p52;
 
 /// x = n pi/2 + r, n modulo 4.
@@ -65,7 +67,10 @@ constexpr auto angles = [] {
     for (int j = 1; j <= 16; ++j) {
         const Two c = {j / 16.0, 0}, c2 = c * c, over = c2 + 1.0, ratio = c2 / over;
         Two term = c / over, sum = term;
-        for (int n = 1; n < 110; ++n) sum = sum + (term = term * ratio * (2.0 * n) / Two{2.0 * n + 1, 0});
+        for (int n = 1; n < 110; ++n) {
+            term = term * ratio * (2.0 * n) / Two{2.0 * n + 1, 0};
+            sum = sum + term;
+        }
         table[static_cast<std::size_t>(j)] = sum;
     }
     return table;
@@ -77,7 +82,8 @@ double upper_part(double a) { return std::bit_cast<double>(std::bit_cast<std::ui
 /// atan(y/x) for 0 <= y <= x, x > 0. c has 4 bits: its products with either half of x are exact.
 double first_octant(double y, double x) {
     const double ratio = y / x, c = ratio < 1.5 / 16 ? 0 : ((16 * ratio + round_magic) - round_magic) / 16;
-    const double high = upper_part(x), t = c == 0 ? ratio : ((y - c * high) - c * (x - high)) / (x + c * y);
+    const double high = upper_part(x);
+    const double t = c == 0 ? ratio : ((y - c * high) - c * (x - high)) / (x + c * y);
     const double z = t * t, w = z * z;
     const double even = -1.0 / 3 + w * (-1.0 / 7 + w * (-1.0 / 11 + w * (-1.0 / 15)));
     const double odd = 1.0 / 5 + w * (1.0 / 9 + w * (1.0 / 13));
@@ -154,8 +160,10 @@ double atan2(double y, double x) {
     const double ay = std::fabs(y);
     double ax = std::fabs(x);
     if (ay == 0 || ax == infinity || ay == infinity || ax == 0) {  // on an axis, or as good as
-        const double lies = ay == infinity ? (ax == infinity ? 0.25 * pi.hi : half_pi.hi) : ay == 0 || ax == infinity ? 0 : half_pi.hi;
-        return std::copysign(std::signbit(x) ? (ay == infinity && ax == infinity ? 0.75 * pi.hi : pi.hi - lies) : lies, y);
+        const bool corner = ax == infinity && ay == infinity, along_x = ay == 0 || (ax == infinity && !corner);
+        const double lies = corner ? 0.25 * pi.hi : along_x ? 0 : half_pi.hi;
+        const double behind = corner ? 0.75 * pi.hi : pi.hi - lies;
+        return std::copysign(std::signbit(x) ? behind : lies, y);
     }
     const double larger = ax > ay ? ax : ay, scale = scale_of(larger);
     const double sy = ay * scale;

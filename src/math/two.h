@@ -1,7 +1,7 @@
 // A number kept in two doubles, hi + lo with |lo| <= ulp(hi) / 2: about 106 bits, for what functions.h must not round.
 //
-// T. J. Dekker 1971, "A floating-point technique for extending the available precision", Numer. Math. 18, and D. E. Knuth,
-// TAOCP 2, 4.2.2: sums and products of two doubles that lose nothing, from + - x alone, without fused multiply-add.
+// T. J. Dekker 1971, "A floating-point technique for extending the available precision", Numer. Math. 18, and
+// D. E. Knuth, TAOCP 2, 4.2.2: sums and products of two doubles that lose nothing, from + - x alone.
 // Everything here is constexpr: the tables of functions.h are series that the compiler sums.
 #pragma once
 

@@ -1,15 +1,15 @@
 #include "meters/evidence.h"
 
-#include <oneapi/tbb/parallel_for.h>
+#include "base/parallel.h"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "arms/all.h"
 #include "estimator/estimator.h"
 #include "estimator/furnace_sites.h"
+#include "math/distributions.h"
+#include "math/functions.h"
 #include "meters/evidence_measure.h"
 #include "meters/meters.h"
 #include "simd/random.h"
@@ -26,7 +26,7 @@ struct FurnaceSubject {
 
     /// X of the combined furnace for u, R = n: the angle about R does not matter.
     double weight(double u) const {
-        const double cos = std::exp(std::log(u) / (s + 1));
+        const double cos = math::exp(math::log(u) / (s + 1));
         const double p = (s + 1) / (2 * pi) * (u / cos);
         const double lobe = (s + 2) / (2 * pi) * (u / cos);
         return (cos / p) * (rho_d / pi + rho_s * lobe);
@@ -56,7 +56,7 @@ double unit_double(std::uint64_t h, int bits) { return static_cast<double>(h >> 
 
 void double_furnace(const FurnaceSubject& subject, int bits, Watch& watch, Evidence& out) {
     std::vector<std::vector<double>> means(furnace_rungs.size(), std::vector<double>(replicates));
-    tbb::parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
+    parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
         double sum = 0;
         std::uint64_t j = 0;
         for (std::size_t rung = 0; rung < furnace_rungs.size() && !watch.stop; ++rung) {
@@ -75,7 +75,7 @@ LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
     constexpr std::uint64_t n = 100'000;
     const double theta = theta_deg * pi / 180;
     Site<double> site{};
-    site.wo = {std::sin(theta), 0, std::cos(theta)};
+    site.wo = {math::sin(theta), 0, math::cos(theta)};
     site.s = subject.s;
     const Cosine<double> cosine(site);
     const Vec3<double> R = mirror(site.wo);
@@ -86,7 +86,7 @@ LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
         lost += dot(wi, R) <= 0;  // the support of the Phong pdf, however small its power gets
     }
     const double p = static_cast<double>(lost) / static_cast<double>(n);
-    return {theta_deg, p, std::sqrt(p * (1 - p) / static_cast<double>(n)), (1 - std::cos(theta)) / 2};
+    return {theta_deg, p, std::sqrt(p * (1 - p) / static_cast<double>(n)), (1 - math::cos(theta)) / 2};
 }
 
 /// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
@@ -97,9 +97,9 @@ FalseRejection false_rejection(const FurnaceSubject& subject, double s, double a
     lambert.rho_d = {1, 1, 1}, lambert.rho_s = 0, lambert.s = s;
     FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
     std::vector<int> rejected(runs);
-    const double bound = boost::math::quantile(boost::math::complement(boost::math::students_t(static_cast<double>(n - 1)), alpha / 2));
+    const double bound = math::student_two_sided_quantile(static_cast<double>(n - 1), alpha);
     constexpr int share = 16;
-    tbb::parallel_for(0, (runs + share - 1) / share, [&](int part) {
+    parallel_for(0, (runs + share - 1) / share, [&](int part) {
         const int first = part * share, count = std::min(share, runs - first);
         Sites sites = furnace_sites(lambert, static_cast<std::size_t>(count));
         for (std::uint32_t& pixel : sites.pixel) pixel += static_cast<std::uint32_t>(first);
@@ -112,9 +112,9 @@ FalseRejection false_rejection(const FurnaceSubject& subject, double s, double a
         }
     });
     for (int r : rejected) out.rejected += r;
-    using Binomial = boost::math::binomial_distribution<double>;
-    out.low = Binomial::find_lower_bound_on_p(runs, out.rejected, 0.025);
-    out.high = Binomial::find_upper_bound_on_p(runs, out.rejected, 0.025);
+    const math::Interval rate = math::binomial_interval(runs, out.rejected, 0.025);
+    out.low = rate.low;
+    out.high = rate.high;
     return out;
 }
 
@@ -143,7 +143,7 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     for (int bits : {24, 32, 53}) {
         double_furnace(subject, bits, watch, out);
         const double k = (subject.s - 1) / (subject.s + 1);
-        out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - std::exp2(-bits * (1 - k)))});
+        out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
     for (double theta = 0; theta <= 75; theta += 7.5) out.lost.push_back(lost_support(subject, theta));
     for (double s : {2.0, 3.0, 8.0, 32.0, 128.0}) out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));

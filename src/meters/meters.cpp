@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/errors.h"
+#include "math/functions.h"
 
 namespace crescent {
 
@@ -166,7 +167,7 @@ Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y
     const double count = static_cast<double>(n.size());
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (std::size_t i = 0; i < n.size(); ++i) {
-        const double a = std::log(static_cast<double>(n[i])), b = std::log(y[i]);
+        const double a = math::log(static_cast<double>(n[i])), b = math::log(y[i]);
         sx += a, sy += b, sxx += a * a, sxy += a * b;
     }
     const double spread = sxx - sx * sx / count;
@@ -174,7 +175,7 @@ Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y
     if (n.size() < 3) return line;
     double residual = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
-        residual += square(std::log(y[i]) - sy / count - line.slope * (std::log(static_cast<double>(n[i])) - sx / count));
+        residual += square(math::log(y[i]) - sy / count - line.slope * (math::log(static_cast<double>(n[i])) - sx / count));
     line.half_width = 1.645 * std::sqrt(residual / (count - 2) / spread);  // normal 90 %
     return line;
 }

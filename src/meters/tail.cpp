@@ -4,13 +4,15 @@
 #include <cmath>
 #include <vector>
 
+#include "math/functions.h"
+
 namespace crescent {
 
 namespace {
 
 double mean_log1p(const std::vector<double>& x, double theta) {
     double sum = 0;
-    for (double v : x) sum += std::log1p(-theta * v);
+    for (double v : x) sum += math::log1p(-theta * v);
     return sum / static_cast<double>(x.size());
 }
 
@@ -24,12 +26,12 @@ double posterior_theta(const std::vector<double>& x) {
         const double t = 1 / x.back() + (1 - std::sqrt(grid / (j - 0.5))) / (3 * quartile);
         const double k = mean_log1p(x, t);
         theta.push_back(t);
-        likelihood.push_back(n * (std::log(-t / k) - k - 1));
+        likelihood.push_back(n * (math::log(-t / k) - k - 1));
     }
     double sum = 0, weights = 0;
     const double top = *std::max_element(likelihood.begin(), likelihood.end());
     for (std::size_t j = 0; j < theta.size(); ++j) {
-        const double w = std::exp(likelihood[j] - top);
+        const double w = math::exp(likelihood[j] - top);
         if (!(w > 0)) continue;
         sum += w * theta[j];
         weights += w;
@@ -67,7 +69,7 @@ std::optional<Tail> fit_tail(std::span<const double> largest) { return fit(large
 std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
     const std::optional<Tail> wide = fit_tail(largest), deep = fit_tail(largest.first(largest.empty() ? 0 : 1 + (largest.size() - 1) / 8));
     if (!wide || !deep) return wide;
-    return std::fabs(wide->k - deep->k) > 2 * std::hypot(wide->se, deep->se) ? deep : wide;
+    return std::fabs(wide->k - deep->k) > 2 * math::hypot(wide->se, deep->se) ? deep : wide;
 }
 
 }  // namespace crescent

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/errors.h"
+#include "math/functions.h"
 #include "plates/canvas_surface.h"
 
 namespace crescent::plates {
@@ -54,7 +55,7 @@ void Canvas::dot(double x, double y, double radius, const Colour& c) {
 }
 
 void Canvas::arrow(Point from, Point to, const Colour& c, double width) {
-    double dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy);
+    double dx = to.x - from.x, dy = to.y - from.y, length = math::hypot(dx, dy);
     if (!(length > 0)) return;
     dx /= length, dy /= length;
     double head = 4.5 * width, half = 1.7 * width;

@@ -4,6 +4,7 @@
 
 #include "arms/all.h"
 #include "films/film.h"
+#include "math/functions.h"
 
 namespace crescent::plates {
 
@@ -12,7 +13,7 @@ namespace {
 // The surface the density is shown for: the first shape with a lobe, as the experiment's s is read from it.
 Site<double> site_of(const Experiment& e, double s, double tilt) {
     Site<double> site{};
-    site.wo = {-std::sin(tilt), 0, std::cos(tilt)};
+    site.wo = {-math::sin(tilt), 0, math::cos(tilt)};
     site.s = s;
     for (const Shape& shape : e.shapes) {
         if (shape.material.rho_s <= 0) continue;
@@ -44,6 +45,6 @@ Density::Density(const Experiment& e, const std::string& sampler, double s, doub
     });
 }
 
-double Density::in_plane(double angle) const { return pdf_({std::sin(angle), 0, std::cos(angle)}); }
+double Density::in_plane(double angle) const { return pdf_({math::sin(angle), 0, math::cos(angle)}); }
 
 }  // namespace crescent::plates

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "math/functions.h"
 #include "plates/words.h"
 
 namespace crescent::plates {
@@ -15,8 +16,8 @@ namespace {
 struct Axes {
     Rect plot;
     double x0 = 0, x1 = 1, y0 = 0, y1 = 1;  // natural logarithms
-    double x(double n) const { return plot.x + plot.w * (std::log(n) - x0) / (x1 - x0); }
-    double y(double v) const { return plot.bottom() - plot.h * (std::log(v) - y0) / (y1 - y0); }
+    double x(double n) const { return plot.x + plot.w * (math::log(n) - x0) / (x1 - x0); }
+    double y(double v) const { return plot.bottom() - plot.h * (math::log(v) - y0) / (y1 - y0); }
 };
 
 // Those of the arms that the plate shows; of all arms where it names none.
@@ -42,7 +43,7 @@ Axes scale(const std::vector<const Ladder*>& ladders, const Rect& plot) {
         }
     }
     if (v1 <= 0) v0 = v1 = 1;
-    Axes a{plot, std::log(n0) - 0.15, std::log(n1) + 0.15, std::log(v0 / 1.4), std::log(v1 * 1.4)};
+    Axes a{plot, math::log(n0) - 0.15, math::log(n1) + 0.15, math::log(v0 / 1.4), math::log(v1 * 1.4)};
     return a;
 }
 
@@ -58,11 +59,11 @@ void draw_axes(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& la
         c.text({x - 40, a.plot.bottom() + 6, 80, 20}, count(n), with(with_px(small_text, 16), Align::centre));
         last = x;
     }
-    int decades = static_cast<int>(std::ceil((a.y1 - a.y0) / std::log(10.0)));
-    for (int p = static_cast<int>(std::floor(a.y0 / std::log(10.0))); p <= std::ceil(a.y1 / std::log(10.0)); ++p) {
+    int decades = static_cast<int>(std::ceil((a.y1 - a.y0) / math::log(10.0)));
+    for (int p = static_cast<int>(std::floor(a.y0 / math::log(10.0))); p <= std::ceil(a.y1 / math::log(10.0)); ++p) {
         for (int m : {1, 2, 5}) {
-            double v = m * std::pow(10.0, p);
-            if ((m != 1 && decades > 2) || std::log(v) < a.y0 || std::log(v) > a.y1) continue;
+            double v = m * math::pow(10.0, p);
+            if ((m != 1 && decades > 2) || math::log(v) < a.y0 || math::log(v) > a.y1) continue;
             c.line(a.plot.x, a.y(v), a.plot.right(), a.y(v), rule, 1);
             c.text({a.plot.x - 66, a.y(v) - 11, 58, 22}, number(v, 3),
                    with(with(with_px(small_text, 16), Align::right), Vertical::middle));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/functions.h"
 #include "plates/sheet.h"
 
 namespace crescent::plates {
@@ -17,7 +18,7 @@ constexpr double degree = std::numbers::pi / 180;
 struct Frame {
     double x, y, radius;
     Canvas::Point at(double angle, double fraction) const {
-        return {x + radius * fraction * std::sin(angle), y - radius * fraction * std::cos(angle)};
+        return {x + radius * fraction * math::sin(angle), y - radius * fraction * math::cos(angle)};
     }
 };
 
@@ -33,7 +34,7 @@ std::string angle_name(int deg, int tilt_deg, bool roomy) {
 
 // The smallest round step that reaches the peak in at most `rings` rings.
 double ring_step(double peak, int rings) {
-    double least = peak / rings, power = std::pow(10, std::floor(std::log10(least)));
+    double least = peak / rings, power = math::pow(10, std::floor(math::log10(least)));
     for (double lead : {1.0, 2.0, 2.5, 3.0, 4.0, 5.0}) {
         if (lead * power >= least * (1 - 1e-9)) return lead * power;
     }
@@ -50,7 +51,7 @@ void draw_rays(Canvas& c, const Frame& f, double tilt) {
                         a < 0 ? Align::right : a > 0 ? Align::left : Align::centre);
         double x = a < 0 ? p.x - 80 : a > 0 ? p.x : p.x - 40;
         std::string name = angle_name(a, int(std::lround(tilt / degree)), f.radius >= 110);
-        c.text({x, p.y - 11 - 6 * std::cos(a * degree), 80, 22}, name, how);
+        c.text({x, p.y - 11 - 6 * math::cos(a * degree), 80, 22}, name, how);
     }
     Canvas::Point r = f.at(tilt, 1);
     c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);

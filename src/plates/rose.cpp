@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "display/turbo.h"
+#include "math/functions.h"
 #include "plates/density.h"
 #include "plates/polar.h"
 #include "plates/sheet.h"
@@ -22,7 +23,7 @@ constexpr double tilt_deg = 30;
 // At the right of each half, for the colour bar and the legend.
 constexpr double bar_room = 128;
 // The dome is seen from 45 deg above the surface, across the plane of incidence.
-const double up = std::sin(45 * degree), away = std::cos(45 * degree);
+const double up = math::sin(45 * degree), away = math::cos(45 * degree);
 
 struct Dome {
     double x = 0, y = 0, radius = 0;  // centre of the base on the sheet
@@ -33,7 +34,7 @@ struct Dome {
 };
 
 Direction from_angles(double theta, double phi) {
-    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    return {math::sin(theta) * math::cos(phi), math::sin(theta) * math::sin(phi), math::cos(theta)};
 }
 
 // The dome's pixels: what lies on the sphere towards the viewer and above the surface.
@@ -79,7 +80,7 @@ void draw_grid(Canvas& c, const Dome& dome) {
     std::vector<Canvas::Point> rim;
     for (int k = 0; k <= 120; ++k) {
         double a = k * 1.5 * degree;
-        rim.push_back({dome.x + dome.radius * std::cos(a), dome.y - dome.radius * std::sin(a)});
+        rim.push_back({dome.x + dome.radius * math::cos(a), dome.y - dome.radius * math::sin(a)});
     }
     c.polyline(rim, muted, 2);
 }
@@ -106,7 +107,7 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
     sheet.canvas.paint(dome_block(part.p, part.peak, r), int(dome.x) - r, int(slot.y + head));
     draw_grid(sheet.canvas, dome);
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
-    draw_arrow(sheet.canvas, dome, {std::sin(tilt), 0, std::cos(tilt)}, "R", 1);
+    draw_arrow(sheet.canvas, dome, {math::sin(tilt), 0, math::cos(tilt)}, "R", 1);
     Rect bar{slot.right() - bar_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
     sheet.canvas.text({bar.x, slot.y - 2, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
     colour_bar(sheet, bar, part.peak, false);

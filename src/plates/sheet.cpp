@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
+
 namespace crescent::plates {
 
 namespace {
@@ -124,7 +126,7 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
 }
 
 double round_step(double top, int about) {
-    double rough = top / about, power = std::pow(10, std::floor(std::log10(rough)));
+    double rough = top / about, power = math::pow(10, std::floor(math::log10(rough)));
     double lead = rough / power;
     return (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10) * power;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
 #include "plates/canvas.h"
 
 namespace crescent::plates {
@@ -136,7 +137,7 @@ std::string number(double v, int digits) {
 std::string figure(double v, int digits) {
     if (!std::isfinite(v)) return not_finite_word(v);
     if (v == 0) return "0";
-    const double unit = std::pow(10.0, digits - 1);  // from here on all the digits stand before the point
+    const double unit = math::pow(10.0, digits - 1);  // from here on all the digits stand before the point
     if (std::abs(v) >= unit - 0.05 && std::abs(v) < 1e7) return typeset(fmt::format("{:.0f}", v));
     std::string text = typeset(fmt::format("{:#.{}g}", v, digits));
     if (text.back() == '.') text.pop_back();

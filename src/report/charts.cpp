@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "math/functions.h"
 #include "report/numbers.h"
 
 namespace crescent {
@@ -15,8 +16,8 @@ constexpr double left_margin = 58, right_margin = 16, top_margin = 12, bottom_ma
 
 std::string tick_text(double x, bool log) {
     if (log && x >= 1e4) {
-        const int power = static_cast<int>(std::lround(std::log10(x)));
-        if (std::fabs(std::pow(10.0, power) / x - 1) < 1e-9)
+        const int power = static_cast<int>(std::lround(math::log10(x)));
+        if (std::fabs(math::pow(10.0, power) / x - 1) < 1e-9)
             return fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", power);
     }
     return fmt::format("{:g}", x);
@@ -24,7 +25,7 @@ std::string tick_text(double x, bool log) {
 
 /// The round step (1, 2 or 5 times a power of ten) that cuts `length` into four to eight parts.
 double round_step(double length) {
-    const double power = std::pow(10.0, std::floor(std::log10(length / 4)));
+    const double power = math::pow(10.0, std::floor(math::log10(length / 4)));
     for (const double step : {5.0, 2.0, 1.0})
         if (length / (step * power) >= 4) return step * power;
     return power;
@@ -33,7 +34,7 @@ double round_step(double length) {
 }  // namespace
 
 double Axis::share(double x) const {
-    if (log) return std::log(x / low) / std::log(high / low);
+    if (log) return math::log(x / low) / math::log(high / low);
     return (x - low) / (high - low);
 }
 
@@ -67,13 +68,13 @@ Axis log_axis(std::string label, const std::vector<double>& values) {
     if (positive.empty()) positive = {1, 10};
     axis.low = *std::min_element(positive.begin(), positive.end()) / 1.25;
     axis.high = *std::max_element(positive.begin(), positive.end()) * 1.25;
-    const double decades = std::log10(axis.high / axis.low);
+    const double decades = math::log10(axis.high / axis.low);
     const std::vector<double> parts = decades > 4     ? std::vector<double>{1}
                                       : decades > 1.5 ? std::vector<double>{1, 3}
                                                       : std::vector<double>{1, 2, 3, 5};
-    for (int power = static_cast<int>(std::floor(std::log10(axis.low))); std::pow(10.0, power) <= axis.high; ++power)
+    for (int power = static_cast<int>(std::floor(math::log10(axis.low))); math::pow(10.0, power) <= axis.high; ++power)
         for (const double part : parts) {
-            const double tick = part * std::pow(10.0, power);
+            const double tick = part * math::pow(10.0, power);
             if (tick >= axis.low && tick <= axis.high) axis.ticks.push_back(tick);
         }
     return axis;

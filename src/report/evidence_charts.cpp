@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "math/functions.h"
+
 namespace crescent {
 namespace {
 
@@ -81,7 +83,7 @@ std::string panel(const Page& page, const Series& s) {
 
 /// The rung of the series nearest to n, on a log scale.
 const FurnaceQuantiles* nearest_rung(const Series& s, double n) {
-    const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(std::log(static_cast<double>(q->n) / n)); };
+    const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(math::log(static_cast<double>(q->n) / n)); };
     return *std::min_element(s.rungs.begin(), s.rungs.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
 }
 
@@ -154,7 +156,7 @@ std::string lost_chart(const Evidence& evidence) {
     const Axis x = linear_axis("tilt of R from the normal, degrees", angles);
     for (int i = 0; i <= 60; ++i) {
         const double angle = x.low + (x.high - x.low) * i / 60;
-        theory.push_back({angle, (1 - std::cos(angle * std::numbers::pi / 180)) / 2});
+        theory.push_back({angle, (1 - math::cos(angle * std::numbers::pi / 180)) / 2});
         shares.push_back(theory.back().y);
     }
     Chart chart(600, 320, x, linear_axis("share of the fill that is lost", shares),

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "math/functions.h"
+
 namespace crescent {
 namespace {
 
@@ -35,7 +37,7 @@ std::string figures(double x, int digits) {
     const double size = std::fabs(x);
     if (size < 1e-4 || size >= 1e9) return fmt::format("{:.{}e}", x, std::max(0, digits - 2));
     if (size >= 1000) return fmt::format("{:.0f}", x);
-    const int decimals = digits - 1 - static_cast<int>(std::floor(std::log10(size)));
+    const int decimals = digits - 1 - static_cast<int>(std::floor(math::log10(size)));
     return fmt::format("{:.{}f}", x, std::max(0, decimals));
 }
 

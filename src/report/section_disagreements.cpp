@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "math/functions.h"
 #include "report/page.h"
 
 namespace crescent {
@@ -83,9 +84,9 @@ std::string exponent_remark(const Page& page, const std::string& meter) {
 double departure(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse) {
     double mean = 0, worst = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
-        mean += std::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) / static_cast<double>(n.size());
+        mean += math::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) / static_cast<double>(n.size());
     for (std::size_t i = 0; i < n.size(); ++i)
-        worst = std::max(worst, std::fabs(std::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) - mean));
+        worst = std::max(worst, std::fabs(math::log(rmse[i] * std::sqrt(static_cast<double>(n[i]))) - mean));
     return worst;
 }
 

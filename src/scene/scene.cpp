@@ -1,8 +1,9 @@
 #include "scene/scene.h"
 
 #include <cmath>
-#include <oneapi/tbb/parallel_for.h>
 
+#include "base/parallel.h"
+#include "math/functions.h"
 #include "scene/intersect.h"
 
 namespace crescent {
@@ -36,7 +37,7 @@ Scene::Scene(const Experiment& experiment) : experiment_(experiment) {
     const Image& image = experiment_.image;
     const Vec3d forward = normalize(c.target - c.eye);
     const Vec3d right = normalize(cross(forward, c.up));
-    const double pixel = 2 * std::tan(c.vfov_deg * pi / 360) / image.height;  // at distance 1
+    const double pixel = 2 * math::tan(c.vfov_deg * pi / 360) / image.height;  // at distance 1
     forward_ = forward;
     right_ = pixel * right;
     up_ = pixel * cross(right, forward);
@@ -51,7 +52,7 @@ void Scene::remember_primaries() {
     const std::size_t width = static_cast<std::size_t>(experiment_.image.width), height = static_cast<std::size_t>(experiment_.image.height);
     if (width * height > std::size_t{1} << 20) return;
     auto all = std::make_shared<std::vector<Hit>>(width * height);
-    tbb::parallel_for(std::size_t{0}, height, [&](std::size_t j) {
+    parallel_for(std::size_t{0}, height, [&](std::size_t j) {
         for (std::size_t i = 0; i < width; ++i)
             if (const auto hit = trace(static_cast<int>(i), static_cast<int>(j))) (*all)[j * width + i] = *hit;
     });

@@ -1,5 +1,5 @@
 // Packs of floats over Highway's static target: the only intrinsics of crescent. The file that includes this one is
-// compiled with one instruction set's flags and names it in CRESCENT_ISA (sse4, avx2, avx512), which becomes the
+// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of estimator/isas.h), which becomes the
 // namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
 //
 // A pack is two vectors side by side: a sample is one long chain of dependent operations, and a second chain beside it
@@ -7,7 +7,7 @@
 #pragma once
 
 #ifndef CRESCENT_ISA
-#error "simd/pack.h wants CRESCENT_ISA: sse4, avx2 or avx512"
+#error "simd/pack.h wants CRESCENT_ISA: a name of estimator/isas.h"
 #endif
 #define HWY_COMPILE_ONLY_STATIC
 #define HWY_DISABLE_BMI2_FMA

@@ -1,3 +1,4 @@
+#include "math/functions.h"
 #include "verdicts/cell.h"
 
 #include <algorithm>
@@ -198,13 +199,13 @@ Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effo
 
 Vec3d SphereMap::direction(Vec2d at) const {
     const double sin = std::sqrt(std::max(at.x * (2 - at.x), 0.0)), phi = 2 * pi * at.y;
-    return frame.to_world({sin * std::cos(phi), sin * std::sin(phi), 1 - at.x});
+    return frame.to_world({sin * math::cos(phi), sin * math::sin(phi), 1 - at.x});
 }
 
 Vec2d SphereMap::coordinates(Vec3d w) const {
     const Vec3d off = w - frame.n, local = frame.to_local(w);
     const double near = 0.5 * dot(off, off);  // 1 - cos for unit w, without cancellation near the axis
-    const double turns = std::atan2(local.y, local.x) / (2 * pi);
+    const double turns = math::atan2(local.y, local.x) / (2 * pi);
     return {near < 0.5 ? near : 1 - local.z, turns < 0 ? turns + 1 : turns};
 }
 

@@ -1,10 +1,10 @@
 // normalised: p integrates to one. density: the draws follow p, by Pearson's chi-square over bins whose expected counts
 // come from adaptive cubature in double; bins are pooled along their ring, then outwards, until 5 are expected in each.
 #include <algorithm>
-#include <boost/math/distributions/poisson.hpp>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "math/distributions.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -109,7 +109,7 @@ Fit fit(const Density& d, const Batchful& b) {
             seen += by_ring[i];
             due += due_ring[i];
         }
-    if (seen > 0) out.outside_p = boost::math::cdf(boost::math::complement(boost::math::poisson(due + n * (1e-4 + d.mass.error + d.doubts)), seen - 1));
+    if (seen > 0) out.outside_p = math::poisson_tail(due + n * (1e-4 + d.mass.error + d.doubts), seen);
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/judge.h"
 #include "verdicts/ordered.h"
@@ -21,8 +22,8 @@ std::string company_of(const Trial& t) {
 
 }  // namespace
 
-double Efficiency::low() const { return value() * std::exp(-2 * std::hypot(relative_se, cost_se)); }
-double Efficiency::high() const { return value() * std::exp(2 * std::hypot(relative_se, cost_se)); }
+double Efficiency::low() const { return value() * math::exp(-2 * math::hypot(relative_se, cost_se)); }
+double Efficiency::high() const { return value() * math::exp(2 * math::hypot(relative_se, cost_se)); }
 
 Efficiency measure_efficiency(const Work& work, std::size_t trial) {
     Efficiency e;

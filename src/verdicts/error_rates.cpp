@@ -1,11 +1,11 @@
 #include "verdicts/error_rates.h"
 
-#include <boost/math/distributions/binomial.hpp>
 #include <chrono>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
+#include "base/parallel.h"
+#include "math/distributions.h"
 #include "simd/random.h"
 #include "verdicts/list.h"
 #include "verdicts/ordered.h"
@@ -32,10 +32,9 @@ std::string rate(std::uint64_t hits, std::uint64_t of) {
 }  // namespace
 
 std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of) {
-    using boost::math::binomial_distribution;
-    const double n = static_cast<double>(of), k = static_cast<double>(hits);
     if (of == 0) return {0, 1};
-    return {binomial_distribution<>::find_lower_bound_on_p(n, k, 0.025), hits == of ? 1.0 : binomial_distribution<>::find_upper_bound_on_p(n, k, 0.025)};
+    const math::Interval p = math::binomial_interval(static_cast<double>(of), static_cast<double>(hits), 0.025);
+    return {p.low, p.high};
 }
 
 FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch& watch) {
@@ -47,7 +46,7 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch
     Tally tally;
     std::vector<std::atomic<int>> alarms(seeds);
     watch.begin("false alarms", static_cast<double>(trials.size() * seeds));
-    oneapi::tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
         Work work(trials[i], rigour, tally, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (std::uint64_t k = 0; k < seeds; ++k) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "math/functions.h"
 #include "verdicts/print.h"
 #include "verdicts/summary.h"
 
@@ -23,21 +24,21 @@ std::string maps(const BinMap& m) {
 std::string histogram(const WeightPicture& w) {
     if (w.counts.empty()) return "";
     double top = 1;
-    for (double c : w.counts) top = std::max(top, std::log10(1 + c));
+    for (double c : w.counts) top = std::max(top, math::log10(1 + c));
     std::string out = "<figure><svg viewBox='0 0 480 200' width='400' height='170'>";
     const double width = 480.0 / static_cast<double>(w.counts.size());
     for (std::size_t i = 0; i < w.counts.size(); ++i) {
-        const double h = 180 * std::log10(1 + w.counts[i]) / top;
+        const double h = 180 * math::log10(1 + w.counts[i]) / top;
         out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class=bar />", static_cast<double>(i) * width, 190 - h, width - 0.5, h);
     }
     if (w.exceedances > 0 && w.sigma > 0) {  // what the fitted generalised Pareto law expects in each bin above its threshold
-        const auto survival = [&](double x) { return x <= w.threshold ? 1.0 : std::fabs(w.k) < 1e-6 ? std::exp(-(x - w.threshold) / w.sigma) : std::pow(std::max(1 + w.k * (x - w.threshold) / w.sigma, 0.0), -1 / w.k); };
+        const auto survival = [&](double x) { return x <= w.threshold ? 1.0 : std::fabs(w.k) < 1e-6 ? math::exp(-(x - w.threshold) / w.sigma) : math::pow(std::max(1 + w.k * (x - w.threshold) / w.sigma, 0.0), -1 / w.k); };
         out += "<polyline fill='none' stroke='#d33' stroke-width='2' points='";
         for (std::size_t i = 0; i < w.counts.size(); ++i) {
-            const double low = std::pow(10.0, w.log10_edges[i]), high = std::pow(10.0, w.log10_edges[i + 1]);
+            const double low = math::pow(10.0, w.log10_edges[i]), high = math::pow(10.0, w.log10_edges[i + 1]);
             if (low < w.threshold) continue;
             const double c = w.exceedances * (survival(low) - survival(high));
-            out += fmt::format("{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * std::log10(1 + c) / top);
+            out += fmt::format("{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * math::log10(1 + c) / top);
         }
         out += "'/>";
     }
@@ -50,7 +51,7 @@ std::string curve(const std::vector<double>& v, std::string_view colour) {
     std::string out = fmt::format("<polyline fill='none' stroke='{}' stroke-width='2' points='", colour);
     for (std::size_t i = 0; i < v.size(); ++i) {
         const double angle = (static_cast<double>(i) - 89) * 3.14159265358979 / 180, r = 180 * v[i] / top;
-        out += fmt::format("{:.1f},{:.1f} ", 200 + r * std::sin(angle), 190 - r * std::cos(angle));
+        out += fmt::format("{:.1f},{:.1f} ", 200 + r * math::sin(angle), 190 - r * math::cos(angle));
     }
     return out + "'/>";
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 
@@ -169,7 +169,7 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     if (serial) {
         outcomes = judge_in_turn(trials, rigour, tally, watch);
     } else {
-        oneapi::tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+        parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
             watch.check();
             outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
             watch.advance(1);

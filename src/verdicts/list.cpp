@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
+#include "math/functions.h"
 
 namespace crescent {
 
@@ -72,7 +73,7 @@ Theory theory_of(const std::string& arm, const Stage& stage, double theta_deg) {
     const SurfaceSetup& f = stage.surface;
     const double tilted = theta_deg * pi / 180;
     if (arm == "phong" && f.rho_d > 0) {
-        t.lost = (1 - std::cos(tilted)) / 2;
+        t.lost = (1 - math::cos(tilted)) / 2;
         t.lost_of = f.rho_d;
         t.tail_k = theta_deg == 0 ? (f.s - 1) / (f.s + 1) : f.s / (f.s + 1);
         if (theta_deg > 0) t.wrong = "support";

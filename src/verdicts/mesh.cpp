@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "math/functions.h"
 #include "simd/random.h"
 #include "simd/scalar.h"
 
@@ -79,7 +80,7 @@ int spacing(const std::vector<double>& positions) {
     return 0;
 }
 
-double theta_of(double a) { return 2 * std::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))); }
+double theta_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))); }
 
 /// Heights: in cos theta, or else in theta.
 std::vector<double> rows_of(const std::vector<double>& a) {
@@ -90,7 +91,7 @@ std::vector<double> rows_of(const std::vector<double>& a) {
     if (n > 0 && (m == 0 || n <= m))
         for (int i = 0; i <= 2 * n; ++i) out.push_back(static_cast<double>(i) / n);
     else
-        for (int i = 0; i <= m; ++i) out.push_back(2 * sqr(std::sin(0.5 * pi * i / m)));
+        for (int i = 0; i <= m; ++i) out.push_back(2 * sqr(math::sin(0.5 * pi * i / m)));
     return out;
 }
 

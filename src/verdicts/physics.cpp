@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/ordered.h"
 
@@ -20,7 +21,7 @@ std::vector<Pair> pairs_of(const Work& work) {
     std::vector<Pair> pairs;
     const auto direction = [](Vec2<float> u) {
         const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z), phi = 2 * pi * static_cast<double>(u.y);
-        return Vec3d{sin * std::cos(phi), sin * std::sin(phi), z};
+        return Vec3d{sin * math::cos(phi), sin * math::sin(phi), z};
     };
     for (std::uint64_t i = 0; i < 256; ++i) pairs.push_back({direction(draw(17, 0, i, 0)), direction(draw(17, 0, i, 1))});
     for (const Draw& d : work.first(0).draws) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "math/functions.h"
 #include "simd/scalar.h"
 #include "verdicts/table_file.h"
 
@@ -40,7 +41,7 @@ std::size_t nearest_of(const std::vector<double>& sorted, double v) {
 }
 
 double turned(double phi) { return phi < 0 ? phi + 2 * pi : phi; }
-double turned(Vec3d w) { return turned(std::atan2(w.y, w.x)); }
+double turned(Vec3d w) { return turned(math::atan2(w.y, w.x)); }
 
 }  // namespace
 
@@ -182,7 +183,7 @@ std::vector<Doubt> SampleFile::doubts() const {
             const double dz = (row_edges_[r + 1] - row_edges_[r]) / static_cast<double>(rows), dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
             const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)), phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
             const double sin = std::sqrt(std::max(1 - z * z, 0.0));
-            const Vec3d w{sin * std::cos(phi), sin * std::sin(phi), z};
+            const Vec3d w{sin * math::cos(phi), sin * math::sin(phi), z};
             const double mass = doubt(w) * dz * dphi;
             if (mass > 0) out.push_back({w, mass});
         }

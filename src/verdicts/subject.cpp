@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "math/functions.h"
 #include "simd/scalar.h"
 
 namespace crescent {
@@ -25,7 +26,7 @@ std::string Trial::text() const {
 
 Vec3d tilt(double theta_deg, double azimuth_deg) {
     const double t = theta_deg * pi / 180, a = azimuth_deg * pi / 180;
-    return {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
+    return {math::sin(t) * math::cos(a), math::sin(t) * math::sin(a), math::cos(t)};
 }
 
 }  // namespace crescent

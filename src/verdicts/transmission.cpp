@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -19,7 +20,7 @@ std::vector<Vec3d> directions_below(const Work& work) {
     for (double z : {-0.02, -0.1, -0.25, -0.4, -0.6, -0.8, -0.95, -1.0})
         for (int k = 0; k < 8; ++k) {
             const double phi = 2 * pi * (k + 0.37) / 8, sin = std::sqrt(1 - z * z);
-            out.push_back({sin * std::cos(phi), sin * std::sin(phi), z});
+            out.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
         }
     const Vec3d wo = work.trial.wo;
     for (double eta : {1 / 2.4, 1 / 1.5, 1 / 1.33, 1.0, 1.33, 1.5, 1.8, 2.4}) {  // below over above
@@ -61,7 +62,7 @@ Integral from_below(const Work& work, Vec3d b) {
     std::vector<Vec3d> guides;  // f(., b) is high about the w_o for which b was drawn
     for (int i = 0; i < 256; ++i) {
         const double turns = 0.618033988749895 * i;
-        guides.push_back(about.direction({0.5 * std::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
+        guides.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
     }
     return integrate(guided(graded_cells(1), map, guides), 1,
                      [&](std::span<const Vec2d> at, std::span<double> out) {

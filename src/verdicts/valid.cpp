@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "math/functions.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -99,7 +100,7 @@ std::string fault_all_over(const Work& work, int technique) {
     for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.5, -0.9, -1.0})
         for (int k = 0; k < turns; ++k) {
             const double phi = 2 * pi * (k + 0.37) / turns, sin = std::sqrt(1 - z * z);
-            wi.push_back({sin * std::cos(phi), sin * std::sin(phi), z});
+            wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
         }
     const std::vector<double> p = work.pdf(technique, wi);
     for (std::size_t i = 0; i < wi.size(); ++i)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "math/functions.h"
 #include "meters/tail.h"
 #include "verdicts/ordered.h"
 
@@ -20,12 +21,12 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
         else ++out.zeros;
     }
     if (high > 0) {
-        const double from = std::log10(low) - 0.05, to = std::log10(high) + 0.05;
+        const double from = math::log10(low) - 0.05, to = math::log10(high) + 0.05;
         constexpr int bins = 48;
         for (int i = 0; i <= bins; ++i) out.log10_edges.push_back(from + (to - from) * i / bins);
         out.counts.assign(bins, 0);
         for (double v : x)
-            if (v > 0) ++out.counts[static_cast<std::size_t>(std::clamp((std::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
+            if (v > 0) ++out.counts[static_cast<std::size_t>(std::clamp((math::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
     }
     if (tail && tail->exceedances + 1 < x.size()) {
         out.k = tail->k;
@@ -34,10 +35,10 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
         std::sort(largest.begin(), largest.end(), std::greater<>());
         out.threshold = largest[tail->exceedances];
         const double median = largest[tail->exceedances / 2] - out.threshold;
-        out.sigma = std::fabs(out.k) < 1e-6 ? median / std::log(2.0) : out.k * median / (std::exp2(out.k) - 1);
+        out.sigma = std::fabs(out.k) < 1e-6 ? median / math::log(2.0) : out.k * median / (math::exp2(out.k) - 1);
     }
     std::vector<Vec3d> wi;
-    const double azimuth = std::atan2(work.trial.wo.y, work.trial.wo.x) * 180 / pi;
+    const double azimuth = math::atan2(work.trial.wo.y, work.trial.wo.x) * 180 / pi;
     for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));
     out.rose_p = work.any_pdf(wi);
     const std::vector<double> f = work.f(wi, true);
@@ -98,7 +99,7 @@ double mean_p(const Spread& s, const Integral& expected) {
     constexpr double allowed = 1e-4;  // relative: what normalised and identity allow p itself, float rounding of a sharp lobe included
     const double doubt = expected.error + allowed * std::fabs(expected.value);
     const double off = std::max(std::fabs(s.mean - expected.value) - doubt, 0.0);
-    if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1) return std::min(2 * std::exp(-0.5 * s.n * off * off / (sqr(s.sd) + s.largest * off / 3 + 1e-300)), 1.0);
+    if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1) return std::min(2 * math::exp(-0.5 * s.n * off * off / (sqr(s.sd) + s.largest * off / 3 + 1e-300)), 1.0);
     const double z = std::fabs(johnson_t(s, expected.value)) - doubt / std::max(s.sd / std::sqrt(s.n), 1e-300);
     return normal_p(std::max(z, 0.0));
 }

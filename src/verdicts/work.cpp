@@ -1,11 +1,10 @@
 #include "verdicts/work.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "math/distributions.h"
+#include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/recorded.h"
 
@@ -23,7 +22,7 @@ bool multiples_of(std::span<const Draw> draws, double unit) {
 double grain_of(std::span<const Draw> all) {
     const std::span<const Draw> draws = all.first(std::min<std::size_t>(all.size(), 256));
     for (int digits = 3; digits <= 8; ++digits)
-        if (multiples_of(draws, std::pow(10.0, -digits))) return 0.5 * std::pow(10.0, -digits);
+        if (multiples_of(draws, math::pow(10.0, -digits))) return 0.5 * math::pow(10.0, -digits);
     for (const Draw& d : draws)
         for (double v : {d.wi.x, d.wi.y, d.wi.z})
             if (static_cast<double>(static_cast<float>(v)) != v) {
@@ -64,7 +63,7 @@ Rigour Rigour::thorough() {
 }
 
 void Rigour::share(std::uint64_t tests) {
-    const double each = -std::expm1(std::log1p(-alpha) / static_cast<double>(std::max<std::uint64_t>(tests, 1)));
+    const double each = -math::expm1(math::log1p(-alpha) / static_cast<double>(std::max<std::uint64_t>(tests, 1)));
     screen = std::min(std::sqrt(10 * each), 0.05);
     confirm = std::min(each / screen, screen / 10);
 }
@@ -190,12 +189,12 @@ Verdict Work::verdict(std::string_view name, State state, std::string say) const
 
 double chi_squared_p(double statistic, double degrees) {
     if (!(degrees > 0)) return 1;
-    return boost::math::cdf(boost::math::complement(boost::math::chi_squared(degrees), std::max(statistic, 0.0)));
+    return math::chi_squared_tail(degrees, statistic);
 }
-double normal_p(double z) { return std::isfinite(z) ? std::erfc(std::fabs(z) / std::sqrt(2.0)) : 0.0; }
+double normal_p(double z) { return std::isfinite(z) ? math::normal_two_sided(z) : 0.0; }
 double student_p(double t, double degrees) {
     if (!std::isfinite(t)) return 0;
-    return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(degrees), std::fabs(t)));
+    return math::student_two_sided(degrees, t);
 }
 
 }  // namespace crescent

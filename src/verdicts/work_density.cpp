@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/mesh.h"
 #include "verdicts/recorded.h"
@@ -53,7 +54,7 @@ void Work::find_guides() {
     for (const SphereMap& about : {SphereMap(mirror(trial.wo)), SphereMap(-trial.wo)})
         for (std::uint64_t i = 0; i < fixed_guides / 2; ++i) {
             const Vec2d v = r2(i, {0.1, 0.7});
-            guides_.push_back(about.direction({0.5 * std::pow(10.0, -7 * v.x), v.y}));
+            guides_.push_back(about.direction({0.5 * math::pow(10.0, -7 * v.x), v.y}));
         }
 }
 

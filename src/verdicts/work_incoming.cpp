@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
 #include "verdicts/work.h"
 
 namespace crescent {
@@ -49,7 +50,7 @@ Integral Work::integrate_incoming(Where where, bool even) const {
                                             std::vector<double> per_area;
                                             for (Vec2d v : at) {
                                                 const double r = light.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
-                                                const Vec3d y = light.center + frame.t * (r * std::cos(phi)) + frame.b * (r * std::sin(phi));
+                                                const Vec3d y = light.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
                                                 wi.push_back(normalize(y));
                                                 per_area.push_back(std::max(-dot(wi.back(), light.normal), 0.0) / dot(y, y));
                                             }

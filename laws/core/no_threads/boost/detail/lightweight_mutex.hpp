@@ -1,0 +1,12 @@
+// Boost's mutex where there are no threads to keep apart: found before its own.
+#pragma once
+
+namespace boost::detail {
+
+struct lightweight_mutex {
+    struct scoped_lock {
+        explicit scoped_lock(lightweight_mutex&) {}
+    };
+};
+
+}  // namespace boost::detail

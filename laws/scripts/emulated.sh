@@ -1,0 +1,41 @@
+#!/bin/bash
+# Another machine's code makes the same bits: ARM with its vectors under qemu, WebAssembly with its vectors in node. Small
+# images and few samples, since both run slowly. $FILM_HASHES_AARCH64 and $FILM_HASHES_WASM are laws/core, built.
+. "$(dirname "$0")/common.sh"
+[ -x "${FILM_HASHES_AARCH64:-}" ] || [ -f "${FILM_HASHES_WASM:-}" ] || skip "no core built for another machine (./test builds them)"
+
+# Every sampler of the list over the small scene, and scenes with other shapes, lobes and lights.
+{
+    sed '/^\[arms/,/^n = /d' "$tiny"
+    "$CRESCENT" list arms | sed 's/.*/[arms.&]\nn = [4, 16]/'
+} >every-arm.toml
+experiments=(every-arm.toml)
+for name in three-glosses two-lamps; do [ -f "$CRESCENT_SOURCE/experiments/$name.toml" ] && experiments+=("$CRESCENT_SOURCE/experiments/$name.toml"); done
+
+expect 0 "$FILM_HASHES" --plain "${experiments[@]}"
+mv printed plain
+# A line names its instruction set second; without it, every set and machine says the same.
+hashes() { awk '/ quadrature |^function /{ print; next } { $2 = ""; print }' "$1" | sort -u; }
+expect 0 "$FILM_HASHES" <plain
+hashes printed >here
+[ "$(wc -l <here)" -gt 40 ] || die "too few films: $(cat here)"
+
+# same NAME SET COMMAND...: the hashes of another machine, which has SET beside scalar code.
+same() {
+    local name=$1 set=$2
+    shift 2
+    expect 0 "$@" <plain
+    grep -q " $set " printed || die "$name: no films of $set"
+    hashes printed >there
+    diff here there >difference || die "films differ on $name: $(head -n 12 difference)"
+}
+tried=0
+if [ -x "${FILM_HASHES_AARCH64:-}" ] && command -v qemu-aarch64-static >/dev/null; then
+    same "ARM" neon qemu-aarch64-static "$FILM_HASHES_AARCH64"
+    tried=1
+fi
+if [ -f "${FILM_HASHES_WASM:-}" ] && command -v node >/dev/null; then
+    same "WebAssembly" wasm128 node --no-warnings "$CRESCENT_SOURCE/laws/core/run.mjs" "$FILM_HASHES_WASM"
+    tried=1
+fi
+[ "$tried" -eq 1 ] || skip "neither qemu-aarch64-static nor node"
