@@ -141,8 +141,8 @@ void add_check(CLI::App& app, Work& work) {
     auto* samples = c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told);
     c->add_option("--patience", f->patience, "s that --exec may take in all; default 120, with --full 3600")->type_name("SECONDS")->needs(exec)->check(CLI::Range(0.01, 1e6));
     c->add_flag("--accept-few", f->accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
-    auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters")->type_name("N")->check(CLI::Range(1, 1000000));
-    for (auto* other : {arm, set, planted, rates}) right->excludes(other);
+    auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters; with --error-rates in quick and in full mode")->type_name("N")->check(CLI::Range(1, 1000000));
+    for (auto* other : {arm, set, planted}) right->excludes(other);
     c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
     for (auto* other : {arm, set, planted, rates, right}) exec->excludes(other), samples->excludes(other);
     exec->excludes(samples);

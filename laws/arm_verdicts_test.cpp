@@ -39,6 +39,24 @@ TEST(Verdicts, PhongOnLambertLosesTheSupportThatTheorySays) {
     EXPECT_EQ(find(j, "w_o 0 deg, s=32, Lambert + Phong", "mean").state, State::inconclusive);
 }
 
+TEST(Verdicts, SeeTheNearerOfTwoLights) {
+    const TrialLight light = stage(LobeKind::none, true, "fill + two disks", 32).light;
+    ASSERT_EQ(light.disks.size(), 2u);
+    int both = 0, front = 0, back = 0;
+    for (double theta = 0; theta < 90; ++theta)
+        for (double azimuth = 0; azimuth < 90; ++azimuth) {
+            const Vec3d wi = tilt(theta, azimuth);
+            const auto far = light.disks[0].distance(wi), near = light.disks[1].distance(wi);
+            both += far && near;
+            front += near && !far;
+            back += far && !near;
+            EXPECT_EQ(light(wi), near ? light.disks[1].radiance : far ? light.disks[0].radiance : wi.z > 0 ? 1 : 0) << theta << " " << azimuth;
+        }
+    EXPECT_GT(both, 50);
+    EXPECT_GT(front, 50);
+    EXPECT_GT(back, 50);
+}
+
 TEST(Verdicts, QuickModeCatchesEveryPlantedFault) {
     Watch watch;
     const auto faults = planted_faults(false);

@@ -1,6 +1,9 @@
 // Samplers as people bring them: with a state, with a NaN that hides in a corner, with sharp lobes, with tables.
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <mutex>
 
 #include "laws/right/right.h"
 #include "verdicts/error_rates.h"
@@ -31,6 +34,57 @@ Recipe cosine() {
         return Draw{{r * std::cos(phi), r * std::sin(phi), z}, z / pi, {}, {}};
     };
     return r;
+}
+
+class Logged : public JudgedSampler {
+public:
+    struct Call {
+        const Logged* who;
+        std::chrono::steady_clock::time_point start, end;
+    };
+    Logged(std::mutex& lock, std::vector<Call>& calls) : lock_(lock), calls_(calls) {}
+    std::string name() const override { return "logged"; }
+    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+        const auto start = std::chrono::steady_clock::now();
+        for (std::size_t i = 0; i < u.size(); ++i) out[i] = cosine_.sample(wo, u[i]);
+        note(start);
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        const auto start = std::chrono::steady_clock::now();
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = cosine_.pdf(at[i].wo, at[i].wi);
+        note(start);
+    }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = cosine_.f(at[i].wo, at[i].wi);
+    }
+
+private:
+    void note(std::chrono::steady_clock::time_point start) const {
+        const std::lock_guard guard(lock_);
+        calls_.push_back({this, start, std::chrono::steady_clock::now()});
+    }
+    Recipe cosine_ = cosine();
+    std::mutex& lock_;
+    std::vector<Call>& calls_;
+};
+
+/// Seven turns, each of every sampler once, and nothing beside them: their times can be compared.
+TEST(OwnSamplers, AreTimedInTurnsWhileNothingElseIsAsked) {
+    std::mutex lock;
+    std::vector<Logged::Call> calls;
+    std::vector<Trial> trials;
+    for (int i = 0; i < 4; ++i) trials.push_back(trial_of_subject(std::make_shared<Logged>(lock, calls), 15.0 * i, 0));
+    Rigour rigour;
+    rigour.draws = 4096;
+    Watch watch;
+    judge(trials, rigour, watch);
+    std::sort(calls.begin(), calls.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
+    ASSERT_GT(calls.size(), 28u);
+    for (std::size_t i = calls.size() - 28; i < calls.size(); ++i) {
+        EXPECT_EQ(calls[i].who, trials[(i - (calls.size() - 28)) % 4].subject.get());
+        EXPECT_GE(calls[i].start, calls[i - 1].end);
+    }
 }
 
 class Delayed : public JudgedSampler {

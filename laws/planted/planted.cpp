@@ -119,6 +119,37 @@ void density_faults(std::vector<Plan>& out) {
                    }});
 }
 
+TrialLight two_disks() { return stage(LobeKind::none, true, "two disks", 32).light; }
+
+/// The density of A where it aims at disk k alone, chosen with certainty.
+template <template <class> class A> double towards(LocalDisk<double> disk, const Pair& at) {
+    disk.power = 1;
+    Site<double> site{};
+    site.disks = &disk, site.disk_count = 1;
+    return A<double>(site).pdf(at.wo, at.wi).v;
+}
+
+/// Faults of arms that choose between lights. The list's first of two disks stands behind the second in part.
+void several_light_faults(std::vector<Plan>& out) {
+    const auto lambert = [&](const std::string& name, const std::string& arm, std::function<double(const std::vector<LocalDisk<double>>&, const Pair&, double)> pdf) {
+        out.push_back({name, arm, LobeKind::none, true, "two disks", 32, [pdf](S) {
+                           return with_pdf([pdf, disks = disks_of<double>(two_disks())](const Pair& a, double p) { return pdf(disks, a, p); });
+                       }});
+    };
+    using Disks = const std::vector<LocalDisk<double>>&;
+    lambert("second light forgotten in the pdf", "light-area", [](Disks d, const Pair& a, double) { return d[0].power * towards<LightArea>(d[0], a); });
+    lambert("light behind another forgotten in the pdf", "light-area", [](Disks d, const Pair& a, double) {
+        const double front = d[1].power * towards<LightArea>(d[1], a);
+        return front > 0 ? front : d[0].power * towards<LightArea>(d[0], a);
+    });
+    lambert("second cap forgotten where two overlap", "light-solid-angle", [](Disks d, const Pair& a, double) {
+        const double first = d[0].power * towards<LightSolidAngle>(d[0], a);
+        return first > 0 ? first : d[1].power * towards<LightSolidAngle>(d[1], a);
+    });
+    lambert("lights chosen by power, weighed alike", "light-solid-angle",
+            [](Disks d, const Pair& a, double) { return 0.5 * (towards<LightSolidAngle>(d[0], a) + towards<LightSolidAngle>(d[1], a)); });
+}
+
 void warp_faults(std::vector<Plan>& out) {
     const auto phong = LobeKind::phong;
     out.push_back({"phi over half a turn", "phong", phong, false, "fill", 32, [](S) { return with_u([](Vec2d u) { return Vec2d{u.x, 0.5 * u.y}; }); }});
@@ -202,6 +233,7 @@ void weight_faults(std::vector<Plan>& out) {
 std::vector<PlantedFault> planted_faults(bool full) {
     std::vector<Plan> plans;
     density_faults(plans);
+    several_light_faults(plans);
     warp_faults(plans);
     weight_faults(plans);
     std::vector<PlantedFault> out;

@@ -18,12 +18,6 @@ RightFamily& family_of(RightLaw& law, const std::string& name) {
     return law.families.back();
 }
 
-std::string rate(std::uint64_t hits, std::uint64_t of) {
-    const auto [low, high] = rate_interval(hits, of);
-    const double share = of ? static_cast<double>(hits) / static_cast<double>(of) : 0;
-    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of, share, low, high);
-}
-
 }  // namespace
 
 RightLaw measure_right(std::uint64_t first, std::uint64_t count, const Rigour& given, Watch& watch) {
@@ -59,7 +53,7 @@ std::string right_law_text(const RightLaw& law) {
     std::string out = "| family | judged | accused | inconclusive |\n|---|---|---|---|\n";
     for (const RightFamily& f : law.families) out += fmt::format("| {} | {} | {} | {} |\n", f.name, f.judged, f.accused, f.undecided);
     out += fmt::format("\nAccused in {} mode: {}; promised: at most {:g}. Inconclusive: {}.\n", law.full ? "full" : "quick",
-                       rate(law.accused, law.judged), law.alpha, rate(law.undecided, law.judged));
+                       rate_text(law.accused, law.judged), law.alpha, rate_text(law.undecided, law.judged));
     return out;
 }
 

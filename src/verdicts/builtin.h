@@ -24,20 +24,27 @@ double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
 template <class F> Vec3d widen(Vec3<F> v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
 
-/// The site of an arm in number type F; `disk` must outlive it.
-template <class F> Site<F> site_of(const SurfaceSetup& surface, Vec3d wo, const LocalDisk<F>& disk, bool lit) {
-    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d), static_cast<F>(surface.rho_s), &disk, lit ? 1 : 0};
+/// The site of an arm in number type F; `disks` must outlive it.
+template <class F> Site<F> site_of(const SurfaceSetup& surface, Vec3d wo, const std::vector<LocalDisk<F>>& disks) {
+    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d), static_cast<F>(surface.rho_s),
+            disks.data(), static_cast<int>(disks.size())};
 }
-template <class F> LocalDisk<F> disk_of(const TrialLight& light) {
-    return {as<F>(light.center), as<F>(light.normal), static_cast<F>(light.radius), F(0), F(1)};
+/// One-sided disks, each with its share of L r^2.
+template <class F> std::vector<LocalDisk<F>> disks_of(const TrialLight& light) {
+    double total = 0;
+    for (const TrialDisk& d : light.disks) total += d.radiance * sqr(d.radius);
+    std::vector<LocalDisk<F>> out;
+    for (const TrialDisk& d : light.disks)
+        out.push_back({as<F>(d.center), as<F>(d.normal), static_cast<F>(d.radius), F(0), static_cast<F>(d.radiance * sqr(d.radius) / total)});
+    return out;
 }
 
 /// A is an arm template; planted faults are arms too.
 template <template <class> class A> class BuiltIn : public JudgedSampler {
 public:
     BuiltIn(const SurfaceSetup& surface, Vec3d wo, const TrialLight& light)
-        : surface_(surface), disk_single_(disk_of<float>(light)), disk_double_(disk_of<double>(light)),
-          single_(site_of<float>(surface, wo, disk_single_, light.has_disk())), double_(site_of<double>(surface, wo, disk_double_, light.has_disk())) {}
+        : surface_(surface), disks_single_(disks_of<float>(light)), disks_double_(disks_of<double>(light)),
+          single_(site_of<float>(surface, wo, disks_single_)), double_(site_of<double>(surface, wo, disks_double_)) {}
     BuiltIn(const BuiltIn&) = delete;
     BuiltIn& operator=(const BuiltIn&) = delete;
 
@@ -88,8 +95,8 @@ protected:
     }
 
     SurfaceSetup surface_;
-    LocalDisk<float> disk_single_;
-    LocalDisk<double> disk_double_;
+    std::vector<LocalDisk<float>> disks_single_;
+    std::vector<LocalDisk<double>> disks_double_;
     A<float> single_;
     A<double> double_;
 };

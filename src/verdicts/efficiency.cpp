@@ -39,32 +39,45 @@ Efficiency measure_efficiency(const Work& work, std::size_t trial) {
     return e;
 }
 
-void measure_cost(const Trial& trial, const Rigour& rigour, Efficiency& e) {
-    constexpr int repeats = 7;
-    constexpr std::size_t n = 2048;
-    if (!trial.subject->draws_at_will()) return;
-    std::vector<Vec2d> u(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const Vec2<float> v = draw(seed_of(rigour.seed, 0), static_cast<std::uint32_t>(e.trial), i, 0);
-        u[i] = {v.x, v.y};
-    }
-    std::vector<double> times;
-    std::vector<Draw> draws(n);
+namespace {
+
+/// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
+std::optional<double> time_once(const Trial& trial, std::span<const Vec2d> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
-        for (int k = 0; k < repeats; ++k) {
-            const auto start = std::chrono::steady_clock::now();
-            for (int t = 0; t < trial.subject->techniques(); ++t) trial.subject->sample(t, trial.wo, u, draws);
-            times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(n));
-        }
+        const auto start = std::chrono::steady_clock::now();
+        for (int t = 0; t < trial.subject->techniques(); ++t) trial.subject->sample(t, trial.wo, u, draws);
+        return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(u.size());
     } catch (const SubjectTooSlow&) {
-        return;
     } catch (const SubjectFault& fault) {
         e.fault = fault.what();
-        return;
     }
-    std::sort(times.begin(), times.end());
-    e.nanoseconds = times[repeats / 2];
-    e.cost_se = 0.5 * (times[repeats - 2] - times[1]) / e.nanoseconds;
+    return {};
+}
+
+}  // namespace
+
+void measure_costs(std::span<const Trial> trials, const Rigour& rigour, std::span<Efficiency> all, const Watch& watch) {
+    constexpr std::size_t turns = 7, n = 2048;
+    std::vector<Vec2d> u(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec2<float> v = draw(seed_of(rigour.seed, 0), 0, i, 0);
+        u[i] = {v.x, v.y};
+    }
+    std::vector<std::vector<double>> times(all.size());
+    std::vector<Draw> draws(n);
+    for (std::size_t turn = 0; turn < turns; ++turn)
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            watch.check();
+            const Trial& trial = trials[all[i].trial];
+            if (times[i].size() < turn || !trial.subject->draws_at_will()) continue;  // it was given up
+            if (const std::optional<double> ns = time_once(trial, u, draws, all[i])) times[i].push_back(*ns);
+        }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (times[i].size() < turns) continue;
+        std::sort(times[i].begin(), times[i].end());
+        all[i].nanoseconds = times[i][turns / 2];
+        all[i].cost_se = 0.5 * (times[i][turns - 2] - times[i][1]) / all[i].nanoseconds;
+    }
 }
 
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all) {

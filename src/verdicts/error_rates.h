@@ -16,12 +16,14 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& rigour, Watc
 
 /// Clopper & Pearson 1934: the 95 % interval of a rate.
 std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of);
+/// "3 of 1000 = 0.003 (95 %: 0.000619 to 0.00874)".
+std::string rate_text(std::uint64_t hits, std::uint64_t of);
 
 /// One line of the table of faults: the verdicts that catch it, in quick and in full mode.
 struct Caught {
     std::string fault, breaks, quick, full;
 };
-/// docs/error-rates.md.
-std::string error_rates_text(const FalseAlarms& alarms, std::span<const Caught> caught, const std::string& command, const std::string& version);
+/// docs/error-rates.md; law: what came of right samplers at random parameters, "" where they were not asked for.
+std::string error_rates_text(const FalseAlarms& alarms, const std::string& law, std::span<const Caught> caught, const std::string& command, const std::string& version);
 
 }  // namespace crescent

@@ -183,10 +183,7 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     std::vector<Efficiency> efficiencies;
     for (const Outcome& o : outcomes)
         if (o.efficiency) efficiencies.push_back(*o.efficiency);
-    for (Efficiency& e : efficiencies) {  // on a machine that does nothing else by now
-        watch.check();
-        measure_cost(trials[e.trial], rigour, e);
-    }
+    measure_costs(trials, rigour, efficiencies, watch);  // the call does nothing else by now
     std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
     blame_yardsticks(trials, outcomes, ranks);
     for (std::size_t i = 0; i < trials.size(); ++i) {

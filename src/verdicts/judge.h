@@ -41,8 +41,8 @@ struct Efficiency {
     double high() const;
 };
 Efficiency measure_efficiency(const Work& work, std::size_t trial);
-/// The time of one sample, asked by one thread.
-void measure_cost(const Trial& trial, const Rigour& rigour, Efficiency& e);
+/// The time of one sample of each, asked by one thread, all in turn: a slow moment of the machine falls on all alike.
+void measure_costs(std::span<const Trial> trials, const Rigour& rigour, std::span<Efficiency> all, const Watch& watch);
 /// Ranks trials that differ by the arm alone.
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
 

@@ -11,21 +11,18 @@ namespace crescent {
 
 namespace {
 
-/// A disk at 35 deg off the normal seen obliquely, one straight above facing down (its frame's axis is -z), as radiances.
+/// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so that distance
+/// decides and not order; one straight above facing down (its frame's axis is -z). Radiances, m.
 TrialLight light_named(const std::string& name) {
+    const TrialDisk oblique{20, 2.0 * tilt(35, 20), -1.0 * tilt(20, 60), 0.5};
+    const TrialDisk behind{12, 3.2 * tilt(48, 35), -1.0 * tilt(60, 40), 0.9};
+    const TrialDisk overhead{20, {0.1, -0.05, 2}, {0, 0, -1}, 0.6};
+    const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
     TrialLight light;
-    if (name == "fill") return light;
-    light.radiance = 20;
-    light.fill = name.find("fill") == std::string::npos ? 0 : 1;
-    if (name.find("overhead") != std::string::npos) {
-        light.center = {0.1, -0.05, 2};
-        light.normal = {0, 0, -1};
-        light.radius = 0.6;
-    } else {
-        light.center = 2.0 * tilt(35, 20);
-        light.normal = -1.0 * tilt(20, 60);
-        light.radius = 0.5;
-    }
+    light.fill = has("fill") ? 1 : 0;
+    if (has("two disks")) light.disks = {behind, oblique};
+    else if (has("overhead")) light.disks = {overhead};
+    else if (has("disk")) light.disks = {oblique};
     return light;
 }
 
@@ -52,9 +49,11 @@ Stages stages_of(const std::string& arm) {
         add_lobe(all, LobeKind::phong, {32}, true);
         add_lobe(all, LobeKind::phong, {32}, true, "fill + disk");
         add_lobe(all, LobeKind::phong, {1000}, true);
+        if (arm != "mixture") add_lobe(all, LobeKind::phong, {32}, true, "fill + two disks");
     } else if (arm == "light-solid-angle" || arm == "light-area") {
         lambert("disk");
         lambert("overhead disk");
+        lambert("two disks");
         add_lobe(all, LobeKind::phong, {8}, true, "disk");
         lambert("fill + disk");
     } else if (arm == "blinn") {

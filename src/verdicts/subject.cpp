@@ -8,11 +8,26 @@
 
 namespace crescent {
 
-bool TrialLight::on_disk(Vec3d wi) const {
+std::optional<double> TrialDisk::distance(Vec3d wi) const {
     const double c = dot(center, normal), v = dot(wi, normal);
-    if (!(v < 0 && c < 0)) return false;
+    if (!(v < 0 && c < 0)) return {};
     const Vec3d off = wi * c - center * v;
-    return dot(off, off) <= sqr(radius * v);
+    if (!(dot(off, off) <= sqr(radius * v))) return {};
+    return c / v;
+}
+
+const TrialDisk* TrialLight::first_met(Vec3d wi) const {
+    const TrialDisk* first = nullptr;
+    double nearest = 0;
+    for (const TrialDisk& disk : disks)
+        if (const std::optional<double> d = disk.distance(wi); d && (!first || *d < nearest)) first = &disk, nearest = *d;
+    return first;
+}
+
+double TrialLight::operator()(Vec3d wi) const {
+    if (wi.z <= 0) return 0;
+    const TrialDisk* disk = first_met(wi);
+    return disk ? disk->radiance : fill;
 }
 
 std::string Trial::text() const {

@@ -78,15 +78,22 @@ public:
     virtual bool serial() const { return false; }
 };
 
-/// What shines on the surface: an even fill of the upper hemisphere and at most one disk that hides it.
-struct TrialLight {
-    double fill = 1;      // radiance
-    double radiance = 0;  // of the disk; 0: none
+/// A one-sided disk light: radiance, centre from the surface point and radius in m, unit normal.
+struct TrialDisk {
+    double radiance = 0;
     Vec3d center{}, normal{};
     double radius = 0;
-    bool has_disk() const { return radiance > 0; }
-    bool on_disk(Vec3d wi) const;
-    double operator()(Vec3d wi) const { return wi.z <= 0 ? 0 : has_disk() && on_disk(wi) ? radiance : fill; }
+    /// How far wi goes until it meets the emitting side.
+    std::optional<double> distance(Vec3d wi) const;
+};
+
+/// What shines on the surface: an even fill of the upper hemisphere, and disks that hide it and one another.
+struct TrialLight {
+    double fill = 1;  // radiance
+    std::vector<TrialDisk> disks;
+    const TrialDisk* first_met(Vec3d wi) const;
+    /// Radiance from wi.
+    double operator()(Vec3d wi) const;
 };
 
 /// Named parameter values, in the order in which they are told.

@@ -1,6 +1,7 @@
 // What arrives: int f L cos over the hemisphere, or where p is (not) positive, by cubature.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "math/functions.h"
 #include "verdicts/work.h"
@@ -8,11 +9,52 @@
 namespace crescent {
 
 const Integral& Work::incoming(Where where, bool even) const {
-    even = even && (trial.light.has_disk() || trial.light.fill != 1);  // the light may be even already
+    even = even && (!trial.light.disks.empty() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
     if (!kept) kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even) : integrate_incoming(where, even);
     return *kept;
 }
+
+namespace {
+
+using OfLight = std::function<void(std::span<const Vec3d>, std::span<double>)>;
+
+/// Another disk stands before y.
+bool hidden(const TrialLight& light, const TrialDisk& own, Vec3d y) {
+    const double far = length(y);
+    const Vec3d wi = y * (1 / far);
+    for (const TrialDisk& other : light.disks)
+        if (const std::optional<double> d = other.distance(wi); &other != &own && d && *d < far) return true;
+    return false;
+}
+
+/// Adds int f L cos over what a disk shows, above the fill that it hides; of_light: f cos where it counts.
+void add_disk(Integral& total, const TrialLight& light, const TrialDisk& disk, const OfLight& of_light, std::size_t evaluations) {
+    const Frame<double> frame = frame_about(disk.normal);
+    std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
+    const double strength = pi * sqr(disk.radius) * (disk.radiance - light.fill);
+    const Integral of_disk = integrate(cells, 1,
+                                       [&](std::span<const Vec2d> at, std::span<double> out) {
+                                           std::vector<Vec3d> wi;
+                                           std::vector<double> per_area;
+                                           for (Vec2d v : at) {
+                                               const double r = disk.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
+                                               const Vec3d y = disk.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
+                                               wi.push_back(normalize(y));
+                                               per_area.push_back(hidden(light, disk, y) ? 0 : std::max(-dot(wi.back(), disk.normal), 0.0) / dot(y, y));
+                                           }
+                                           of_light(wi, out);
+                                           for (std::size_t i = 0; i < out.size(); ++i) out[i] *= per_area[i] * strength;
+                                       },
+                                       {5e-6, evaluations});
+    total.value += of_disk.value;
+    total.error += of_disk.error;
+    total.settled = total.settled && of_disk.settled;
+}
+
+}  // namespace
 
 Integral Work::integrate_incoming(Where where, bool even) const {
     const auto of_light = [&](std::span<const Vec3d> wi, std::span<double> out) {
@@ -39,30 +81,8 @@ Integral Work::integrate_incoming(Where where, bool even) const {
                           },
                           {5e-6, rigour.evaluations});
     }
-    if (!even && light.has_disk()) {
-        const Frame<double> frame = frame_about(light.normal);
-        std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
-        for (int i = 0; i < 4; ++i)
-            for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
-        const Integral disk = integrate(cells, 1,
-                                        [&](std::span<const Vec2d> at, std::span<double> out) {
-                                            std::vector<Vec3d> wi;
-                                            std::vector<double> per_area;
-                                            for (Vec2d v : at) {
-                                                const double r = light.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
-                                                const Vec3d y = light.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
-                                                wi.push_back(normalize(y));
-                                                per_area.push_back(std::max(-dot(wi.back(), light.normal), 0.0) / dot(y, y));
-                                            }
-                                            of_light(wi, out);
-                                            for (std::size_t i = 0; i < out.size(); ++i)
-                                                out[i] *= per_area[i] * pi * sqr(light.radius) * (light.radiance - fill);
-                                        },
-                                        {5e-6, rigour.evaluations / 4});
-        total.value += disk.value;
-        total.error += disk.error;
-        total.settled = total.settled && disk.settled;
-    }
+    for (const TrialDisk& disk : light.disks)
+        if (!even) add_disk(total, light, disk, of_light, rigour.evaluations / 4);
     return total;
 }
 
