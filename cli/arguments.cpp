@@ -188,7 +188,7 @@ std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
 Work answer(std::FILE* to, const std::string& text, int code) {
     return [=] {
         if (to == stdout) print(text);
-        else std::fputs(text.c_str(), to);
+        else complain(text);
         return code;
     };
 }

@@ -9,7 +9,6 @@
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
 #include "progress.h"
-#include "quoted.h"
 #include "signals.h"
 
 namespace crescent::cli {
@@ -93,10 +92,10 @@ int exit_of(State state) { return state == State::wrong ? failed : state == Stat
 /// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
 std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
-    if (!f.arm.empty()) out += " " + quoted(f.arm);
-    for (const std::string& text : f.settings) out += " --set " + quoted(text);
+    if (!f.arm.empty()) out += " " + shell_word(f.arm);
+    for (const std::string& text : f.settings) out += " --set " + shell_word(text);
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--samples", &f.samples}, {"--pdf-table", &f.table}, {"--wo", &f.wo}})
-        if (!value->empty()) out += std::string(" ") + flag + " " + quoted(*value);
+        if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
     for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted}, {"--accept-few", f.accept_few}})
         if (given) out += std::string(" ") + flag;
     if (f.patience > 0) out += " --patience " + shortest(f.patience);

@@ -71,5 +71,7 @@ int version(const VersionFlags& flags);
 /// Writes to stdout and makes sure that it arrived. A reader who went away (closed pipe) is no error;
 /// anything else throws OutputError.
 void print(const std::string& text);
+/// Writes to stderr. Of both, no control character in a name, a file or a word reaches the terminal.
+void complain(const std::string& text);
 
 }  // namespace crescent::cli

@@ -2,7 +2,6 @@
 #include "commands.h"
 #include "crescent.h"
 #include "progress.h"
-#include "quoted.h"
 #include "signals.h"
 
 namespace crescent::cli {
@@ -10,8 +9,8 @@ namespace crescent::cli {
 namespace {
 
 std::string command_of(const FilmFlags& flags) {
-    std::string command = "crescent film " + quoted(flags.file);
-    for (const std::string& text : flags.overrides) command += " --set " + quoted(text);
+    std::string command = "crescent film " + shell_word(flags.file);
+    for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
     return command;
 }

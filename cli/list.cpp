@@ -49,6 +49,7 @@ std::vector<Word> devices() {
 struct Topic {
     std::string name, means;
     std::vector<Word> (*words)();
+    bool by_name_alone = false;  // finding out takes a while
 };
 const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
@@ -58,7 +59,7 @@ const std::vector<Topic>& topics() {
         {"plates", "kinds of picture", [] { return words_of_key("plates", "kind"); }},
         {"meters", "quantities that a check can name", meters},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
-        {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices},
+        {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},
     };
     return all;
 }
@@ -87,7 +88,9 @@ int list(const ListFlags& flags) {
     bool known = flags.what.empty();
     for (const Topic& topic : topics()) {
         known = known || flags.what == topic.name;
-        if (flags.what.empty()) out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" + lines(topic.words(), "  ");
+        if (flags.what.empty())
+            out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" +
+                   (topic.by_name_alone ? "  `crescent list " + topic.name + "` asks the machine\n" : lines(topic.words(), "  "));
         if (flags.what == topic.name) out = lines(topic.words(), "");
     }
     if (!known) unknown(flags.what);

@@ -15,11 +15,14 @@
 
 namespace crescent::cli {
 
-void print(const std::string& text) {
+void print(const std::string& anything) {
+    const std::string text = printable_lines(anything);
     errno = 0;
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     if (!written && errno != EPIPE) throw OutputError(std::string("cannot write to stdout: ") + std::strerror(errno));
 }
+
+void complain(const std::string& text) { std::fputs(printable_lines(text).c_str(), stderr); }
 
 namespace {
 
@@ -30,7 +33,7 @@ void open_standard_streams() {
 }
 
 int complain(int code, const std::string& text) {
-    std::fprintf(stderr, "%s\n", text.c_str());
+    cli::complain(text + "\n");
     return code;
 }
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "commands.h"
+
 namespace crescent::cli {
 
 namespace {
@@ -58,11 +60,11 @@ double Progress::seconds() const { return std::chrono::duration<double>(Clock::n
 
 void Progress::begin(std::string_view what, double total) {
     const std::lock_guard lock(drawing_);
-    what_ = what;
+    what_ = printable(what);
     done_ = 0;
     total_ = total;
     start_ = Clock::now();
-    if (style_ == Style::lines) to_stderr(what_ + "\n");
+    if (style_ == Style::lines) complain(what_ + "\n");
     if (style_ == Style::bar) draw();
 }
 
@@ -87,7 +89,7 @@ void Progress::say(std::string_view line) {
     if (style_ == Style::silent) return;
     clear();
     const std::lock_guard lock(drawing_);
-    to_stderr(std::string(line) + "\n");
+    complain(std::string(line) + "\n");
 }
 
 void Progress::clear() {

@@ -5,7 +5,6 @@
 #include "crescent.h"
 #include "instruments.h"
 #include "progress.h"
-#include "quoted.h"
 #include "signals.h"
 
 namespace crescent::cli {
@@ -15,8 +14,8 @@ namespace {
 /// The command that makes the outputs again. Where they go, threads and instruction set do not change them and are
 /// left out, so that equal runs state equal commands.
 std::string command_of(const RunFlags& flags) {
-    std::string command = "crescent run " + quoted(flags.file);
-    for (const std::string& text : flags.overrides) command += " --set " + quoted(text);
+    std::string command = "crescent run " + shell_word(flags.file);
+    for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
     if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
     if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstring>
 #include <ctime>
 
 #include <unistd.h>
@@ -14,18 +15,48 @@ namespace crescent::cli {
 namespace {
 
 std::atomic<Watch*> watched{nullptr};
+std::atomic<bool> let_finish{false};
+std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
 timer_t deadline;
 constexpr long patience_ns = 500'000'000;  // a large process takes a while to end
 
-// Both handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3).
-extern "C" void end_now(int) { ::_exit(interrupted); }
+constexpr long moving_patience_s = 5;         // outputs that are being moved are let finish, as a disk permits
 
-extern "C" void ask_to_stop(int) {
-    Watch* watch = watched.load();
-    if (!watch || watch->stop.exchange(true)) ::_exit(interrupted);
+/// What stands under the final names when the process ends here.
+const char* last_words() {
+    const Watch* watch = watched.load();
+    switch (watch ? watch->outputs.load() : left_behind.load()) {
+        case Outputs::moving:
+            return "crescent: interrupted; the outputs are all those of before, or all those of this run\n";
+        case Outputs::stand: return "crescent: interrupted; the outputs of this run stand\n";
+        default: return "crescent: interrupted; what was there before is untouched\n";
+    }
+}
+
+// All handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3).
+extern "C" void end_now(int) {
+    const char* words = last_words();
+    static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
+    ::_exit(interrupted);
+}
+
+void end_after(long seconds, long nanoseconds) {
     itimerspec once{};
-    once.it_value.tv_nsec = patience_ns;
+    once.it_value.tv_sec = seconds;
+    once.it_value.tv_nsec = nanoseconds;
     ::timer_settime(deadline, 0, &once, nullptr);
+}
+
+extern "C" void time_is_up(int signal) {
+    const Watch* watch = watched.load();
+    if (!watch || watch->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
+    else end_after(moving_patience_s, 0);
+}
+
+extern "C" void ask_to_stop(int signal) {
+    Watch* watch = watched.load();
+    if (!watch || watch->stop.exchange(true)) end_now(signal);
+    else end_after(0, patience_ns);
 }
 
 void handle(int signal, void (*handler)(int)) {
@@ -44,19 +75,31 @@ void end_on_signals() {
     if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(SIGHUP, end_now);  // nohup
 }
 
+// Installed before the constructors of all libraries run, so that a signal in the first milliseconds ends with 130 too.
+// The sanitizers' own start-up comes later than this and replaces sigaction.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(__has_feature)
+#define __has_feature(x) 0
+#endif
+#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer) && !__has_feature(memory_sanitizer)
+[[gnu::section(".preinit_array"), gnu::used]] void (*before_all)() = end_on_signals;
+#endif
+#endif
+
 StopOnSignal::StopOnSignal(Watch& watch) {
     watched = &watch;
     sigevent event{};
     event.sigev_notify = SIGEV_SIGNAL;
     event.sigev_signo = SIGALRM;
     ::timer_create(CLOCK_MONOTONIC, &event, &deadline);
-    handle(SIGALRM, end_now);
+    handle(SIGALRM, time_is_up);
     struct sigaction before {};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, ask_to_stop);
 }
 
 StopOnSignal::~StopOnSignal() {
+    left_behind = watched.load()->outputs.load();
     end_on_signals();
     ::timer_delete(deadline);
     watched = nullptr;

@@ -9,7 +9,7 @@ foreach(target IN LISTS crescent_folders ITEMS crescent_face)
 endforeach()
 install(TARGETS crescent crescent_face ${crescent_folders} EXPORT crescent ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/crescent)
 install(TARGETS crescent_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/crescent FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
+install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/crescent FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE PATTERN "test_*.h" EXCLUDE)
 install(DIRECTORY experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/crescent)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

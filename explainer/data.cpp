@@ -79,7 +79,7 @@ Box around(const Data& data, const Box& of, int w, int h) {
 Data collect(const Experiment& experiment, const RunOptions& options, Watch& watch) {
     Data data;
     data.experiment = experiment;
-    data.experiment_hash = fmt::format("{:016x}", experiment.hash);
+    data.experiment_hash = fmt::format("{:016x}", hash(experiment));
     data.cast = cast_of(data.experiment);
     Measured measured = measure_in_memory(data.experiment, options, watch);
     data.metrics = std::move(measured.metrics);

@@ -92,7 +92,7 @@ private:
     std::vector<std::uint64_t> encode(const Part& part, Voice* voice) {
         Ingredients in;
         in.width = options_.height * 16 / 9, in.height = options_.height;
-        in.captions = staging_.scratch() + "/crescent.srt", in.mp4 = staging_.path("crescent.mp4");
+        in.captions = staging_.path("crescent.srt"), in.mp4 = staging_.path("crescent.mp4");
         in.chapters = scratch("chapters.txt", chapters(timeline_, part, data_.experiment.title));
         painter_.draw(std::clamp(timeline_.still(0), part.first, part.last - 1));
         const std::vector<unsigned char> png = encode_png(painter_.canvas().picture(), attributes_of(data_));
@@ -140,12 +140,12 @@ private:
 };
 
 std::string make(const Experiment& experiment, const FilmOptions& options, Watch& watch) {
-    const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const int threads = options.threads > 0 ? options.threads : usable_threads();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     const bool pictures = !options.still.empty() || options.stills;
     Experiment cast = experiment;
     cast_of(cast);  // what is missing is told before the work
-    Staging staging(options.out);
+    Staging staging(options.out, pictures ? "stills" : "film");
     const Canvas font(16, 16, plates::ground);
     if (!pictures) require_ffmpeg(options.webm, !options.voice.empty(), staging.scratch(), watch);
 
@@ -159,7 +159,7 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Watch
     const Part part = part_of(timeline, options);
     Making making(data, timeline, options, staging, watch);
     const std::string said = !options.still.empty() ? making.one_still() : options.stills ? making.stills(part) : making.film(part, options.voice.empty() ? nullptr : &voice);
-    staging.commit();
+    staging.commit(watch);
     return said;
 }
 

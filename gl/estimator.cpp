@@ -53,7 +53,7 @@ Estimator::Kernel& Estimator::kernel(const std::string& sampler, int lobe, std::
 
 const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, Watch& watch) {
     const Experiment& e = scene.experiment();
-    const std::string key = fmt::format("{:x} {} {}x{} {},{} {},{}", e.hash, e.s(), e.image.width, e.image.height, box.x0, box.y0, box.x1, box.y1);
+    const std::string key = fmt::format("{:x} {} {}x{} {},{} {},{}", hash(e), e.s(), e.image.width, e.image.height, box.x0, box.y0, box.x1, box.y1);
     if (sites_ && key == sites_key_) return *sites_;
     sites_.reset();
     sites_.emplace(context_, scene, box, watch);

@@ -17,6 +17,7 @@
 
 #include "arms/all.h"
 #include "base/errors.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "base/files.h"
 #include "base/watch.h"

@@ -29,6 +29,13 @@ private:
 
 std::shared_ptr<Instrument> cpu_instrument(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
 
+std::vector<std::uint32_t> seeds_of(const Experiment& experiment) {
+    std::vector<std::uint32_t> series;
+    for (std::uint32_t k = 0; series.size() < static_cast<std::size_t>(experiment.seeds); ++k)
+        if (const std::uint32_t seed = seed_of(experiment.seed, k); std::ranges::find(series, seed) == series.end()) series.push_back(seed);
+    return series;
+}
+
 std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
     std::vector<Job> jobs;
     const double own = experiment.s();
@@ -59,10 +66,10 @@ Provenance provenance_of(const Experiment& experiment, const Instrument& instrum
     p.commit = commit();
     p.compiler = compiler();
     p.experiment_file = experiment.file;
-    p.experiment_hash = fmt::format("{:016x}", experiment.hash);
+    p.experiment_hash = fmt::format("{:016x}", hash(experiment));
     p.instrument = instrument.name(), p.instrument_details = instrument.details();
     p.command = command;
-    for (int k = 0; k < experiment.seeds; ++k) p.seeds.push_back(seed_of(experiment.seed, static_cast<std::uint32_t>(k)));
+    p.seeds = seeds_of(experiment);
     return p;
 }
 

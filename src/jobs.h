@@ -11,6 +11,9 @@
 
 namespace crescent {
 
+/// The seeds of an experiment, no two alike: its own first.
+std::vector<std::uint32_t> seeds_of(const Experiment& experiment);
+
 /// Every pass of one seed: each arm at the experiment's own s, then the exponent control where it adds anything.
 std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed);
 

@@ -1,6 +1,8 @@
 #include "kept.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -22,21 +24,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Which file the program is, and of when: what another build kept is not for this one.
-std::string build_mark() {
+std::string mark_of(const char* path) {
     struct stat about {};
-    if (stat("/proc/self/exe", &about) != 0) return "";
+    if (!path || stat(path, &about) != 0) return "";
     return fmt::format("{:x}-{:x}-{:x}-{:x}.{:x}", about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec);
 }
 
+/// Which files the program and, where it is another one, the library with this code are, and of when: what another build
+/// kept is not for this one.
+std::string build_mark() {
+    Dl_info about{};
+    const bool known = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
+    return mark_of("/proc/self/exe") + " " + mark_of(known ? about.dli_fname : nullptr);
+}
+
 /// CBOR, which holds every double as it is, NaN and infinities too.
+/// None where the record is something else.
 std::vector<RunMeter> meters_of(Journal::Bytes record) {
     const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
-    return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMeter>>();
+    try {
+        return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMeter>>();
+    } catch (const nlohmann::json::exception&) {
+        return {};
+    }
+}
+
+bool are_of(const Experiment& experiment, const std::vector<RegionMeter>& meters) {
+    return std::equal(meters.begin(), meters.end(), experiment.regions.begin(), experiment.regions.end(),
+                      [](const RegionMeter& m, const Region& region) { return m.region == region.name; });
 }
 
 std::string key_of(const Experiment& experiment, const std::string& instrument) {
-    return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), experiment.hash, instrument);
+    return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), hash(experiment), instrument);
+}
+
+/// A folder of the run's own: a link that stands there leads elsewhere, and nothing is kept.
+bool leads_elsewhere(const std::string& folder) {
+    std::error_code ignored;
+    return fs::is_symlink(fs::symlink_status(folder, ignored));
 }
 
 bool holds_files(const std::string& folder) {
@@ -49,8 +74,11 @@ bool holds_files(const std::string& folder) {
 Kept::Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s, Watch& watch)
     : all_(out + "/.crescent-kept"), key_(key_of(experiment, instrument)), folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
       patience_s_(patience_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_, watch) {
-    journal_.read([this](Journal::Bytes record) {
-        for (RunMeter& meter : meters_of(record)) meters_.push_back(std::move(meter));
+    for (const std::string& folder : {all_, folder_})
+        if (leads_elsewhere(folder)) throw OutputError(fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder));
+    journal_.read([&](Journal::Bytes record) {
+        for (RunMeter& meter : meters_of(record))
+            if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
     });
     written_ = meters_.size();
     if (holds_files(folder_)) watch_.say("going on from what a stopped run kept in " + folder_);
@@ -58,6 +86,13 @@ Kept::Kept(const Experiment& experiment, const std::string& instrument, const st
 
 Kept::~Kept() {
     if (holds_files(folder_)) watch_.say("what was finished is kept in " + folder_ + ": the same command goes on from there");
+}
+
+TileKeeper Kept::tiles(const Job& job) {
+    const std::string ladder = fmt::format("n{}", fmt::join(job.n, ","));
+    const std::string name = fmt::format("{}-s{}-seed{}", job.arm->name, job.s, job.seed);
+    const std::string file = fmt::format("{}-{:08x}", name, XXH3_64bits(ladder.data(), ladder.size()) & 0xffffffffu);
+    return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, watch_};
 }
 
 TileKeeper Kept::tiles(const std::string& name) { return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_}; }
@@ -84,7 +119,9 @@ void Kept::add(const std::vector<RunMeter>& meters) {
 
 void Kept::forget() {
     std::error_code ignored;
-    fs::remove_all(all_, ignored);
+    fs::remove_all(folder_, ignored);
+    if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;
+    watch_.say("what another, unfinished run kept is still in " + all_);
 }
 
 }  // namespace crescent

@@ -24,12 +24,13 @@ public:
     Kept(const Kept&) = delete;
     Kept& operator=(const Kept&) = delete;
 
-    /// For the tiles of one pass; `name` tells it from the run's others.
+    /// For the tiles of one pass; `name`, or what the job computes, tells it from the run's others.
     TileKeeper tiles(const std::string& name);
+    TileKeeper tiles(const Job& job);
     /// The meters of a finished pass, one a rung; none where it is not finished.
     std::vector<RunMeter> meters(const Job& job) const;
     void add(const std::vector<RunMeter>& meters);
-    /// The outputs stand: nothing is needed any more.
+    /// The outputs stand: nothing of this run is needed any more. What another run kept stays, and is told of.
     void forget();
 
 private:

@@ -12,13 +12,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <thread>
 
 #include "base/files.h"
+#include "base/machine.h"
 #include "estimator/estimator.h"
 #include "estimator/reference.h"
 #include "experiment/names.h"
-#include "experiment/published.h"
 #include "films/exr.h"
 #include "jobs.h"
 #include "kept.h"
@@ -26,8 +25,8 @@
 #include "meters/furnace.h"
 #include "meters/meters.h"
 #include "meters/quantity.h"
+#include "needs.h"
 #include "plates/plates.h"
-#include "simd/random.h"
 #include "version.h"
 
 namespace crescent {
@@ -44,8 +43,8 @@ public:
     Run(const Experiment& experiment, const RunOptions& options, Watch& watch)
         : experiment_(experiment), options_(options), watch_(watch), isa_(kernels_for(options.isa).isa),
           instrument_(options.instrument ? options.instrument : cpu_instrument(isa_)),
-          threads_(options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency())),
-          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), published_(published_of(experiment)), scene_(experiment) {}
+          threads_(options.threads > 0 ? options.threads : usable_threads()),
+          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), scene_(experiment) {}
 
     Measured in_memory() {
         look();
@@ -67,7 +66,7 @@ public:
         finish_timing();
         staging.write("timing.json", timing_json(timing_, provenance_));
         watch_.check();
-        staging.commit();
+        staging.commit(watch_);
         kept_->forget();
         return {metrics_, timing_, provenance_, terminal_summary(inputs(), timing_, options_.out, false)};
     }
@@ -86,10 +85,8 @@ private:
         stage("meters", [&] { summarise(); });
         provenance();
     }
-    static std::optional<Published> published_of(const Experiment& experiment) {
-        return experiment.published ? load_published(*experiment.published) : std::nullopt;
-    }
-    const Published* published() const { return published_ ? &*published_ : nullptr; }
+    const Published* published() const { return experiment_.figures ? &*experiment_.figures : nullptr; }
+
     template <class Work> void stage(const char* name, Work&& work) {
         const auto start = Clock::now();
         work();
@@ -98,6 +95,7 @@ private:
     }
 
     void look() {
+        check_needs(experiment_);
         scene_.remember_primaries();
         shapes_ = shape_map(scene_);
         std::vector<std::uint64_t> pixels(experiment_.shapes.size());
@@ -132,13 +130,12 @@ private:
     }
 
     void films() {
-        for (int k = 0; k < experiment_.seeds; ++k) {
-            const std::uint32_t seed = seed_of(experiment_.seed, static_cast<std::uint32_t>(k));
+        for (int k = 0; const std::uint32_t seed : seeds_of(experiment_)) {
             const std::vector<Job> jobs = jobs_of(experiment_, seed);
             double samples = 0;
             for (const Job& job : jobs) samples += static_cast<double>(job.n.back()) * static_cast<double>(metrics_.geometry_pixels);
-            watch_.begin(fmt::format("seed {} of {}", k + 1, experiment_.seeds), samples);
-            for (const Job& job : jobs) run_job(job, k == 0);
+            watch_.begin(fmt::format("seed {} of {}", ++k, experiment_.seeds), samples);
+            for (const Job& job : jobs) run_job(job, k == 1);
         }
     }
 
@@ -146,7 +143,7 @@ private:
     void run_job(Job job, bool films) {
         const auto start = Clock::now();
         std::vector<RunMeter> meters = kept_->meters(job);
-        TileKeeper keeper = kept_->tiles(fmt::format("{}-s{}-seed{}", job.arm->name, job.s, job.seed));
+        TileKeeper keeper = kept_->tiles(job);
         double samples = 0;
         if (films || meters.empty()) {
             job.keeper = &keeper;
@@ -181,7 +178,7 @@ private:
 
     void summarise() {
         metrics_.bands = bands(experiment_, metrics_.runs, published());
-        metrics_.published_seed = published_ ? published_->seed : std::nullopt;
+        metrics_.published_seed = published() ? published()->seed : std::nullopt;
         metrics_.ladders = ladders(experiment_, metrics_.runs);
         for (const auto& [key, film] : films_) metrics_.film_hashes[to_string(key)] = hash(film);
         for (const ReferenceFilm& film : quadrature_) metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
@@ -276,7 +273,6 @@ private:
     std::shared_ptr<Instrument> instrument_;
     int threads_;
     tbb::global_control limit_;
-    std::optional<Published> published_;
     Scene scene_;
     ShapeMap shapes_;
     std::vector<ReferenceFilm> quadrature_, note_;
@@ -291,8 +287,14 @@ private:
 
 }  // namespace
 
-RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch) { return Run(experiment, options, watch)(); }
+RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+    const Experiment whole = with_figures(experiment);
+    return Run(whole, options, watch)();
+}
 
-Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch) { return Run(experiment, options, watch).in_memory(); }
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+    const Experiment whole = with_figures(experiment);
+    return Run(whole, options, watch).in_memory();
+}
 
 }  // namespace crescent

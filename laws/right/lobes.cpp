@@ -172,7 +172,7 @@ Recipe plastic(Dice& d) {
 
 }  // namespace
 
-std::vector<Family> lobe_families() {
+std::vector<RecipeFamily> lobe_families() {
     return {cosine_power, clipped_power, cone, clipped_cone, ring, phase, rectangle, fishers, cones, plastic};
 }
 

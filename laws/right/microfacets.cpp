@@ -136,7 +136,7 @@ Recipe ward(Dice& d) {
 
 Recipe ggx_visible_at(double alpha_x, double alpha_y) { return visible<double>("ggx-visible", alpha_x, alpha_y, true); }
 
-std::vector<Family> microfacet_families() {
+std::vector<RecipeFamily> microfacet_families() {
     return {ggx_visible, ggx_visible_mild, ggx_visible_float, ggx_normals, beckmann, ward};
 }
 

@@ -42,8 +42,8 @@ Vec3d Dice::direction(double least_cos, double most_cos) {
 std::shared_ptr<const JudgedSampler> subject_of(Recipe recipe) { return std::make_shared<FromRecipe>(std::move(recipe)); }
 
 Recipe right_sampler(std::uint64_t index, std::uint32_t seed) {
-    static const std::vector<Family> all = [] {
-        std::vector<Family> out;
+    static const std::vector<RecipeFamily> all = [] {
+        std::vector<RecipeFamily> out;
         for (const auto& some : {microfacet_families(), lobe_families(), table_families()}) out.insert(out.end(), some.begin(), some.end());
         return out;
     }();

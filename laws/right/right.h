@@ -36,10 +36,10 @@ private:
 /// The direction at `cos` from an axis, `turns` about it.
 Vec3d about(Vec3d axis, double cos, double turns);
 
-using Family = Recipe (*)(Dice&);
-std::vector<Family> microfacet_families();  // anisotropic GGX, Beckmann and Ward, in double and in float
-std::vector<Family> lobe_families();        // cosine powers, cones, bands, lights, phase functions, mixtures
-std::vector<Family> table_families();       // cells, texels and bilinear tables
+using RecipeFamily = Recipe (*)(Dice&);
+std::vector<RecipeFamily> microfacet_families();  // anisotropic GGX, Beckmann and Ward, in double and in float
+std::vector<RecipeFamily> lobe_families();        // cosine powers, cones, bands, lights, phase functions, mixtures
+std::vector<RecipeFamily> table_families();       // cells, texels and bilinear tables
 
 /// Anisotropic GGX with visible normals at given roughness.
 Recipe ggx_visible_at(double alpha_x, double alpha_y);

@@ -162,6 +162,6 @@ Recipe bilinear(Dice& d) {
 
 }  // namespace
 
-std::vector<Family> table_families() { return {cells, even_texels, texels, bilinear}; }
+std::vector<RecipeFamily> table_families() { return {cells, even_texels, texels, bilinear}; }
 
 }  // namespace crescent

@@ -19,18 +19,34 @@ kill_when() {
     wait "$run" 2>/dev/null
 }
 
-kill_when 'cosine-s32-seed7'
-kill_when 'mixture-s32-seed7'
-truncate -s -100 stopped/.crescent-kept/*/mixture-s32-seed7
+kill_when 'cosine-s32-seed7-*'
+kill_when 'mixture-s32-seed7-*'
+truncate -s -100 stopped/.crescent-kept/*/mixture-s32-seed7-*
 expect 0 "$CRESCENT" "${long[@]}" --threads 1 --isa scalar
 same_outputs alone stopped
 [ -e stopped/.crescent-kept ] && die "what was kept is still there"
 drawn() { grep -o '"samples": [0-9]*' "$1/timing.json" | awk '{ sum += $2 } END { print sum }'; }
 [ "$(drawn stopped)" -lt "$(drawn alone)" ] || die "nothing of the killed run was used"
 
-# Another experiment takes nothing from it.
-kill_when 'cosine-s32-seed7'
+# Another experiment takes nothing from it, and leaves it where it is: the first one goes on afterwards.
+kill_when 'cosine-s32-seed7-*'
 expect 0 "$CRESCENT" run "$tiny" --out stopped
 grep -q 'going on' said && die "another experiment went on from what was kept: $(cat said)"
-[ -e stopped/.crescent-kept ] && die "what was kept outlived the outputs that replaced it"
+grep -q 'another, unfinished run' said || die "nothing is said of what another run kept: $(cat said)"
+expect 0 "$CRESCENT" run "$tiny" --out tiny
+same_outputs_but_kept() { diff -r -x timing.json -x .crescent-kept "$1" "$2" >difference || die "$1 and $2 differ: $(cat difference)"; }
+same_outputs_but_kept tiny stopped
+expect 0 "$CRESCENT" "${long[@]}"
+same_outputs alone stopped
+[ -e stopped/.crescent-kept ] && die "what was kept outlived the outputs"
+
+# The same scene with another lamp, stopped and run into one folder: none of the first one's tiles is taken.
+sed 's/radiance = \[90, 80, 70\]/radiance = [900, 800, 700]/' "$tiny" >bright.toml
+kill_when 'cosine-s32-seed7-*'
+bright=("${long[@]}")
+bright[1]=bright.toml
+expect 0 "$CRESCENT" "${bright[@]}"
+bright[-1]=fresh
+expect 0 "$CRESCENT" "${bright[@]}"
+same_outputs_but_kept fresh stopped
 exit 0

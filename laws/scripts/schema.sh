@@ -32,3 +32,17 @@ for path in glob.glob(sys.argv[1] + "/experiments/*.toml") + [sys.argv[2]]:
 for path in glob.glob("mistake-*.toml"):
     assert not judge.is_valid(read(path)), f"{path} passes the schema"
 END
+
+# metrics.json of a run obeys docs/metrics.schema.json, and a wrong one does not.
+expect 0 "$CRESCENT" run "$tiny" --quiet --out measured
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import json, sys
+import jsonschema
+schema = json.load(open(sys.argv[1] + "/docs/metrics.schema.json"))
+judge = jsonschema.validators.validator_for(schema)(schema)
+judge.check_schema(schema)
+metrics = json.load(open("measured/metrics.json"))
+for error in judge.iter_errors(metrics): sys.exit(f"metrics.json: {error.json_path}: {error.message}")
+for wrong in ({**metrics, "unknown": 1}, {**metrics, "runs": 3}, {k: v for k, v in metrics.items() if k != "runs"}):
+    assert not judge.is_valid(wrong), "a wrong metrics.json passes the schema"
+END

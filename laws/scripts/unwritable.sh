@@ -13,8 +13,33 @@ expect 3 "$CRESCENT" run "$tiny" --out /proc/crescent
 
 printf '<?xml version="1.0"?><fontconfig></fontconfig>\n' >no-fonts.conf
 expect 3 env FONTCONFIG_FILE="$work/no-fonts.conf" "$CRESCENT" run "$tiny" --out fontless
+grep -q 'seed 1 of' said && die "the font is missed only after the work: $(cat said)"
 grep -q Inter said || die "the message does not name the font: $(cat said)"
 [ -z "$(find fontless -type f 2>/dev/null)" ] || die "outputs without a font: $(find fontless -type f)"
+
+# More memory than there is: told before any of it is spent.
+expect 3 "$CRESCENT" run "$tiny" --out large --set image.width=16384 --set image.height=16384 --set 'arms.cosine.n=[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]'
+grep -q 'GB of memory' said || die "the message does not say how much memory is needed: $(cat said)"
+[ ! -e large ] || die "a run that does not fit made a folder"
+
+# Two runs into one folder: the second is told.
+"$CRESCENT" run "$tiny" --quiet --out shared --set 'arms.cosine.n=[16777216]' >/dev/null 2>&1 &
+first=$!
+until compgen -G 'shared/.crescent-stage-*/owner' >/dev/null; do sleep 0.05; done
+expect 3 "$CRESCENT" run "$tiny" --out shared
+grep -q 'another run' said || die "the second run is not told of the first: $(cat said)"
+kill "$first"
+wait "$first" 2>/dev/null
+
+# One target that cannot be replaced: exit 3, and everything is of the run before.
+expect 0 "$CRESCENT" run "$tiny" --quiet --out held
+cp -a held held-before
+if mount --bind held/junit.xml held/junit.xml 2>/dev/null; then
+    expect 3 "$CRESCENT" run "$tiny" --out held --set seed=11
+    umount held/junit.xml
+    grep -q 'junit.xml' said || die "the message does not name the file: $(cat said)"
+    diff -r held-before held >difference || die "some outputs are new: $(cat difference)"
+fi
 
 # A disk of 64 KiB, where this process may mount one.
 mkdir disk

@@ -1,5 +1,7 @@
 #include "base/errors.h"
 
+#include "base/text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +16,7 @@ std::string join(const std::vector<Complaint>& all) {
     std::string text;
     for (const Complaint& c : all) {
         if (!text.empty()) text += '\n';
-        const std::string at = to_string(c.at);
+        const std::string at = printable(to_string(c.at));
         text += at.empty() ? c.say : at + ": " + c.say;
     }
     return text;

@@ -2,14 +2,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 
 #include "base/errors.h"
+#include "base/publish.h"
 
 namespace crescent {
 
@@ -17,87 +22,119 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view prefix = ".crescent-";
+constexpr const char* owner_file = "owner";
+constexpr std::string_view owner_text = "a run of crescent that is writing, or was killed while it wrote\n";
 
 [[noreturn]] void fail(const std::string& what, const std::string& path, const std::string& why) {
     throw OutputError(fmt::format("{} {}: {}", what, path, why));
 }
 
-/// Removes stages whose process is gone.
-void clear_stale(const std::string& folder) {
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const std::string name = entry.path().filename();
-        if (!name.starts_with(prefix)) continue;
-        const long pid = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
-        if (pid > 0 && kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
-    }
+[[noreturn]] void in_use(const std::string& folder) {
+    throw OutputError(fmt::format("another run is writing into {}: expected its end, or another folder", folder));
 }
 
-void write_whole(const std::string& path, const unsigned char* bytes, std::size_t size) {
-    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) fail("cannot write", path, std::strerror(errno));
-    while (size > 0) {
-        const ssize_t n = ::write(file, bytes, size);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) {
-            const int why = errno;
-            close(file);
-            fail("cannot write", path, std::strerror(why));
-        }
-        bytes += n;
-        size -= static_cast<std::size_t>(n);
-    }
-    if (close(file) != 0) fail("cannot write", path, std::strerror(errno));
+/// Nobody can know it beforehand and put something in its place.
+std::string new_stage_name() {
+    std::uint64_t bits = 0;
+    if (getrandom(&bits, sizeof bits, 0) != sizeof bits) fail("cannot read", "the system's random numbers", std::strerror(errno));
+    return fmt::format("{}{:016x}", stage_prefix, bits);
+}
+
+bool is_stage_name(const std::string& name) {
+    return name.size() == stage_prefix.size() + 16 && name.starts_with(stage_prefix) &&
+           name.find_first_not_of("0123456789abcdef", stage_prefix.size()) == std::string::npos;
+}
+
+enum class Life { alive, gone, not_ours };
+
+/// A stage is ours to clear where its owner file says so, is this user's, and no living process holds it.
+Life life_of(const Folder& out, const std::string& stage) {
+    const Folder here = out.sub(stage);
+    struct stat about {};
+    if (!here || here.read(owner_file) != owner_text || fstat(here.descriptor(), &about) != 0 || about.st_uid != geteuid()) return Life::not_ours;
+    const int owner = openat(here.descriptor(), owner_file, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+    if (owner < 0) return Life::not_ours;
+    const bool held = flock(owner, LOCK_EX | LOCK_NB) != 0;
+    close(owner);
+    return held ? Life::alive : Life::gone;
 }
 
 }  // namespace
 
-Staging::Staging(std::string folder) : folder_(std::move(folder)) {
+Staging::Staging(std::string folder, std::string kind) : folder_(std::move(folder)), kind_(std::move(kind)) {
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error || !fs::is_directory(folder_)) fail("cannot make the folder", folder_, error ? error.message() : "something else has that name");
-    clear_stale(folder_);
-    stage_ = folder_ + "/" + std::string(prefix) + std::to_string(getpid());
-    fs::create_directories(stage_, error);
-    if (error) fail("cannot write in", folder_, error.message());
+    out_ = Folder(folder_);
+    if (flock(out_.descriptor(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) in_use(folder_);
+    clear_stale();
+    make_stage();
+}
+
+void Staging::clear_stale() {
+    for (const std::string& name : out_.leaves()) {
+        if (!is_stage_name(name)) continue;
+        const Life life = life_of(out_, name);
+        if (life == Life::alive) in_use(folder_);
+        if (life == Life::not_ours) continue;
+        Publication publication(out_, folder_, name);
+        if (!publication.settle()) fail("cannot end what a killed run began in", folder_, std::strerror(errno));
+        said_.insert(said_.end(), publication.said().begin(), publication.said().end());
+        std::error_code ignored;
+        fs::remove_all(fs::path(folder_) / name, ignored);
+    }
+}
+
+void Staging::make_stage() {
+    do stage_ = new_stage_name();
+    while (!out_.make_folder(stage_) && errno == EEXIST);
+    const Folder stage = out_.sub(stage_);
+    if (!stage) fail("cannot write in", folder_, std::strerror(errno));
+    const auto need = [&](bool done) {
+        if (done) return;
+        const int why = errno;
+        std::error_code ignored;
+        fs::remove_all(fs::path(folder_) / stage_, ignored);
+        fail("cannot write in", folder_, std::strerror(why));
+    };
+    owner_ = openat(stage.descriptor(), owner_file, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    need(owner_ >= 0);
+    (void)flock(owner_, LOCK_EX | LOCK_NB);  // a file system without locks has the folder's alone
+    need(::write(owner_, owner_text.data(), owner_text.size()) == static_cast<ssize_t>(owner_text.size()));
+    need(stage.make_folder("new") && stage.make_folder("scratch"));
+    need(stage.make_link("new", "link") && stage.remove("link"));  // outputs need links to appear as one
 }
 
 Staging::~Staging() {
+    if (owner_ >= 0) close(owner_);
+    if (out_.kind(".crescent-current") == Folder::Kind::link && out_.link_text(".crescent-current").starts_with(stage_)) return;  // the next run settles it
     std::error_code ignored;
-    fs::remove_all(stage_, ignored);
+    fs::remove_all(fs::path(folder_) / stage_, ignored);
 }
 
 std::string Staging::path(const std::string& name) {
-    const fs::path at = fs::path(stage_) / name;
-    std::error_code error;
-    fs::create_directories(at.parent_path(), error);
-    if (error) fail("cannot make the folder", at.parent_path(), error.message());
-    names_.push_back(name);
+    const fs::path at = fs::path(folder_) / stage_ / "new" / name;
+    if (!out_.sub(stage_ + "/new").parent_of(name, true)) fail("cannot make the folder", at.parent_path(), std::strerror(errno));
+    if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
     return at;
 }
 
-void Staging::write(const std::string& name, std::span<const unsigned char> bytes) { write_whole(path(name), bytes.data(), bytes.size()); }
-
+void Staging::write(const std::string& name, std::span<const unsigned char> bytes) {
+    const std::string at = path(name);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (!out_.sub(stage_ + "/new").parent_of(name, false).write(leaf_of(name), text)) fail("cannot write", at, std::strerror(errno));
+}
 void Staging::write(const std::string& name, const std::string& text) {
-    write_whole(path(name), reinterpret_cast<const unsigned char*>(text.data()), text.size());
+    write(name, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
-void Staging::commit() {
-    std::error_code error;
-    for (const std::string& name : names_) {  // all of what can be known beforehand, before the first one moves
-        const fs::path to = fs::path(folder_) / name;
-        fs::create_directories(to.parent_path(), error);
-        if (!error && fs::is_directory(to)) error = std::make_error_code(std::errc::is_a_directory);
-        if (!error && !fs::exists(fs::path(stage_) / name)) error = std::make_error_code(std::errc::no_such_file_or_directory);
-        if (error) fail("cannot write", to, error.message());
-    }
-    for (const std::string& name : names_) {
-        const fs::path to = fs::path(folder_) / name;
-        fs::rename(fs::path(stage_) / name, to, error);
-        if (error) fail("cannot write", to, error.message());
-    }
+void Staging::commit(Watch& watch) {
+    Publication publication(out_, folder_, stage_);
+    publication.publish(std::move(names_), kind_, watch.outputs);
     names_.clear();
+    said_.insert(said_.end(), publication.said().begin(), publication.said().end());
+    for (const std::string& line : said_) watch.say(line);
+    said_.clear();
 }
 
 }  // namespace crescent

@@ -1,18 +1,23 @@
-// Outputs appear whole or not at all: they are written into a folder beside their place and moved there at the end.
+// Outputs appear as one or not at all: they are written into a folder beside their place and brought there at the end.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/folder.h"
+#include "base/watch.h"
+
 namespace crescent {
 
-/// A folder of outputs in the making. Nothing shows under a final name before commit(); if the process stops earlier,
-/// earlier outputs stand untouched. Throws OutputError where something cannot be written.
+/// A folder of outputs in the making. Nothing shows under a final name before commit(); if the process ends earlier,
+/// earlier outputs stand untouched; wherever it ends inside commit(), all of the old ones stand or all of the new ones.
+/// Throws OutputError where something cannot be written, and where another process is writing into the same folder.
 class Staging {
 public:
-    /// Makes `folder` if it is not there, and clears what earlier, killed runs left behind.
-    explicit Staging(std::string folder);
+    /// Makes `folder` if it is not there, and ends or clears what earlier, killed runs left behind. Work of another kind
+    /// may write into the same folder: it has outputs of its own.
+    explicit Staging(std::string folder, std::string kind = "outputs");
     ~Staging();
     Staging(const Staging&) = delete;
     Staging& operator=(const Staging&) = delete;
@@ -22,13 +27,19 @@ public:
     void write(const std::string& name, std::span<const unsigned char> bytes);
     void write(const std::string& name, const std::string& text);
     /// A folder for what is needed on the way; it goes with the stage.
-    const std::string& scratch() const { return stage_; }
-    /// Moves every output to its place.
-    void commit();
+    std::string scratch() const { return folder_ + "/" + stage_ + "/scratch"; }
+    /// Brings every output to its place and removes files of the earlier outputs that are not among them. What the
+    /// folder holds besides stays. `watch` is told what stands when, and which files were kept under another name.
+    void commit(Watch& watch);
 
 private:
-    std::string folder_, stage_;
-    std::vector<std::string> names_;
+    void clear_stale();
+    void make_stage();
+
+    std::string folder_, kind_, stage_;  // stage_: its name in the folder
+    Folder out_;
+    int owner_ = -1;              // a locked file in the stage: whoever holds it is alive
+    std::vector<std::string> names_, said_;
 };
 
 }  // namespace crescent

@@ -30,7 +30,8 @@ Journal::Journal(Journal&& other) noexcept
 
 namespace {
 
-/// What stands before the bytes of a record.
+/// What stands before the bytes of a record. The hash begins from the key's, so that a record that was copied here from
+/// the journal of other work is not taken.
 struct Head {
     std::uint64_t size, hash;
 };
@@ -46,12 +47,16 @@ bool read_all(int file, void* to, std::size_t size) {
     return true;
 }
 
+std::uint64_t hash_of(const std::string& key, const std::byte* record, std::size_t size) {
+    return XXH3_64bits_withSeed(record, size, XXH3_64bits(key.data(), key.size()));
+}
+
 /// The next record, if it is whole.
-bool next_record(int file, std::uint64_t left, std::vector<std::byte>& record) {
+bool next_record(int file, std::uint64_t left, const std::string& key, std::vector<std::byte>& record) {
     Head head;
     if (left < sizeof head || !read_all(file, &head, sizeof head) || head.size > left - sizeof head) return false;
     record.resize(head.size);
-    return read_all(file, record.data(), head.size) && XXH3_64bits(record.data(), record.size()) == head.hash;
+    return read_all(file, record.data(), head.size) && hash_of(key, record.data(), record.size()) == head.hash;
 }
 
 Journal::Bytes bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
@@ -63,7 +68,7 @@ Journal::~Journal() {
 }
 
 bool Journal::open(int flags) {
-    file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | flags, 0666);
+    file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0666);
     if (file_ < 0) return false;
     off_ = flock(file_, LOCK_EX | LOCK_NB) != 0;
     return true;
@@ -75,7 +80,7 @@ void Journal::read(const std::function<void(Bytes)>& take) {
     const auto size = static_cast<std::uint64_t>(about.st_size);
     std::uint64_t whole = 0;
     std::vector<std::byte> record;
-    while (next_record(file_, size - whole, record)) {
+    while (next_record(file_, size - whole, key_, record)) {
         if (whole > 0) take(record);
         else if (record.size() != key_.size() || std::memcmp(record.data(), key_.data(), key_.size()) != 0) break;
         whole += sizeof(Head) + record.size();
@@ -102,7 +107,7 @@ void Journal::append(const std::vector<Bytes>& parts) {
 bool Journal::write(const std::vector<Bytes>& parts) {
     std::vector<std::byte> all(sizeof(Head));
     for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
-    const Head head = {all.size() - sizeof(Head), XXH3_64bits(all.data() + sizeof(Head), all.size() - sizeof(Head))};
+    const Head head = {all.size() - sizeof(Head), hash_of(key_, all.data() + sizeof(Head), all.size() - sizeof(Head))};
     std::memcpy(all.data(), &head, sizeof head);
     for (std::size_t done = 0; done < all.size();) {
         const ssize_t n = ::write(file_, all.data() + done, all.size() - done);

@@ -88,6 +88,34 @@ TEST_F(Journals, OfOtherWorkCountAsNone) {
     EXPECT_TRUE(read("other work").empty());
 }
 
+TEST_F(Journals, TakeNoRecordThatWasWrittenForOtherWork) {
+    write({{"one"}});
+    {
+        Journal other(path_ + "-other", "work", watch_);
+        append(other, {"two"});
+        Journal stranger(path_ + "-stranger", "strange work", watch_);
+        append(stranger, {"theirs"});
+    }
+    const auto add_bytes_of = [&](const std::string& from) {
+        std::ifstream in(from, std::ios::binary);
+        std::ofstream(path_, std::ios::binary | std::ios::app) << in.rdbuf();
+    };
+    add_bytes_of(path_ + "-stranger");
+    EXPECT_EQ(read(), Texts{"one"});
+    add_bytes_of(path_ + "-other");
+    EXPECT_EQ(read(), (Texts{"one", "work", "two"})) << "of the same work, and whole: the reader must know it from its own";
+}
+
+TEST_F(Journals, AreNotLedElsewhereByALink) {
+    fs::create_directories(folder_ / "deep");
+    std::ofstream(folder_ / "victim") << "victim";
+    fs::create_symlink(folder_ / "victim", path_);
+    write({{"one"}});
+    std::ifstream victim(folder_ / "victim");
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(victim), {}), "victim");
+    EXPECT_EQ(watch_.said, 1);
+}
+
 TEST_F(Journals, ThatCannotBeWrittenSaySo) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "deep") << "a file where the folder should be";

@@ -1,4 +1,4 @@
-// Text from elsewhere, made fit for XML and HTML and for a terminal.
+// Text from elsewhere, made fit for XML and HTML, for a terminal and for a shell.
 #pragma once
 
 #include <string>
@@ -13,5 +13,10 @@ std::string escape(std::string_view text);
 /// Control characters (C0, DEL, C1, U+2028 to U+202E, U+2066 to U+2069) and broken bytes are shown as \xNN or \u{N}. At most
 /// `longest` bytes of `text` are taken, cut between characters.
 std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
+/// The same for text of several lines: tabs and newlines stay.
+std::string printable_lines(std::string_view text);
+
+/// The word as a POSIX shell reads it back: as it is where that is plain, else in quotes.
+std::string shell_word(std::string_view word);
 
 }  // namespace crescent

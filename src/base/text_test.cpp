@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <random>
+
 namespace crescent {
 namespace {
 
@@ -10,6 +13,32 @@ TEST(Text, NothingThatMovesACursorIsPrinted) {
     EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\u{9b}31m");              // CSI of one character
     EXPECT_EQ(printable("\xe2\x80\xae" "abc"), "\\u{202e}abc");        // right to left
     EXPECT_EQ(printable("na\xefve \xc3\xa9\xe2\x82\xac"), "na\\xefve \xc3\xa9\xe2\x82\xac");
+}
+
+TEST(Text, HasNoControlCharacterWhateverTheBytes) {
+    std::mt19937 random(7);
+    for (int round = 0; round < 20000; ++round) {
+        std::string text(random() % 12, ' ');
+        for (char& c : text) c = static_cast<char>(round % 2 ? random() : "\x1b\xc2\x9b\xe2\x80\xae\xf0\x80[a\n"[random() % 11]);
+        const std::string shown = printable_lines(text);
+        for (std::size_t k = 0; k < shown.size(); ++k) {
+            const auto byte = static_cast<unsigned char>(shown[k]);
+            ASSERT_TRUE(byte == '\n' || byte == '\t' || (byte >= 0x20 && byte != 0x7f)) << shown;
+            ASSERT_FALSE(byte == 0xc2 && static_cast<unsigned char>(shown[k + 1]) < 0xa0) << shown;
+        }
+        ASSERT_EQ(printable_lines(shown), shown);
+    }
+}
+
+TEST(Text, ForAShellIsReadBackByIt) {
+    EXPECT_EQ(shell_word("experiments/gallery.toml"), "experiments/gallery.toml");
+    for (const std::string word : {"my tiny; echo pwned.toml", "it's", "$(id)", "`id`", "", "-n", "a\\b", "a\nb", "n=[4,16]", "*"}) {
+        FILE* shell = popen(("printf %s. " + shell_word(word)).c_str(), "r");
+        std::string back(4096, '\0');
+        back.resize(fread(back.data(), 1, back.size(), shell));
+        pclose(shell);
+        EXPECT_EQ(back, word + ".");
+    }
 }
 
 TEST(Text, IsCutBetweenCharacters) {

@@ -12,6 +12,9 @@ struct Interrupted : std::exception {
     const char* what() const noexcept override { return "interrupted"; }
 };
 
+/// What stands under the final names of a run's outputs: what was there before; one or the other, all of one run; its own.
+enum class Outputs { untouched, moving, stand };
+
 /// Someone who watches long work. Called from many threads at once; every call is cheap.
 class Watch {
 public:
@@ -27,6 +30,8 @@ public:
 
     /// The flag kernels poll; set from a signal handler.
     std::atomic<bool> stop{false};
+    /// Read by the signal handler, so that what it says is so.
+    std::atomic<Outputs> outputs{Outputs::untouched};
     void check() const {
         if (stop.load(std::memory_order_relaxed)) throw Interrupted{};
     }

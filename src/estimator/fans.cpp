@@ -100,7 +100,7 @@ public:
             sum.diffuse += fan.lambert(point_, from, to) / pi;
             const Interval part = {from.al, about_lobe_ ? std::min(to.al, shape_.reach) : to.al};
             if (!lobe || part.empty()) return;
-            const Measured along = lobe_along(point_, axis, aside, part, width);
+            const AlongLobe along = lobe_along(point_, axis, aside, part, width);
             sum.lobe += along.value, sum.inner += along.error;
         });
         return light_.whole() ? sum : (light_.half * math::cos(tau)) * sum;

@@ -18,12 +18,12 @@ struct LobeShape {
     double width_at(double c) const;
 };
 
-struct Measured {
+struct AlongLobe {
     double value = 0, error = 0;
 };
 
 /// Integral of lobe cos(theta_i) sin(al) over [lo, hi], directions cos(al) axis + sin(al) aside in the local frame.
 /// Panels that double in size from al = 0 on, `width` being the first; the error is the difference of two rules.
-Measured lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width);
+AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width);
 
 }  // namespace crescent

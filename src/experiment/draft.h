@@ -1,4 +1,4 @@
-// An experiment while it is being read: values so far, every mistake so far, and the text that the hash is taken of.
+// An experiment while it is being read: values so far and every mistake so far.
 #pragma once
 
 #include <set>
@@ -23,7 +23,6 @@ struct Draft {
     std::vector<Complaint> complaints;
     std::set<std::string> broken;  // paths whose values cannot be used
     std::vector<Reference> references;
-    std::string canonical;  // "path=value" a line, defaults included, free of layout
 
     void complain(const std::string& path, const std::string& say);
     void complain(const std::string& path, const Place& at, const std::string& say);

@@ -12,6 +12,7 @@
 
 #include "base/errors.h"
 #include "base/vec.h"
+#include "experiment/published.h"
 
 namespace crescent {
 
@@ -149,7 +150,6 @@ struct AssertionPlan {
 struct Experiment {
     std::string file;    // as given
     std::string title;
-    std::uint64_t hash = 0;  // of the effective values, overrides included
     std::vector<std::string> overrides;  // PATH=VALUE, as given
     std::uint32_t seed = 0;
     std::uint64_t n = 0;  // samples per pixel meant where a plate, a check or the exponent control names none; 0: none given
@@ -169,6 +169,7 @@ struct Experiment {
     std::vector<PlatePlan> plates;
     std::vector<AssertionPlan> assertions;
     std::optional<std::string> published;  // path of a JSON of published figures, resolved against `file`
+    std::optional<Published> figures;      // what it says, once it is read: by load(), else by run()
     std::map<std::string, Place> places;   // "camera.eye" -> where it was written
 
     /// The experiment's own s, which steers arms on surfaces without a lobe and which the exponent control changes:
@@ -191,6 +192,15 @@ struct Experiment {
 Experiment load(const std::string& path, const std::vector<std::string>& overrides = {});
 /// The same from text, `name` standing for the file in messages.
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
+
+/// With the published figures read, where it names some and holds none yet.
+Experiment with_figures(Experiment experiment);
+
+/// The experiment as a file that is read as the same experiment: every key with its effective value, in one layout.
+std::string canonical_text(const Experiment& experiment);
+/// What tells experiments apart: XXH3 of every value and, in place of their path, of the published figures. Computed anew
+/// at each call, so that it is right for an experiment that was made or changed in code.
+std::uint64_t hash(const Experiment& experiment);
 
 /// The keys with types, units, ranges and defaults, made from the table that parses them.
 std::string schema_text();

@@ -125,20 +125,6 @@ TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
     EXPECT_THROW((void)parse(room + "[arms.phong]\nn = 4\n", "room"), InputError);
 }
 
-TEST(Hashes, DependOnEffectiveValuesAlone) {
-    const std::string text =
-        "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n"
-        "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\nradiance = [1, "
-        "1, 1]\n[arms.cosine]\nn = 4\n";
-    const std::uint64_t hash = parse(text, "a.toml").hash;
-    EXPECT_EQ(hash, parse("# a comment\n\n" + text, "b.toml").hash);
-    EXPECT_EQ(hash, parse(text + "sampler = \"cosine\"\n", "a.toml").hash) << "a default written out";
-    EXPECT_EQ(hash, parse(text, "a.toml", {"cosine.n=[4]", "ball.radius=1.0", "seed=1"}).hash);
-    EXPECT_NE(hash, parse(text, "a.toml", {"cosine.n=5"}).hash);
-    EXPECT_NE(hash, parse(text, "a.toml", {"seed=2"}).hash);
-    EXPECT_NE(hash, parse(text, "a.toml", {"ball.radius=1.0000001"}).hash);
-}
-
 /// A good value of a key, as TOML.
 std::string example(const Key& key) {
     const double x = key.range.low > 0 ? key.range.low : 1;

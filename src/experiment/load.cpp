@@ -1,6 +1,5 @@
 // A file, or text, and its overrides -> Experiment; every mistake in one InputError, in file order.
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <cerrno>
 #include <cstring>
@@ -38,7 +37,6 @@ Draft draft_of(std::string_view text, const std::string& name, const std::vector
     resolve_runs(draft);
     resolve_assertions(draft);
     Experiment& e = draft.e;
-    e.hash = XXH3_64bits(draft.canonical.data(), draft.canonical.size());
     if (e.published) e.published = (std::filesystem::path(name).parent_path() / *e.published).string();
     return draft;
 }
@@ -55,13 +53,18 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
     Draft draft = draft_of(read_text(path, "an experiment file"), path, overrides);
     if (draft.e.published) {
         try {
-            (void)load_published(*draft.e.published);
+            draft.e.figures = load_published(*draft.e.published);
         } catch (const InputError& error) {
             draft.complain("published", fmt::format("published: {}", error.what()));
         }
     }
     throw_if_any(std::move(draft.complaints));
     return std::move(draft.e);
+}
+
+Experiment with_figures(Experiment experiment) {
+    if (experiment.published && !experiment.figures) experiment.figures = load_published(*experiment.published);
+    return experiment;
 }
 
 std::string read_text(const std::string& path, std::string_view what) {

@@ -29,22 +29,6 @@ std::string join(const std::string& path, std::string_view name) {
 
 std::string where(const std::string& path) { return path.empty() ? "the experiment" : "[" + path + "]"; }
 
-/// The value as the hash sees it: 32 and 32.0 are one, and so are 64 and [64].
-std::string canonical(const Key& key, const Value& value) {
-    switch (key.type) {
-        case Type::flag: return value.flag ? "true" : "false";
-        case Type::integer:
-        case Type::number: return fmt::format("{}", value.number + 0.0);
-        case Type::text:
-        case Type::check:
-        case Type::word:
-        case Type::sampler:
-        case Type::arm:
-        case Type::shape: return value.text;
-        default: return listed(value.numbers, ",");
-    }
-}
-
 class TreeReader {
 public:
     explicit TreeReader(Draft& draft) : draft_(draft) {}
@@ -110,8 +94,7 @@ private:
     void store(const Key& key, const Node& node, const std::string& path, void* object) {
         Value value;
         if (!read_value(draft_, key, node, path, value)) return;
-        key.store(object, value);
-        draft_.canonical += fmt::format("{}={}\n", path, canonical(key, value));
+        key.slot.store(object, value);
         if (key.type == Type::sampler || key.type == Type::arm || key.type == Type::shape)
             draft_.references.push_back({key.type, path, value.text});
     }
@@ -139,7 +122,7 @@ private:
         if (section.many == Many::list && node.is_table())
             return draft_.complain(path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
         if (section.many == Many::one)
-            return table(section, node, path, member->at, section.add ? section.add(object, "", member->at) : object);
+            return table(section, node, path, member->at, section.family.add ? section.family.add(object, "", member->at) : object);
         if (section.need == Need::required && node.members.empty())
             return draft_.complain(path, member->at,
                                    fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
@@ -158,7 +141,7 @@ private:
         const bool all_default =
             std::none_of(section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
         if (section.many == Many::one && all_default)
-            table(section, Node{}, path, parent_at, section.add ? section.add(object, "", parent_at) : object);
+            table(section, Node{}, path, parent_at, section.family.add ? section.family.add(object, "", parent_at) : object);
     }
 
     void elements(const Section& section, const Node& node, const std::string& path, void* object) {
@@ -198,7 +181,7 @@ private:
             draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
         draft_.e.places[own] = at;
         in_list_ = node.is_array();
-        table(section, member.value, own, at, section.add(object, name, at));
+        table(section, member.value, own, at, section.family.add(object, name, at));
     }
 
     /// The name of a table in a list; false where it has none that is new.

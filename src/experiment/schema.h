@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -50,6 +53,12 @@ struct Value {
     std::string text;
 };
 
+/// Where a key's value stands in its object: how it gets there, and how it is read back (false: none was given).
+struct Slot {
+    void (*store)(void* object, const Value& value);
+    bool (*load)(const void* object, Value& value);
+};
+
 struct Key {
     std::string_view name;
     Type type;
@@ -58,7 +67,7 @@ struct Key {
     Need need;
     std::string_view fallback;  // TOML of the default, or in words where it depends on other keys
     std::string_view means;
-    void (*store)(void* object, const Value& value);
+    Slot slot;
     std::vector<std::string> words = {};
     std::string_view kinds = {};  // the kinds of shape that have this key; empty: all
 };
@@ -70,13 +79,21 @@ enum class Many {
     list,    // [[plates.NAME.runs]] or runs = [{...}]
 };
 
+/// The objects of a section inside their parent. Without functions: the parent itself.
+struct Family {
+    void* (*add)(void* parent, const std::string& name, const Place& at) = nullptr;
+    std::size_t (*size)(const void* parent) = nullptr;
+    const void* (*at)(const void* parent, std::size_t index) = nullptr;
+    std::string (*name)(const void* object) = nullptr;  // "" where it has none
+};
+
 /// A table of the file, or a family of tables under names of the user's choice.
 struct Section {
     std::string_view name;
     Many many;
     Need need;
     std::string_view means;
-    void* (*add)(void* parent, const std::string& name, const Place& at);
+    Family family;
     std::vector<Key> keys;
     std::vector<Section> sections;
 
@@ -103,7 +120,14 @@ template <class T> std::string listed(const std::vector<T>& all, std::string_vie
 /// The valid words of a section, for hints: keys of this kind and sections.
 std::vector<std::string> words_of(const Section& section, std::string_view kind = {});
 
-// --- from a Value into a member ---------------------------------------------------------------------------------
+// --- from a Value into a member, and back -----------------------------------------------------------------------
+
+/// A number that the table's range has let through, as an integer.
+template <class T> T whole(double x) {
+    ensure(x >= static_cast<double>(std::numeric_limits<T>::min()) && x <= static_cast<double>(std::numeric_limits<T>::max()),
+           "the range of a key fits the type it is stored in");
+    return static_cast<T>(x);
+}
 
 inline void assign(double& to, const Value& v) { to = v.number; }
 inline void assign(bool& to, const Value& v) { to = v.flag; }
@@ -111,39 +135,84 @@ inline void assign(std::string& to, const Value& v) { to = v.text; }
 inline void assign(Vec3d& to, const Value& v) { to = {v.numbers[0], v.numbers[1], v.numbers[2]}; }
 inline void assign(Rgb& to, const Value& v) { to = {v.numbers[0], v.numbers[1], v.numbers[2]}; }
 inline void assign(std::vector<double>& to, const Value& v) { to = v.numbers; }
-inline void assign(std::vector<std::uint64_t>& to, const Value& v) { to.assign(v.numbers.begin(), v.numbers.end()); }
+inline void assign(std::vector<std::uint64_t>& to, const Value& v) {
+    to.clear();
+    for (const double x : v.numbers) to.push_back(whole<std::uint64_t>(x));
+}
 inline void assign(Box& to, const Value& v) {
-    const auto at = [&](int i) { return static_cast<int>(v.numbers[static_cast<std::size_t>(i)]); };
+    const auto at = [&](int i) { return whole<int>(v.numbers[static_cast<std::size_t>(i)]); };
     to = {at(0), at(1), at(2), at(3)};
 }
 template <class T> requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void assign(T& to, const Value& v) {
-    to = static_cast<T>(v.number);
+    to = whole<T>(v.number);
 }
 template <class T> requires std::is_enum_v<T> void assign(T& to, const Value& v) { to = static_cast<T>(v.word); }
 template <class T> void assign(std::optional<T>& to, const Value& v) { assign(to.emplace(), v); }
+
+inline bool fetch(double from, Value& v) { return v.number = from, true; }
+inline bool fetch(bool from, Value& v) { return v.flag = from, v.word = from, true; }
+inline bool fetch(const std::string& from, Value& v) { return v.text = from, true; }
+inline bool fetch(const Vec3d& from, Value& v) { return v.numbers = {from.x, from.y, from.z}, true; }
+inline bool fetch(const Rgb& from, Value& v) { return v.numbers.assign(from.begin(), from.end()), true; }
+inline bool fetch(const std::vector<double>& from, Value& v) { return v.numbers = from, true; }
+inline bool fetch(const std::vector<std::uint64_t>& from, Value& v) {
+    return v.numbers.assign(from.begin(), from.end()), true;
+}
+inline bool fetch(const Box& from, Value& v) {
+    v.numbers.clear();
+    for (const int x : {from.x0, from.y0, from.x1, from.y1}) v.numbers.push_back(x);
+    return true;
+}
+template <class T> requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) bool fetch(T from, Value& v) {
+    return v.number = static_cast<double>(from), true;
+}
+template <class T> requires std::is_enum_v<T> bool fetch(T from, Value& v) { return v.word = static_cast<int>(from), true; }
+template <class T> bool fetch(const std::optional<T>& from, Value& v) { return from && fetch(*from, v); }
 
 template <class T> struct OwnerOf;
 template <class T, class C> struct OwnerOf<T C::*> {
     using type = C;
 };
 
-/// Stores into a member, or a member of a member: to<&Shape::material, &Material::rho_s>.
-template <auto First, auto... Rest> void to(void* object, const Value& value) {
-    auto& owner = *static_cast<typename OwnerOf<decltype(First)>::type*>(object);
-    if constexpr (sizeof...(Rest) == 0) assign(owner.*First, value);
-    else to<Rest...>(&(owner.*First), value);
+/// A member, or a member of a member.
+template <auto First, auto... Rest> auto& member_of(auto& object) {
+    if constexpr (sizeof...(Rest) == 0) return object.*First;
+    else return member_of<Rest...>(object.*First);
 }
+
+/// A key stored in a member, or in a member of a member: to<&Shape::material, &Material::rho_s>.
+template <auto First, auto... Rest> constexpr Slot to = {
+    [](void* object, const Value& value) {
+        assign(member_of<First, Rest...>(*static_cast<typename OwnerOf<decltype(First)>::type*>(object)), value);
+    },
+    [](const void* object, Value& value) {
+        return fetch(member_of<First, Rest...>(*static_cast<const typename OwnerOf<decltype(First)>::type*>(object)), value);
+    }};
 
 template <class T> T* make_room(T& member) { return &member; }
 template <class T> T* make_room(std::optional<T>& member) { return &member.emplace(); }
 template <class T> T* make_room(std::vector<T>& member) { return &member.emplace_back(); }
 
-/// The object that a section's keys are stored into: the member itself, or a new element of it.
-template <auto M> void* in(void* parent, const std::string& name, const Place& at) {
-    auto* object = make_room(static_cast<typename OwnerOf<decltype(M)>::type*>(parent)->*M);
-    if constexpr (requires { object->name; }) object->name = name;
-    if constexpr (requires { object->at; }) object->at = at;
-    return object;
+template <class T> std::span<const T> all_of(const T& member) { return {&member, 1}; }
+template <class T> std::span<const T> all_of(const std::optional<T>& member) {
+    return member ? std::span<const T>(&*member, 1) : std::span<const T>();
 }
+template <class T> std::span<const T> all_of(const std::vector<T>& member) { return member; }
+
+/// The objects that a section's keys are stored into: the member itself, or its elements.
+template <auto M, class Owner = typename OwnerOf<decltype(M)>::type> constexpr Family in = {
+    [](void* parent, const std::string& name, const Place& at) -> void* {
+        auto* object = make_room(static_cast<Owner*>(parent)->*M);
+        if constexpr (requires { object->name; }) object->name = name;
+        if constexpr (requires { object->at; }) object->at = at;
+        return object;
+    },
+    [](const void* parent) { return all_of(static_cast<const Owner*>(parent)->*M).size(); },
+    [](const void* parent, std::size_t index) -> const void* { return &all_of(static_cast<const Owner*>(parent)->*M)[index]; },
+    [](const void* object) -> std::string {
+        using Object = typename decltype(all_of(std::declval<const Owner&>().*M))::value_type;
+        if constexpr (requires(const Object& o) { o.name; }) return static_cast<const Object*>(object)->name;
+        else return "";
+    }};
 
 }  // namespace crescent

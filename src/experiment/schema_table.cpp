@@ -97,7 +97,7 @@ Section disks() {
 }
 
 Section fill() {
-    return {"fill", Many::one, optional, "Light from every direction in which no disk is met.", nullptr,
+    return {"fill", Many::one, optional, "Light from every direction in which no disk is met.", {},
             {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]",
               "Radiance.", to<&Experiment::fill>}}, {}};
 }
@@ -177,11 +177,20 @@ Section plates() {
             {runs}};
 }
 
+/// Read as one text into `left`; in three parts once it is parsed.
+constexpr Slot comparison = {
+    to<&AssertionPlan::left>.store,
+    [](const void* object, Value& value) {
+        const auto& plan = *static_cast<const AssertionPlan*>(object);
+        value.text = plan.op.empty() ? plan.left : fmt::format("{} {} {}", plan.left, plan.op, plan.right);
+        return true;
+    }};
+
 Section assertions() {
     return {"assertions", Many::titled, optional,
             "What must hold; also written [[assertions]] with a key 'name'.", in<&Experiment::assertions>,
             {{"check", Type::check, none, "", required, "",
-              "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".", to<&AssertionPlan::left>},
+              "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".", comparison},
              {"over", Type::word, none, "", defaulted, "\"seed\"",
               "At the experiment's seed, or medians over all seeds.", to<&AssertionPlan::median>, {"seed", "median"}}},
             {}};
@@ -191,7 +200,7 @@ Section assertions() {
 
 const Section& schema() {
     static const Section root = {
-        "", Many::one, required, "The experiment.", nullptr,
+        "", Many::one, required, "The experiment.", {},
         {{"title", Type::text, none, "", defaulted, "\"untitled\"", "One line.", to<&Experiment::title>},
          {"seed", Type::integer, seed_range, "", defaulted, "1",
           "The published seed, of all arms.", to<&Experiment::seed>},

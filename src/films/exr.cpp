@@ -8,8 +8,8 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <oneapi/tbb/global_control.h>
 
-#include <thread>
 
 #include "base/errors.h"
 
@@ -57,9 +57,15 @@ template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
     return buffer;
 }
 
+/// As many as the rest of the run works on; 0: this thread alone.
+int threads_besides_this() {
+    const std::size_t all = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return all > 1 ? static_cast<int>(all) : 0;
+}
+
 template <class AnyFilm>
 void write_parts(const std::string& path, const std::vector<std::pair<std::string, const AnyFilm*>>& parts, const Attributes& attributes) {
-    Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
+    Imf::setGlobalThreadCount(threads_besides_this());
     std::vector<Imf::Header> headers;
     for (const auto& [name, film] : parts) headers.push_back(header_of(name, *film, attributes));
     try {

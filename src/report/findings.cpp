@@ -5,8 +5,8 @@
 
 namespace crescent {
 
-Comparison compare(const std::string& a, double value_a, const std::string& b, double value_b) {
-    Comparison c;
+RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b) {
+    RatioOfErrors c;
     const bool first = value_a >= value_b;
     c.larger = first ? a : b;
     c.smaller = first ? b : a;

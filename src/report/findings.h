@@ -12,13 +12,13 @@
 namespace crescent {
 
 /// "3.1 times", "the same as", with what was compared; see compare().
-struct Comparison {
+struct RatioOfErrors {
     std::string larger, smaller;  // names; as given where the values are equal
     double high = 0, low = 0;
     double ratio = 1;  // high / low, >= 1; infinite where low is 0
     bool equal = false;
 };
-Comparison compare(const std::string& a, double value_a, const std::string& b, double value_b);
+RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b);
 
 /// How many seeds had meter(a) > meter(b), of how many.
 struct SeedCount {

@@ -68,7 +68,7 @@ std::string story(const Page& page) {
     for (const Region& region : page.in.experiment.regions) {
         const auto a = page.find.rmse(broad->name, n, region.name), b = page.find.rmse(narrow->name, n, region.name);
         if (!a || !b) continue;
-        const Comparison c = compare(broad->name, *a, narrow->name, *b);
+        const RatioOfErrors c = compare(broad->name, *a, narrow->name, *b);
         out += out.empty() ? fmt::format(" At <i>N</i> = {} and the {} seed", n, page.seed_name()) : ";";
         const std::string where = " in region " + escape(region.name);
         out += c.equal

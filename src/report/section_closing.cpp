@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "report/page.h"
 
 namespace crescent {
@@ -12,9 +13,8 @@ using html::words;
 
 /// A command line that runs the same experiment with some keys changed.
 std::string with(const Page& page, const std::vector<std::string>& settings) {
-    std::string out = "crescent run " + page.in.provenance.experiment_file;
-    for (const std::string& setting : settings)
-        out += setting.find('[') == std::string::npos ? " --set " + setting : " --set '" + setting + "'";
+    std::string out = "crescent run " + shell_word(page.in.provenance.experiment_file);
+    for (const std::string& setting : settings) out += " --set " + shell_word(setting);
     return out;
 }
 

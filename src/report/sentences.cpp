@@ -7,7 +7,7 @@
 namespace crescent {
 namespace {
 
-std::string first_words(const Comparison& c, std::uint64_t n, const std::string& meter, const std::string& seed) {
+std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& meter, const std::string& seed) {
     const std::string larger = escape(c.larger), smaller = escape(c.smaller);
     if (c.equal)
         return fmt::format("At <i>N</i> = {} and the {} seed, {} and {} read the same {}, {}.", n, seed, larger, smaller, meter,
@@ -72,7 +72,7 @@ std::string ordering_sentence(const Page& page, const std::string& a, const std:
                               const std::string& region) {
     const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
     if (!of_a || !of_b) return {};
-    const Comparison c = compare(a, *of_a, b, *of_b);
+    const RatioOfErrors c = compare(a, *of_a, b, *of_b);
     const std::string meter = "rmse." + region;
     std::string out = first_words(c, n, meter_html(meter), page.seed_name());
     const SeedCount seeds = page.find.seeds_above(c.larger, c.smaller, n, region);

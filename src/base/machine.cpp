@@ -1,0 +1,124 @@
+#include "base/machine.h"
+
+#include <fmt/format.h>
+#include <sched.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+namespace crescent {
+
+namespace {
+
+constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
+
+std::string text_of(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// The folders of the process's group in one hierarchy and of all groups around it, the innermost first.
+std::vector<std::string> groups(const std::string& root, const std::string& own, const std::string& controller) {
+    std::istringstream lines(text_of(own));
+    std::vector<std::string> out;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+        if (first == std::string::npos || second == std::string::npos) continue;
+        const std::string names = "," + line.substr(first + 1, second - first - 1) + ",";
+        const bool unified = names == ",,";
+        if (!unified && names.find("," + controller + ",") == std::string::npos) continue;
+        const std::string top = root + "/sys/fs/cgroup" + (unified ? "" : "/" + controller);
+        for (std::string path = line.substr(second + 1);; path.resize(path.rfind('/'))) {
+            out.push_back(top + (path == "/" ? "" : path));
+            if (path.empty() || path.rfind('/') == std::string::npos || path == "/") break;
+        }
+        out.push_back(top);
+    }
+    return out;
+}
+
+/// The first number of a file; nothing where it has none ("max", or no such file).
+bool number_in(const std::string& path, double& value) {
+    const std::string text = text_of(path);
+    char* end = nullptr;
+    value = std::strtod(text.c_str(), &end);
+    return end != text.c_str();
+}
+
+double field(const std::string& text, const std::string& name) {
+    std::istringstream words(text);
+    for (std::string word; words >> word;)
+        if (word == name) {
+            double value = 0;
+            words >> value;
+            return value;
+        }
+    return 0;
+}
+
+/// What a group may still allocate: its limit less what it uses; files that are only cached are given back when needed.
+std::uint64_t left_in(const std::string& group, const char* limit_file, const char* used_file, const char* cached) {
+    double limit = 0, used = 0;
+    if (!number_in(group + limit_file, limit) || limit >= 9e18) return no_limit;
+    number_in(group + used_file, used);
+    const double busy = std::max(0.0, used - field(text_of(group + "/memory.stat"), cached));
+    return static_cast<std::uint64_t>(std::max(0.0, limit - busy));
+}
+
+std::uint64_t left_in_address_space() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return no_limit;
+    const auto used = static_cast<std::uint64_t>(1024 * field(text_of("/proc/self/status"), "VmSize:"));
+    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+}
+
+}  // namespace
+
+double granted_processors(const std::string& root, const std::string& own) {
+    double least = 0;
+    const auto grant = [&](double quota, double period) {
+        if (quota > 0 && period > 0 && (least == 0 || quota / period < least)) least = quota / period;
+    };
+    for (const std::string& group : groups(root, own, "cpu")) {
+        std::istringstream both(text_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
+        double quota = 0, period = 0;
+        if (both >> quota >> period) grant(quota, period);
+        if (number_in(group + "/cpu.cfs_quota_us", quota) && number_in(group + "/cpu.cfs_period_us", period)) grant(quota, period);
+    }
+    return least;
+}
+
+std::uint64_t granted_memory(const std::string& root, const std::string& own) {
+    std::uint64_t least = no_limit;
+    for (const std::string& group : groups(root, own, "memory")) {
+        least = std::min(least, left_in(group, "/memory.max", "/memory.current", "inactive_file"));
+        least = std::min(least, left_in(group, "/memory.limit_in_bytes", "/memory.usage_in_bytes", "total_inactive_file"));
+    }
+    return least;
+}
+
+int usable_threads() {
+    int count = static_cast<int>(std::thread::hardware_concurrency());  // 0 where it is not known
+    cpu_set_t mine;
+    if (sched_getaffinity(0, sizeof mine, &mine) == 0) count = CPU_COUNT(&mine);
+    if (const double granted = granted_processors("", "/proc/self/cgroup"); granted > 0)
+        count = std::min(count, static_cast<int>(std::min(4096.0, std::ceil(granted))));
+    return std::max(count, 1);
+}
+
+std::uint64_t available_memory() {
+    const double free = 1024 * field(text_of("/proc/meminfo"), "MemAvailable:");
+    const std::uint64_t machine = free > 0 ? static_cast<std::uint64_t>(free) : no_limit;
+    return std::min({machine, granted_memory("", "/proc/self/cgroup"), left_in_address_space()});
+}
+
+}  // namespace crescent

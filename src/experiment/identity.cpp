@@ -1,0 +1,147 @@
+// What an experiment is, computed from its values: the text that says all of them, and the hash of that text.
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <cmath>
+
+#include "experiment/schema.h"
+
+namespace crescent {
+
+namespace {
+
+std::string toml_text(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') out += '\\', out += c;
+        else if (byte < 0x20 || byte == 0x7f) out += fmt::format("\\u{:04x}", byte);
+        else out += c;
+    }
+    return out + '"';
+}
+
+/// The shortest text that is read as the same double. TOML's integer -0 is 0.
+std::string number(double x) { return x == 0 && std::signbit(x) ? "-0.0" : fmt::format("{}", x); }
+
+std::string list(const std::vector<double>& all) {
+    std::string out;
+    for (const double x : all) out += (out.empty() ? "" : ", ") + number(x);
+    return "[" + out + "]";
+}
+
+std::string toml(const Key& key, const Value& value) {
+    switch (key.type) {
+        case Type::flag: return value.flag ? "true" : "false";
+        case Type::integer:
+        case Type::number: return number(value.number);
+        case Type::word: return toml_text(key.words[static_cast<std::size_t>(value.word)]);
+        case Type::text:
+        case Type::check:
+        case Type::sampler:
+        case Type::arm:
+        case Type::shape: return toml_text(value.text);
+        default: return list(value.numbers);
+    }
+}
+
+/// A number of 0 and an empty list stand for an optional key that was not given.
+bool is_given(const Key& key, const Value& value) {
+    if (key.need != Need::optional) return true;
+    if (key.type == Type::integers || key.type == Type::numbers) return !value.numbers.empty();
+    return (key.type != Type::integer && key.type != Type::number) || value.number != 0;
+}
+
+class Writer {
+public:
+    explicit Writer(const Experiment& experiment) : experiment_(experiment) {}
+
+    std::string operator()() {
+        table(schema(), &experiment_, "");
+        return std::move(text_);
+    }
+
+private:
+    std::vector<std::pair<std::string_view, std::string>> keys(const Section& section, const void* object) const {
+        std::vector<std::pair<std::string_view, std::string>> out;
+        const std::string kind = kind_of(section, object);
+        for (const Key& key : section.keys)
+            if (Value value; has_kind(key, kind) && key.slot.load(object, value) && is_given(key, value))
+                out.emplace_back(key.name, toml(key, value));
+        return out;
+    }
+
+    static std::string kind_of(const Section& section, const void* object) {
+        Value value;
+        const Key* key = section.name == "shapes" ? section.find_key("kind") : nullptr;
+        return key && key->slot.load(object, value) ? key->words[static_cast<std::size_t>(value.word)] : "";
+    }
+
+    /// An s that a shape inherits is written as a comment: the shape is read without one and inherits it again.
+    static bool is_inherited(const Section& section, const void* object) {
+        return section.name == "shapes" && static_cast<const Shape*>(object)->material.inherits_s;
+    }
+
+    void table(const Section& section, const void* object, const std::string& path) {
+        if (!path.empty()) text_ += fmt::format("[{}]\n", path);
+        const bool inherits = is_inherited(section, object);
+        for (const auto& [key, value] : keys(section, object))
+            text_ += fmt::format("{}{} = {}\n", inherits && key == "s" ? "# inherited: " : "", key, value);
+        for (const Section& sub : section.sections)
+            if (sub.many == Many::list) tables_in_a_list(sub, object);
+        for (const Section& sub : section.sections)
+            if (sub.many != Many::list) family(sub, object, path);
+    }
+
+    void family(const Section& section, const void* parent, const std::string& path) {
+        const std::string own = path.empty() ? std::string(section.name) : fmt::format("{}.{}", path, section.name);
+        if (!section.family.add) return table(section, parent, own);
+        for (std::size_t i = 0; i < section.family.size(parent); ++i) {
+            const void* object = section.family.at(parent, i);
+            table(section, object, section.many == Many::one ? own : fmt::format("{}.{}", own, toml_text(section.family.name(object))));
+        }
+    }
+
+    void tables_in_a_list(const Section& section, const void* parent) {
+        std::string all;
+        for (std::size_t i = 0; i < section.family.size(parent); ++i) {
+            std::string one;
+            for (const auto& [key, value] : keys(section, section.family.at(parent, i)))
+                one += fmt::format("{}{} = {}", one.empty() ? "" : ", ", key, value);
+            all += fmt::format("{}{{{}}}", all.empty() ? "" : ", ", one);
+        }
+        text_ += fmt::format("{} = [{}]\n", section.name, all);
+    }
+
+    const Experiment& experiment_;
+    std::string text_;
+};
+
+/// Every figure, so that another content of the same file is another experiment.
+std::string text_of(const Published& published) {
+    std::string out = fmt::format("{} {}\n", toml_text(published.source), published.seed ? std::to_string(*published.seed) : "");
+    for (const auto& [key, value] : published.runs) {
+        const auto& [arm, n, s, meter] = key;
+        out += fmt::format("{} {} {} {} {}\n", toml_text(arm), n, s, toml_text(meter), value);
+    }
+    for (const auto& [name, value] : published.furnaces) out += fmt::format("{} {}\n", toml_text(name), value);
+    return out;
+}
+
+}  // namespace
+
+std::string canonical_text(const Experiment& experiment) { return Writer(experiment)(); }
+
+std::uint64_t hash(const Experiment& experiment) {
+    std::string text;
+    if (experiment.figures) {  // where they stand does not count, what they say does
+        Experiment without = experiment;
+        without.published.reset();
+        text = canonical_text(without) + text_of(*experiment.figures);
+    } else {
+        text = canonical_text(experiment);
+    }
+    return XXH3_64bits(text.data(), text.size());
+}
+
+}  // namespace crescent

@@ -1,0 +1,193 @@
+// An experiment's identity is computed from its values: whatever changes an output changes it, and nothing else does.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "experiment/experiment.h"
+#include "experiment/schema.h"
+
+namespace crescent {
+namespace {
+
+const std::string folder = std::string(CRESCENT_SOURCE_DIR) + "/experiments/";
+
+const std::string room =
+    "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n"
+    "[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n"
+    "[fill]\nradiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n";
+
+/// A room with something of every section and a shape of every kind.
+Experiment with_everything() {
+    return parse(room + R"toml(
+[shapes.lobe]
+kind = "sphere"
+center = [2, 1, 0]
+radius = 0.5
+rho_d = [0.1, 0.1, 0.1]
+rho_s = 0.2
+s = 16
+alpha = 0.3
+[shapes.box]
+kind = "box"
+min = [-1, -1, -1]
+max = [1, 0, 1]
+rho_d = [0.1, 0.1, 0.1]
+[shapes.quad]
+kind = "quad"
+corner = [3, 0, 0]
+edge_u = [1, 0, 0]
+edge_v = [0, 1, 0]
+rho_d = [0.1, 0.1, 0.1]
+[shapes.disk]
+kind = "disk"
+center = [0, 3, 0]
+radius = 0.5
+normal = [0, 0.6, 0.8]
+rho_d = [0.1, 0.1, 0.1]
+[shapes.plane]
+kind = "plane"
+point = [0, 0, 0]
+normal = [0.26726, 0.53452, 0.80178]
+rho_d = [0.1, 0.1, 0.1]
+[shapes.panel]
+kind = "panel"
+corner = [-3, 0, 0]
+edge_u = [1, 0, 0]
+edge_v = [0, 1, 0]
+depth = 0.1
+reveal_rho_d = [0.2, 0.2, 0.2]
+rho_d = [0.1, 0.1, 0.1]
+[disks.key]
+center = [1, 3, 1]
+normal = [0, -1, 0]
+radius = 0.2
+radiance = [9, 8, 7]
+[arms.phong]
+n = [4, 16]
+[exponent]
+arm = "phong"
+n = 16
+s = [8, 16]
+shape = "lobe"
+[regions.H]
+box = [1, 1, 5, 5]
+[furnaces.white]
+arm = "cosine"
+shape = "lobe"
+n = 64
+[plates.pair]
+kind = "columns"
+crop = [0, 0, 3, 3]
+caption = "a \"pair\" \\ of arms"
+runs = [{arm = "cosine"}, {arm = "phong", n = 16, s = 8}]
+[plates.climb]
+kind = "ladder"
+runs = [{arm = "phong"}]
+[assertions."a 'quoted' \"name\""]
+check = "rmse.H(phong) < rmse.H(cosine, n=4)"
+)toml",
+                 "everything.toml", {"title=All", "n=16", "published=none.json"});
+}
+
+/// Another value of the same key.
+Value changed(const Key& key, Value value) {
+    value.flag = !value.flag;
+    value.word = key.words.empty() ? value.word : (value.word + 1) % static_cast<int>(key.words.size());
+    value.number = std::nextafter(value.number, 1e300);
+    if (key.type == Type::integer) value.number = value.number < 2 ? value.number + 2 : std::ceil(value.number + 1);
+    for (double& x : value.numbers) x += 1;
+    value.text += "x";
+    return value;
+}
+
+/// Changes each key of each object in turn. Returns how many keys of the table were met.
+std::size_t change_each(const Section& section, void* object, const Experiment& e, std::uint64_t before) {
+    std::size_t met = 0;
+    Value value, kind;
+    const Key* kinds = section.name == "shapes" ? section.find_key("kind") : nullptr;
+    const std::string own = kinds && kinds->slot.load(object, kind) ? kinds->words[static_cast<std::size_t>(kind.word)] : "";
+    for (const Key& key : section.keys) {
+        if (!has_kind(key, own) || !key.slot.load(object, value)) continue;
+        ++met;
+        if (key.type == Type::check) value.text = static_cast<AssertionPlan*>(object)->left;  // the slot stores one side
+        key.slot.store(object, changed(key, value));
+        EXPECT_NE(hash(e), before) << section.name << "." << key.name;
+        key.slot.store(object, value);
+        EXPECT_EQ(hash(e), before) << section.name << "." << key.name;
+    }
+    for (const Section& sub : section.sections) {
+        if (!sub.family.add) met += change_each(sub, object, e, before);
+        else
+            for (std::size_t i = 0; i < sub.family.size(object); ++i)
+                met += change_each(sub, const_cast<void*>(sub.family.at(object, i)), e, before);
+    }
+    return met;
+}
+
+std::size_t keys_of(const Section& section) {
+    std::size_t all = section.keys.size();
+    for (const Section& sub : section.sections) all += keys_of(sub);
+    return all;
+}
+
+TEST(Identity, DependsOnEffectiveValuesAlone) {
+    const std::uint64_t before = hash(parse(room, "a.toml"));
+    EXPECT_EQ(before, hash(parse("# a comment\n\n" + room, "b.toml")));
+    EXPECT_EQ(before, hash(parse(room + "sampler = \"cosine\"\n", "a.toml"))) << "a default written out";
+    EXPECT_EQ(before, hash(parse(room, "a.toml", {"cosine.n=[4]", "ball.radius=1.0", "seed=1"})));
+    EXPECT_NE(before, hash(parse(room, "a.toml", {"cosine.n=5"})));
+    EXPECT_NE(before, hash(parse(room, "a.toml", {"seed=2"})));
+    EXPECT_NE(before, hash(parse(room, "a.toml", {"ball.radius=1.0000001"})));
+}
+
+TEST(Identity, ChangesWithEachKeyOfTheSchema) {
+    Experiment e = with_everything();
+    EXPECT_GE(change_each(schema(), &e, e, hash(e)), keys_of(schema()));
+}
+
+TEST(Identity, ChangesWithWhatCodeChanges) {
+    Experiment e = with_everything();
+    const std::uint64_t before = hash(e);
+    e.disks[0].radiance[0] *= 10;
+    EXPECT_NE(hash(e), before) << "a lamp";
+    e = with_everything();
+    std::swap(e.shapes[0], e.shapes[1]);
+    EXPECT_NE(hash(e), before) << "the order of shapes decides ties";
+    e = with_everything();
+    e.arms[1].n = {8, 16};
+    EXPECT_NE(hash(e), before) << "another ladder of the same length";
+    e = with_everything();
+    e.shapes[0].material.inherits_s = false;
+    EXPECT_NE(hash(e), before) << "an s that the exponent control leaves alone";
+    EXPECT_NE(hash(e.with_s(3)), hash(e));
+}
+
+TEST(Identity, ReadsBackAsItself) {
+    for (const char* name : {"gallery", "two-lamps", "empty-room", "three-glosses"}) {
+        const Experiment e = load(folder + name + ".toml");
+        const std::filesystem::path copy = std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + ".toml");
+        std::ofstream(copy) << canonical_text(e);
+        EXPECT_EQ(hash(load(copy)), hash(e)) << canonical_text(e);
+        std::filesystem::remove(copy);
+    }
+    const Experiment e = with_everything();
+    EXPECT_EQ(canonical_text(parse(canonical_text(e), "everything.toml")), canonical_text(e));
+}
+
+TEST(Identity, HoldsWhatWasPublishedNotWhere) {
+    const std::filesystem::path here = std::filesystem::path(testing::TempDir()) / ("identity-" + std::to_string(getpid()));
+    std::filesystem::create_directories(here);
+    std::ofstream(here / "room.toml") << room;
+    std::ofstream(here / "a.json") << R"({"runs": [{"arm": "cosine", "n": 4, "s": 0, "y_mean": 0.5}]})";
+    std::ofstream(here / "same.json") << R"({"runs": [ {"arm": "cosine", "n": 4, "s": 0, "y_mean": 0.50} ]})";
+    std::ofstream(here / "b.json") << R"({"runs": [{"arm": "cosine", "n": 4, "s": 0, "y_mean": 0.6}]})";
+    const auto hash_with = [&](const char* file) { return hash(load(here / "room.toml", {std::string("published=") + file})); };
+    EXPECT_EQ(hash_with("a.json"), hash_with("same.json"));
+    EXPECT_NE(hash_with("a.json"), hash_with("b.json"));
+    EXPECT_NE(hash_with("a.json"), hash(load(here / "room.toml")));
+    std::filesystem::remove_all(here);
+}
+
+}  // namespace
+}  // namespace crescent

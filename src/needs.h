@@ -1,0 +1,21 @@
+// What a run needs of the machine, told before the work begins.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "experiment/experiment.h"
+
+namespace crescent {
+
+/// Bytes that a run holds at its largest: the films of its first seed and of one pass more, both references at each
+/// exponent, what the camera sees, and what the program takes for itself.
+std::uint64_t memory_needed(const Experiment& experiment);
+
+/// "this run needs about 70 GB of memory ...", with what would need less; "" where `available` bytes are enough.
+std::string why_too_large(const Experiment& experiment, std::uint64_t available);
+
+/// Throws OutputError where the memory is not there, or the font that the plates are drawn with.
+void check_needs(const Experiment& experiment);
+
+}  // namespace crescent
