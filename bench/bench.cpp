@@ -1,6 +1,6 @@
-// crescent_bench FILE.toml N: one line an arm, as JSON, of Msamples/s by crescent's kernels and by the straightforward
-// version, both on all cores. Samples are counted as geometry pixels x N. Each time is the best of some repetitions: what
-// else the machine does can only add to it. The means of both are printed too: they must be of the same integral.
+// crescent_bench FILE.toml N: one turn. One line an arm, as JSON, of the seconds that a film takes crescent's kernels and the
+// straightforward version, both on all cores, each the best of three films: what else the machine does can only add to it.
+// bench/compare.py takes several turns. The means of both are printed too: they must be of the same integral.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -25,17 +25,19 @@ template <class Work> double best_of(int repetitions, Work&& work) {
     return best;
 }
 
-void arm(const Scene& scene, const std::string& sampler, std::uint64_t n, double samples, int threads) {
+constexpr int films_a_turn = 3;
+
+void arm(const Scene& scene, const std::string& name, const std::string& sampler, std::uint64_t n, int threads) {
     Watch watch;
     std::vector<Film> films;
     double plain_mean = 0;
-    const double fast = best_of(7, [&] { films = estimate_films(scene, sampler, {n}, 1, "", watch); });
-    const double plain = best_of(2, [&] { plain_mean = bench::straightforward(scene, sampler, static_cast<int>(n), 1, threads); });
+    const double fast = best_of(films_a_turn, [&] { films = estimate_films(scene, sampler, {n}, 1, "", watch); });
+    const double plain = best_of(films_a_turn, [&] { plain_mean = bench::straightforward(scene, sampler, static_cast<int>(n), 1, threads); });
     double mean = 0;
     for (float y : films.front().y) mean += y;
     mean /= static_cast<double>(films.front().size());
-    std::cout << fmt::format(R"({{"arm": "{}", "crescent": {:.1f}, "straightforward": {:.2f}, "mean": {:.5f}, "straightforward_mean": {:.5f}}})", sampler,
-                             samples / fast * 1e-6, samples / plain * 1e-6, mean, plain_mean)
+    std::cout << fmt::format(R"({{"arm": "{}", "crescent": {:.6f}, "straightforward": {:.6f}, "mean": {:.5f}, "straightforward_mean": {:.5f}}})", name,
+                             fast, plain, mean, plain_mean)
               << std::endl;
 }
 
@@ -53,7 +55,7 @@ int main(int argc, char** argv) try {
     std::cout << fmt::format(R"({{"geometry_pixels": {}, "n": {}, "threads": {}, "isa": "{}", "version": "{}", "commit": "{}", "compiler": "{}"}})", pixels, n, threads,
                              isas().back(), version(), commit(), compiler())
               << std::endl;
-    for (const ArmPlan& plan : experiment.arms) arm(scene, plan.sampler, n, static_cast<double>(pixels * n), threads);
+    for (const ArmPlan& plan : experiment.arms) arm(scene, plan.name, plan.sampler, n, threads);
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';
     return 2;

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Speed, in one run on one machine: crescent, a straightforward version of the same estimator, and Mitsuba 3.
 
-    bench/compare.py [--experiment FILE] [--n N] [--write] [--no-mitsuba]
+    bench/compare.py [--experiment FILE] [--n N] [--rounds K] [--write] [--no-mitsuba]
 
-Builds crescent_bench, makes a virtual environment with Mitsuba under build/ where there is none, runs the three
-after one another on an otherwise idle machine, and prints Msamples/s per arm with their ratios. Samples are counted
-alike in all three: geometry pixels x N. --write puts the table, date, processor and command into docs/speed.md.
-Exit 1 where an arm is less than ten times as fast as Mitsuba.
+Builds crescent_bench, makes a virtual environment with Mitsuba under build/ where there is none, and lets the three take
+turns, K rounds (default 7) on an otherwise idle machine: in each round every program makes each arm's film three times and
+gives the best. Prints Msamples/s per arm (the median over rounds) and the median, least and largest ratio of one round's
+times. A sample is one draw of one geometry pixel, for all three alike: geometry pixels x N; pixels that see nothing cost all
+three a primary ray and no sample. --write puts the table, date, processor and command into docs/speed.md.
+Exit 1 where an arm's median is less than ten times as fast as Mitsuba.
 """
 import argparse
 import datetime
@@ -14,6 +16,7 @@ import json
 import pathlib
 import platform
 import shlex
+import statistics
 import subprocess
 import sys
 
@@ -54,15 +57,41 @@ def processor():
         return platform.processor()
 
 
+def turn(bench, python, args):
+    """One round: the facts of the bench, and each arm's seconds by program."""
+    facts, *rows = lines([bench, args.experiment, args.n])
+    seconds = {row["arm"]: {"crescent": row["crescent"], "straightforward": row["straightforward"]} for row in rows}
+    if python:
+        for peer in lines([python, "bench/mitsuba_arms.py", args.experiment, args.n]):
+            facts["mitsuba"] = peer["version"]
+            if peer["arm"] in seconds:
+                seconds[peer["arm"]]["mitsuba"] = peer["seconds"]
+    return facts, seconds
+
+
+def summary(turns, arm, samples):
+    """Rates by program and, by peer, the ratios of crescent to it in each round."""
+    peers = [peer for peer in ("straightforward", "mitsuba") if all(peer in one[arm] for one in turns)]
+    rate = lambda who: samples / statistics.median(one[arm][who] for one in turns) * 1e-6
+    return {"arm": arm, "rates": {who: rate(who) for who in ("crescent", *peers)},
+            "ratios": {peer: sorted(one[arm][peer] / one[arm]["crescent"] for one in turns) for peer in peers}}
+
+
 def table(rows):
     out = ["| arm | crescent | straightforward | Mitsuba 3 | crescent / straightforward | crescent / Mitsuba |", "|---|---|---|---|---|---|"]
     for row in rows:
-        mitsuba, ratio = ("-", "-") if row["mitsuba"] is None else (f"{row['mitsuba']:.1f}", f"{row['crescent'] / row['mitsuba']:.1f}")
-        out.append(f"| {row['arm']} | {row['crescent']:.0f} | {row['straightforward']:.1f} | {mitsuba} | {row['crescent'] / row['straightforward']:.1f} | {ratio} |")
+        rates, cells = row["rates"], []
+        for who in ("crescent", "straightforward", "mitsuba"):
+            cells.append(f"{rates[who]:.{0 if who == 'crescent' else 1}f}" if who in rates else "-")
+        for peer in ("straightforward", "mitsuba"):
+            ratios = row["ratios"].get(peer)
+            cells.append(f"{statistics.median(ratios):.1f} ({ratios[0]:.1f} to {ratios[-1]:.1f})" if ratios else "-")
+        out.append(f"| {row['arm']} | " + " | ".join(cells) + " |")
     return "\n".join(out)
 
 
-def page(facts, rows, version, command):
+def page(facts, rows, rounds, command):
+    version = facts.get("mitsuba")
     peer = "Mitsuba was not there." if version is None else (
         f"Mitsuba {version}: variant `llvm_ad_rgb`, integrator `direct` with `emitter_samples` 0 and `bsdf_samples` {facts['n']}, 1 spp, hidden emitters, "
         "the arms as a BSDF in Python; compiling is not counted. Its scene is the same but for two things that cost it nothing: there geometry also "
@@ -70,14 +99,16 @@ def page(facts, rows, version, command):
     )
     return f"""# Speed
 
-Msamples/s, one run on one machine. A sample is one draw of one geometry pixel, counted alike for all: {facts['geometry_pixels']} geometry pixels x N = {facts['n']}.
+Msamples/s, the median of {rounds} rounds in which the programs take turns on one machine; ratios are of one round's times, the
+median and in brackets the least and the largest. A sample is one draw of one geometry pixel, for all alike:
+{facts['geometry_pixels']} geometry pixels x N = {facts['n']}. Pixels that see nothing count for none.
 
 {table(rows)}
 
 - {datetime.date.today().isoformat()}, {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']}, crescent {facts['version']} ({facts['commit']})
-- `{command}` writes this page.
-- crescent: its films, shadow tests included, as a run makes them: primary rays are traced once a run; the best of 7.
-- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on as many threads; the best of 2.
+- `{command}` writes this page. Each time is the best of three films in a row.
+- crescent: its films, shadow tests included, as a run makes them: primary rays are traced once a run.
+- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on as many threads.
 - {peer}
 """
 
@@ -86,22 +117,22 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--experiment", default="experiments/gallery.toml")
     parser.add_argument("--n", type=int, default=64, help="samples per pixel (default 64)")
+    parser.add_argument("--rounds", type=int, default=7, help="turns each program takes (default 7)")
     parser.add_argument("--write", action="store_true", help="write docs/speed.md")
     parser.add_argument("--no-mitsuba", action="store_true")
     args = parser.parse_args()
 
-    facts, *rows = lines([build(), args.experiment, args.n])
-    python = None if args.no_mitsuba else mitsuba_python()
-    peers = {} if python is None else {peer["arm"]: peer for peer in lines([python, "bench/mitsuba_arms.py", args.experiment, args.n])}
-    version = next((peer["version"] for peer in peers.values()), None)
-    samples = facts["geometry_pixels"] * facts["n"]
-    for row in rows:
-        peer = peers.get(row["arm"])
-        row["mitsuba"] = samples / peer["seconds"] * 1e-6 if peer else None
+    bench, python = build(), None if args.no_mitsuba else mitsuba_python()
+    turns = []
+    for k in range(args.rounds):
+        print(f"round {k + 1} of {args.rounds}", file=sys.stderr)
+        facts, seconds = turn(bench, python, args)
+        turns.append(seconds)
+    rows = [summary(turns, arm, facts["geometry_pixels"] * facts["n"]) for arm in turns[0]]
     print(table(rows))
     if args.write:
-        (ROOT / "docs" / "speed.md").write_text(page(facts, rows, version, shlex.join(["bench/compare.py", *sys.argv[1:]])))
-    slow = [row["arm"] for row in rows if row["mitsuba"] and row["crescent"] < LEAST * row["mitsuba"]]
+        (ROOT / "docs" / "speed.md").write_text(page(facts, rows, args.rounds, shlex.join(["bench/compare.py", *sys.argv[1:]])))
+    slow = [row["arm"] for row in rows if "mitsuba" in row["ratios"] and statistics.median(row["ratios"]["mitsuba"]) < LEAST]
     if slow:
         print(f"less than {LEAST} times Mitsuba: {', '.join(slow)}", file=sys.stderr)
     return 1 if slow else 0

@@ -1,4 +1,5 @@
-"""The gallery in Mitsuba 3, its arms as a BSDF: mitsuba_arms.py FILE.toml N, one JSON line an arm with seconds a film.
+"""The gallery in Mitsuba 3, its arms as a BSDF: mitsuba_arms.py FILE.toml N, one turn: one JSON line an arm with seconds a
+film, the best of three.
 
 Integrator `direct` without emitter sampling, N BSDF samples, one primary ray a pixel, emitters hidden from the camera,
 variant llvm_ad_rgb: the estimator of the arms, nothing else. Compiling is not counted: the first film of each arm is
@@ -139,7 +140,7 @@ def load(experiment, arm, n):
     return mi.load_dict(scene)
 
 
-def seconds_a_film(scene, repetitions=5):
+def seconds_a_film(scene, repetitions=3):
     best = float("inf")
     for k in range(repetitions + 1):
         start = time.perf_counter()

@@ -116,7 +116,7 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
     const Image& image = scene.experiment().image;
     std::vector<Film> out;
-    for (const std::uint64_t rung : n) out.emplace_back(image.width, image.height, rung);
+    for (const std::uint64_t rung : n) out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
     for (const TileBox& box : rectangles_of(image.width, image.height, scene.disks().size(), largest_texture_)) estimate(scene, box, sampler, seed, out, watch);
     return out;
 }

@@ -84,6 +84,30 @@ TEST(Films, EveryPlaneIsTheCpus) {
     }
 }
 
+TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
+    const Scene scene(test::small_scene({"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
+    Watch watch;
+    Estimator gl(test::context());
+    for (const std::uint64_t n : {4u, 64u, 1000u}) {
+        const Film a = estimate_films(scene, "light-area", {n}, 5, "", watch)[0], b = gl.films(scene, "light-area", {n}, 5, watch)[0];
+        double cpu = 0, gpu = 0;
+        for (std::size_t at = 0; at < a.size(); ++at) cpu += a.var[at], gpu += b.var[at];
+        EXPECT_NEAR(gpu / cpu, 1, 1e-3) << n;
+    }
+}
+
+TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
+    const Scene scene(test::small_scene({"disks.left.radius=1e-6", "disks.right.radius=1e-6", "fill.radiance=[0,0,0]", "image.width=24", "image.height=16"}));
+    Watch watch;
+    Estimator gl(test::context());
+    for (const char* arm : {"light-area", "light-solid-angle", "mis-balance"}) {
+        const Film a = estimate_films(scene, arm, {16}, 5, "", watch)[0], b = gl.films(scene, arm, {16}, 5, watch)[0];
+        double cpu = 0, gpu = 0;
+        for (std::size_t at = 0; at < a.size(); ++at) cpu += a.y[at], gpu += b.y[at];
+        EXPECT_NEAR(gpu / cpu, 1, 1e-5) << arm;
+    }
+}
+
 TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
     const Scene scene(test::small_scene());
     Watch watch;

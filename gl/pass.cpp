@@ -17,7 +17,7 @@ constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may 
 Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts, std::size_t disks, Watch& watch)
     : context_(context), sites_(sites), framebuffer_(framebuffer), parts_(std::move(parts)), disks_(disks), watch_(watch), moments_(sites.groups().size()),
       met_(framebuffer.attachments() - 2) {
-    for (std::size_t g = 0; g < moments_.size(); ++g) moments_[g].resize(sites.groups()[g].count, disks);
+    for (std::size_t g = 0; g < moments_.size(); ++g) moments_[g].resize(sites.groups()[g].count, disks), means_.emplace_back(sites.groups()[g].count);
 }
 
 void Pass::advance_to(std::uint64_t n) {
@@ -48,7 +48,7 @@ void Pass::take(int samples) {
             part.program->set("first_recorded", static_cast<int>(first));
             draw_part(part, samples);
         }
-        gather(first);
+        gather(first, samples);
     }
 }
 
@@ -85,7 +85,8 @@ void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
 }
 
 /// Adds what the last draws of all parts wrote.
-void Pass::gather(std::size_t first_disk) {
+void Pass::gather(std::size_t first_disk, int samples) {
+    const double before = static_cast<double>(done_), more = samples;
     if (first_disk == 0) {
         framebuffer_.read(0, sums_);
         framebuffer_.read(1, counts_);
@@ -98,7 +99,10 @@ void Pass::gather(std::size_t first_disk) {
         for (std::size_t i = 0; i < group.count; ++i) {
             const std::size_t at = 4 * sites_.texel(group, i);
             if (first_disk == 0) {
-                m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]), m.square[i] += static_cast<double>(sums_[at + 2]);
+                m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
+                const double by = static_cast<double>(counts_[at + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983
+                m.spread[i] += static_cast<double>(sums_[at + 2]) + by * by * (before * more / (before + more));
+                means_[g][i] += by * (more / (before + more));
                 m.largest[i] = std::max(m.largest[i], sums_[at + 3]);
                 m.horizon[i] += static_cast<std::uint32_t>(counts_[at]), m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
                 m.bad[i] += static_cast<std::uint32_t>(counts_[at + 2]);

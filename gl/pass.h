@@ -40,7 +40,7 @@ private:
     void draw_part(LobePart& part, int samples);
     void draw_strips(const LobePart& part, std::size_t from, std::size_t to);
     void warm_up(const LobePart& part);
-    void gather(std::size_t first_disk);
+    void gather(std::size_t first_disk, int samples);
 
     const Context& context_;
     const SiteTexture& sites_;
@@ -49,7 +49,8 @@ private:
     std::size_t disks_;
     Watch& watch_;
     std::uint64_t done_ = 0;
-    std::vector<Moments> moments_;  // one a group of the sites
+    std::vector<Moments> moments_;            // one a group of the sites
+    std::vector<std::vector<double>> means_;  // of X so far, as moments_
     std::vector<float> sums_, counts_;
     std::vector<std::vector<float>> met_;
 };

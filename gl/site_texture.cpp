@@ -49,7 +49,7 @@ void SiteTexture::fill_site(std::vector<float>& layers, const Sites& s, std::siz
         to[0] = x, to[1] = y, to[2] = z, to[3] = w;
     };
     put(s.wox[i], s.woy[i], s.woz[i], s.s[i]);
-    put(s.alpha[i], s.diffuse[i], s.rho_s[i], s.pivot[i]);
+    put(s.alpha[i], s.diffuse[i], s.rho_s[i], 0);
     put(s.px[i], s.py[i], s.pz[i], static_cast<float>(s.shape[i]));
     put(s.tx[i], s.ty[i], s.tz[i], s.fill_d[i]);
     put(s.bx[i], s.by[i], s.bz[i], s.fill_s[i]);
@@ -122,7 +122,7 @@ Bodies bodies_of(const std::vector<OccluderF>& occluders) {
             ++out.counts[k];
             out.vectors.push_back({o.a[0], o.a[1], o.a[2], static_cast<float>(o.shape)});
             out.vectors.push_back({o.b[0], o.b[1], o.b[2], o.radius});
-            out.vectors.push_back({o.c[0], o.c[1], o.c[2], 0});
+            out.vectors.push_back({o.c[0], o.c[1], o.c[2], o.offset});
         }
     }
     return out;

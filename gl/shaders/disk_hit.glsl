@@ -5,7 +5,7 @@
 //            sphere         box         quad        disk         plane
 //   3i       centre         min         corner      centre       point      .w: index of the shape
 //   3i + 1   -              max         edge u      normal       normal     .w: radius
-//   3i + 2   -              -           edge v      -            -
+//   3i + 2   -              -           edge v      -            -            .w: normal.point of its plane
 #include "site.glsl"
 
 uniform vec4 bodies[3 * BODY_SLOTS];
@@ -20,10 +20,8 @@ struct FacingDisk {
 FacingDisk facing[DISK_SLOTS];
 
 FacingDisk facing_disk(LocalDisk disk) {
-    float along = dot(disk.to_center, disk.normal);
-    float sign = along > 0.0 ? -1.0 : 1.0;
-    bool emits = along < 0.0 || (along > 0.0 && disk.two_sided > 0.0);
-    return FacingDisk(disk.to_center, disk.normal * sign, along * sign, emits ? sqr(disk.radius) : -1.0);
+    float sign = disk.along > 0.0 ? -1.0 : 1.0;
+    return FacingDisk(disk.to_center, disk.normal * sign, disk.along * sign, faces(disk) ? sqr(disk.radius) : -1.0);
 }
 
 // With v = w.n the ray meets the disk's plane at (k/v) w, so |k w - v c| <= r |v| needs no division; the distance is k/v.
@@ -51,38 +49,40 @@ bool crosses_box(vec3 lo, vec3 hi, vec3 o, vec3 d, float t_max) {
     return near < far && (within(near, eps, t_max) || within(far, eps, t_max));
 }
 
-// Where a ray meets the plane through `p` with normal n.
-float plane_distance(vec3 p, vec3 n, vec3 o, vec3 d) {
+// Where a ray meets the plane n.p = offset.
+float plane_distance(float offset, vec3 n, vec3 o, vec3 d) {
     float denominator = dot(n, d);
-    return dot(n, p - o) / (denominator == 0.0 ? 1e-30 : denominator);
+    return (offset - dot(n, o)) / (denominator == 0.0 ? 1e-30 : denominator);
 }
 
-bool crosses_quad(vec3 corner, vec3 u, vec3 v, vec3 o, vec3 d, float t_max) {
+bool crosses_quad(vec3 corner, vec3 u, vec3 v, float offset, vec3 o, vec3 d, float t_max) {
     vec3 n = cross(u, v);
-    float t = plane_distance(corner, n, o, d);
+    float t = plane_distance(offset, n, o, d);
     vec3 p = o + d * t - corner;
     float nn = dot(n, n), x = dot(cross(p, v), n), y = dot(cross(u, p), n);
     return within(t, t_max * 1e-5, t_max) && x >= 0.0 && x <= nn && y >= 0.0 && y <= nn;
 }
 
-bool crosses_plate(vec3 center, vec3 n, float radius, vec3 o, vec3 d, float t_max) {
-    float t = plane_distance(center, n, o, d);
+bool crosses_plate(vec3 center, vec3 n, float radius, float offset, vec3 o, vec3 d, float t_max) {
+    float t = plane_distance(offset, n, o, d);
     vec3 p = o + d * t - center;
     return within(t, t_max * 1e-5, t_max) && dot(p, p) <= sqr(radius);
 }
 
-// Does a body's surface cross the ray o + t d for t in (0, t_max)? A shape does not shadow itself.
-bool blocked(vec3 o, vec3 d, float t_max, float own) {
+// Does a body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either end it
+// does not: a body that touches the surface point or the light hides nothing there. A shape does not shadow itself.
+bool blocked(vec3 o, vec3 d, float distance, float own) {
     bool hidden = false;
+    float t_max = distance * (1.0 - 1e-5);
     for (int i = 0; i < first_box; ++i)
         hidden = hidden || (bodies[3 * i].w != own && crosses_sphere(bodies[3 * i].xyz, bodies[3 * i + 1].w, o, d, t_max));
     for (int i = first_box; i < first_quad; ++i)
         hidden = hidden || (bodies[3 * i].w != own && crosses_box(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, o, d, t_max));
     for (int i = first_quad; i < first_plate; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && crosses_quad(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, o, d, t_max));
+        hidden = hidden || (bodies[3 * i].w != own && crosses_quad(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, bodies[3 * i + 2].w, o, d, t_max));
     for (int i = first_plate; i < first_plane; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && crosses_plate(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 1].w, o, d, t_max));
+        hidden = hidden || (bodies[3 * i].w != own && crosses_plate(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 1].w, bodies[3 * i + 2].w, o, d, t_max));
     for (int i = first_plane; i < end_of_bodies; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && within(plane_distance(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, o, d), t_max * 1e-5, t_max));
+        hidden = hidden || (bodies[3 * i].w != own && within(plane_distance(bodies[3 * i + 2].w, bodies[3 * i + 1].xyz, o, d), t_max * 1e-5, t_max));
     return hidden;
 }

@@ -1,8 +1,8 @@
 // The estimator, as src/estimator/kernel_body.h: one pixel a fragment, samples [first_sample, first_sample + samples) one
 // after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. An arm's file stands before this one.
 //
-//   sums    sum of g = cos/p, of g lobe, of (X - pivot)^2; largest X
-//   counts  samples under the horizon, samples that met a disk, bad ones
+//   sums    sum of g = cos/p, of g lobe, of (X - mean)^2 of this draw's samples; largest X
+//   counts  directions under the horizon, directions that met a disk, bad samples; mean X of this draw
 //   met     sum of g and of g lobe over the samples that met disk first_recorded + 2k (x, y) and the next (z, w)
 //
 // Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no more
@@ -24,17 +24,20 @@ layout(location = 2) out vec4 met[(RECORDED + 1) / 2];
 #endif
 
 struct Sums {
-    vec3 all;                  // g, g lobe, (X - pivot)^2
+    vec2 all;                  // g, g lobe
     vec2 disk[RECORDED_SLOTS];  // an even number, 2 at least
 };
 Sums block, middle, top;
 float largest = 0.0;
+// Mean of X over the blocks so far, sum of (X - mean)^2 over them; sums of X - mean and of its square in the block. The first
+// block, which has none before it, takes them about the smaller of the draw's first two X: outliers are large.
+float mean = 0.0, spread = 0.0, block_off = 0.0, block_square = 0.0;
 uint horizon = 0u, hits = 0u, bad = 0u;
 Surroundings around;
 
 Sums no_sums() {
     Sums s;
-    s.all = vec3(0.0);
+    s.all = vec2(0.0);
     for (int k = 0; k < RECORDED_SLOTS; ++k) s.disk[k] = vec2(0.0);
     return s;
 }
@@ -42,6 +45,15 @@ void add(inout Sums to, inout Sums from) {  // and clears what was added
     to.all += from.all;
     for (int k = 0; k < RECORDED_SLOTS; ++k) to.disk[k] += from.disk[k];
     from = no_sums();
+}
+
+// Joins the block's `more` samples to the `before` that came before it: Chan, Golub & LeVeque 1983, "Algorithms for Computing
+// the Sample Variance".
+void join(float before, float more) {
+    float off = block_off / more, all = before + more;
+    spread += (block_square - block_off * off) + sqr(off) * (before * more / all);
+    mean += off * (more / all);
+    block_off = 0.0, block_square = 0.0;
 }
 
 float lobe_of(vec3 wo, vec3 wi) {
@@ -56,16 +68,23 @@ float lobe_of(vec3 wo, vec3 wi) {
 #endif
 }
 
-// A sample that met a disk: the nearest disk first, then what stands before it. Returns X where one was met, else x.
-float meet(vec3 wi, float g, float lobe, float x) {
+bool meets(int k, vec3 wi, int aimed, bool met, out float v) {
+    bool hit = meets_disk(facing[k], wi, v);
+    return k == aimed ? met && v < 0.0 : hit;
+}
+
+// A sample that met a disk: the nearest disk first, and of two as near as rounding can tell the one that stands first in the
+// file; then what stands before it. Returns X where one was met, else x.
+float meet(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
     float nearest = 1e30;
     int index = -1;
     for (int k = 0; k < DISKS; ++k) {
         float v;
-        bool hit = meets_disk(facing[k], wi, v);
+        bool hit = meets(k, wi, aimed, met, v);
         float t = hit ? facing[k].k / v : 1e30;
-        index = t < nearest ? k : index;
-        nearest = min(t, nearest);
+        bool nearer = t < nearest * (1.0 - 1e-5);
+        index = nearer ? k : index;
+        nearest = nearer ? t : nearest;
     }
     if (index < 0 || blocked(around.point, to_world(around.frame, wi), nearest, around.shape)) return x;
     for (int k = 0; k < RECORDED; ++k)
@@ -77,7 +96,7 @@ float meet(vec3 wi, float g, float lobe, float x) {
 }
 
 // X of one drawn direction, adding what it carries to the sums.
-float carry(Drawn drawn, float weight) {
+float carry(Drawn drawn, float weight, int aimed, bool met) {
     float cosine = drawn.wi.z;
     bool down = cosine <= 0.0;  // false for NaN, which must reach the sums and be counted
     bool up = !down && drawn.pdf != 0.0;
@@ -89,9 +108,9 @@ float carry(Drawn drawn, float weight) {
     bool any = false;
     for (int k = 0; k < DISKS; ++k) {
         float v;
-        any = meets_disk(facing[k], drawn.wi, v) || any;
+        any = meets(k, drawn.wi, aimed, met, v) || any;
     }
-    if (any && up) x = meet(drawn.wi, g, lobe, x);
+    if (any && up) x = meet(drawn.wi, g, lobe, x, aimed, met);
     return x;
 }
 
@@ -101,12 +120,16 @@ void take(uint pixel, uvec4 h, uint sample_index) {
 #ifdef TWO_TECHNIQUES
     uvec4 second = draws(pixel, sample_index >> 1u, 1u, seed);
     Drawn a = sample_mixture(site.wo, u), b = sample_light_area(site.wo, unit_floats(odd ? second.zw : second.xy));
-    float x = carry(a, weight_of(a.pdf, pdf_light_area(site.wo, a.wi)));
-    x += carry(b, weight_of(b.pdf, pdf_mixture(site.wo, b.wi)));
+    float x = carry(a, weight_of(a.pdf, pdf_light_area(site.wo, a.wi)), -1, false);
+    x += carry(b, weight_of(b.pdf, pdf_mixture(site.wo, b.wi)), aimed_disk, aimed_met);
 #else
-    float x = carry(sample_arm(site.wo, u), 1.0);
+    Drawn drawn = sample_arm(site.wo, u);
+    float x = carry(drawn, 1.0, aimed_disk, aimed_met);
 #endif
-    block.all.z += sqr(x - around.pivot);
+    if (sample_index == uint(first_sample)) mean = x;
+    block_off += x - mean;
+    block_square += sqr(x - mean);
+    if (sample_index == uint(first_sample + 1) && x < mean) mean = x, block_off = -block_off;
     largest = x > largest ? x : largest;
     // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0 is no negative number.
     uint b_x = floatBitsToUint(x);
@@ -122,7 +145,7 @@ void main() {
     block = no_sums(), middle = no_sums(), top = no_sums();
     int j = first_sample, end = first_sample + (mine ? samples : 0);
     for (int blocks = 1; j < end; ++blocks) {
-        int block_end = min((j / 16 + 1) * 16, end);
+        int block_begin = j, block_end = min((j / 16 + 1) * 16, end);
         while (j < block_end) {  // one hash serves an even sample and the odd one after it
             uvec4 h = draws(pixel, uint(j) >> 1u, 0u, seed);
             if ((j & 1) == 0) {
@@ -132,13 +155,14 @@ void main() {
             take(pixel, h, uint(j));
             ++j;
         }
+        join(float(block_begin - first_sample), float(block_end - block_begin));
         add(middle, block);
         if (blocks % 16 == 0) add(top, middle);
     }
     add(top, middle);
     if (!mine) discard;
-    sums = vec4(top.all, largest);
-    counts = vec4(float(horizon), float(hits), float(bad), 0.0);
+    sums = vec4(top.all, spread, largest);
+    counts = vec4(float(horizon), float(hits), float(bad), mean);
 #if RECORDED > 0
     for (int k = 0; k < (RECORDED + 1) / 2; ++k) met[k] = vec4(top.disk[2 * k], top.disk[2 * k + 1]);
 #endif

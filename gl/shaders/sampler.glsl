@@ -7,3 +7,8 @@ struct Drawn {
     vec3 wi;
     float pdf;
 };
+
+// A direction that was drawn towards a disk light: its index, and whether wi meets that disk, which who drew it knows better
+// than a test of the rounded direction. Set by the arms that aim at lights.
+int aimed_disk = -1;
+bool aimed_met = false;

@@ -4,8 +4,8 @@
 // `sites` has one texel a pixel and these layers, written by gl/site_texture.cpp:
 //   0  wo, s                  3  the frame's t (world), fill_d     6 + 2k  disk k: from the surface to its centre, d
 //   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
-//      rho_s, pivot           5  its n, lobe + 1 (-1: no surface)
-//   2  the point (world), shape
+//      rho_s, -               5  its n, lobe + 1 (-1: no surface)
+//   2  the point (from the scene's origin, world), shape
 #include "frame.glsl"
 
 uniform sampler2DArray sites;
@@ -15,7 +15,10 @@ uniform vec3 disk_kind[DISK_SLOTS];  // radius; 1: emits from both sides; power,
 struct LocalDisk {
     vec3 to_center, normal;
     float radius, two_sided, power;
+    float along;  // to_center.normal, m; 0 where the disk's plane passes through the point, which it then gives nothing
 };
+// The surface stands before an emitting side.
+bool faces(LocalDisk d) { return d.along < 0.0 || (d.along > 0.0 && d.two_sided > 0.0); }
 LocalDisk disks[DISK_SLOTS];
 vec2 disk_worth[DISK_SLOTS];  // Y of L rho_d / pi and of L rho_s: X = (cos/p) (d + s lobe)
 
@@ -28,10 +31,9 @@ Site site;
 // What the estimator alone knows.
 struct Surroundings {
     Frame frame;          // world
-    vec3 point;           // world
+    vec3 point;           // from the scene's origin, along the world's axes
     float shape;
     float fill_d, fill_s;  // as disk_worth, for the fill
-    float pivot;          // the second moment is taken about it
     float kind;           // lobe + 1; -1: no surface
 };
 
@@ -41,8 +43,10 @@ Surroundings load_site(ivec2 at) {
     site = Site(a.xyz, a.w, b.x, b.y, b.z);
     for (int k = 0; k < DISKS; ++k) {
         vec4 center = texelFetch(sites, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(sites, ivec3(at, 7 + 2 * k), 0);
-        disks[k] = LocalDisk(center.xyz, normal.xyz, disk_kind[k].x, disk_kind[k].y, disk_kind[k].z);
+        float height = dot(center.xyz, normal.xyz);
+        bool apart = abs(height) > 1e-6 * (length(center.xyz) + disk_kind[k].x);
+        disks[k] = LocalDisk(center.xyz, normal.xyz, disk_kind[k].x, disk_kind[k].y, disk_kind[k].z, apart ? height : 0.0);
         disk_worth[k] = vec2(center.w, normal.w);
     }
-    return Surroundings(Frame(t.xyz, u.xyz, n.xyz), c.xyz, c.w, t.w, u.w, b.w, n.w);
+    return Surroundings(Frame(t.xyz, u.xyz, n.xyz), c.xyz, c.w, t.w, u.w, n.w);
 }

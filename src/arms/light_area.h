@@ -20,10 +20,9 @@ template <class F> struct LightArea {
         Aim() = default;
         explicit Aim(const LocalDisk<F>& d) {
             const Frame<F> frame = frame_about(d.normal);
-            const F c = dot(d.to_center, d.normal);
-            const auto lit = faces(d, c);
+            const auto lit = d.faces();
             center = d.to_center, t = frame.t * d.radius, b = frame.b * d.radius;
-            scale = select(lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(c), number<F>(1))), number<F>(0));
+            scale = select(lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
         }
     };
     Aim first;  // most scenes have but one
@@ -32,40 +31,47 @@ template <class F> struct LightArea {
         if (count > 0) first = Aim(disks[0]);
     }
 
-    [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
+    [[gnu::always_inline]] DrawnToDisk<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
-        if (count == 1) return on_disk(first, u);
+        if (count == 1) {
+            const Drawn<F> drawn = on_disk(first, u);
+            return {drawn, zero, drawn.pdf.v > zero};
+        }
         Drawn<F> drawn = {{zero, zero, one}, {zero}};
-        F below = zero;
+        F below = zero, own = zero;
         for (int k = 0; k < count; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
             const F above = k + 1 < count ? below + disks[k].power : one;
             const auto chosen = (u.x >= below) & (u.x < above);
             const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - below) / (above - below), u.y});
             drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y), select(chosen, one_disk.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
+            own = select(chosen, number<F>(k), own);
             below = above;
         }
+        const auto some = drawn.pdf.v > zero;
         // Disks may stand one behind another: every one that wi meets could have drawn it.
-        drawn.pdf.v = select(drawn.pdf.v > zero, larger(pdf(wo, drawn.wi).v, drawn.pdf.v), zero);
-        return drawn;
+        drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, own), zero);
+        return {drawn, own, some};
     }
 
-    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const { return {density_of_others(wi, number<F>(-1))}; }
+
+private:
+    /// The density with which the disks but for one draw wi. The question whether wi meets a disk is that of the estimator
+    /// (meets_disk in estimator/disk_hit.h), bit for bit, so that no sample is worth a disk and weighed as if it met none.
+    [[gnu::always_inline]] F density_of_others(Vec3<F> wi, F but) const {
         F sum = number<F>(0);
         for (int k = 0; k < count; ++k) {
             const LocalDisk<F>& d = disks[k];
-            const F c = dot(d.to_center, d.normal), v = dot(wi, d.normal);
+            const F c = d.along, v = dot(wi, d.normal);
             const Vec3<F> off = wi * c - d.to_center * v;
-            const auto met = (dot(off, off) <= sqr(d.radius * v)) & faces(d, c) & (c * v > number<F>(0));
+            const auto met = (dot(off, off) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) & !(but == number<F>(k));
             const F t = c / select(met, v, number<F>(1));
             sum = sum + select(met, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));
         }
-        return {sum};
+        return sum;
     }
 
-private:
-    /// The surface stands before the emitting side.
-    [[gnu::always_inline]] static auto faces(const LocalDisk<F>& d, F c) { return (c < number<F>(0)) | ((c > number<F>(0)) & (d.two_sided > number<F>(0))); }
     [[gnu::always_inline]] static PerSr<F> density(const LocalDisk<F>& d, F r2, F cos_light) {
         return per_sr(PerM2<F>{number<F>(1 / pi) / sqr(d.radius)}, r2, cos_light);
     }

@@ -17,7 +17,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
     LightArea<F> light;
     explicit TwoSampleMis(const Site<F>& site) : brdf(site), light(site) {}
 
-    template <int t> Drawn<F> sample_technique(Vec3<F> wo, Vec2<F> u) const {
+    template <int t> auto sample_technique(Vec3<F> wo, Vec2<F> u) const {
         if constexpr (t == 0) return brdf.sample(wo, u);
         else return light.sample(wo, u);
     }

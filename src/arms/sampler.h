@@ -27,6 +27,13 @@ template <class F> struct Drawn {
     PerSr<F> pdf;
 };
 
+/// A direction that was drawn towards a disk light. Who drew it knows better whether it meets that disk than a test of
+/// the rounded direction: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
+template <class F> struct DrawnToDisk : Drawn<F> {
+    F disk;         // its index
+    MaskOf<F> met;  // wi meets it; it may still be behind another disk, or hidden
+};
+
 /// A disk light as seen from the surface: everything in the local frame.
 template <class F> struct LocalDisk {
     Vec3<F> to_center;  // from the surface point, m
@@ -34,6 +41,17 @@ template <class F> struct LocalDisk {
     F radius;           // m
     F two_sided;        // 1: emits from both sides
     F power;            // Y(L) pi r^2: how much it is worth choosing
+    F along;            // to_center.normal, m; 0 where the disk's plane passes through the point, which it then gives nothing
+
+    LocalDisk() = default;
+    LocalDisk(Vec3<F> c, Vec3<F> n, F r, F sides, F share) : to_center(c), normal(n), radius(r), two_sided(sides), power(share) {
+        const F height = dot(c, n);
+        along = select(abs(height) > number<F>(1e-6) * (sqrt(dot(c, c)) + r), height, number<F>(0));
+    }
+    /// The surface stands before an emitting side.
+    [[gnu::always_inline]] MaskOf<F> faces() const {
+        return (along < number<F>(0)) | ((along > number<F>(0)) & (two_sided > number<F>(0)));
+    }
 };
 
 /// Everything about a surface point that a sampler may aim by.
@@ -50,8 +68,8 @@ template <class F> struct Site {
 template <class S, class F>
 concept Sampler = requires(const S s, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
     { S::name } -> std::convertible_to<std::string_view>;
-    { s.sample(wo, u) } -> std::same_as<Drawn<F>>;  // u in [0,1)^2
-    { s.pdf(wo, wi) } -> std::same_as<PerSr<F>>;    // 0 off the support
+    { s.sample(wo, u) } -> std::convertible_to<Drawn<F>>;  // u in [0,1)^2
+    { s.pdf(wo, wi) } -> std::same_as<PerSr<F>>;           // 0 off the support
 };
 
 }  // namespace crescent

@@ -7,7 +7,7 @@
 namespace crescent {
 namespace {
 
-TEST(Turbo, Has_the_published_entries) {
+TEST(Turbo, HasThePublishedEntries) {
     struct {
         int entry;
         Srgb8 colour;
@@ -18,14 +18,14 @@ TEST(Turbo, Has_the_published_entries) {
 }
 
 // A wrong digit in any of the 768 bytes bends a channel by more than rounding does.
-TEST(Turbo, Bends_no_more_than_rounding_allows) {
+TEST(Turbo, BendsNoMoreThanRoundingAllows) {
     for (int i = 1; i < 255; ++i) {
         Srgb8 a = turbo((i - 1) / 255.0), b = turbo(i / 255.0), c = turbo((i + 1) / 255.0);
         for (std::size_t k = 0; k < 3; ++k) EXPECT_LE(std::abs(a[k] - 2 * b[k] + c[k]), 2) << "entry " << i;
     }
 }
 
-TEST(Turbo, Goes_in_small_steps_and_clamps) {
+TEST(Turbo, GoesInSmallStepsAndClamps) {
     for (int i = 1; i <= 2000; ++i) {
         Srgb8 a = turbo((i - 1) / 2000.0), b = turbo(i / 2000.0);
         for (std::size_t k = 0; k < 3; ++k) ASSERT_LE(std::abs(a[k] - b[k]), 2) << i;

@@ -15,14 +15,11 @@ template <class F> struct FacingDisk {
 
     FacingDisk() = default;
     explicit FacingDisk(const LocalDisk<F>& disk) {
-        const F zero = number<F>(0), along = dot(disk.to_center, disk.normal);
-        const auto behind = along > zero;
-        const F sign = select(behind, number<F>(-1), number<F>(1));
-        const auto emits = (along < zero) | (behind & (disk.two_sided > zero));
+        const F sign = select(disk.along > number<F>(0), number<F>(-1), number<F>(1));
         c = disk.to_center;
         n = disk.normal * sign;
-        k = along * sign;
-        r2 = select(emits, sqr(disk.radius), number<F>(-1));
+        k = disk.along * sign;
+        r2 = select(disk.faces(), sqr(disk.radius), number<F>(-1));
     }
 };
 
@@ -33,6 +30,23 @@ template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& dis
     const Vec3<F> off = w * disk.k - disk.c * v;
     return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
 }
+
+/// As meets_disk for what an arm drew: where it aimed at disk k it knows whether it meets it. `alone`: there is no other.
+template <class F, class D> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
+    if constexpr (requires { drawn.met; }) {
+        if (alone) {
+            v = dot(drawn.wi, disk.n);
+            return drawn.met & (v < number<F>(0));
+        }
+        const auto tested = meets_disk(disk, drawn.wi, v), own = drawn.disk == number<F>(static_cast<double>(k));
+        return (own & drawn.met & (v < number<F>(0))) | (tested & !own);
+    } else {
+        return meets_disk(disk, drawn.wi, v);
+    }
+}
+
+/// Disks on one ray: the nearer is met, and of two as near as rounding can tell the one that stands first in the file.
+template <class F> CRESCENT_INLINE MaskOf<F> is_nearer(F t, F than) { return t < than * number<F>(1 - 1e-5); }
 
 /// A cone from the surface that holds a disk: a first, cheap question to a direction. It never excludes one that meets the
 /// disk, for directions that are unit to 1e-6.
@@ -63,9 +77,10 @@ template <class F> void clip_slab(F lo, F hi, F o, F d, F& near, F& far) {
 
 template <class F> MaskOf<F> within(F t, F lo, F hi) { return (t > lo) & (t < hi); }
 
-/// Does the body's surface cross the ray o + t d for t in (0, t_max)?
-template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F t_max) {
-    const F zero = number<F>(0), eps = t_max * number<F>(1e-5);
+/// Does the body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either end
+/// it does not: a body that touches the surface point or the light hides nothing there.
+template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
+    const F zero = number<F>(0), eps = distance * number<F>(1e-5), t_max = distance * number<F>(1 - 1e-5);
     const Vec3<F> a = broadcast<F>(body.a), b = broadcast<F>(body.b);
     switch (body.kind) {
         case Occluder::Kind::sphere: {
@@ -85,7 +100,7 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
         case Occluder::Kind::quad: {
             const Vec3<F> v = broadcast<F>(body.c), n = cross(b, v);
             const F denominator = dot(n, d);
-            const F t = dot(n, a - o) / select(denominator == zero, number<F>(1e-30), denominator);
+            const F t = (F(body.offset) - dot(n, o)) / select(denominator == zero, number<F>(1e-30), denominator);
             const Vec3<F> p = o + d * t - a;
             const F nn = dot(n, n), x = dot(cross(p, v), n), y = dot(cross(b, p), n);
             return (t > eps) & (t < t_max) & (x >= zero) & (x <= nn) & (y >= zero) & (y <= nn);
@@ -93,7 +108,7 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
         case Occluder::Kind::disk:
         case Occluder::Kind::plane: {
             const F denominator = dot(b, d);
-            const F t = dot(b, a - o) / select(denominator == zero, number<F>(1e-30), denominator);
+            const F t = (F(body.offset) - dot(b, o)) / select(denominator == zero, number<F>(1e-30), denominator);
             const auto crosses = (t > eps) & (t < t_max);
             if (body.kind == Occluder::Kind::plane) return crosses;
             const Vec3<F> p = o + d * t - a;

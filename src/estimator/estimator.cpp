@@ -28,16 +28,12 @@ public:
         const double n = static_cast<double>(film_.n);
         const Rgb mean = radiance(i, n);
         const double y = luminance(mean);
-        const double pivot = static_cast<double>(sites_.pivot[i]);
-        const double off = y - pivot;
-        const bool dark = !(m_.largest[i] > 0) && m_.bad[i] == 0;      // every X is 0
-        const double spread = dark ? 0 : m_.square[i] - n * off * off;  // sum of (X - mean)^2
         film_.r[at] = static_cast<float>(mean[0]);
         film_.g[at] = static_cast<float>(mean[1]);
         film_.b[at] = static_cast<float>(mean[2]);
         film_.y[at] = static_cast<float>(y);
-        film_.y2[at] = static_cast<float>(m_.square[i] / n + pivot * (2 * y - pivot));
-        film_.var[at] = film_.n > 1 ? static_cast<float>((spread < 0 ? 0 : spread) / (n * (n - 1))) : 0.0f;
+        film_.y2[at] = static_cast<float>(m_.spread[i] / n + y * y);
+        film_.var[at] = film_.n > 1 ? static_cast<float>(m_.spread[i] / (n * (n - 1))) : 0.0f;
         film_.largest[at] = m_.largest[i];
         film_.horizon[at] = m_.horizon[i];
         film_.hits[at] = m_.hits[i];
@@ -93,7 +89,10 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
     const Image& image = scene.experiment().image;
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
-    parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) { films[r] = Film(image.width, image.height, n[r]); });
+    parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
+        films[r] = Film(image.width, image.height, n[r]);
+        films[r].directions = directions_per_sample(sampler);
+    });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (keeper) keeper->begin(tiles, outputs_of(films, bad));
     PerThread<std::vector<Moments>> scratch([&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it

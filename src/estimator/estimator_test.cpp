@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <thread>
 
 #include "estimator/furnace_sites.h"
 #include "estimator/reference.h"
@@ -14,11 +18,7 @@
 namespace crescent {
 namespace {
 
-std::vector<std::string> all_arms() {
-    std::vector<std::string> names;
-    for_each_arm(Arms{}, [&]<template <class> class A>() { names.emplace_back(A<float>::name); });
-    return names;
-}
+using test::all_arms;
 
 std::vector<std::string> hashes(const std::vector<Film>& films) {
     std::vector<std::string> out;
@@ -68,14 +68,9 @@ TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
         std::vector<float> x(sites.count * n);
         const Moments m = estimate_sites(sites, "cosine", n, 5, "", nullptr, x.data());
         for (std::size_t i = 0; i < sites.count; ++i) {
-            long double square = 0;
             float largest = 0;
-            const long double pivot = sites.pivot[i];
-            for (std::uint64_t j = 0; j < n; ++j) {
-                square += (x[i * n + j] - pivot) * (x[i * n + j] - pivot);
-                largest = std::max(largest, x[i * n + j]);
-            }
-            EXPECT_NEAR(m.square[i] / static_cast<double>(square), 1, 1e-6);
+            for (std::uint64_t j = 0; j < n; ++j) largest = std::max(largest, x[i * n + j]);
+            EXPECT_NEAR(m.spread[i] / test::spread_of({x.data() + i * n, n}), 1, 1e-6);
             EXPECT_EQ(m.largest[i], largest);
         }
     }
@@ -97,11 +92,36 @@ TEST(BadSamples, ANegativeWeightIsCounted) {
     EXPECT_EQ(estimate_sites(furnace_sites(surface, 1), "cosine", 50, 1, "", nullptr).bad[0], 50u);
 }
 
+TEST(BadSamples, MinusZeroIsNone) {
+    const Scene scene(test::small_scene({"fill.radiance=[-0.0,-0.0,-0.0]", "shapes.ground.rho_d=[-0.0,-0.0,-0.0]", "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
+    Watch watch;
+    for (const std::string& arm : all_arms()) EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", watch)[0].bad, 0u) << arm;
+    const Surface black{{-0.0, -0.0, -0.0}, 0, BrdfKind::phong, 0, 0};
+    EXPECT_EQ(estimate_sites(furnace_sites(black, 1), "cosine", 50, 1, "", nullptr).bad[0], 0u);
+}
+
+TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    std::uint64_t above_n = 0;
+    for (const std::string& arm : all_arms()) {
+        const Film film = estimate_films(scene, arm, {32}, 2, "", watch)[0];
+        EXPECT_EQ(film.directions, arm.starts_with("mis-") ? 2u : 1u) << arm;
+        for (std::size_t at = 0; at < film.size(); ++at) {
+            ASSERT_LE(film.horizon[at], film.n * film.directions) << arm;
+            ASSERT_LE(film.hits[at], film.n * film.directions) << arm;
+            ASSERT_LE(film.horizon[at] + film.hits[at], film.n * film.directions) << arm;
+            above_n += film.hits[at] > film.n;
+        }
+    }
+    EXPECT_GT(above_n, 0u);  // a pair of directions may meet a light twice
+}
+
 TEST(Furnace, CosineOnLambertHasNoVarianceAndLosesNothing) {
     const Surface surface{{0.5, 0.5, 0.5}, 0, BrdfKind::phong, 0, 0};
     const Moments m = estimate_sites(furnace_sites(surface, 1), "cosine", 1000, 1, "", nullptr);
     EXPECT_NEAR(m.g[0] / 1000 / pi, 1, 1e-6);
-    EXPECT_NEAR(m.square[0] / 1000, 0, 1e-12);
+    EXPECT_NEAR(m.spread[0] / 1000, 0, 1e-12);
     EXPECT_EQ(m.horizon[0], 0u);
 }
 
@@ -111,7 +131,7 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     const Scene scene(experiment);
     Watch watch;
     const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, watch)[0];
-    for (const char* arm : {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {
+    for (const char* arm : {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
         const Film film = estimate_films(scene, arm, {1024}, 17, "", watch)[0];
         double difference = 0, variance = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {
@@ -127,8 +147,7 @@ TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
     const Sites sites = sites_of(scene, {30, 20, 34, 23}, nullptr).front();
     Moments moments;
     moments.resize(sites.pixel.size(), sites.disks.size());
-    for (std::size_t i = 0; i < sites.count; ++i) moments.square[i] = 8 * sqr(static_cast<double>(sites.pivot[i])) * (1 + 1e-9);  // X = 0, rounded
-    moments.square[0] = moments.g[0] = std::nan("");
+    moments.spread[0] = moments.g[0] = std::nan("");
     moments.bad[0] = 1;
     Film film(67, 45, 8);
     develop(scene, sites, moments, film);
@@ -200,6 +219,40 @@ TEST(Estimator, StopsWhenAsked) {
     Watch watch;
     watch.stop = true;
     EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", watch), Interrupted);
+}
+
+/// Asks to stop a little after the work has begun, from another thread, as a signal does.
+TEST(Estimator, StopsInMidWorkWithinATile) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    std::atomic<bool> done = false;
+    std::thread other([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        EXPECT_FALSE(done);  // 5e10 samples take minutes
+        watch.stop = true;
+    });
+    EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", watch), Interrupted);
+    done = true;
+    other.join();
+}
+
+TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
+    const Scene scene(test::small_scene());
+    Watch watch;
+    constexpr std::uint64_t n = 40;
+    const Box box = {28, 18, 40, 27};
+    std::vector<float> all;
+    for (const Sites& sites : sites_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
+        std::vector<float> x(sites.count * n);
+        estimate_sites(sites, "phong", n, 4, "", nullptr, x.data());
+        all.insert(all.end(), x.begin(), x.end());
+    }
+    std::sort(all.begin(), all.end(), std::greater<>());
+    std::uint64_t drawn = 0;
+    const std::vector<float> largest = largest_samples(scene, "phong", n, 4, box, 100, "", watch, drawn);
+    EXPECT_EQ(drawn, all.size());
+    all.resize(100);
+    EXPECT_EQ(largest, all);
 }
 
 TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {

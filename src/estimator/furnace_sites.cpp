@@ -24,9 +24,8 @@ Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
     fill(sites.diffuse, luminance(surface.rho_d)), fill(sites.rho_s, surface.rho_s);
     for (auto* zero : {&sites.px, &sites.py, &sites.pz, &sites.ty, &sites.tz, &sites.bx, &sites.bz, &sites.nx, &sites.ny}) fill(*zero, 0);
     for (auto* one : {&sites.tx, &sites.by, &sites.nz}) fill(*one, 1);
-    fill(sites.fill_d, luminance(surface.rho_d) / pi);
+    fill(sites.fill_d, luminance(surface.rho_d) / pi + 0.0);  // never -0
     fill(sites.fill_s, surface.rho_s);
-    fill(sites.pivot, luminance(surface.rho_d));
     sites.rho_d.assign(count, surface.rho_d);
     sites.rho_s_exact.assign(count, surface.rho_s);
     sites.pad();

@@ -12,7 +12,7 @@ CRESCENT_ISAS(CRESCENT_DECLARE)
 #undef CRESCENT_DECLARE
 
 void Moments::resize(std::size_t sites, std::size_t disks) {
-    for (auto* sums : {&g, &g_lobe, &square}) sums->resize(sites);
+    for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(sites);
     for (auto* sums : {&disk_g, &disk_g_lobe}) {
         sums->resize(disks);
         for (std::vector<double>& of_disk : *sums) of_disk.resize(sites);

@@ -18,13 +18,11 @@
 
 namespace crescent {
 
-inline constexpr int most_disks = 64;  // disk lights in one scene
-
 /// Moments of n samples, one entry a site; sums are kept in double.
 struct Moments {
     std::vector<double> g, g_lobe;               // sum of g and of g * lobe over all samples
     std::vector<std::vector<double>> disk_g, disk_g_lobe;  // over the samples that met disk k
-    std::vector<double> square;                  // sum of (X - pivot)^2
+    std::vector<double> spread;                  // sum of (X - mean X)^2
     std::vector<float> largest;                  // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
     /// Entries that are new are 0; kernels write all of them.

@@ -18,7 +18,9 @@ inline constexpr std::uint64_t block_length = 16;
 /// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
 /// only samples that meet a disk touch, so that it can live in registers.
 template <class F> struct Gathered {
-    F g = number<F>(0), g_lobe = number<F>(0), square = number<F>(0);
+    F g = number<F>(0), g_lobe = number<F>(0);
+    F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
+    F pivot = number<F>(0);  // the smaller of the first two X (outliers are large), then the mean of the first 16, 64, 256, ...
     F largest = number<F>(0);
     UintOf<F> horizon{0u}, bad{0u};
 };
@@ -27,7 +29,7 @@ template <class F> struct Gathered {
 /// reach for changed after each call, and would redo all that follows from it.
 template <class F> struct Constants {
     Vec3<F> wo;
-    F fill_d, fill_s, pivot;
+    F fill_d, fill_s;
     UintOf<F> pixel;
     DiskCone<F> first;  // round the first disk; most scenes have but one
 };
@@ -44,12 +46,12 @@ template <class A, class L, class F> struct Lane : Lights<F> {
     }
 
     Constants<F> constants() const {
-        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pivot, at), load_lanes<F>(sites.pixel, at),
+        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pixel, at),
                 disk_count > 0 ? cones[0] : DiskCone<F>{}};
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
-    [[gnu::always_inline]] F carry(Gathered<F>& to, const Constants<F>& c, const L& brdf, const Drawn<F>& drawn, F weight) {
+    template <class D> [[gnu::always_inline]] F carry(Gathered<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
@@ -64,9 +66,13 @@ template <class A, class L, class F> struct Lane : Lights<F> {
             x = g * (c.fill_d + lobe * c.fill_s);
         }
         if (disk_count == 0) return x;
-        auto near = c.first.holds(drawn.wi);
-        for (std::size_t k = 1; k < disk_count; ++k) near = near | cones[k].holds(drawn.wi);
-        if (any(near & up)) [[unlikely]] x = meet(drawn.wi, g, lobe, x, up);
+        if constexpr (requires { drawn.met; }) {
+            if (any(up)) x = meet(drawn, g, lobe, x, up);
+        } else {
+            auto near = c.first.holds(drawn.wi);
+            for (std::size_t k = 1; k < disk_count; ++k) near = near | cones[k].holds(drawn.wi);
+            if (any(near & up)) [[unlikely]] x = meet(drawn, g, lobe, x, up);
+        }
         return x;
     }
 
@@ -77,16 +83,19 @@ template <class A, class L, class F> struct Lane : Lights<F> {
         if constexpr (requires { A::techniques; }) {
             const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
             const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)} : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
-            const Drawn<F> a = arm.template sample_technique<0>(c.wo, u), b = arm.template sample_technique<1>(c.wo, v);
+            const auto a = arm.template sample_technique<0>(c.wo, u);
+            const auto b = arm.template sample_technique<1>(c.wo, v);
             x = carry(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
             x = x + carry(to, c, brdf, b, arm.template weight<1>(c.wo, b));
         } else {
             x = carry(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
         }
-        const F off = x - c.pivot;
+        const F off = x - to.pivot;
+        to.off = to.off + off;
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
-        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up.
+        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number, arises from
+        // nothing that a site holds (sites.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
         if (call.samples) keep(x, call.samples, j, call.rungs.back());
     }
@@ -98,8 +107,14 @@ template <class A, class L, class F> struct Lane : Lights<F> {
     }
 };
 
+/// sum[lane] += partial[lane].
+template <class F> CRESCENT_INLINE void add_lanes(F partial, double* sum) {
+    float lanes[Lanes<F>::count];
+    store(partial, lanes);
+    for (std::size_t l = 0; l < Lanes<F>::count; ++l) sum[l] += static_cast<double>(lanes[l]);
+}
 /// to[lane] = from[lane] + partial[lane].
-template <class F> void add_lanes(F partial, const double* from, double* to) {
+template <class F> CRESCENT_INLINE void add_lanes(F partial, const double* __restrict from, double* __restrict to) {
     float lanes[Lanes<F>::count];
     store(partial, lanes);
     for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
@@ -108,7 +123,7 @@ template <class F> void add_lanes(F partial, const double* from, double* to) {
 /// Double totals of one pack; only the first `disks` of the disk sums are in use.
 template <class F> struct Totals {
     static constexpr std::size_t count = Lanes<F>::count;
-    double g[count] = {}, g_lobe[count] = {}, square[count] = {};
+    double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
     double disk_g[most_disks][count], disk_g_lobe[most_disks][count];
 
     explicit Totals(std::size_t disks) {
@@ -117,24 +132,49 @@ template <class F> struct Totals {
     }
     /// Takes the block's sums over and clears them.
     void take(Gathered<F>& p, Met<F>& met, std::size_t disks) {
-        add_lanes(p.g, g, g);
-        add_lanes(p.g_lobe, g_lobe, g_lobe);
-        add_lanes(p.square, square, square);
-        p.g = p.g_lobe = p.square = number<F>(0);
+        add_lanes(p.g, g);
+        add_lanes(p.g_lobe, g_lobe);
+        add_lanes(p.off, off);
+        add_lanes(p.square, square);
+        p.g = p.g_lobe = p.off = p.square = number<F>(0);
         for (std::size_t k = 0; met.any && k < disks; ++k) {
-            add_lanes(met.disk_g[k], disk_g[k], disk_g[k]);
-            add_lanes(met.disk_g_lobe[k], disk_g_lobe[k], disk_g_lobe[k]);
+            add_lanes(met.disk_g[k], disk_g[k]);
+            add_lanes(met.disk_g_lobe[k], disk_g_lobe[k]);
             met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
         }
         met.any = false;
     }
+    /// Takes the second moment about the mean of the n samples so far from here on, where the block's sums are clear.
+    [[gnu::noinline]] F turn(F about, double n) {
+        float pivot[count];
+        store(about, pivot);
+        const double share = 1 / n;  // a power of two: exact
+        for (std::size_t l = 0; l < count; ++l) {
+            const float next = static_cast<float>(static_cast<double>(pivot[l]) + off[l] * share);
+            const double by = static_cast<double>(next) - static_cast<double>(pivot[l]);
+            square[l] += by * (n * by - 2 * off[l]);
+            off[l] -= n * by;
+            pivot[l] = next;
+        }
+        return load_as<F>(pivot);
+    }
+    /// Sum of (X - mean X)^2 over the n samples of the blocks and of the one that is not full.
+    void spread(const Gathered<F>& p, double n, double* out) const {
+        double first[count];
+        add_lanes(p.off, off, first);
+        add_lanes(p.square, square, out);
+        for (std::size_t l = 0; l < count; ++l) {
+            out[l] -= first[l] * first[l] / n;
+            if (out[l] < 0) out[l] = 0;
+        }
+    }
 };
 
-template <class F> [[gnu::noinline]] void write_rung(const Lights<F>& lane, const Gathered<F>& p, const Totals<F>& totals, Moments& out) {
+template <class F> [[gnu::noinline]] void write_rung(const Lights<F>& lane, const Gathered<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
     const std::size_t at = lane.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
-    add_lanes(p.square, totals.square, out.square.data() + at);
+    totals.spread(p, static_cast<double>(n), out.spread.data() + at);
     for (std::size_t k = 0; k < lane.disk_count; ++k) {
         add_lanes(lane.met.disk_g[k], totals.disk_g[k], out.disk_g[k].data() + at);
         add_lanes(lane.met.disk_g_lobe[k], totals.disk_g_lobe[k], out.disk_g_lobe[k].data() + at);
@@ -163,16 +203,25 @@ template <class A, class L, class F> void estimate_pack(const KernelCall& call, 
             const Vec4u<U> h = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 0, call.seed);
             if (!(j & 1)) {
                 lane.step(gathered, c, arm, brdf, h, false, j, call);
+                if (j == 0) {  // X - pivot was X, the pivot being 0
+                    gathered.pivot = gathered.off;
+                    gathered.off = gathered.square = number<F>(0);
+                }
                 if (++j == end) break;
             }
             lane.step(gathered, c, arm, brdf, h, true, j, call);
+            if (j == 1) {  // X_1 - X_0 is the sum so far; about the smaller of the two it is its size, and the square is the same
+                gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
+                gathered.off = abs(gathered.off);
+            }
             ++j;
         }
         if (j == block_end) {
             totals.take(gathered, lane.met, lane.disk_count);
+            if (j < n && (j & (j - 1)) == 0 && (j & 0x5555555555555555u)) gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
         }
-        if (j == call.rungs[rung]) write_rung(lane, gathered, totals, call.out[rung++]);
+        if (j == call.rungs[rung]) write_rung(lane, gathered, totals, j, call.out[rung++]);
     }
 }
 

@@ -35,7 +35,7 @@ template <class F> struct Lights {
     [[gnu::noinline]] Lights(const Sites& all, std::size_t first) : sites(all), at(first), disk_count(all.disks.size()) {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const DiskArrays& d = sites.disks[k];
-            disks[k] = {load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power)};
+            disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
             facing[k] = FacingDisk<F>(disks[k]);
             cones[k] = DiskCone<F>(facing[k]);
             met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
@@ -43,16 +43,18 @@ template <class F> struct Lights {
     }
 
     /// Samples that may have met a disk: nearest disk first, then what stands before it. Returns X where one was met.
-    [[gnu::noinline]] F meet(Vec3<F> wi, F g, F lobe, F x, MaskOf<F> up) {
+    template <class D> [[gnu::noinline]] F meet(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+        const Vec3<F> wi = drawn.wi;
         const F far = number<F>(1e30);
         F nearest = far;
         F index = number<F>(-1);
         for (std::size_t k = 0; k < disk_count; ++k) {
             F v;
-            const auto hit = meets_disk(facing[k], wi, v);
+            const auto hit = meets_disk(facing[k], drawn, k, disk_count == 1, v);
             const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), far);
-            index = select(t < nearest, F(static_cast<float>(k)), index);
-            nearest = smaller(t, nearest);
+            const auto nearer = is_nearer(t, nearest);
+            index = select(nearer, F(static_cast<float>(k)), index);
+            nearest = select(nearer, t, nearest);
         }
         const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
         const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at), load_lanes<F>(sites.bx, sites.by, sites.bz, at),

@@ -43,14 +43,15 @@ std::vector<LocalDisk<float>> local_disks(const Sites& sites) {
     return out;
 }
 
-/// As the kernels ask it: the nearest disk first, then what stands before it.
-int met_by(const Sites& sites, const std::vector<LocalDisk<float>>& disks, Vec3f wi) {
+/// As the kernels ask it of what an arm drew: the nearest disk first, then what stands before it.
+template <class D> int met_by(const Sites& sites, const std::vector<LocalDisk<float>>& disks, const D& drawn) {
+    const Vec3f wi = drawn.wi;
     float nearest = 1e30f;
     int met = -1;
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const FacingDisk<float> facing(disks[k]);
         float v;
-        if (!DiskCone<float>(facing).holds(wi) || !meets_disk(facing, wi, v) || !(facing.k / v < nearest)) continue;
+        if (!meets_disk(facing, drawn, k, disks.size() == 1, v) || !is_nearer(facing.k / v, nearest)) continue;
         nearest = facing.k / v, met = static_cast<int>(k);
     }
     if (met < 0) return -1;
@@ -85,13 +86,13 @@ public:
     Carrier(const Sites& sites, const Locals& disks, const std::vector<PixelDisk>& seen, double fill)
         : sites_(sites), disks_(disks), seen_(seen), fill_(fill) {}
 
-    PixelSample operator()(Vec2<float> u, const Drawn<float>& drawn, float weight, int technique) const {
+    template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
         PixelSample out;
         out.u = u, out.wi = drawn.wi, out.pdf = drawn.pdf.v, out.cos = drawn.wi.z;
         out.weight = weight, out.technique = technique;
         if (out.cos <= 0 || out.pdf == 0) return out;
         const float g = weight * (out.cos / out.pdf), lobe = lobe_of(sites_, out.wi);
-        out.disk = met_by(sites_, disks_, out.wi);
+        out.disk = met_by(sites_, disks_, drawn);
         const Worth w = worth(sites_, out.disk);
         out.x = g * (w.d + lobe * w.s);
         out.light = static_cast<float>(out.disk < 0 ? fill_ : seen_[static_cast<std::size_t>(out.disk)].light);
@@ -122,7 +123,7 @@ PixelDisk seen_disk(const DiskLight& light, const LocalDisk<float>& local) {
     const double distance = length(c);
     const double half = math::atan2(light.radius, distance) * 180 / pi;
     PixelDisk out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, false};
-    out.faces = dot(c, n) < 0 || light.two_sided;
+    out.faces = local.faces();
     const Frame<double> frame = frame_about(normalize(n));
     constexpr int corners = 96;
     for (int k = 0; k <= corners; ++k) {
@@ -154,7 +155,7 @@ Site<float> OpenPixel::aimed_from() const {
 
 Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
 
-int OpenPixel::disk_met(Vec3d wi) const { return wi.z > 0 ? met_by(sites_, local_, as<float>(wi)) : -1; }
+int OpenPixel::disk_met(Vec3d wi) const { return wi.z > 0 ? met_by(sites_, local_, Drawn<float>{as<float>(wi), {1}}) : -1; }
 
 double OpenPixel::light(Vec3d wi) const {
     const int disk = disk_met(wi);
@@ -190,8 +191,8 @@ std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint6
             const Vec2<float> u = draw(seed, sites_.pixel[0], k);
             if constexpr (requires { A<float>::techniques; }) {
                 const Vec2<float> v = draw(seed, sites_.pixel[0], k, 1);
-                const Drawn<float> a = arm.template sample_technique<0>(site.wo, u);
-                const Drawn<float> b = arm.template sample_technique<1>(site.wo, v);
+                const auto a = arm.template sample_technique<0>(site.wo, u);
+                const auto b = arm.template sample_technique<1>(site.wo, v);
                 out.push_back(carry(u, a, arm.template weight<0>(site.wo, a), 0));
                 out.push_back(carry(v, b, arm.template weight<1>(site.wo, b), 1));
             } else {

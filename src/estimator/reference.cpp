@@ -100,14 +100,14 @@ Sites only_disk(const Scene& scene, const Sites& all, std::size_t k) {
         disk.d[i] = all.disks[k].d[i] - sites.fill_d[i];  // L_key - L_fill: the disk stands in for the fill behind it
         disk.s[i] = full > 0 ? static_cast<float>(static_cast<double>(all.disks[k].s[i]) * over / full) : -sites.fill_s[i];
     }
-    for (auto* array : {&sites.fill_d, &sites.fill_s, &sites.pivot}) std::fill(array->begin(), array->end(), 0.0f);
+    for (auto* array : {&sites.fill_d, &sites.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
     return sites;
 }
 
 Sites only_lobe(const Sites& all) {
     Sites sites = all;
     sites.disks.clear();
-    for (auto* array : {&sites.fill_d, &sites.pivot}) std::fill(array->begin(), array->end(), 0.0f);
+    std::fill(sites.fill_d.begin(), sites.fill_d.end(), 0.0f);
     return sites;
 }
 
@@ -121,10 +121,7 @@ std::string_view lobe_sampler(int lobe) {
     return "cosine";
 }
 
-double variance_of_mean(double sum, double square, double n) {
-    const double spread = square - sum * sum / n;
-    return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0;
-}
+double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0; }
 
 /// May the lobe of site i peak in the disk, and be so narrow against it that fewer than ten of n samples would meet it?
 bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, double n) {
@@ -155,7 +152,7 @@ public:
         const double lobe = sites_.lobe >= 0 ? lobe_.g_lobe[i] / lobe_n_ : 0;
         const double rho_s = sites_.rho_s_exact[i];
         Rgb out{};
-        double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.g_lobe[i] * luminance(fill) * rho_s, lobe_.square[i], lobe_n_) : 0;
+        double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.spread[i], lobe_n_) : 0;
         for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (sites_.rho_d[i][c] + rho_s * lobe);
         for (std::size_t k = 0; k < disks_.size(); ++k) {
             Rgb part{};
@@ -163,7 +160,7 @@ public:
                 part[c] = (scene_.disks()[k].radiance[c] - fill[c]) * (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * disks_[k].disk_g_lobe[k][i]);
                 out[c] += part[c] / disk_n_;
             }
-            variance += variance_of_mean(luminance(part), disks_[k].square[i], disk_n_);
+            variance += variance_of_mean(disks_[k].spread[i], disk_n_);
             if (sites_.lobe >= 0 && may_be_missed(sites_, i, sites_.disks[k], disk_n_))
                 variance += sqr(rho_s * (luminance(scene_.disks()[k].radiance) - luminance(fill)));
         }

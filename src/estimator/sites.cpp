@@ -1,6 +1,7 @@
 #include "estimator/sites.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "films/film.h"
@@ -24,7 +25,18 @@ std::array<float, 3> single(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+/// What light of a colour is worth, never -0, so that no X is.
+float worth(double y) { return static_cast<float>(y + 0.0); }
+
 }  // namespace
+
+OccluderF occluder_about(const Occluder& o, Vec3d origin) {
+    using K = Occluder::Kind;
+    const Vec3d a = o.a - origin;
+    const double offset = o.kind == K::quad ? dot(cross(o.b, o.c), a) : dot(o.b, a);
+    return {o.kind, static_cast<std::uint32_t>(o.shape), single(a), single(o.kind == K::box ? o.b - origin : o.b), single(o.c),
+            static_cast<float>(o.radius), static_cast<float>(offset)};
+}
 
 std::vector<TileBox> tiles_of(int width, int height) {
     constexpr int side = 64;  // pixels: small enough to share out evenly, large enough to fill packs
@@ -37,7 +49,7 @@ std::vector<TileBox> tiles_of(int width, int height) {
 Sites empty_sites(const Scene& scene, int lobe) {
     Sites sites;
     sites.lobe = lobe;
-    ensure(scene.disks().size() <= 64, "the parser lets at most 64 disk lights through");
+    ensure(scene.disks().size() <= most_disks, "the parser lets no more disk lights through than kernels hold");
     double total = 0;
     for (const DiskLight& disk : scene.disks()) total += luminance(disk.radiance) * sqr(disk.radius);
     for (const DiskLight& disk : scene.disks()) {
@@ -47,19 +59,17 @@ Sites empty_sites(const Scene& scene, int lobe) {
         arrays.power = total > 0 ? static_cast<float>(luminance(disk.radiance) * sqr(disk.radius) / total) : 0.0f;
         sites.disks.push_back(std::move(arrays));
     }
-    for (const Occluder& o : scene.occluders())
-        sites.occluders.push_back({o.kind, static_cast<std::uint32_t>(o.shape), single(o.a), single(o.b), single(o.c), static_cast<float>(o.radius)});
+    for (const Occluder& o : scene.occluders()) sites.occluders.push_back(occluder_about(o, scene.origin()));
     return sites;
 }
 
 Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
     const double fill = reflected(scene.fill(), surface.rho_d);
-    fill_d = static_cast<float>(fill / pi);
-    fill_s = static_cast<float>(luminance(scene.fill()) * surface.rho_s);
-    pivot = static_cast<float>(fill);  // Lambert under the fill alone
+    fill_d = worth(fill / pi);
+    fill_s = worth(luminance(scene.fill()) * surface.rho_s);
     for (const DiskLight& light : scene.disks()) {
-        disk_d.push_back(static_cast<float>(reflected(light.radiance, surface.rho_d) / pi));
-        disk_s.push_back(static_cast<float>(luminance(light.radiance) * surface.rho_s));
+        disk_d.push_back(worth(reflected(light.radiance, surface.rho_d) / pi));
+        disk_s.push_back(worth(luminance(light.radiance) * surface.rho_s));
     }
 }
 
@@ -73,13 +83,12 @@ void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, c
     alpha[i] = static_cast<float>(shading.surface.alpha);
     diffuse[i] = static_cast<float>(luminance(shading.surface.rho_d));
     rho_s[i] = static_cast<float>(shading.surface.rho_s);
-    put(px, py, pz, i, hit.x);
+    put(px, py, pz, i, hit.x - scene.origin());
     put(tx, ty, tz, i, frame.t);
     put(bx, by, bz, i, frame.b);
     put(nx, ny, nz, i, frame.n);
     fill_d[i] = shading.fill_d;
     fill_s[i] = shading.fill_s;
-    pivot[i] = shading.pivot;
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const DiskLight& light = scene.disks()[k];
         put(disks[k].cx, disks[k].cy, disks[k].cz, i, frame.to_local(light.center - hit.x));
@@ -93,7 +102,7 @@ void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, c
 
 template <class Work> void Sites::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
-    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, pivot, rho_d, rho_s_exact);
+    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, rho_d, rho_s_exact);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
 }
 
@@ -121,7 +130,8 @@ void Sites::prune(const Scene& scene) {
     const auto [x, half_x] = range(px);
     const auto [y, half_y] = range(py);
     const auto [z, half_z] = range(pz);
-    const Extent extent = {{x, y, z}, {half_x, half_y, half_z}};
+    const auto rounded = [](double middle, double half) { return half + 0x1p-23 * (std::fabs(middle) + half); };
+    const Extent extent = {scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
     std::size_t kept = 0;
     for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
         const bool clear = std::all_of(scene.disks().begin(), scene.disks().end(), [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk); });

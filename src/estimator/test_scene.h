@@ -1,11 +1,32 @@
 // A small scene for tests: a glossy ball on a box before a wall, two lamps, penumbrae in view.
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
+#include "arms/all.h"
 #include "experiment/experiment.h"
 
 namespace crescent::test {
 
-inline Experiment small_scene() {
+/// Every sampler of the list.
+inline std::vector<std::string> all_arms() {
+    std::vector<std::string> names;
+    for_each_arm(Arms{}, [&]<template <class> class A>() { names.emplace_back(A<float>::name); });
+    return names;
+}
+
+/// Sum of (x - mean x)^2, in two passes.
+inline double spread_of(std::span<const float> x) {
+    double sum = 0, square = 0;
+    for (const float v : x) sum += static_cast<double>(v);
+    const double mean = sum / static_cast<double>(x.size());
+    for (const float v : x) square += sqr(static_cast<double>(v) - mean);
+    return square;
+}
+
+inline Experiment small_scene(const std::vector<std::string>& overrides = {}) {
     return parse(R"(
 title = "test"
 seed = 11
@@ -58,7 +79,7 @@ n = [4, 64]
 [regions.all]
 box = [0, 0, 66, 44]
 )",
-                 "test.toml");
+                 "test.toml", overrides);
 }
 
 }  // namespace crescent::test

@@ -82,6 +82,8 @@ void check_material(Draft& draft, const Shape& shape) {
 }
 
 void check_light(Draft& draft) {
+    if (const auto& disks = draft.e.disks; disks.size() > most_disks)
+        draft.complain("disks." + disks[most_disks].name, fmt::format("disks: expected at most {}, found {}", most_disks, disks.size()));
     const Rgb& fill = draft.e.fill;
     const bool dark = std::all_of(draft.e.disks.begin(), draft.e.disks.end(), [](const DiskLight& d) { return d.radiance[0] + d.radiance[1] + d.radiance[2] <= 0; });
     if (dark && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") &&

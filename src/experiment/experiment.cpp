@@ -30,9 +30,14 @@ template <class T> const T* find_named(const std::vector<T>& all, std::string_vi
 
 }  // namespace
 
-double Experiment::s() const {
+const Shape* Experiment::shape_of_s() const {
     const auto shape = s_shape(*this);
-    return shape < 0 ? 0 : *shapes[static_cast<std::size_t>(shape)].material.s;
+    return shape < 0 ? nullptr : &shapes[static_cast<std::size_t>(shape)];
+}
+
+double Experiment::s() const {
+    const Shape* shape = shape_of_s();
+    return shape ? *shape->material.s : 0;
 }
 
 Experiment Experiment::with_s(double other) const {

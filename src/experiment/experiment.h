@@ -34,6 +34,8 @@ struct Camera {
     double vfov_deg = 0;  // vertical field of view
 };
 
+inline constexpr std::size_t most_disks = 64;  // disk lights in one scene: kernels hold the sums of each at hand
+
 enum class BrdfKind { phong, blinn_phong, ggx };
 
 /// f = rho_d/pi + rho_s * lobe(s or alpha). A Lambert surface has rho_s = 0; its s only steers the arms.
@@ -176,6 +178,8 @@ struct Experiment {
     /// that of the control's shape, else of the first shape with a lobe, else of the first shape that has one;
     /// 0 where nothing in the experiment needs an s.
     double s() const;
+    /// The shape whose exponent that is; null where nothing needs one.
+    const Shape* shape_of_s() const;
     /// This experiment with another s: on the shape that s() is read from and on all that inherit it.
     Experiment with_s(double s) const;
     /// The n meant where none is named: the experiment's own where `arm` has that rung, else the arm's highest.

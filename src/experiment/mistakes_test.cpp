@@ -1,4 +1,5 @@
 // Mistakes of a reader's file: each is found, where it stands, in words that help.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -249,6 +250,20 @@ TEST(Mistakes, ANameGivenTwiceDoesNotHideTheRest) {
 TEST(Mistakes, AFileThatIsNotThereOrAFolderIsTheReadersMistake) {
     EXPECT_THROW((void)load("/nowhere/at/all.toml"), InputError);
     EXPECT_THROW((void)load("/"), InputError);
+}
+
+TEST(Mistakes, MoreDiskLightsThanKernelsHoldAreRefusedWhereTheFirstOfThemStands) {
+    std::string text = good;
+    for (int k = 0; k < 64; ++k) text += fmt::format("\n[disks.more{}]\ncenter = [{}, 3, 0]\nnormal = [0, -1, 0]\nradius = 0.1\nradiance = [1, 1, 1]\n", k, k);
+    const std::size_t last = text.rfind("\n[disks.more63]");
+    const auto line = 2 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(last), '\n');
+    EXPECT_NO_THROW((void)parse(text.substr(0, last), "x.toml"));
+    try {
+        (void)parse(text, "x.toml");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()), fmt::format("x.toml:{}:8: disks: expected at most 64, found 65", line));
+    }
 }
 
 TEST(Mistakes, JunkIsRefusedAndDoesNotCrash) {

@@ -158,7 +158,7 @@ const std::vector<QuantityWord>& quantity_words() {
         {"var", true, QuantityOf::run, "mean over a region of the variance of the mean of Y"},
         {"tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
         {"fireflies", false, QuantityOf::run, "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"},
-        {"horizon_frac", false, QuantityOf::run, "part of the samples of geometry pixels that fall under the horizon"},
+        {"horizon_frac", false, QuantityOf::run, "part of the directions drawn at geometry pixels that fall under the horizon"},
         {"y_mean", false, QuantityOf::run, "mean Y of the whole frame"},
         {"rmse_frame", false, QuantityOf::run, "root mean square error of Y over the whole frame"},
         {"largest", false, QuantityOf::run, "largest single sample of the frame; the arm's highest rung unless n is said"},

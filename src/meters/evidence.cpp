@@ -107,7 +107,7 @@ FalseRejection false_rejection(const FurnaceSubject& subject, double s, double a
         for (int i = 0; i < count; ++i) {
             const std::size_t at = static_cast<std::size_t>(i);
             const double mean = m.g[at] / pi / static_cast<double>(n), off = mean - 1;
-            const double se = std::sqrt(std::max(0.0, m.square[at] / static_cast<double>(n) - off * off) / static_cast<double>(n - 1));
+            const double se = std::sqrt(m.spread[at] / static_cast<double>(n) / static_cast<double>(n - 1));
             rejected[static_cast<std::size_t>(first + i)] = std::fabs(off) > bound * se;
         }
     });

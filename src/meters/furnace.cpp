@@ -39,8 +39,7 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
     const double albedo = surface.rho_s > 0 ? lobe_albedo(surface.brdf, surface.s, surface.alpha, 1.0) : 0;
     out.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
     out.expected = rho_d + surface.rho_s * albedo;
-    const double off = out.measured - static_cast<double>(sites.pivot[0]);
-    out.se = plan.n > 1 ? std::sqrt(std::max(0.0, m.square[0] - n * off * off) / (n * (n - 1))) : 0;
+    out.se = plan.n > 1 ? std::sqrt(m.spread[0] / (n * (n - 1))) : 0;
     out.tail = tail_of(std::move(samples));
     out.bad = m.bad[0];
     return out;

@@ -53,7 +53,7 @@ RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& fi
     const double pixels = static_cast<double>(film.size());
     run.y_mean = y / pixels;
     run.rmse_frame = std::sqrt(squares / pixels);
-    run.horizon_frac = geometry > 0 ? horizon / (geometry * static_cast<double>(film.n)) : 0;
+    run.horizon_frac = geometry > 0 ? horizon / (geometry * static_cast<double>(film.n * film.directions)) : 0;
     return run;
 }
 

@@ -30,7 +30,7 @@ struct RunMeter {
     RunKey key;
     std::vector<RegionMeter> regions;
     std::uint64_t fireflies = 0;  // geometry pixels with |Y - Y_ref| > k Y_ref
-    double horizon_frac = 0;      // of the samples of geometry pixels
+    double horizon_frac = 0;      // of the directions drawn at geometry pixels; two a sample for an arm of two techniques
     double y_mean = 0;            // over the whole frame
     double rmse_frame = 0;        // whole frame: a footnote, never a headline
     double largest = 0;           // the largest single sample of the frame

@@ -5,23 +5,24 @@
 #include "arms/all.h"
 #include "films/film.h"
 #include "math/functions.h"
+#include "scene/scene.h"
 
 namespace crescent::plates {
 
 namespace {
 
-// The surface the density is shown for: the first shape with a lobe, as the experiment's s is read from it.
+// The surface that the density is shown for: that of the shape whose exponent is the experiment's.
 Site<double> site_of(const Experiment& e, double s, double tilt) {
+    const Shape* shape = e.shape_of_s();
+    Material material = shape ? shape->material : Material{};
+    material.s = s;
+    const Surface surface = surface_of(material, s);
     Site<double> site{};
     site.wo = {-math::sin(tilt), 0, math::cos(tilt)};
-    site.s = s;
-    for (const Shape& shape : e.shapes) {
-        if (shape.material.rho_s <= 0) continue;
-        site.alpha = shape.material.alpha.value_or(0);
-        site.diffuse = luminance(shape.material.rho_d);
-        site.lobe = shape.material.rho_s;
-        break;
-    }
+    site.s = surface.s;
+    site.alpha = surface.alpha;
+    site.diffuse = luminance(surface.rho_d);
+    site.lobe = surface.rho_s;
     return site;
 }
 

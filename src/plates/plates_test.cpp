@@ -51,7 +51,7 @@ void expect_apart(const std::vector<Setting>& settings) {
     }
 }
 
-TEST(Plates, Every_kind_is_1280_by_720_and_the_same_bytes_twice_on_any_thread) {
+TEST(Plates, EveryKindIs1280By720AndTheSameBytesTwiceOnAnyThread) {
     World world(96, 54);
     for (PlateKind kind : all_kinds) {
         PlatePlan plan = world.plan(kind, 2);
@@ -64,7 +64,7 @@ TEST(Plates, Every_kind_is_1280_by_720_and_the_same_bytes_twice_on_any_thread) {
     }
 }
 
-TEST(Plates, No_text_is_cut_small_or_runs_into_its_neighbour) {
+TEST(Plates, NoTextIsCutSmallOrRunsIntoItsNeighbour) {
     World world(960, 540);
     for (PlateKind kind : all_kinds) {
         for (std::size_t runs : {1, 2, 3, 4}) {
@@ -80,7 +80,7 @@ TEST(Plates, No_text_is_cut_small_or_runs_into_its_neighbour) {
     }
 }
 
-TEST(Plates, Long_names_stay_in_their_boxes) {
+TEST(Plates, LongNamesStayInTheirBoxes) {
     World world(960, 540);
     for (std::size_t i = 0; i < 3; ++i) {
         std::string name = "an arm whose author had a good deal to say about it & <more> " + std::to_string(i);
@@ -100,7 +100,7 @@ TEST(Plates, Long_names_stay_in_their_boxes) {
     }
 }
 
-TEST(Plates, Every_instrument_says_what_computed_its_films) {
+TEST(Plates, EveryInstrumentSaysWhatComputedItsFilms) {
     World world(960, 540);
     world.instrument = "GL 4.5, llvmpipe, OSMesa";
     for (PlateKind kind : {PlateKind::reference, PlateKind::heat, PlateKind::rose, PlateKind::meters}) {
@@ -109,7 +109,7 @@ TEST(Plates, Every_instrument_says_what_computed_its_films) {
     }
 }
 
-TEST(Plates, Any_size_of_image_and_any_number_of_runs_is_drawn) {
+TEST(Plates, AnySizeOfImageAndAnyNumberOfRunsIsDrawn) {
     for (auto [w, h] : {std::pair{8, 8}, {40, 900}, {900, 12}, {1, 1}, {1500, 900}}) {
         World world(w, h);
         for (PlateKind kind : all_kinds) {
@@ -123,13 +123,13 @@ TEST(Plates, Any_size_of_image_and_any_number_of_runs_is_drawn) {
     }
 }
 
-TEST(Plates, An_experiment_without_regions_is_drawn_whole) {
+TEST(Plates, AnExperimentWithoutRegionsIsDrawnWhole) {
     World world(64, 64);
     world.e.regions.clear();
     for (PlateKind kind : all_kinds) EXPECT_NO_THROW(draw_plate(world.plan(kind, 2), world.inputs())) << int(kind);
 }
 
-TEST(Plates, A_photograph_says_so_and_carries_no_measured_number) {
+TEST(Plates, APhotographSaysSoAndCarriesNoMeasuredNumber) {
     World world(96, 54);
     for (PlateKind kind : photographs) {
         std::vector<Setting> settings = world.settings(world.plan(kind, 2));
@@ -144,7 +144,7 @@ TEST(Plates, A_photograph_says_so_and_carries_no_measured_number) {
     }
 }
 
-TEST(Plates, A_pixel_that_is_not_a_number_is_magenta_and_counted) {
+TEST(Plates, APixelThatIsNotANumberIsMagentaAndCounted) {
     World world(96, 54);
     for (auto& [name, film] : world.films) film.r[100] = film.y[100] = std::nanf("");
     for (PlateKind kind : {PlateKind::hero, PlateKind::columns, PlateKind::heat}) {
@@ -161,14 +161,14 @@ TEST(Plates, A_pixel_that_is_not_a_number_is_magenta_and_counted) {
     EXPECT_FALSE(has(World(96, 54).settings(world.plan(PlateKind::hero, 1)), "not a number"));
 }
 
-TEST(Plates, A_run_that_was_not_made_is_named_on_the_plate) {
+TEST(Plates, ARunThatWasNotMadeIsNamedOnThePlate) {
     World world(96, 54);
     PlatePlan plan = world.plan(PlateKind::columns, 2);
     plan.runs[1].n = 1024;
     EXPECT_TRUE(has(world.settings(plan), "cosine n=1024 s=32 was not run"));
 }
 
-TEST(Heat, Prints_the_98th_percentile_of_all_pixels_shown) {
+TEST(Heat, PrintsThe98thPercentileOfAllPixelsShown) {
     World world(96, 54);
     PlatePlan plan = world.plan(PlateKind::heat, 2);
     plan.crop = Box{10, 10, 49, 29};
@@ -182,7 +182,7 @@ TEST(Heat, Prints_the_98th_percentile_of_all_pixels_shown) {
     EXPECT_TRUE(has(world.settings(plan), "p98 = " + plates::number(quantile(all, 0.98)) + " "));
 }
 
-TEST(Rose, States_the_peaks_of_the_densities) {
+TEST(Rose, StatesThePeaksOfTheDensities) {
     World world(96, 54);
     PlatePlan plan;
     plan.kind = PlateKind::rose;
@@ -194,7 +194,7 @@ TEST(Rose, States_the_peaks_of_the_densities) {
     EXPECT_TRUE(has(settings, "not Blinn, not GGX VNDF"));
 }
 
-TEST(Font, Its_absence_names_the_package) {
+TEST(Font, ItsAbsenceNamesThePackage) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     auto without_fonts = [] {
         std::string config = testing::TempDir() + "/no-fonts.conf";

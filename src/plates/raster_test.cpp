@@ -18,7 +18,7 @@ Srgb8 pixel(const Block& b, int x, int y) {
     return {p[0], p[1], p[2]};
 }
 
-TEST(Fit, Enlarges_by_whole_numbers_and_reduces_to_the_slot) {
+TEST(Fit, EnlargesByWholeNumbersAndReducesToTheSlot) {
     EXPECT_EQ(fit(100, 50, 350, 400).times, 3);
     EXPECT_EQ(fit(100, 50, 100, 50).times, 1);
     EXPECT_FALSE(fit(100, 50, 100, 50).reduced);
@@ -30,7 +30,7 @@ TEST(Fit, Enlarges_by_whole_numbers_and_reduces_to_the_slot) {
     EXPECT_EQ(fit(1, 16384, 500, 500).out_w, 1);
 }
 
-TEST(PhotographBlock, Repeats_each_pixel_and_turns_rows_top_down) {
+TEST(PhotographBlock, RepeatsEachPixelAndTurnsRowsTopDown) {
     Film f = ramp(5, 4);
     Block b = photograph_block(view(&f), {0, 0, 4, 3}, fit(5, 4, 15, 12), 1);
     ASSERT_EQ(b.width, 15);
@@ -42,7 +42,7 @@ TEST(PhotographBlock, Repeats_each_pixel_and_turns_rows_top_down) {
     }
 }
 
-TEST(PhotographBlock, Averages_areas_in_linear_light) {
+TEST(PhotographBlock, AveragesAreasInLinearLight) {
     Film f(4, 4, 1);
     for (auto* plane : {&f.r, &f.g, &f.b}) plane->assign(16, 0.0f), (*plane)[5] = 1.6f;  // one pixel in four of a quarter
     Block b = photograph_block(view(&f), {0, 0, 3, 3}, fit(4, 4, 2, 2), 1);
@@ -50,7 +50,7 @@ TEST(PhotographBlock, Averages_areas_in_linear_light) {
     EXPECT_EQ(pixel(b, 1, 1), (Srgb8{0, 0, 0}));
 }
 
-TEST(PhotographBlock, A_constant_stays_constant_at_any_ratio) {
+TEST(PhotographBlock, AConstantStaysConstantAtAnyRatio) {
     Film f(37, 53, 1);
     for (auto* plane : {&f.r, &f.g, &f.b}) plane->assign(f.size(), 0.3f);
     for (int to : {1, 2, 7, 13, 36}) {
@@ -62,7 +62,7 @@ TEST(PhotographBlock, A_constant_stays_constant_at_any_ratio) {
     }
 }
 
-TEST(PhotographBlock, One_pixel_that_is_not_a_number_shows_at_any_size) {
+TEST(PhotographBlock, OnePixelThatIsNotANumberShowsAtAnySize) {
     Film f = ramp(40, 40);
     f.g[std::size_t(11 * 40 + 23)] = std::nanf("");
     View v = view(&f);
@@ -75,7 +75,7 @@ TEST(PhotographBlock, One_pixel_that_is_not_a_number_shows_at_any_size) {
     }
 }
 
-TEST(Inside, Cuts_a_box_to_the_image) {
+TEST(Inside, CutsABoxToTheImage) {
     Film f(10, 6, 1);
     Box b = inside({-5, 2, 20, 90}, view(&f));
     EXPECT_EQ(b.x0, 0);

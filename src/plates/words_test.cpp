@@ -9,14 +9,14 @@
 namespace crescent::plates {
 namespace {
 
-TEST(Words, A_label_says_once_what_the_runs_share) {
+TEST(Words, ALabelSaysOnceWhatTheRunsShare) {
     World world(8, 8);
     EXPECT_EQ(runs_label({{"phong", 256, 32, 7}}, world.e), "Phong-IS N=256 s=32");
     EXPECT_EQ(runs_label({{"uniform", 64, 32, 7}, {"cosine", 64, 32, 7}}, world.e), "Uniform | Cosine N=64 s=32");
     EXPECT_EQ(runs_label({{"cosine", 4, 32, 7}, {"cosine", 16, 32, 7}}, world.e), "Cosine N=4 | 16 s=32");
 }
 
-TEST(Words, Numbers_are_set_with_true_minus_and_powers) {
+TEST(Words, NumbersAreSetWithTrueMinusAndPowers) {
     EXPECT_EQ(number(-0.25), "−0.25");
     EXPECT_EQ(number(1.5e-9), "1.5·10<sup>−9</sup>");
     EXPECT_EQ(figure(2, 4), "2.000");
@@ -28,7 +28,7 @@ TEST(Words, Numbers_are_set_with_true_minus_and_powers) {
     EXPECT_EQ(number(std::nan("")), "not a number");
 }
 
-TEST(Words, An_arm_that_was_renamed_keeps_its_name_and_its_formula) {
+TEST(Words, AnArmThatWasRenamedKeepsItsNameAndItsFormula) {
     World world(8, 8);
     world.add_arm("sharp", "phong");
     EXPECT_EQ(arm_name("phong", world.e), "Phong-IS");

@@ -91,8 +91,6 @@ TEST(MetricsJson, HeavyTailStandsInPlaceOfTheInterval) {
     EXPECT_EQ(schema().complaint(json), "");
 }
 
-TEST(MetricsJson, EqualRunsGiveEqualBytes) { EXPECT_EQ(metrics_json(Sample().inputs()), metrics_json(Sample().inputs())); }
-
 TEST(TimingJson, HoldsWhatVariesAndTheRateOfEachArm) {
     const Sample s;
     const auto json = nlohmann::json::parse(timing_json(s.timing, s.provenance));

@@ -46,7 +46,7 @@ constexpr const char* meters_prose = R"(
 <p>Without a reference, from the samples themselves, the variance of a pixel’s mean, averaged over the region:</p>
 {variance}
 <p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of all
-samples that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of the whole frame
+directions drawn that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of the whole frame
 mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
 )";
 

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "math/functions.h"
@@ -46,6 +47,25 @@ Scene::Scene(const Experiment& experiment) : experiment_(experiment) {
     s_ = needs_s ? experiment_.s() : 0;
     for (std::size_t k = 0; k < experiment_.shapes.size(); ++k)
         if (experiment_.shapes[k].occludes) add_occluders(experiment_.shapes[k], static_cast<int>(k), occluders_);
+    origin_ = nearest_seen();
+}
+
+Vec3d Scene::nearest_seen() const {
+    constexpr int rays = 12;  // up and across
+    const Camera& c = experiment_.camera;
+    const Image& image = experiment_.image;
+    Vec3d nearest = c.eye;
+    double least = std::numeric_limits<double>::infinity();
+    for (int j = 0; j < rays; ++j) {
+        for (int i = 0; i < rays; ++i) {
+            const auto middle = [&](int k, int size) { return static_cast<int>((k + 0.5) * size / rays); };
+            const std::optional<Hit> hit = trace(middle(i, image.width), middle(j, image.height));
+            if (!hit) continue;
+            const Vec3d to = hit->x - c.eye;
+            if (dot(to, to) < least) least = dot(to, to), nearest = hit->x;
+        }
+    }
+    return nearest;
 }
 
 void Scene::remember_primaries() {

@@ -52,6 +52,9 @@ public:
     Scene with_s(double s) const;
     Surface surface(const Hit& hit) const;
 
+    /// Near what the camera sees: points are given from here where single precision has to hold them, so that a scene may
+    /// stand anywhere. The nearest of some primary hits; the eye where these see nothing.
+    Vec3d origin() const { return origin_; }
     const std::vector<Occluder>& occluders() const { return occluders_; }
     const std::vector<DiskLight>& disks() const { return experiment_.disks; }
     const Rgb& fill() const { return experiment_.fill; }
@@ -59,9 +62,11 @@ public:
 
 private:
     std::optional<Hit> trace(int i, int j) const;
+    Vec3d nearest_seen() const;
     Experiment experiment_;  // a copy: a scene outlives the experiment it was made from
     Vec3d forward_{}, right_{}, up_{};  // right and up scaled to one pixel
     double s_ = 0;
+    Vec3d origin_{};
     std::vector<Occluder> occluders_;
     std::shared_ptr<const std::vector<Hit>> primaries_;  // shape -1: nothing met
 };

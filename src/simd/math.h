@@ -1,14 +1,14 @@
 // Elementary functions from + - x / and sqrt alone, so that every instruction set and compiler returns the same bits.
-//
-//   function        range                          error (largest seen, see math_test.cpp)
+//   function        range                          error (bounds that math_isa_test.cpp holds on every instruction set)
 //   sincos_turns    u in [0, 1]                    1.2e-7 absolute
 //   exp2            x in [-126, 127]               1.5 ULP; 0 below -126
 //   root            u in [2^-24, 1], y <= 1/2      2 + y |log2 u| ULP
 //   pow             x in [0, 1], y in (0, 2^17]    3 ULP where the result > 2^-24, 12 ULP above 2^-126, else 0
-//
-// On double the same names forward to the C library, for quadrature and verdicts.
+//   one_minus       of root and power              5 ULP of 1 - x^y
+//   cosine_power    unit a, b; s up to 10^6        3 + 4 s (1 - c)/c ULP of c^s, c = 1 - |a - b|^2 / 2
+//   normalize       any finite a                   3 ULP a component
+// On double the same names forward to math/functions.h, for quadrature and verdicts.
 #pragma once
-
 #include "base/vec.h"
 #include "math/functions.h"
 #include "simd/scalar.h"

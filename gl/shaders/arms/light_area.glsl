@@ -4,45 +4,48 @@
 // It reaches nothing but the disks.
 #include "sampler.glsl"
 
-// The surface stands before the emitting side; c = to_center.normal.
-bool faces(LocalDisk d, float c) { return c < 0.0 || (c > 0.0 && d.two_sided > 0.0); }
 float disk_density(LocalDisk d, float r2, float cos_light) { return (1.0 / pi) / sqr(d.radius) * r2 / cos_light; }
 
-float pdf_light_area(vec3 wo, vec3 wi) {
+// The density with which the disks but for one draw wi.
+float density_of_other_disks(vec3 wi, int but) {
     float sum = 0.0;
     for (int k = 0; k < DISKS; ++k) {
         LocalDisk d = disks[k];
-        float c = dot(d.to_center, d.normal), v = dot(wi, d.normal);
+        float c = d.along, v = dot(wi, d.normal);
         vec3 off = wi * c - d.to_center * v;
-        bool met = dot(off, off) <= sqr(d.radius * v) && faces(d, c) && c * v > 0.0;
+        bool met = dot(off, off) <= sqr(d.radius) * (v * v) && faces(d) && c * v > 0.0 && k != but;
         float t = c / (met ? v : 1.0);
         sum += met ? d.power * disk_density(d, sqr(t), abs(v)) : 0.0;
     }
     return sum;
 }
+float pdf_light_area(vec3 wo, vec3 wi) { return density_of_other_disks(wi, -1); }
 
 Drawn on_disk(LocalDisk d, vec2 u) {
     float r = sqrt(u.x);
     SinCos phi = sincos_turns(u.y);
     Frame about = frame_about(d.normal);
     vec3 y = d.to_center + about.t * d.radius * (r * phi.cos) + about.b * d.radius * (r * phi.sin);
-    float c = dot(d.to_center, d.normal), r2 = dot(y, y), distance = sqrt(r2);
-    float scale = faces(d, c) ? (1.0 / pi) / (sqr(d.radius) * abs(c)) : 0.0;  // r^2 / cos(light) = |y|^3 / |c.n|
+    float r2 = dot(y, y), distance = sqrt(r2);
+    float scale = faces(d) ? (1.0 / pi) / (sqr(d.radius) * abs(d.along)) : 0.0;  // r^2 / cos(light) = |y|^3 / |c.n|
     return Drawn(y * (1.0 / distance), scale * r2 * distance);
 }
 
 Drawn sample_light_area(vec3 wo, vec2 u) {
     Drawn drawn = Drawn(vec3(0.0, 0.0, 1.0), 0.0);
     float below = 0.0;
+    aimed_disk = -1;
     for (int k = 0; k < DISKS; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
         float above = k + 1 < DISKS ? below + disks[k].power : 1.0;
         if (u.x >= below && u.x < above) {
             drawn = on_disk(disks[k], vec2((u.x - below) / (above - below), u.y));
             drawn.pdf *= above - below;
+            aimed_disk = k;
         }
         below = above;
     }
     if (DISKS > 1 && drawn.pdf > 0.0)  // disks may stand one behind another: every one that wi meets could have drawn it
-        drawn.pdf = max(pdf_light_area(wo, drawn.wi), drawn.pdf);
+        drawn.pdf += density_of_other_disks(drawn.wi, aimed_disk);
+    aimed_met = drawn.pdf > 0.0;
     return drawn;
 }

@@ -8,56 +8,63 @@ struct Cap {
     vec3 axis;
     float height;   // 1 - cos b
     float density;  // 1/sr; 0 where x is behind a one-sided disk
+    vec3 y, off;    // where the axis meets the disk's plane, from x and from the disk's centre
 };
 
 Cap cap_of(LocalDisk d) {
     const float tiny = 1e-30;
-    float c = dot(d.to_center, d.normal);
-    bool lit = c < 0.0 || (c > 0.0 && d.two_sided > 0.0);
-    vec3 across = d.to_center - d.normal * c;  // from x's foot in the disk's plane to the centre
+    vec3 across = d.to_center - d.normal * d.along;  // from x's foot in the disk's plane to the centre
     vec3 t = across * (d.radius / sqrt(max(dot(across, across), tiny)));
     vec3 near = d.to_center - t, far = d.to_center + t;
-    vec3 axis = unit(near * (1.0 / sqrt(max(dot(near, near), tiny))) + far * (1.0 / sqrt(max(dot(far, far), tiny))));
-    float v = dot(axis, d.normal);
-    vec3 y = axis * ((lit ? c : 1.0) / (abs(v) > 0.0 ? v : 1.0));
-    vec3 off = y - d.to_center;
-    float tan2 = max(sqr(d.radius) - dot(off, off), 0.0) / max(dot(y, y), tiny);
+    float q = -4.0 * dot(d.to_center, t) / max(sqr(sqrt(dot(near, near)) + sqrt(dot(far, far))), tiny);
+    vec3 off = t * q, y = d.to_center + off;
+    float y2 = max(dot(y, y), tiny);
+    float tan2 = max(sqr(d.radius) * ((1.0 - q) * (1.0 + q)), 0.0) / y2;
     float cosine = 1.0 / sqrt(1.0 + tan2);
-    float height = max(tan2 / (1.0 + tan2) / (1.0 + cosine), 1e-12);
-    return Cap(axis, height, lit ? (0.5 / pi) / height : 0.0);
+    float height = max(tan2 / (1.0 + tan2) / (1.0 + cosine), tiny);
+    return Cap(y * (1.0 / sqrt(y2)), height, faces(d) ? (0.5 / pi) / height : 0.0, y, off);
 }
 
-vec3 on_cap(Cap cap, vec2 u) {
+// A direction is drawn as its difference e to the axis, of which nothing is lost however small the cap is.
+Drawn towards(LocalDisk d, Cap cap, vec2 u) {
     float drop = u.x * cap.height;  // 1 - cos
     float sin = sqrt(drop * (2.0 - drop));
     SinCos phi = sincos_turns(u.y);
-    return to_world(frame_about(cap.axis), vec3(sin * phi.cos, sin * phi.sin, 1.0 - drop));
+    vec3 e = to_world(frame_about(cap.axis), vec3(sin * phi.cos, sin * phi.sin, -drop));
+    vec3 wi = cap.axis + e;
+    float v = dot(wi, d.normal);
+    vec3 miss = e * d.along - cap.y * dot(e, d.normal) + cap.off * v;
+    aimed_met = dot(miss, miss) <= sqr(d.radius) * (v * v) && d.along * v > 0.0;
+    return Drawn(wi, cap.density);
 }
 
-float pdf_light_solid_angle(vec3 wo, vec3 wi) {
+// The density with which the caps but for one draw wi.
+float density_of_other_caps(vec3 wi, int but) {
     float sum = 0.0, below = 0.0;
     for (int k = 0; k < DISKS; ++k) {
         float share = k + 1 < DISKS ? disks[k].power : 1.0 - below;
         Cap cap = cap_of(disks[k]);
         vec3 off = wi - cap.axis;
-        sum += 0.5 * dot(off, off) <= cap.height ? share * cap.density : 0.0;
+        sum += 0.5 * dot(off, off) <= cap.height && k != but ? share * cap.density : 0.0;
         below += share;
     }
     return sum;
 }
+float pdf_light_solid_angle(vec3 wo, vec3 wi) { return density_of_other_caps(wi, -1); }
 
 Drawn sample_light_solid_angle(vec3 wo, vec2 u) {
     Drawn drawn = Drawn(vec3(0.0, 0.0, 1.0), 0.0);
     float below = 0.0;
+    aimed_disk = -1;
     for (int k = 0; k < DISKS; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
         float above = k + 1 < DISKS ? below + disks[k].power : 1.0;
         if (u.x >= below && u.x < above) {
-            Cap cap = cap_of(disks[k]);
-            drawn = Drawn(on_cap(cap, vec2((u.x - below) / max(above - below, 1e-30), u.y)), (above - below) * cap.density);
+            drawn = towards(disks[k], cap_of(disks[k]), vec2((u.x - below) / max(above - below, 1e-30), u.y));
+            drawn.pdf *= above - below;
+            aimed_disk = k;
         }
         below = above;
     }
-    if (DISKS > 1 && drawn.pdf > 0.0)  // caps may overlap; its own alone where rounding puts wi outside it
-        drawn.pdf = max(pdf_light_solid_angle(wo, drawn.wi), drawn.pdf);
+    if (DISKS > 1 && drawn.pdf > 0.0) drawn.pdf += density_of_other_caps(drawn.wi, aimed_disk);  // caps may overlap
     return drawn;
 }
