@@ -65,6 +65,15 @@ struct CheckFlags {
 };
 int check(const CheckFlags& flags);
 
+struct CompareFlags {
+    std::string file, out;                                       // "": none; out/compare
+    std::vector<std::string> arms, reference, regions, masks;    // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
+    std::vector<std::string> layers, spp, seconds, assertions;   // NAME=LAYER, [NAME=]N, [NAME=]S, a check
+    std::string expect, smallest, exposure, alpha, trim;         // "": the file's
+    bool pair = false, schema = false, quiet = false;
+};
+int compare(const CompareFlags& flags);
+
 struct VersionFlags {};
 int version(const VersionFlags& flags);
 

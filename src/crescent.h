@@ -9,6 +9,7 @@
 //   find_instrument   what else can compute films, where a door has brought it
 //   film_maker        what makes an explainer of a run, where a door has brought it
 //   measure_in_memory an Experiment -> films, meters and evidence, nothing written
+//   compare           renders of other programs -> meters, bias tests, plates and report under one folder
 //   run               an Experiment -> films, meters, plates and report under one folder
 //
 // Lengths in m, radiance in W/(sr m^2) of linear Rec.709, angles in degrees where a name says so. InputError is the
@@ -21,6 +22,7 @@
 #include "base/text.h"
 #include "base/files.h"
 #include "base/watch.h"
+#include "compare/compare.h"
 #include "display/turbo.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"

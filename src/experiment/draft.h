@@ -37,6 +37,11 @@ bool read_value(Draft& draft, const Key& key, const Node& node, const std::strin
 
 /// Walks the table over the tree: unknown and missing keys, types, ranges; fills draft.e.
 void read_tree(Draft& draft, const Node& root);
+/// The same over another table: values go into `object`, places and complaints into the draft.
+void read_tree(Draft& draft, const Section& table, const Node& root, void* object);
+
+/// Throws one InputError with all complaints in file order; returns where there is none.
+void throw_if_any(std::vector<Complaint> all);
 
 /// Puts "path=value" overrides into the tree.
 void apply_overrides(Draft& draft, Node& root, const std::vector<std::string>& overrides);

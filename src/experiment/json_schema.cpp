@@ -43,6 +43,7 @@ Json type_of(const Key& key) {
         case Type::check:
         case Type::arm:
         case Type::shape: return {{"type", "string"}, {"maxLength", longest_text}};
+        case Type::texts: return one_or_more({{"type", "string"}, {"maxLength", longest_text}});
         case Type::word: return {{"type", "string"}, {"enum", key.words}};
         case Type::sampler: return {{"type", "string"}, {"enum", sampler_names()}};
         case Type::flag: return {{"type", "boolean"}};
@@ -137,10 +138,12 @@ Json family(const Section& section) {
 
 }  // namespace
 
-std::string schema_json() {
-    Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "crescent experiment"}};
-    root.update(table(schema()));
-    return root.dump(2) + "\n";
+std::string json_schema_of(const Section& root, const char* title) {
+    Json out = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+    out.update(table(root));
+    return out.dump(2) + "\n";
 }
+
+std::string schema_json() { return json_schema_of(schema(), "crescent experiment"); }
 
 }  // namespace crescent

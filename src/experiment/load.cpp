@@ -15,16 +15,6 @@ namespace crescent {
 
 namespace {
 
-/// In file order; overrides come after the file, as given.
-void throw_if_any(std::vector<Complaint> all) {
-    if (all.empty()) return;
-    std::multimap<std::tuple<bool, unsigned, unsigned>, Complaint> sorted;  // equals keep their order
-    for (Complaint& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
-    all.clear();
-    for (auto& [key, complaint] : sorted) all.push_back(std::move(complaint));
-    throw InputError(std::move(all));
-}
-
 Draft draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
     Draft draft;
     draft.e.file = name;
@@ -42,6 +32,16 @@ Draft draft_of(std::string_view text, const std::string& name, const std::vector
 }
 
 }  // namespace
+
+/// In file order; overrides come after the file, as given.
+void throw_if_any(std::vector<Complaint> all) {
+    if (all.empty()) return;
+    std::multimap<std::tuple<bool, unsigned, unsigned>, Complaint> sorted;  // equals keep their order
+    for (Complaint& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
+    all.clear();
+    for (auto& [key, complaint] : sorted) all.push_back(std::move(complaint));
+    throw InputError(std::move(all));
+}
 
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
     Draft draft = draft_of(text, name, overrides);

@@ -13,15 +13,16 @@ namespace crescent {
 
 namespace {
 
-std::vector<std::string> all_words() {
+std::vector<std::string> all_words(const std::vector<QuantityWord>& known) {
     std::vector<std::string> words;
-    for (const QuantityWord& w : quantity_words()) words.emplace_back(w.word);
+    for (const QuantityWord& w : known) words.emplace_back(w.word);
     return words;
 }
 
 class Parser {
 public:
-    Parser(std::string_view text, std::string& why) : rest_(text), why_(why) {}
+    Parser(std::string_view text, std::string& why, const std::vector<QuantityWord>& words)
+        : rest_(text), why_(why), words_(words) {}
 
     std::optional<Comparison> comparison() {
         Comparison c;
@@ -87,11 +88,10 @@ private:
         const std::size_t dot = name.find('.');
         q.word = name.substr(0, dot);
         if (dot != std::string::npos) q.region = name.substr(dot + 1);
-        const auto& words = quantity_words();
-        const auto known = std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
-        if (known == words.end()) {
-            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(all_words(), ", "),
-                               hint(q.word, all_words()));
+        const auto known = std::find_if(words_.begin(), words_.end(), [&](const QuantityWord& w) { return w.word == q.word; });
+        if (known == words_.end()) {
+            const std::vector<std::string> valid = all_words(words_);
+            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "), hint(q.word, valid));
             return false;
         }
         if (known->of_region != !q.region.empty()) {
@@ -130,6 +130,7 @@ private:
 
     std::string_view rest_;
     std::string& why_;
+    const std::vector<QuantityWord>& words_;
 };
 
 template <class T> std::string missing(const std::vector<T>& all, const char* what, const std::string& name) {
@@ -181,10 +182,10 @@ std::string form_of(const QuantityWord& word) {
 }
 
 std::optional<ParsedQuantity> parse_quantity(std::string_view text, std::string& why) {
-    return Parser(text, why).quantity();
+    return Parser(text, why, quantity_words()).quantity();
 }
-std::optional<Comparison> parse_comparison(std::string_view text, std::string& why) {
-    return Parser(text, why).comparison();
+std::optional<Comparison> parse_comparison(std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
+    return Parser(text, why, words).comparison();
 }
 
 std::string to_string(const ParsedQuantity& q) {

@@ -212,9 +212,11 @@ private:
 
 }  // namespace
 
-void read_tree(Draft& draft, const Node& root) {
+void read_tree(Draft& draft, const Section& table, const Node& root, void* object) {
     const Place top{draft.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
-    TreeReader(draft).table(schema(), root, "", top, &draft.e);
+    TreeReader(draft).table(table, root, "", top, object);
 }
+
+void read_tree(Draft& draft, const Node& root) { read_tree(draft, schema(), root, &draft.e); }
 
 }  // namespace crescent

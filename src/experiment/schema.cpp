@@ -24,6 +24,7 @@ std::string bounds(const Key& key) {
 std::string noun(const Key& key) {
     switch (key.type) {
         case Type::text: return "a line of text";
+        case Type::texts: return "a text or a list of texts";
         case Type::check: return "a comparison of two quantities";
         case Type::word: return fmt::format("one of {}", listed(key.words, ", "));
         case Type::flag: return "true or false";

@@ -18,6 +18,7 @@ namespace crescent {
 
 enum class Type {
     text,   // any text on one line
+    texts,  // a list of them, a bare text is a list of one
     check,  // a comparison of quantities, see experiment/quantity_text.h
     word,   // one of Key::words
     flag,   // true or false
@@ -51,6 +52,7 @@ struct Value {
     double number = 0;  // integer as well: exact up to 2^53
     std::vector<double> numbers;
     std::string text;
+    std::vector<std::string> texts;
 };
 
 /// Where a key's value stands in its object: how it gets there, and how it is read back (false: none was given).
@@ -101,8 +103,13 @@ struct Section {
     const Section* find_section(std::string_view section) const;
 };
 
-/// The whole file.
+/// The whole file of an experiment.
 const Section& schema();
+
+/// The manual of a table: a line or two a key, at most 80 columns.
+std::string manual_of(const Section& root);
+/// The table as a JSON Schema, draft 7, under this title.
+std::string json_schema_of(const Section& root, const char* title);
 
 /// Whether a key belongs to this kind of shape; an empty kind (not known yet) has every key.
 bool has_kind(const Key& key, std::string_view kind);
@@ -132,6 +139,7 @@ template <class T> T whole(double x) {
 inline void assign(double& to, const Value& v) { to = v.number; }
 inline void assign(bool& to, const Value& v) { to = v.flag; }
 inline void assign(std::string& to, const Value& v) { to = v.text; }
+inline void assign(std::vector<std::string>& to, const Value& v) { to = v.texts; }
 inline void assign(Vec3d& to, const Value& v) { to = {v.numbers[0], v.numbers[1], v.numbers[2]}; }
 inline void assign(Rgb& to, const Value& v) { to = {v.numbers[0], v.numbers[1], v.numbers[2]}; }
 inline void assign(std::vector<double>& to, const Value& v) { to = v.numbers; }

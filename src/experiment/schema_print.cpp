@@ -70,9 +70,14 @@ void print(const Section& section, const std::string& parent, std::string& out) 
 
 }  // namespace
 
-std::string schema_text() {
+std::string manual_of(const Section& root) {
     std::string out;
-    print(schema(), "", out);
+    print(root, "", out);
+    return out;
+}
+
+std::string schema_text() {
+    std::string out = manual_of(schema());
     out += "\nSamplers\n" + wrapped(listed(sampler_names(), ", "), 2);
     out += "\nQuantities of a check\n";
     for (const QuantityWord& word : quantity_words()) out += wrapped(form_of(word), 2) + wrapped(word.means, 6);

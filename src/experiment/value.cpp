@@ -37,6 +37,7 @@ public:
             case Type::sampler:
             case Type::arm:
             case Type::shape: return text(node);
+            case Type::texts: return texts(node);
             case Type::word: return word(node);
             case Type::flag: return flag(node);
             case Type::integer:
@@ -70,6 +71,16 @@ private:
             std::any_of(node.text.begin(), node.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
         if (control) return fail("expected one line of text without control characters");
         value_.text = node.text;
+        return true;
+    }
+
+    bool texts(const Node& node) {
+        if (node.kind == Node::Kind::text) return text(node) && (value_.texts = {value_.text}, true);
+        if (!node.is_array() || node.members.empty() || node.members.size() > longest_list * longest_list) return fail(node);
+        for (const Member& member : node.members) {
+            if (!text(member.value)) return false;
+            value_.texts.push_back(value_.text);
+        }
         return true;
     }
 

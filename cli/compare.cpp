@@ -1,0 +1,101 @@
+// crescent compare: renders of other programs -> meters, bias tests, plates, report.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "crescent.h"
+#include "progress.h"
+#include "quoted.h"
+#include "signals.h"
+
+namespace crescent::cli {
+
+namespace {
+
+/// "NAME=VALUE" of a flag; `what` stands in the complaint.
+std::pair<std::string, std::string> cut(const std::string& flag, const std::string& text, const char* what) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos) throw InputError({flag + " " + text, 0, 0}, std::string("expected ") + what);
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// A number for all arms, or for one by name.
+void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all, const std::string& flag, const char* key) {
+    for (const std::string& text : all) {
+        if (text.find('=') != std::string::npos) {
+            const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
+            out.push_back({{"arms", arm, key}, value, true, flag + " " + text});
+            continue;
+        }
+        for (const std::string& arm : flags.arms) out.push_back({{"arms", arm.substr(0, arm.find('=')), key}, text, true, flag + " " + text});
+    }
+}
+
+std::vector<CompareFlag> flags_of(const CompareFlags& f) {
+    std::vector<CompareFlag> out;
+    for (const std::string& text : f.arms) {
+        const auto [name, files] = cut("--arm", text, "NAME=FILES");
+        out.push_back({{"arms", name, "files"}, files, false, "--arm " + text});
+    }
+    for (const std::string& text : f.reference) out.push_back({{"reference"}, text, false, "--reference " + text});
+    for (const std::string& text : f.regions) {
+        const auto [name, box] = cut("--region", text, "NAME=x0,y0,x1,y1");
+        out.push_back({{"regions", name, "box"}, "[" + box + "]", true, "--region " + text});
+    }
+    for (const std::string& text : f.masks) {
+        const auto [name, file] = cut("--mask", text, "NAME=FILE");
+        out.push_back({{"masks", name, "file"}, file, false, "--mask " + text});
+    }
+    for (const std::string& text : f.layers) {
+        const auto [name, layer] = cut("--layer", text, "NAME=LAYER");
+        if (name == "reference") out.push_back({{"reference_layer"}, layer, false, "--layer " + text});
+        else out.push_back({{"arms", name, "layer"}, layer, false, "--layer " + text});
+    }
+    per_arm(out, f, f.spp, "--spp", "spp");
+    per_arm(out, f, f.seconds, "--seconds", "seconds");
+    for (const std::string& text : f.assertions) out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
+    if (f.pair) out.push_back({{"pair"}, "true", true, "--pair"});
+    if (!f.expect.empty()) out.push_back({{"expect"}, f.expect, false, "--expect " + f.expect});
+    const std::pair<const char*, std::string> numbers[] = {{"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}};
+    for (const auto& [key, text] : numbers)
+        if (!text.empty()) out.push_back({{key}, text, true, std::string("--") + key + " " + text});
+    if (!f.smallest.empty()) {
+        const bool share = f.smallest.back() == '%';
+        const std::string digits = share ? f.smallest.substr(0, f.smallest.size() - 1) + "e-2" : f.smallest;
+        out.push_back({{"smallest"}, digits, true, "--smallest " + f.smallest});
+    }
+    return out;
+}
+
+std::string command_of(const CompareFlags& f) {
+    std::string out = "crescent compare";
+    if (!f.file.empty()) out += " " + quoted(f.file);
+    const auto all = [&](const char* flag, const std::vector<std::string>& values) {
+        for (const std::string& value : values) out += fmt::format(" {} {}", flag, quoted(value));
+    };
+    all("--arm", f.arms), all("--reference", f.reference), all("--region", f.regions), all("--mask", f.masks), all("--layer", f.layers);
+    all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
+    if (f.pair) out += " --pair";
+    const std::pair<const char*, std::string> rest[] = {{"--expect", f.expect}, {"--smallest", f.smallest}, {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}};
+    for (const auto& [flag, value] : rest)
+        if (!value.empty()) out += fmt::format(" {} {}", flag, quoted(value));
+    return out;
+}
+
+}  // namespace
+
+int compare(const CompareFlags& flags) {
+    if (flags.schema) return print(compare_schema_text()), held;
+    if (flags.file.empty() && flags.arms.empty()) throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
+    const ComparePlan plan = plan_of(flags_of(flags), flags.file);
+    Provenance provenance;
+    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(), provenance.command = command_of(flags);
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    std::string summary;
+    const CompareResult result = crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
+    progress.clear();
+    print(summary);
+    return result.state == CompareResult::State::holds ? held : result.state == CompareResult::State::fails ? failed : inconclusive;
+}
+
+}  // namespace crescent::cli

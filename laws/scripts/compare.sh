@@ -1,0 +1,56 @@
+#!/bin/bash
+# `crescent compare` as its users call it: our own films give the meters that run gave; equal inputs give equal bytes;
+# exit codes; bad input is named and nothing is written; its JSON obeys docs/compare.schema.json, its XML is well-formed.
+. "$(dirname "$0")/common.sh"
+
+for seed in 7 8 9; do expect 0 "$CRESCENT" run "$tiny" --set seed=$seed --out "s$seed" --quiet; done
+arms=(--arm 'u=s[789]/films/uniform.exr' --layer u=n=16 --arm 'c=s[789]/films/cosine.exr' --layer c=n=16
+    --reference s7/films/reference.exr --layer 'reference=quadrature s=32' --region ball=40,20,56,34)
+expect 0 "$CRESCENT" compare "${arms[@]}" --seconds u=2 --seconds c=3 --out one --quiet
+expect 0 "$CRESCENT" compare "${arms[@]}" --seconds u=2 --seconds c=3 --out two --quiet
+same_outputs one two
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import json, sys
+import jsonschema
+run, compared = json.load(open("s7/metrics.json")), json.load(open("one/metrics.json"))
+jsonschema.validate(compared, json.load(open(sys.argv[1] + "/docs/compare.schema.json")))
+for arm, name in (("u", "uniform"), ("c", "cosine")):
+    ours = next(r for r in run["runs"] if r["arm"] == name and r["n"] == 16)
+    theirs = next(a for a in compared["arms"] if a["arm"] == arm)["files"][0]["regions"]
+    for a, b in ((ours["regions"]["ball"]["rmse"], theirs["ball"]["rmse"]), (ours["y_mean"], theirs["frame"]["y_mean"]), (ours["rmse_frame"], theirs["frame"]["rmse"])):
+        assert abs(a - b) <= 1e-6 * abs(a), (arm, a, b)
+END
+for file in metrics.json metrics.csv junit.xml report.html plates/renders.png plates/errors.png plates/noise-c-u.png; do
+    [ -s "one/$file" ] || die "no $file"
+done
+expect 0 /usr/bin/python3 -c 'import sys, xml.etree.ElementTree as e; [e.parse(f) for f in sys.argv[1:]]' one/junit.xml
+
+expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'rmse.ball(u) < 1e-9' --out failing --quiet
+grep -q '<failure' failing/junit.xml || die "the failing assertion is not in junit.xml"
+expect 4 "$CRESCENT" compare "${arms[@]}" --expect same --out few --quiet
+printf 'title = "From a file"\n[arms.u]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n' >plan.toml
+expect 0 "$CRESCENT" compare plan.toml --out from-file --quiet
+grep -q 'From a file' from-file/report.html || die "the title is not in the report"
+expect 0 "$CRESCENT" compare --schema
+
+# bad WORDS MESSAGE: exit 2, the message, nothing written.
+bad() {
+    local message=$1
+    shift
+    expect 2 "$CRESCENT" compare "$@" --out nowhere
+    grep -qF -- "$message" said || die "no '$message' in: $(cat said)"
+    [ ! -e nowhere ] || die "a wrong call left a folder"
+}
+bad "--arm NAME=FILES"
+bad "found none" --arm 'a=absent*.exr'
+bad "named twice" --arm a=s7/films/uniform.exr --arm a=s7/films/uniform.exr --layer a=n=16
+bad "say which with --layer" --arm a=s7/films/uniform.exr
+bad "found a PNG" --arm a=one/plates/renders.png
+bad "did you mean 'rmse'?" "${arms[@]}" --assert 'rsme.ball(u) < 1'
+bad "did you mean 'ball'?" "${arms[@]}" --assert 'rmse.bal(u) < 1'
+bad "expected a box on the image" "${arms[@]}" --region big=0,0,4000,2
+bad "expected a number above 0" "${arms[@]}" --spp many
+sed -i 's/^files/flies/' plan.toml
+bad "plan.toml:3:1: " plan.toml
+cp s7/films/uniform.exr copy.exr
+bad "the same pixels" --arm a=s7/films/uniform.exr --arm a=copy.exr --layer a=n=16

@@ -1,0 +1,144 @@
+// First pass: every render is read, checked against the others and added to its arm's mean.
+#include "compare/first_pass.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace crescent {
+
+void MeanFilm::add(const Render& render) {
+    if (count == 0) {
+        y.assign(render.size(), 0), m2.assign(render.size(), 0);
+        for (std::vector<float>* plane : {&r, &g, &b}) plane->assign(render.size(), 0);
+        told_variance.assign(render.variance.size(), 0);
+    }
+    if (render.variance.size() != told_variance.size()) told_variance.clear();  // not every file has one
+    ++count;
+    const double n = static_cast<double>(count);
+    const float share = static_cast<float>(1 / n);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const double value = static_cast<double>(render.y(i)), off = value - y[i];
+        y[i] += off / n;
+        m2[i] += off * (value - y[i]);
+        r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share, b[i] += (render.b[i] - b[i]) * share;
+    }
+    for (std::size_t i = 0; i < told_variance.size(); ++i) told_variance[i] += static_cast<double>(render.variance[i]);
+}
+
+double MeanFilm::variance(std::size_t i) const {
+    if (count >= 2) return m2[i] / static_cast<double>(count - 1);
+    return told_variance.empty() ? std::nan("") : told_variance[i] / static_cast<double>(count);
+}
+
+Tiles::Tiles(int width, int height) {
+    const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
+    size = std::max(8, static_cast<int>(std::ceil(wanted)));
+    across = (width + size - 1) / size, down = (height + size - 1) / size;
+}
+
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at) {
+    std::vector<std::string> out;
+    for (const std::string& pattern : patterns) {
+        glob_t found{};
+        const int failed = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
+        std::vector<std::string> paths;
+        for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+        ::globfree(&found);
+        if (paths.empty()) throw InputError(at, fmt::format("expected files that match '{}', found none", pattern));
+        out.insert(out.end(), paths.begin(), paths.end());
+    }
+    std::sort(out.begin(), out.end());
+    for (std::size_t i = 1; i < out.size(); ++i)
+        if (out[i] == out[i - 1]) throw InputError(at, fmt::format("the file '{}' is named twice", out[i]));
+    return out;
+}
+
+namespace {
+
+std::string hash_of(const Render& render) {
+    XXH3_state_t* state = XXH3_createState();
+    XXH3_64bits_reset(state);
+    for (const std::vector<float>* plane : {&render.r, &render.g, &render.b}) XXH3_64bits_update(state, plane->data(), plane->size() * sizeof(float));
+    const std::uint64_t hash = XXH3_64bits_digest(state);
+    XXH3_freeState(state);
+    return fmt::format("{:016x}", hash);
+}
+
+std::vector<std::uint64_t> numbers_in(const std::string& path) {
+    const std::string name = std::filesystem::path(path).stem().string();
+    std::vector<std::uint64_t> out;
+    for (std::size_t i = 0; i < name.size();) {
+        if (name[i] < '0' || name[i] > '9') {
+            ++i;
+            continue;
+        }
+        std::uint64_t value = 0;
+        for (; i < name.size() && name[i] >= '0' && name[i] <= '9'; ++i) value = value * 10 + static_cast<std::uint64_t>(name[i] - '0');
+        out.push_back(value);
+    }
+    return out;
+}
+
+bool all_equal(const Render& render) {
+    const auto same = [](const std::vector<float>& p) { return std::all_of(p.begin(), p.end(), [&](float v) { return v == p[0]; }); };
+    return same(render.r) && same(render.g) && same(render.b);
+}
+
+}  // namespace
+
+void FirstPass::arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name) {
+    for (const std::string& path : files) {
+        watch_.check();
+        const Render render = read_render(path, layer);
+        fit(render);
+        look(render);
+        RenderFile file{path, hash_of(render), render.layer, render.variance_channels, render.spp, render.seconds, numbers_in(path)};
+        known(file, name);
+        to.film.add(render);
+        to.files.push_back(std::move(file));
+        watch_.advance(1);
+    }
+}
+
+void FirstPass::fit(const Render& render) {
+    if (first_.empty()) {
+        first_ = render.file;
+        all_.width = render.width, all_.height = render.height;
+        all_.bad.assign(render.size(), false);
+    } else if (render.width != all_.width || render.height != all_.height) {
+        throw InputError({render.file, 0, 0}, fmt::format("expected {} x {} pixels as in {}, found {} x {}", all_.width, all_.height,
+                                                          first_, render.width, render.height));
+    }
+}
+
+void FirstPass::look(const Render& render) {
+    std::uint64_t bad = 0, negative = 0;
+    for (std::size_t i = 0; i < render.size(); ++i) {
+        const bool finite = std::isfinite(render.r[i]) && std::isfinite(render.g[i]) && std::isfinite(render.b[i]);
+        if (!finite) ++bad, all_.bad[i] = true;
+        negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
+    }
+    const auto warn = [&](std::uint64_t count, const char* what) {
+        if (count) all_.warnings.push_back(fmt::format("{}: {} pixel{} {}", render.file, count, count == 1 ? "" : "s", what));
+    };
+    warn(bad, "not finite: left out of every meter");
+    warn(negative, "with a negative channel");
+    if (bad == render.size()) throw InputError({render.file, 0, 0}, "no pixel of it is finite");
+    if (render.size() > 1 && all_equal(render)) all_.warnings.push_back(render.file + ": all pixels are equal");
+}
+
+void FirstPass::known(const RenderFile& file, const std::string& arm) {
+    const auto [before, fresh] = seen_.emplace(file.hash, std::pair{file.path, arm});
+    if (fresh) return;
+    const auto& [path, other] = before->second;
+    if (other == arm)
+        throw InputError({file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
+    all_.warnings.push_back(fmt::format("{}: the same pixels as {} of {}", file.path, path, other));
+}
+
+}  // namespace crescent

@@ -1,0 +1,25 @@
+// What the first pass keeps while it reads: the size that all must have, and which pixels it has seen in which file.
+#pragma once
+
+#include "compare/renders.h"
+
+namespace crescent {
+
+class FirstPass {
+public:
+    FirstPass(Readings& all, Watch& watch) : all_(all), watch_(watch) {}
+    /// Reads every file of an arm into `to`. Throws InputError at the first that does not fit.
+    void arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name);
+
+private:
+    void fit(const Render& render);
+    void look(const Render& render);
+    void known(const RenderFile& file, const std::string& arm);
+
+    Readings& all_;
+    Watch& watch_;
+    std::string first_;
+    std::map<std::string, std::pair<std::string, std::string>> seen_;  // hash -> path, arm
+};
+
+}  // namespace crescent

@@ -1,0 +1,127 @@
+// A compare file, flags, or both -> ComparePlan. Flags are put into the file's tree before it is read, so that they meet
+// the same checks as the file.
+#include "compare/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "compare/schema.h"
+#include "experiment/draft.h"
+#include "experiment/published.h"
+
+namespace crescent {
+
+namespace {
+
+Node text_node(const std::string& text, const Place& at) {
+    Node node;
+    node.kind = Node::Kind::text;
+    node.text = text;
+    node.at = at;
+    return node;
+}
+
+void move_to(Node& node, const Place& at) {
+    node.at = at;
+    for (Member& member : node.members) member.at = at, move_to(member.value, at);
+}
+
+/// The value of a flag: TOML where it says so and is some, else text as it is; the reader says what was expected.
+Node value_of(const CompareFlag& flag, const Place& at) {
+    if (!flag.toml) return text_node(flag.value, at);
+    try {
+        Node tree = read_toml("value = " + flag.value, flag.typed);
+        if (tree.members.size() == 1) {
+            move_to(tree.members[0].value, at);
+            return std::move(tree.members[0].value);
+        }
+    } catch (const InputError&) {
+    }
+    return text_node(flag.value, at);
+}
+
+Node& child(Node& parent, const std::string& key, const Place& at) {
+    if (Member* found = parent.find(key)) return found->value;
+    parent.members.push_back({key, at, Node{}});
+    parent.members.back().value.at = at;
+    return parent.members.back().value;
+}
+
+/// Lists grow with every flag that names them ("--arm a=x.exr --arm a=y.exr"); all else is replaced.
+void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
+    const Place at{flag.typed, 0, 0};
+    Node* node = &root;
+    for (std::size_t i = 0; i + 1 < flag.path.size(); ++i) node = &child(*node, flag.path[i], at);
+    Node value = value_of(flag, at);
+    const bool grows = flag.path.back() == "files" || flag.path == std::vector<std::string>{"reference"};
+    Node& to = child(*node, flag.path.back(), at);
+    if (!grows) {
+        to = std::move(value);
+        return;
+    }
+    if (begun.insert(fmt::format("{}", fmt::join(flag.path, "."))).second) {
+        to = Node{};
+        to.kind = Node::Kind::array, to.at = at;
+    }
+    to.members.push_back({"", at, std::move(value)});
+}
+
+void check_names(Draft& draft, const ComparePlan& plan) {
+    std::vector<std::string> regions{whole_frame}, arms;
+    for (const Region& r : plan.regions) regions.push_back(r.name);
+    for (const MaskPlan& m : plan.masks) {
+        if (std::count(regions.begin(), regions.end(), m.name))
+            draft.complain("masks." + m.name, m.at, fmt::format("the name '{}' is a region already", m.name));
+        regions.push_back(m.name);
+    }
+    for (const Region& r : plan.regions)
+        if (r.name == whole_frame) draft.complain("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
+    for (const RenderArm& a : plan.arms) arms.push_back(a.name);
+    for (const AssertionPlan& a : plan.assertions) {
+        std::string why;
+        const auto check = parse_comparison(a.left, why, compare_words());
+        if (!check) {
+            draft.complain(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
+            continue;
+        }
+        for (const ParsedQuantity* q : {&check->left, &check->right}) {
+            if (q->number) continue;
+            if (!std::count(arms.begin(), arms.end(), q->subject))
+                draft.complain(a.name, a.at, fmt::format("{}: no arm '{}': expected one of {}{}", a.left, q->subject, listed(arms, ", "), hint(q->subject, arms)));
+            if (!std::count(regions.begin(), regions.end(), q->region))
+                draft.complain(a.name, a.at, fmt::format("{}: no region '{}': expected one of {}{}", a.left, q->region, listed(regions, ", "), hint(q->region, regions)));
+        }
+    }
+    if (plan.expect == Expectation::same && plan.arms.size() < 2 && plan.reference.empty())
+        draft.complain("expect", "expect = \"same\": expected two arms, or an arm and a reference");
+}
+
+ComparePlan read_plan(Node root, Draft& draft, const std::vector<CompareFlag>& flags) {
+    std::set<std::string> begun;
+    for (const CompareFlag& flag : flags) put(root, flag, begun);
+    ComparePlan plan;
+    plan.file = draft.e.file;
+    read_tree(draft, compare_schema(), root, &plan);
+    if (draft.complaints.empty()) check_names(draft, plan);
+    throw_if_any(std::move(draft.complaints));
+    for (AssertionPlan& a : plan.assertions) {
+        std::string why;
+        const auto check = parse_comparison(a.left, why, compare_words());
+        a.left = to_string(check->left), a.op = check->op, a.right = to_string(check->right);
+    }
+    return plan;
+}
+
+}  // namespace
+
+ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file) {
+    Draft draft;
+    draft.e.file = file.empty() ? "crescent compare" : file;
+    Node root;
+    if (!file.empty()) root = read_toml(read_text(file, "a compare file"), file, &draft.complaints);
+    return read_plan(std::move(root), draft, flags);
+}
+
+}  // namespace crescent

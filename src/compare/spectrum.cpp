@@ -1,0 +1,111 @@
+#include "compare/spectrum.h"
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+
+namespace crescent {
+
+namespace {
+
+constexpr auto size = static_cast<std::size_t>(spectrum_block);
+using Complex = std::complex<double>;
+using Row = std::array<Complex, size>;
+
+/// exp(-2 pi i k / block), as a table.
+const Row& turns() {
+    static const Row table = [] {
+        Row t;
+        for (std::size_t k = 0; k < size; ++k) t[k] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / spectrum_block);
+        return t;
+    }();
+    return table;
+}
+
+/// Plain discrete Fourier transform of a row; blocks are small.
+Row transformed(const Row& x) {
+    Row out;
+    for (std::size_t k = 0; k < size; ++k) {
+        Complex sum = 0;
+        for (std::size_t n = 0; n < size; ++n) sum += x[n] * turns()[k * n % size];
+        out[k] = sum;
+    }
+    return out;
+}
+
+/// Frequency of bin k, in cycles a block, without its sign.
+double frequency(std::size_t k) { return static_cast<double>(std::min(k, size - k)); }
+
+struct Radial {
+    std::array<double, size * size> bin{};  // of each coefficient; -1: outside
+    std::array<double, spectrum_bins> count{};
+};
+
+const Radial& radial() {
+    static const Radial table = [] {
+        Radial r;
+        for (std::size_t v = 0; v < size; ++v) {
+            for (std::size_t u = 0; u < size; ++u) {
+                const long at = std::lround(std::hypot(frequency(u), frequency(v))) - 1;
+                const bool inside = at >= 0 && at < spectrum_bins;
+                r.bin[v * size + u] = inside ? static_cast<double>(at) : -1;
+                if (inside) r.count[static_cast<std::size_t>(at)] += 1;
+            }
+        }
+        return r;
+    }();
+    return table;
+}
+
+void add_block(std::vector<double>& power, int x0, int y0, const std::function<double(int, int)>& error) {
+    std::array<Row, size> rows;
+    for (std::size_t j = 0; j < size; ++j) {
+        Row row;
+        for (std::size_t i = 0; i < size; ++i) row[i] = error(x0 + static_cast<int>(i), y0 + static_cast<int>(j));
+        rows[j] = transformed(row);
+    }
+    for (std::size_t u = 0; u < size; ++u) {
+        Row column;
+        for (std::size_t j = 0; j < size; ++j) column[j] = rows[j][u];
+        column = transformed(column);
+        for (std::size_t v = 0; v < size; ++v) {
+            const double at = radial().bin[v * size + u];
+            if (at < 0) continue;
+            const auto bin = static_cast<std::size_t>(at);
+            power[bin] += std::norm(column[v]) / static_cast<double>(size * size) / radial().count[bin];
+        }
+    }
+}
+
+}  // namespace
+
+void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error) {
+    for (int y = box.y0; y + spectrum_block - 1 <= box.y1; y += spectrum_block)
+        for (int x = box.x0; x + spectrum_block - 1 <= box.x1; x += spectrum_block) {
+            power.resize(spectrum_bins);
+            add_block(power, x, y, error);
+        }
+}
+
+NoiseColour noise_colour(const std::vector<double>& power) {
+    if (power.size() != spectrum_bins) return NoiseColour::unknown;
+    const auto half = power.begin() + spectrum_bins / 2;
+    const double low = std::accumulate(power.begin(), half, 0.0), high = std::accumulate(half, power.end(), 0.0);
+    if (!(low + high > 0)) return NoiseColour::unknown;
+    constexpr double apart = 1.25;  // a quarter more on one side; white noise of one block is within 5 %
+    return low > apart * high ? NoiseColour::correlated : high > apart * low ? NoiseColour::blue : NoiseColour::white;
+}
+
+const char* to_string(NoiseColour colour) {
+    switch (colour) {
+        case NoiseColour::white: return "white";
+        case NoiseColour::blue: return "blue";
+        case NoiseColour::correlated: return "correlated";
+        case NoiseColour::unknown: break;
+    }
+    return "unknown";
+}
+
+}  // namespace crescent

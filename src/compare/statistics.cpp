@@ -1,0 +1,91 @@
+#include "compare/statistics.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace crescent {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Indices of the finite p values, rising.
+std::vector<std::size_t> rising(std::span<const double> p) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (std::isfinite(p[i])) order.push_back(i);
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] != p[b] ? p[a] < p[b] : a < b; });
+    return order;
+}
+
+Welch judged(double difference, double se, double df) {
+    Welch w{difference, se, df, 1};
+    if (!std::isfinite(difference) || !std::isfinite(se)) w.p = nan;
+    else if (se > 0) w.p = two_sided_p(difference / se, df);
+    else w.p = difference == 0 ? 1 : 0;
+    return w;
+}
+
+}  // namespace
+
+double two_sided_p(double t, double df) {
+    if (!(df > 0) || std::isnan(t)) return nan;
+    return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(df), std::fabs(t)));
+}
+
+double student_quantile(double p, double df) { return boost::math::quantile(boost::math::students_t(df), p); }
+
+MeanInterval mean_interval(std::span<const double> values, double confidence) {
+    MeanInterval out;
+    out.n = values.size();
+    const double n = static_cast<double>(out.n);
+    out.mean = out.n ? std::accumulate(values.begin(), values.end(), 0.0) / n : nan;
+    out.low = out.high = out.se = nan;
+    if (out.n < 2) return out;
+    double squares = 0;
+    for (const double v : values) squares += (v - out.mean) * (v - out.mean);
+    out.se = std::sqrt(squares / (n - 1) / n);
+    const double t = student_quantile(0.5 + confidence / 2, n - 1);
+    out.low = out.mean - t * out.se, out.high = out.mean + t * out.se;
+    return out;
+}
+
+Welch welch_test(const MeanInterval& a, const MeanInterval& b) {
+    const double va = a.se * a.se, vb = b.se * b.se, sum = va + vb;
+    const double denominator = va * va / static_cast<double>(a.n - 1) + vb * vb / static_cast<double>(b.n - 1);
+    return judged(a.mean - b.mean, std::sqrt(sum), denominator > 0 ? sum * sum / denominator : 1);
+}
+
+Welch paired_test(const MeanInterval& differences) {
+    return judged(differences.mean, differences.se, std::max(1.0, static_cast<double>(differences.n) - 1));
+}
+
+double detectable(const Welch& test, double alpha) {
+    if (!(test.df > 0) || !std::isfinite(test.se)) return std::numeric_limits<double>::infinity();
+    return test.se * (student_quantile(1 - alpha / 2, test.df) + student_quantile(0.9, test.df));
+}
+
+std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent) {
+    const std::vector<std::size_t> order = rising(p);
+    const double m = static_cast<double>(order.size());
+    double harmonic = 1;
+    for (std::size_t i = 2; dependent && i <= order.size(); ++i) harmonic += 1 / static_cast<double>(i);
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        if (p[order[i]] <= alpha * static_cast<double>(i + 1) / (m * harmonic)) last = i + 1;
+    std::vector<bool> out(p.size());
+    for (std::size_t i = 0; i < last; ++i) out[order[i]] = true;
+    return out;
+}
+
+std::vector<bool> holm(std::span<const double> p, double alpha) {
+    const std::vector<std::size_t> order = rising(p);
+    std::vector<bool> out(p.size());
+    for (std::size_t i = 0; i < order.size() && p[order[i]] <= alpha / static_cast<double>(order.size() - i); ++i) out[order[i]] = true;
+    return out;
+}
+
+}  // namespace crescent

@@ -1,0 +1,40 @@
+// Intervals and tests over renders: Student's t, Welch's test, Holm, Benjamini-Hochberg and Benjamini-Yekutieli.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crescent {
+
+/// P(|T| > |t|) of Student's t with df > 0 degrees of freedom.
+double two_sided_p(double t, double df);
+/// The t with P(T < t) = p, 0 < p < 1.
+double student_quantile(double p, double df);
+
+/// A mean over renders with its two-sided interval; NaN ends where there are fewer than two.
+struct MeanInterval {
+    double mean = 0, low = 0, high = 0, se = 0;
+    std::size_t n = 0;
+};
+/// t interval of the mean; `confidence` in (0, 1), e.g. 0.95.
+MeanInterval mean_interval(std::span<const double> values, double confidence);
+
+/// Welch 1947: two means with unequal variances. `p` is two-sided; equal constants have p = 1, unequal ones p = 0.
+struct Welch {
+    double difference = 0, se = 0, df = 0, p = 1;
+};
+Welch welch_test(const MeanInterval& a, const MeanInterval& b);
+/// One mean against 0, for differences of pairs.
+Welch paired_test(const MeanInterval& differences);
+/// The difference that the test sees nine times out of ten at level alpha.
+double detectable(const Welch& test, double alpha);
+
+/// Which hypotheses fall: false discoveries are at most `alpha` of them on average (Benjamini & Hochberg 1995), under any
+/// dependence where `dependent` (Benjamini & Yekutieli 2001). NaN: not tested. Under the global null the chance of any
+/// is at most alpha.
+std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent);
+/// The same with the chance of any false one at most alpha (Holm 1979).
+std::vector<bool> holm(std::span<const double> p, double alpha);
+
+}  // namespace crescent

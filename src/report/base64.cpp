@@ -1,0 +1,22 @@
+#include "report/base64.h"
+
+#include <cstdint>
+
+namespace crescent {
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    out.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
+        const unsigned word = bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
+        out += digits[word >> 18 & 63];
+        out += digits[word >> 12 & 63];
+        out += left > 1 ? digits[word >> 6 & 63] : '=';
+        out += left > 2 ? digits[word & 63] : '=';
+    }
+    return out;
+}
+
+}  // namespace crescent
