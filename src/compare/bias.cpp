@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "compare/judge.h"
 #include "compare/schema.h"
+#include "math/functions.h"
 #include "report/numbers.h"
 
 namespace crescent {
@@ -22,7 +24,7 @@ constexpr double lone_pixel = 0.5;  // a tile whose spread is half one pixel of 
 /// Mean and spread of the reference where it is one file: its own variance, if it says one, over independent pixels.
 MeanInterval one_file(double mean, double variance, double pixels) {
     MeanInterval out = {mean, 0, 0, std::isnan(variance) ? 0 : std::sqrt(variance / pixels), 1};
-    out.n = 1 << 20;  // its spread is known, not estimated
+    out.n = 1000000;  // its spread is known, not estimated
     return out;
 }
 
@@ -215,7 +217,7 @@ NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_
     Values p;
     for (std::size_t t = 0; t < all.tiles.count(); ++t) {
         const MeanInterval va = spreads(all.arms[a], t), vb = spreads(all.arms[b], t);
-        out.log2_ratio.push_back(va.mean > 0 && vb.mean > 0 ? std::log2(va.mean / vb.mean) : std::nan(""));
+        out.log2_ratio.push_back(va.mean > 0 && vb.mean > 0 ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
         p.push_back(std::isfinite(out.log2_ratio.back()) && va.n > 2 && vb.n > 2 ? welch_test(va, vb).p : std::nan(""));
     }
     out.told_apart = discoveries(p, alpha, false);

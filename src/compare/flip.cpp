@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/functions.h"
+
 namespace crescent {
 
 namespace {
@@ -55,13 +57,13 @@ Triple rgb_of(const Triple& c) {
 Triple hunt_lab(const Triple& rgb) {
     Triple t = relative(rgb);
     constexpr double delta = 6.0 / 29;
-    for (double& v : t) v = v > delta * delta * delta ? std::cbrt(v) : v / (3 * delta * delta) + 4.0 / 29;
+    for (double& v : t) v = v > delta * delta * delta ? math::pow(v, 1.0 / 3) : v / (3 * delta * delta) + 4.0 / 29;
     const double lightness = 116 * t[1] - 16;
     return {lightness, 0.01 * lightness * 500 * (t[0] - t[1]), 0.01 * lightness * 200 * (t[1] - t[2])};
 }
 
 /// HyAB: city block in lightness, Euclid in colour.
-double hyab(const Triple& a, const Triple& b) { return std::fabs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
+double hyab(const Triple& a, const Triple& b) { return std::fabs(a[0] - b[0]) + math::hypot(a[1] - b[1], a[2] - b[2]); }
 
 // --- separable filters, edges repeated --------------------------------------------------------------------------------
 
@@ -118,7 +120,7 @@ Plane blurred(const Plane& in, Size size, std::span<const Sensitivity> parts, do
     double total = 0;
     std::vector<Kernel> kernels;
     for (const Sensitivity& part : parts) {
-        kernels.push_back(kernel_of(radius, [&](double k) { return std::exp(-(pi * k / ppd) * (pi * k / ppd) / part.b); }));
+        kernels.push_back(kernel_of(radius, [&](double k) { return math::exp(-(pi * k / ppd) * (pi * k / ppd) / part.b); }));
         total += part.a * std::sqrt(pi / part.b) * sum_of(kernels.back()) * sum_of(kernels.back());
     }
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -133,7 +135,7 @@ Plane blurred(const Plane& in, Size size, std::span<const Sensitivity> parts, do
 Plane feature(const Plane& lightness, Size size, double ppd, bool edge, bool across) {
     const double sd = 0.5 * 0.082 * ppd;
     const int radius = static_cast<int>(std::ceil(3 * sd));
-    const auto gauss = [&](double k) { return std::exp(-k * k / (2 * sd * sd)); };
+    const auto gauss = [&](double k) { return math::exp(-k * k / (2 * sd * sd)); };
     Kernel smooth = kernel_of(radius, gauss);
     scale(smooth, 1 / sum_of(smooth));
     Kernel change = kernel_of(radius, [&](double k) { return (edge ? -k : k * k / (sd * sd) - 1) * gauss(k); });
@@ -146,7 +148,7 @@ Plane feature(const Plane& lightness, Size size, double ppd, bool edge, bool acr
 Plane magnitude(const Plane& lightness, Size size, double ppd, bool edge) {
     Plane x = feature(lightness, size, ppd, edge, true);
     const Plane y = feature(lightness, size, ppd, edge, false);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::hypot(x[i], y[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(math::hypot(static_cast<double>(x[i]), static_cast<double>(y[i])));
     return x;
 }
 
@@ -179,9 +181,9 @@ Triple at(const Planes& p, std::size_t i) { return {static_cast<double>(p[0][i])
 
 /// Colour difference brought to [0, 1]: compressed, the largest differences most.
 double remapped(double difference) {
-    static const double most = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
+    static const double most = math::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
     constexpr double pc = 0.4, pt = 0.95;
-    const double d = std::pow(difference, 0.7), knee = pc * most;
+    const double d = math::pow(difference, 0.7), knee = pc * most;
     return d < knee ? pt / knee * d : pt + (d - knee) / (most - knee) * (1 - pt);
 }
 
@@ -226,7 +228,7 @@ std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, d
         const double edges = std::fabs(static_cast<double>(fa.edges[i]) - static_cast<double>(fb.edges[i]));
         const double points = std::fabs(static_cast<double>(fa.points[i]) - static_cast<double>(fb.points[i]));
         const double shape = std::sqrt(std::max(edges, points) / std::numbers::sqrt2);
-        out[i] = static_cast<float>(std::pow(colour, 1 - std::min(shape, 1.0)));
+        out[i] = static_cast<float>(math::pow(colour, 1 - std::min(shape, 1.0)));
     }
     return out;
 }
@@ -244,7 +246,7 @@ FlipExposures flip_exposures(const FlipImage& reference) {
     const std::size_t middle = (y.size() - 1) / 2;
     std::nth_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(middle), y.end());
     const double median = std::max(y[middle], 1e-7), largest = std::max(*std::max_element(y.begin(), y.end()), 1e-7);
-    FlipExposures out{std::log2(x / largest), std::log2(x / median), 2};
+    FlipExposures out{math::log(x / largest) / std::numbers::ln2, math::log(x / median) / std::numbers::ln2, 2};
     out.count = std::max(2, static_cast<int>(std::ceil(out.stop - out.start)));
     return out;
 }
@@ -253,7 +255,7 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
     const FlipExposures e = flip_exposures(reference);
     std::vector<float> out(reference.r.size());
     for (int k = 0; k < e.count; ++k) {
-        const double exposure = std::exp2(e.start + k * (e.stop - e.start) / (e.count - 1));
+        const double exposure = math::exp2(e.start + k * (e.stop - e.start) / (e.count - 1));
         const Planes a = tone_mapped(reference, exposure), b = tone_mapped(test, exposure);
         const std::vector<float> one = ldr_flip({reference.width, reference.height, a[0], a[1], a[2]}, {test.width, test.height, b[0], b[1], b[2]}, ppd);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(out[i], one[i]);

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "math/functions.h"
+
 namespace crescent {
 
 namespace {
@@ -18,7 +20,10 @@ using Row = std::array<Complex, size>;
 const Row& turns() {
     static const Row table = [] {
         Row t;
-        for (std::size_t k = 0; k < size; ++k) t[k] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / spectrum_block);
+        for (std::size_t k = 0; k < size; ++k) {
+            const double angle = -2 * std::numbers::pi * static_cast<double>(k) / spectrum_block;
+            t[k] = {math::cos(angle), math::sin(angle)};
+        }
         return t;
     }();
     return table;
@@ -48,7 +53,7 @@ const Radial& radial() {
         Radial r;
         for (std::size_t v = 0; v < size; ++v) {
             for (std::size_t u = 0; u < size; ++u) {
-                const long at = std::lround(std::hypot(frequency(u), frequency(v))) - 1;
+                const long at = std::lround(math::hypot(frequency(u), frequency(v))) - 1;
                 const bool inside = at >= 0 && at < spectrum_bins;
                 r.bin[v * size + u] = inside ? static_cast<double>(at) : -1;
                 if (inside) r.count[static_cast<std::size_t>(at)] += 1;

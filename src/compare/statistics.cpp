@@ -1,10 +1,11 @@
 #include "compare/statistics.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "math/distributions.h"
 
 namespace crescent {
 
@@ -33,10 +34,12 @@ Welch judged(double difference, double se, double df) {
 
 double two_sided_p(double t, double df) {
     if (!(df > 0) || std::isnan(t)) return nan;
-    return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(df), std::fabs(t)));
+    return math::student_two_sided(df, std::fabs(t));
 }
 
-double student_quantile(double p, double df) { return boost::math::quantile(boost::math::students_t(df), p); }
+double student_quantile(double p, double df) {
+    return p >= 0.5 ? math::student_two_sided_quantile(df, 2 * (1 - p)) : -math::student_two_sided_quantile(df, 2 * p);
+}
 
 MeanInterval mean_interval(std::span<const double> values, double confidence) {
     MeanInterval out;
