@@ -20,7 +20,8 @@ template <class F> struct Phong {
         const F sin = sqrt(lobe.one_minus * (number<F>(1) + cos));
         const SinCos<F> phi = sincos_turns(u.y);
         const Frame<F> about = frame_about(mirror(wo));
-        return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * (u.x / cos)}};
+        const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 is 0, not 0/0
+        return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * along}};
     }
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return {scale * cosine_power(wi, mirror(wo), s)}; }
 };
