@@ -87,7 +87,7 @@ double first_octant(double y, double x) {
     const double z = t * t, w = z * z;
     const double even = -1.0 / 3 + w * (-1.0 / 7 + w * (-1.0 / 11 + w * (-1.0 / 15)));
     const double odd = 1.0 / 5 + w * (1.0 / 9 + w * (1.0 / 13));
-    const Two at_c = angles[static_cast<std::size_t>(16 * c)];
+    const Two at_c = angles[static_cast<std::size_t>(static_cast<int>(16 * c))];
     return at_c.hi + (t + (at_c.lo + t * z * (even + z * odd)));
 }
 

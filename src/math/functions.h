@@ -5,7 +5,8 @@
 //   exp             all; > 0 from -745 on        0.54
 //   exp2            all                          0.54
 //   expm1           all                          0.75
-//   log, log10      x > 0                        0.51
+//   log             x > 0                        0.9
+//   log10           x > 0                        0.51
 //   log1p           x > -1                       0.51
 //   pow             all                          0.75
 //   sin, cos        |x| < 2^50, else NaN         0.8

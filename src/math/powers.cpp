@@ -62,8 +62,9 @@ struct Exponential {
     std::int64_t exponent;
     Two root;
     double p;
-    /// In two steps: 2^exponent alone may go beyond what a double holds.
+    /// Where 2^exponent alone is more or less than a double holds: in two steps.
     double scaled(double value) const {
+        if (exponent > -1022 && exponent < 1024) return value * power_of_2(exponent);
         const std::int64_t half = exponent / 2;
         return value * power_of_2(half) * power_of_2(exponent - half);
     }
@@ -104,8 +105,13 @@ template <bool with_rest> Two quotient(double m, double c, double rest) {
     return {s, (((over.hi - s * high) - s * low) + small) * inverse};
 }
 
-/// ln(x + rest) for x > 0 and |rest| <= ulp(x)/2, to some 2^-66 of itself.
-template <bool with_rest> Two logarithm(double x, double rest = 0) {
+/// x = 2^e m, c the multiple of 1/32 next to m, logs[row] its logarithm.
+struct Parts {
+    double m, c, e;
+    std::size_t row;
+    std::int64_t exponent;
+};
+Parts parts_of(double x) {
     constexpr std::uint64_t lowest = std::bit_cast<std::uint64_t>(0x1.6a09e667f3bcdp-1);  // sqrt(1/2)
     double scale = 0;
     if (x < 0x1p-1022) {
@@ -114,15 +120,29 @@ template <bool with_rest> Two logarithm(double x, double rest = 0) {
     }
     const std::uint64_t t = std::bit_cast<std::uint64_t>(x) - lowest;
     const auto exponent = static_cast<std::int64_t>(t) >> 52;
-    const double m = std::bit_cast<double>((t & 0xfffffffffffffu) + lowest), e = static_cast<double>(exponent) - scale;
-    if constexpr (with_rest) rest = rest * power_of_2(-exponent / 2) * power_of_2(-exponent - -exponent / 2);
+    const double m = std::bit_cast<double>((t & 0xfffffffffffffu) + lowest);
     const double nearest = (m * steps + round_magic) - round_magic;
-    const Two log_c = logs[static_cast<std::size_t>(nearest) - first_log];
-    const Two s = quotient<with_rest>(m, nearest / steps, rest);
-    const double r = s.hi + s.lo, z = r * r;
-    const double tail = r * z * ((2.0 / 3 + z * (2.0 / 5)) + z * z * ((2.0 / 7 + z * (2.0 / 9)) + z * z * (2.0 / 11)));
-    const Two whole = ordered_sum(e * ln2_upper, log_c.hi), all = ordered_sum(whole.hi, 2 * s.hi);
-    return ordered_sum(all.hi, all.lo + (whole.lo + ((e * ln2_lower + log_c.lo) + (2 * s.lo + tail))));
+    const auto row = static_cast<std::size_t>(static_cast<int>(nearest) - first_log);
+    return {m, nearest / steps, static_cast<double>(exponent) - scale, row, exponent};
+}
+
+/// 2 (s^3/3 + s^5/5 + ...) for |s| < 1/80.
+double tail_of(double s) {
+    const double z = s * s;
+    return s * z * ((2.0 / 3 + z * (2.0 / 5)) + z * z * ((2.0 / 7 + z * (2.0 / 9)) + z * z * (2.0 / 11)));
+}
+
+/// ln(x + rest) for x > 0 and |rest| <= ulp(x)/2, to some 2^-66 of itself.
+template <bool with_rest> Two logarithm(double x, double rest = 0) {
+    const Parts at = parts_of(x);
+    if constexpr (with_rest) {
+        const std::int64_t half = -at.exponent / 2;
+        rest = rest * power_of_2(half) * power_of_2(-at.exponent - half);
+    }
+    const Two log_c = logs[at.row], s = quotient<with_rest>(at.m, at.c, rest);
+    const Two whole = ordered_sum(at.e * ln2_upper, log_c.hi), all = ordered_sum(whole.hi, 2 * s.hi);
+    const double small = (at.e * ln2_lower + log_c.lo) + (2 * s.lo + tail_of(s.hi + s.lo));
+    return ordered_sum(all.hi, all.lo + (whole.lo + small));
 }
 
 /// What a logarithm is where there is none to compute: 0, infinity and what is no number.
@@ -161,7 +181,13 @@ double expm1(double x) {
 
 double log(double x) {
     double otherwise;
-    return has_logarithm(x, otherwise) ? logarithm<false>(x).hi : otherwise;
+    if (!has_logarithm(x, otherwise)) return otherwise;
+    const Parts at = parts_of(x);
+    if (std::fabs(at.m - 1) < 0.05) return logarithm<false>(x).hi;  // small beside its own terms
+    const Two log_c = logs[at.row];
+    const double s = (at.m - at.c) / (at.m + at.c);
+    const Two whole = ordered_sum(at.e * ln2_upper, log_c.hi);
+    return whole.hi + (2 * s + (whole.lo + (at.e * ln2_lower + log_c.lo + tail_of(s))));
 }
 
 double log10(double x) {
@@ -179,10 +205,13 @@ double log1p(double x) {
 double pow(double x, double y) {
     if (y == 0 || x == 1) return 1;
     if (x != x || y != y) return none;
-    const bool whole = std::trunc(y) == y, odd = whole && std::fabs(y) < 0x1p53 && std::fmod(y, 2) != 0;
-    if (x < 0 && !whole) return x == -infinity ? (y < 0 ? 0 : infinity) : none;
-    const double sign = odd ? std::copysign(1.0, x) : 1;
-    x = std::fabs(x);
+    double sign = 1;
+    if (std::signbit(x)) {
+        const bool whole = std::trunc(y) == y;
+        if (x < 0 && !whole) return x == -infinity ? (y < 0 ? 0 : infinity) : none;
+        if (whole && std::fabs(y) < 0x1p53 && std::fmod(y, 2) != 0) sign = -1;
+        x = -x;
+    }
     if (x == 0 || x == infinity) return sign * ((x == 0) == (y < 0) ? infinity : 0.0);
     if (x == 1) return sign;
     const double within = y > 0x1p80 ? 0x1p80 : y < -0x1p80 ? -0x1p80 : y;  // beyond, every result is 0 or infinite
