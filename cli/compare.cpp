@@ -4,7 +4,6 @@
 #include "commands.h"
 #include "crescent.h"
 #include "progress.h"
-#include "quoted.h"
 #include "signals.h"
 
 namespace crescent::cli {
@@ -68,16 +67,16 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
 
 std::string command_of(const CompareFlags& f) {
     std::string out = "crescent compare";
-    if (!f.file.empty()) out += " " + quoted(f.file);
+    if (!f.file.empty()) out += " " + shell_word(f.file);
     const auto all = [&](const char* flag, const std::vector<std::string>& values) {
-        for (const std::string& value : values) out += fmt::format(" {} {}", flag, quoted(value));
+        for (const std::string& value : values) out += fmt::format(" {} {}", flag, shell_word(value));
     };
     all("--arm", f.arms), all("--reference", f.reference), all("--region", f.regions), all("--mask", f.masks), all("--layer", f.layers);
     all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
     if (f.pair) out += " --pair";
     const std::pair<const char*, std::string> rest[] = {{"--expect", f.expect}, {"--smallest", f.smallest}, {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}};
     for (const auto& [flag, value] : rest)
-        if (!value.empty()) out += fmt::format(" {} {}", flag, quoted(value));
+        if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     return out;
 }
 

@@ -25,4 +25,4 @@ awk '
         first[full] = FILENAME
     }
     END { exit bad }
-' $(find src gl film cli -name '*.h') || exit 1
+' $(find src gl explainer cli -name '*.h') || exit 1

@@ -24,7 +24,7 @@ CompareResult compare(const ComparePlan& plan, const CompareOptions& options, co
     staging.write("metrics.csv", compare_csv(result));
     staging.write("junit.xml", compare_junit(plan, result));
     staging.write("report.html", compare_html(plan, all, result, provenance, pictures));
-    staging.commit();
+    staging.commit(watch);
     summary = compare_summary(plan, all, result, options.out);
     return result;
 }

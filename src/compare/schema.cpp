@@ -40,7 +40,7 @@ Section assertions() {
 
 const Section& compare_schema() {
     static const Section root = {
-        "", Many::one, required, "Renders of other programs, compared.", nullptr,
+        "", Many::one, required, "Renders of other programs, compared.", {},
         {{"title", Type::text, none, "", defaulted, "\"renders compared\"", "One line.", to<&ComparePlan::title>},
          {"reference", Type::texts, none, "", optional, "none", "Paths or patterns of the converged image.", to<&ComparePlan::reference>},
          {"reference_layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of it.", to<&ComparePlan::reference_layer>},

@@ -129,7 +129,8 @@ TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
 std::string example(const Key& key) {
     const double x = key.range.low > 0 ? key.range.low : 1;
     switch (key.type) {
-        case Type::text: return "\"text\"";
+        case Type::text:
+        case Type::texts: return "\"text\"";
         case Type::check: return "\"bad(cosine) == 0\"";
         case Type::word: return '"' + key.words.front() + '"';
         case Type::flag: return "true";

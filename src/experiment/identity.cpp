@@ -41,6 +41,11 @@ std::string toml(const Key& key, const Value& value) {
         case Type::sampler:
         case Type::arm:
         case Type::shape: return toml_text(value.text);
+        case Type::texts: {
+            std::string out;
+            for (const std::string& text : value.texts) out += (out.empty() ? "" : ", ") + toml_text(text);
+            return "[" + out + "]";
+        }
         default: return list(value.numbers);
     }
 }

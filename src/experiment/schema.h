@@ -160,6 +160,7 @@ template <class T> void assign(std::optional<T>& to, const Value& v) { assign(to
 inline bool fetch(double from, Value& v) { return v.number = from, true; }
 inline bool fetch(bool from, Value& v) { return v.flag = from, v.word = from, true; }
 inline bool fetch(const std::string& from, Value& v) { return v.text = from, true; }
+inline bool fetch(const std::vector<std::string>& from, Value& v) { return v.texts = from, true; }
 inline bool fetch(const Vec3d& from, Value& v) { return v.numbers = {from.x, from.y, from.z}, true; }
 inline bool fetch(const Rgb& from, Value& v) { return v.numbers.assign(from.begin(), from.end()), true; }
 inline bool fetch(const std::vector<double>& from, Value& v) { return v.numbers = from, true; }
