@@ -11,7 +11,7 @@ calls() { nm -A -u "$@" 2>/dev/null | grep -E " U ($one)[fl]?(@.*)?$"; }
 printf '#include <math.h>\ndouble twice(double x) { return 2 * cos(x); }\n' >planted.c
 "${CXX:-g++}" -x c -c planted.c -o planted.o 2>/dev/null && { calls planted.o >/dev/null || die "a call of cos is not found"; }
 
-mapfile -t parts < <(find "${CRESCENT_BUILD:?the build folder}" -name 'libcrescent_*.a'; find "$CRESCENT_BUILD/cli" "$CRESCENT_BUILD/gl" "$CRESCENT_BUILD/film" -name '*.cpp.o' 2>/dev/null | grep -v _test)
+mapfile -t parts < <(find "${CRESCENT_BUILD:?the build folder}" -name 'libcrescent_*.a'; find "$CRESCENT_BUILD/cli" "$CRESCENT_BUILD/gl" "$CRESCENT_BUILD/explainer" -name '*.cpp.o' 2>/dev/null | grep -v _test)
 [ "${#parts[@]}" -gt 8 ] || die "too few parts: ${parts[*]}"
 calls "${parts[@]}" >found
 [ -s found ] && die "calls of the C library's functions:

@@ -20,6 +20,7 @@ using Values = std::vector<double>;
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 constexpr double lone_pixel = 0.5;  // a tile whose spread is half one pixel of one render is not judged by a t-test
+constexpr double few_events = 8;    // so few of the largest errors seen may have been missed by chance
 
 /// Mean and spread of the reference where it is one file: its own variance, if it says one, over independent pixels.
 MeanInterval one_file(double mean, double variance, double pixels) {
@@ -91,7 +92,7 @@ private:
         const std::vector<bool> differs = holm(p, alpha);
         for (std::size_t r = 0; r < p.size(); ++r) {
             MeanTest& t = out_.regions[r];
-            t.differs = differs[r];
+            t.differs = differs[r] && !by_chance(t.a - t.b, static_cast<double>(all_.regions[r].pixels.size()));
             if (t.why.empty()) t.smallest = detectable(t.welch, alpha / static_cast<double>(p.size())) / std::max(std::fabs(t.b), 1e-300);
         }
     }
@@ -113,10 +114,25 @@ private:
             const Welch w = test(a, b, std::nan(""), 1);
             out_.tile_difference[t] = mean_interval(a, confidence).mean - mean_interval(b, confidence).mean;
             if (alone(a_, t) || (other_ && alone(b_, t))) ++out_.tiles_left_out;
-            else out_.tile_p[t] = w.p, ++out_.tiles_tested;
+            else out_.tile_p[t] = by_chance(out_.tile_difference[t], pixels_of(t)) ? 1 : w.p, ++out_.tiles_tested;
         }
         out_.tile_differs = discoveries(out_.tile_p, alpha, out_.dependent);
         out_.tiles_different = static_cast<std::size_t>(std::count(out_.tile_differs.begin(), out_.tile_differs.end(), true));
+    }
+
+    /// A t-test cannot see rare events that none of the renders met. A difference that a few errors of the largest size
+    /// seen in the frame would make up may be such events, and is not told.
+    bool by_chance(double difference, double pixels) const {
+        double largest = 0;
+        for (const ArmReadings* arm : {&a_, other_ ? &b_ : nullptr})
+            if (arm && !arm->largest.back().empty()) largest = std::max(largest, std::sqrt(static_cast<double>(arm->largest.back().front())));
+        const std::size_t renders = other_ ? std::min(a_.files.size(), b_.files.size()) : a_.files.size();
+        return std::fabs(difference) * pixels * static_cast<double>(renders) < few_events * largest;
+    }
+
+    double pixels_of(std::size_t tile) const {
+        const int size = all_.tiles.size, column = static_cast<int>(tile) % all_.tiles.across, row = static_cast<int>(tile) / all_.tiles.across;
+        return static_cast<double>(std::min(size, all_.width - column * size)) * std::min(size, all_.height - row * size);
     }
 
     static bool alone(const ArmReadings& arm, std::size_t tile) {

@@ -103,7 +103,7 @@ std::string bias(const CompareResult& result) {
         }
         out += table.str();
         if (b.tile_p.empty()) continue;
-        out += html::p(fmt::format("Tiles: {} tested by Welch’s test over renders, {} differ (false discoveries controlled after {}), {} left out because one pixel of one render carries half of their spread.",
+        out += html::p(fmt::format("Tiles: {} tested by Welch’s test over renders, {} differ (false discoveries controlled after {}), {} left out because one pixel of one render carries half of their spread. A difference that eight of the largest errors seen would make up counts as none.",
                                    b.tiles_tested, b.tiles_different, b.dependent ? "Benjamini and Yekutieli: neighbouring pixels’ noise is correlated" : "Benjamini and Hochberg", b.tiles_left_out));
         if (b.pixel_p.empty()) continue;
         Axis x{0, 1, false, "p of a pixel", {0, 0.2, 0.4, 0.6, 0.8, 1}};

@@ -174,7 +174,7 @@ std::map<std::string, Picture> compare_plates(const ComparePlan& plan, const Rea
         const std::string file = fmt::format("bias-{}-{}", b.a, b.b == "the reference" ? "reference" : b.b);
         out[file] = tile_map(all, fmt::format("mean Y of {} less that of {}, tiles that differ", escaped(b.a), escaped(b.b)), b.tile_difference, b.tile_differs, top,
                              {{0, figures(-top, 2)}, {0.5, "0"}, {1, figures(top, 2)}}, escaped(b.sentence),
-                             fmt::format("{} tiles of {} x {} pixels tested, {} left out (one pixel carries half the spread); grey: not told apart", b.tiles_tested, all.tiles.size, all.tiles.size, b.tiles_left_out));
+                             fmt::format("{} tiles of {} x {} pixels tested, {} left out; grey: not told apart", b.tiles_tested, all.tiles.size, all.tiles.size, b.tiles_left_out));
     }
     for (const NoiseResult& n : result.noise)
         out[fmt::format("noise-{}-{}", n.a, n.b)] =
