@@ -8,7 +8,7 @@ small="$CRESCENT_SOURCE/laws/scripts/film.toml"
 # A cut of four seconds from the first shot into the second.
 expect 0 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:12 --out cut --quiet
 for name in crescent.mp4 crescent.vtt crescent.srt crescent.txt frames.json; do [ -s "cut/$name" ] || die "no $name"; done
-[ -z "$(find cut -name '.crescent-*')" ] || die "a stage is left behind"
+[ -z "$(find cut -regextype posix-extended -regex '.*/\.crescent-stage-[0-9a-f]{16}')" ] || die "a stage is left behind"
 ffprobe -v error -show_entries stream=codec_name,codec_type,width,height,pix_fmt,color_range,color_space,color_transfer,color_primaries,r_frame_rate,nb_frames:stream_disposition=attached_pic:chapter_tags=title -of flat cut/crescent.mp4 >probe 2>said || die "$(cat said)"
 for line in 'streams.stream.0.codec_name="h264"' 'streams.stream.0.width=640' 'streams.stream.0.height=360' 'streams.stream.0.pix_fmt="yuv420p"' \
     'streams.stream.0.color_range="tv"' 'streams.stream.0.color_space="bt709"' 'streams.stream.0.color_transfer="bt709"' \

@@ -7,6 +7,8 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --out good
 cp -a good before
 visible() { (cd "$1" && find -L . -type f ! -path './.*' ! -name timing.json -exec sha256sum {} + | sort -k 2); }
 visible before >of_before
+# Before main the handlers are not there yet: the dynamic loader is at work, and a sanitizer's start-up takes its time.
+case "$CRESCENT" in *sanitize*) silent="0 0.02 0.1" ;; *) silent="0" ;; esac
 for signal in INT TERM; do
     for after in 0 0.02 0.1 0.6; do
         # A job in the background ignores SIGINT unless it has a process group of its own.
@@ -21,7 +23,7 @@ for signal in INT TERM; do
         wait "$run"
         code=$?
         took=$((($(date +%s%N) - start) / 1000000))
-        if [ "$after" != 0 ]; then  # before that, the dynamic loader may still be at work
+        if [[ " $silent " != *" $after "* ]]; then
             [ "$code" -eq 130 ] || die "SIG$signal after $after s: exit $code: $(cat said)"
             grep -q 'untouched' said || die "SIG$signal after $after s: nothing is said of the outputs: $(cat said)"
         fi
