@@ -6,8 +6,7 @@
 cd "$CRESCENT_SOURCE" || exit 1
 
 for isa in sse4 avx2 avx512; do
-    for object in "${CRESCENT_BUILD:?}"/CMakeFiles/crescent_estimator.dir/src/estimator/kernel_$isa.cpp.o; do
-        [ -e "$object" ] || continue
+    for object in $(find "${CRESCENT_BUILD:?}" -name "kernel_$isa.cpp.o"); do
         shared=$(nm -C --defined-only "$object" | awk '$2 ~ /^[WVu]$/' | grep -v "crescent::$isa::")
         [ -z "$shared" ] || die "$object shares functions with other files: $shared"
         checked=1
