@@ -8,6 +8,7 @@
 
 #include "compare/schema.h"
 #include "base/text.h"
+#include "report/csv.h"
 #include "report/json_number.h"
 #include "report/numbers.h"
 
@@ -71,13 +72,6 @@ Json noise_json(const NoiseResult& n, const std::vector<PixelSet>&) {
 
 const char* word_of(CompareResult::State state) {
     return state == CompareResult::State::holds ? "holds" : state == CompareResult::State::fails ? "fails" : "inconclusive";
-}
-
-std::string csv_field(std::string_view field) {
-    if (field.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(field);
-    std::string out = "\"";
-    for (const char c : field) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
 }
 
 }  // namespace

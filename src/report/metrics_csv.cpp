@@ -2,25 +2,19 @@
 // the meters of the whole frame. Units are those of meters/metrics.h.
 #include <string_view>
 
+#include "report/csv.h"
 #include "report/numbers.h"
 #include "report/report.h"
 
 namespace crescent {
 namespace {
 
-std::string csv_quoted(std::string_view field) {
-    if (field.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(field);
-    std::string out = "\"";
-    for (const char c : field) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
-}
-
 struct Rows {
     std::string out;
     std::string run;  // "arm,n,s,seed,", the same for all rows of a run
 
     void add(std::string_view meter, std::string_view region, const std::string& value) {
-        out += run + csv_quoted(meter) + "," + csv_quoted(region) + "," + value + "\r\n";
+        out += run + csv_field(meter) + "," + csv_field(region) + "," + value + "\r\n";
     }
     void add(std::string_view meter, std::string_view region, double value) { add(meter, region, shortest(value)); }
 };
@@ -41,7 +35,7 @@ std::string metrics_csv(const ReportInputs& in) {
     Rows rows;
     rows.out = "arm,n,s,seed,meter,region,value\r\n";
     for (const RunMeter& run : in.metrics.runs) {
-        rows.run = csv_quoted(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
+        rows.run = csv_field(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
                    std::to_string(run.key.seed) + ",";
         for (const RegionMeter& r : run.regions) add_region(rows, r);
         rows.add("fireflies", "", std::to_string(run.fireflies));
