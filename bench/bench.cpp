@@ -1,6 +1,7 @@
-// crescent_bench FILE.toml N: one turn. One line an arm, as JSON, of the seconds that a film takes crescent's kernels and the
-// straightforward version, both on all cores, each the best of three films: what else the machine does can only add to it.
-// bench/compare.py takes several turns. The means of both are printed too: they must be of the same integral.
+// crescent_bench FILE.toml N: one turn. One line an arm, as JSON, of the seconds that a film takes crescent's kernels
+// and the straightforward version, both on all cores, each the best of three films: what else the machine does can only
+// add to it. bench/compare.py takes several turns. The means of both are printed too: they must be of the same
+// integral.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -32,13 +33,16 @@ void arm(const Scene& scene, const std::string& name, const std::string& sampler
     std::vector<Film> films;
     double plain_mean = 0;
     const double fast = best_of(films_a_turn, [&] { films = estimate_films(scene, sampler, {n}, 1, "", watch); });
-    const double plain = best_of(films_a_turn, [&] { plain_mean = bench::straightforward(scene, sampler, static_cast<int>(n), 1, threads); });
+    const double plain = best_of(
+        films_a_turn, [&] { plain_mean = bench::straightforward(scene, sampler, static_cast<int>(n), 1, threads); });
     double mean = 0;
     for (float y : films.front().y) mean += y;
     mean /= static_cast<double>(films.front().size());
-    std::cout << fmt::format(R"({{"arm": "{}", "crescent": {:.6f}, "straightforward": {:.6f}, "mean": {:.5f}, "straightforward_mean": {:.5f}}})", name,
-                             fast, plain, mean, plain_mean)
-              << std::endl;
+    std::cout
+        << fmt::format(
+               R"({{"arm": "{}", "crescent": {:.6f}, "straightforward": {:.6f}, "mean": {:.5f}, "straightforward_mean": {:.5f}}})",
+               name, fast, plain, mean, plain_mean)
+        << std::endl;
 }
 
 }  // namespace
@@ -52,9 +56,11 @@ int main(int argc, char** argv) try {
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     std::uint64_t pixels = 0;
     for (std::int16_t shape : shape_map(scene).shape) pixels += shape >= 0;
-    std::cout << fmt::format(R"({{"geometry_pixels": {}, "n": {}, "threads": {}, "isa": "{}", "version": "{}", "commit": "{}", "compiler": "{}"}})", pixels, n, threads,
-                             isas().back(), version(), commit(), compiler())
-              << std::endl;
+    std::cout
+        << fmt::format(
+               R"({{"geometry_pixels": {}, "n": {}, "threads": {}, "isa": "{}", "version": "{}", "commit": "{}", "compiler": "{}"}})",
+               pixels, n, threads, isas().back(), version(), commit(), compiler())
+        << std::endl;
     for (const ArmPlan& plan : experiment.arms) arm(scene, plan.name, plan.sampler, n, threads);
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';

@@ -1,5 +1,6 @@
-// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample, read off the very
-// source that the kernels are made of. + - * / and sqrt count one each; comparisons, selections and integers none.
+// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample, read off
+// the very source that the kernels are made of. + - * / and sqrt count one each; comparisons, selections and integers
+// none.
 #pragma once
 
 #include "crescent.h"
@@ -43,7 +44,8 @@ template <> inline Counted to_float<Counted>(std::uint32_t u) { return Counted(t
 
 namespace bench {
 
-/// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there is one.
+/// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there
+/// is one.
 template <class L> Counted carry(const Site<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
     const LocalDisk<Counted>& disk = site.disks[0];
     const L lobe(site.s, site.alpha);
@@ -63,7 +65,8 @@ template <template <class> class A, class L> std::uint64_t operations_per_sample
     Counted::operations = 0;
     const Vec2<Counted> u{unit_float<Counted>(0x51234567u), unit_float<Counted>(0x9abcdef0u)};
     if constexpr (requires { A<Counted>::techniques; }) {
-        const Drawn<Counted> a = arm.template sample_technique<0>(site.wo, u), b = arm.template sample_technique<1>(site.wo, u);
+        const Drawn<Counted> a = arm.template sample_technique<0>(site.wo, u),
+                             b = arm.template sample_technique<1>(site.wo, u);
         carry<L>(site, a, arm.template weight<0>(site.wo, a)), carry<L>(site, b, arm.template weight<1>(site.wo, b));
     } else {
         carry<L>(site, arm.sample(site.wo, u), c(1));

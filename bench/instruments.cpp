@@ -1,7 +1,8 @@
-// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every sampler of the list on the CPU and on GL, in
-// one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some repetitions,
-// CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's arithmetic peak in
-// Gflop/s as its maker states it; the last column is then the fraction of it that the samples' arithmetic makes (bench/counted.h).
+// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every sampler of the list on the CPU and on
+// GL, in one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some
+// repetitions, CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's
+// arithmetic peak in Gflop/s as its maker states it; the last column is then the fraction of it that the samples'
+// arithmetic makes (bench/counted.h).
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -56,16 +57,20 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
         glossy += shape >= 0 && experiment.shapes[static_cast<std::size_t>(shape)].material.rho_s > 0;
     }
     const double share = static_cast<double>(glossy) / static_cast<double>(pixels);
-    std::cout << fmt::format("CPU: {}, {} threads, {}  \nGL: {}  \n{}, N = {}, {} geometry pixels; crescent {} {}, {}\n\n", processor(), std::thread::hardware_concurrency(),
-                             isas().back(), gl->name(), experiment.file, n, pixels, version(), commit(), compiler());
-    std::cout << "| arm | CPU, Msamples/s | GL, Msamples/s | CPU / GL | operations a sample |" << (peak > 0 ? " of the peak |" : "") << "\n|---|--:|--:|--:|--:|"
-              << (peak > 0 ? "--:|" : "") << std::endl;
+    std::cout << fmt::format(
+        "CPU: {}, {} threads, {}  \nGL: {}  \n{}, N = {}, {} geometry pixels; crescent {} {}, {}\n\n", processor(),
+        std::thread::hardware_concurrency(), isas().back(), gl->name(), experiment.file, n, pixels, version(), commit(),
+        compiler());
+    std::cout << "| arm | CPU, Msamples/s | GL, Msamples/s | CPU / GL | operations a sample |"
+              << (peak > 0 ? " of the peak |" : "") << "\n|---|--:|--:|--:|--:|" << (peak > 0 ? "--:|" : "")
+              << std::endl;
     for_each_arm(Arms{}, [&]<template <class> class A>() {
         const std::string name(A<float>::name);
         const double operations = share * static_cast<double>(bench::operations_per_sample<A, PhongLobe<Counted>>()) +
-                                  (1 - share) * static_cast<double>(bench::operations_per_sample<A, NoLobe<Counted>>());
+            (1 - share) * static_cast<double>(bench::operations_per_sample<A, NoLobe<Counted>>());
         const Figures f = measure_arm(scene, *gl, name, n, static_cast<double>(pixels * n));
-        std::cout << fmt::format("| {} | {:.1f} | {:.1f} | {:.2f} | {:.0f} |", name, f.cpu, f.gl, f.cpu / f.gl, operations);
+        std::cout << fmt::format(
+            "| {} | {:.1f} | {:.1f} | {:.2f} | {:.0f} |", name, f.cpu, f.gl, f.cpu / f.gl, operations);
         if (peak > 0) std::cout << fmt::format(" {:.1f} % |", 100 * f.gl * 1e-3 * operations / peak);
         std::cout << std::endl;
     });
@@ -74,13 +79,15 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
 }  // namespace
 
 int main(int argc, char** argv) try {
-    if (argc < 3 || argc > 6) throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
+    if (argc < 3 || argc > 6)
+        throw InputError({"crescent_instruments", 0, 0}, "expected FILE.toml N [CONTEXT [DEVICE [PEAK]]]");
     const auto kind = find_instrument("gl");
     if (!kind) throw OutputError("this build has no GL instrument");
     Experiment experiment = load(argv[1]);
     for (Shape& shape : experiment.shapes)
         if (!shape.material.alpha) shape.material.alpha = 0.2;  // the GGX arms aim by it
-    table(experiment, std::stoull(argv[2]), kind->open({argc > 3 ? argv[3] : "", argc > 4 ? std::stoi(argv[4]) : -1}), argc > 5 ? std::stod(argv[5]) : 0);
+    table(experiment, std::stoull(argv[2]), kind->open({argc > 3 ? argv[3] : "", argc > 4 ? std::stoi(argv[4]) : -1}),
+        argc > 5 ? std::stod(argv[5]) : 0);
 } catch (const std::exception& e) {
     std::cerr << e.what() << '\n';
     return 2;

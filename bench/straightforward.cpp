@@ -117,7 +117,8 @@ double straightforward(const Scene& scene, const std::string& sampler, int n, st
     std::vector<std::thread> crew;
     for (int t = 0; t < threads; ++t)
         crew.emplace_back([&, t] {
-            for (int j = t; j < image.height; j += threads) rows[static_cast<std::size_t>(j)] = row(scene, sampler, j, n, seed);
+            for (int j = t; j < image.height; j += threads)
+                rows[static_cast<std::size_t>(j)] = row(scene, sampler, j, n, seed);
         });
     for (std::thread& worker : crew) worker.join();
     double sum = 0;

@@ -18,7 +18,8 @@ namespace {
 double number_in(const std::string& text, const std::string& what) {
     double v = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) throw InputError({what, 0, 0}, "expected a number, not '" + text + "'");
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty())
+        throw InputError({what, 0, 0}, "expected a number, not '" + text + "'");
     return v;
 }
 
@@ -30,17 +31,22 @@ std::string shortest(double v) {
 
 Settings settings_of(const CheckFlags& flags) {
     Settings out;
-    const std::map<std::string, std::pair<double, double>> ranges = {{"s", {1e-3, 1e6}}, {"alpha", {1e-4, 1}}, {"rho_d", {0, 1}}, {"rho_s", {0, 1}}};
+    const std::map<std::string, std::pair<double, double>> ranges = {
+        {"s", {1e-3, 1e6}}, {"alpha", {1e-4, 1}}, {"rho_d", {0, 1}}, {"rho_s", {0, 1}}};
     for (const std::string& word : flags.settings) {
         const std::size_t equals = word.find('=');
         const std::string key = word.substr(0, equals);
         if (equals == std::string::npos || !ranges.count(key)) {
             const std::string near = nearest(key, {"s", "alpha", "rho_d", "rho_s"});
-            throw InputError({"--set " + word, 0, 0}, "expected s=, alpha=, rho_d= or rho_s= and a number" + (near.empty() || near == key ? "" : "; did you mean '" + near + "'?"));
+            throw InputError({"--set " + word, 0, 0},
+                "expected s=, alpha=, rho_d= or rho_s= and a number" +
+                    (near.empty() || near == key ? "" : "; did you mean '" + near + "'?"));
         }
         const double v = number_in(word.substr(equals + 1), "--set " + word);
         const auto [low, high] = ranges.at(key);
-        if (!(v >= low && v <= high)) throw InputError({"--set " + word, 0, 0}, key + " is at least " + shortest(low) + " and at most " + shortest(high));
+        if (!(v >= low && v <= high))
+            throw InputError(
+                {"--set " + word, 0, 0}, key + " is at least " + shortest(low) + " and at most " + shortest(high));
         out[key] = v;
     }
     return out;
@@ -57,7 +63,8 @@ Vec3d direction_of(const std::string& text) {
     }
     const Vec3d w{v[0], v[1], v[2]};
     const double size = length(w);
-    if (!(size > 0.99 && size < 1.01) || !(w.z > 0)) throw InputError({"--wo " + text, 0, 0}, "expected a unit vector above the horizon, z > 0");
+    if (!(size > 0.99 && size < 1.01) || !(w.z > 0))
+        throw InputError({"--wo " + text, 0, 0}, "expected a unit vector above the horizon, z > 0");
     return normalize(w);
 }
 
@@ -80,23 +87,32 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
         return trials_of_subject(start_pipe(flags.exec, limits), flags.full);
     }
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
-    if (flags.wo.empty() || flags.table.empty()) throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
+    if (flags.wo.empty() || flags.table.empty())
+        throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
     const Vec3d wo = direction_of(flags.wo);
-    Trial t = trial_of_subject(std::make_shared<SampleFile>(flags.samples, flags.table), math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
+    Trial t = trial_of_subject(std::make_shared<SampleFile>(flags.samples, flags.table),
+        math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
     t.wo = wo;
     return {t};
 }
 
-int exit_of(State state) { return state == State::wrong ? failed : state == State::error ? unwritable : state == State::inconclusive ? inconclusive : held; }
+int exit_of(State state) {
+    return state == State::wrong       ? failed
+        : state == State::error        ? unwritable
+        : state == State::inconclusive ? inconclusive
+                                       : held;
+}
 
 /// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
 std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
-    for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--samples", &f.samples}, {"--pdf-table", &f.table}, {"--wo", &f.wo}})
+    for (const auto& [flag, value] :
+        {std::pair("--exec", &f.exec), {"--samples", &f.samples}, {"--pdf-table", &f.table}, {"--wo", &f.wo}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
-    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted}, {"--accept-few", f.accept_few}})
+    for (const auto& [flag, given] :
+        {std::pair("--full", f.full), {"--planted", f.planted}, {"--accept-few", f.accept_few}})
         if (given) out += std::string(" ") + flag;
     if (f.patience > 0) out += " --patience " + shortest(f.patience);
     if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
@@ -152,7 +168,8 @@ int check_planted(const CheckFlags& flags, Progress& watch) {
         j.verdicts.push_back(caught_or_not(fault, caught));
         j.as_expected = j.as_expected && !caught.empty();
         char line[256];
-        std::snprintf(line, sizeof line, "%-66s %-12s %s\n", fault.name.c_str(), fault.breaks.c_str(), caught.empty() ? "NOT CAUGHT" : caught.c_str());
+        std::snprintf(line, sizeof line, "%-66s %-12s %s\n", fault.name.c_str(), fault.breaks.c_str(),
+            caught.empty() ? "NOT CAUGHT" : caught.c_str());
         text += line;
     }
     j.state = j.as_expected ? State::right : State::wrong;
@@ -164,11 +181,13 @@ int check_planted(const CheckFlags& flags, Progress& watch) {
 
 bool keeps_promise(const RightLaw& law) { return rate_interval(law.accused, law.judged).first <= law.alpha; }
 
-/// Right samplers at random parameters in quick and in full mode, where --right asks for them; kept: no more of them are accused than
-/// was promised.
+/// Right samplers at random parameters in quick and in full mode, where --right asks for them; kept: no more of them
+/// are accused than was promised.
 std::string right_tables(const CheckFlags& flags, Watch& watch, bool& kept) {
     if (flags.right == 0) return {};
-    std::string out = "Samplers of many families, the parameters and w_o of each drawn at random, each judged by a call of its own.\n";
+    std::string out =
+        "Samplers of many families, the parameters and w_o of each drawn at random, each judged by a call of its "
+        "own.\n";
     for (Rigour rigour : {Rigour::quick(), Rigour::thorough()}) {
         rigour.alpha = flags.alpha;
         rigour.seed = flags.seed;
@@ -189,7 +208,8 @@ std::string command_of_rates(const CheckFlags& f) {
     return out + " --seed " + std::to_string(f.seed);
 }
 
-/// All tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and the promises to what is right are kept.
+/// All tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and the promises to what is right
+/// are kept.
 int check_error_rates(const CheckFlags& flags, Watch& watch) {
     Rigour rigour = rigour_of(flags);
     rigour.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
@@ -199,10 +219,12 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     std::vector<Caught> table;
     const std::vector<PlantedFault> quick = planted_faults(false), full = planted_faults(true);
     for (std::size_t i = 0; i < quick.size(); ++i) {
-        table.push_back({quick[i].name, quick[i].breaks, catchers(quick[i], Rigour::quick(), watch), catchers(full[i], Rigour::thorough(), watch)});
+        table.push_back({quick[i].name, quick[i].breaks, catchers(quick[i], Rigour::quick(), watch),
+            catchers(full[i], Rigour::thorough(), watch)});
         kept = kept && !table.back().full.empty();
     }
-    print(error_rates_text(alarms, law, table, command_of_rates(flags), "crescent " + crescent::version() + ", commit " + crescent::commit()));
+    print(error_rates_text(alarms, law, table, command_of_rates(flags),
+        "crescent " + crescent::version() + ", commit " + crescent::commit()));
     return kept ? held : failed;
 }
 
@@ -226,7 +248,8 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
         v.trial = "start";
         v.name = name;
         v.state = j.state;
-        v.say = name == "valid" ? "The sampler never came to be judged: " + std::string(fault.what()) + "." : "It could not be asked: the sampler never came to be judged.";
+        v.say = name == "valid" ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
+                                : "It could not be asked: the sampler never came to be judged.";
         v.expected = false;
         j.verdicts.push_back(v);
     }
@@ -247,14 +270,14 @@ int check(const CheckFlags& flags) {
     try {
         const std::vector<Trial> trials = trials_for(flags, watch);
         j = judge(trials, rigour_of(flags), watch);
-    } catch (const SubjectFault& fault) {
-        j = complaint(fault, flags);
-    }
+    } catch (const SubjectFault& fault) { j = complaint(fault, flags); }
     watch.clear();
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.samples.empty();
     if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
     print(verdict_table(j));
-    if (whole_list) print(j.as_expected ? "every arm gets the verdicts that the list expects\n" : "not every arm gets the verdicts that the list expects\n");
+    if (whole_list)
+        print(j.as_expected ? "every arm gets the verdicts that the list expects\n"
+                            : "not every arm gets the verdicts that the list expects\n");
     write_files(flags, j);
     return exit_of(j.state);
 }

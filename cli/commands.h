@@ -11,10 +11,11 @@ namespace crescent::cli {
 
 /// What the program returns to its caller; the same for every command.
 enum Exit : int {
-    held = 0,          // done, and everything asserted holds (check: right)
-    failed = 1,        // done, and an assertion fails (check: wrong)
-    misused = 2,       // the command line or the experiment file is wrong; nothing was written
-    unwritable = 3,    // an output could not be written, a needed part is missing, or (check) the sampler broke off: an error
+    held = 0,     // done, and everything asserted holds (check: right)
+    failed = 1,   // done, and an assertion fails (check: wrong)
+    misused = 2,  // the command line or the experiment file is wrong; nothing was written
+    unwritable =
+        3,  // an output could not be written, a needed part is missing, or (check) the sampler broke off: an error
     inconclusive = 4,  // check: neither right nor wrong
     bug = 70,          // a claim of our own did not hold (EX_SOFTWARE of sysexits.h)
     interrupted = 130  // SIGINT or SIGTERM
@@ -25,10 +26,10 @@ struct RunFlags {
     std::vector<std::string> overrides;  // PATH=VALUE
     std::string out, isa;                // "": the default
     std::string instrument = "cpu";
-    std::string gl_context;              // "": EGL
-    int gl_device = -1;                  // -1: a GPU where there is one
-    int seeds = 0, threads = 0;          // 0: the file's; as many as the machine has
-    double keep_after = 10;              // s
+    std::string gl_context;      // "": EGL
+    int gl_device = -1;          // -1: a GPU where there is one
+    int seeds = 0, threads = 0;  // 0: the file's; as many as the machine has
+    double keep_after = 10;      // s
     bool quiet = false;
 };
 int run(const RunFlags& flags);
@@ -37,7 +38,7 @@ struct FilmFlags {
     std::string file;
     std::vector<std::string> overrides;  // PATH=VALUE
     std::string size = "1080p";
-    int seeds = 0;                       // 0: the file's
+    int seeds = 0;  // 0: the file's
     FilmOptions options;
     bool quiet = false;
 };
@@ -54,22 +55,22 @@ struct SchemaFlags {
 int schema(const SchemaFlags& flags);
 
 struct CheckFlags {
-    std::string arm;                     // "": all of the list
-    std::vector<std::string> settings;   // s=128
+    std::string arm;                    // "": all of the list
+    std::vector<std::string> settings;  // s=128
     std::string exec, samples, table, wo;
     std::string json, timing, junit, html;  // files to write
-    double alpha = 1e-3, patience = 0;   // patience: s a program may take; 0: two minutes, with --full an hour
-    unsigned seed = 1, error_rates = 0;  // error_rates: how many seeds; 0: not asked for
-    unsigned right = 0, first = 0;       // right: how many right samplers; 0: not asked for
+    double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
+    unsigned seed = 1, error_rates = 0;     // error_rates: how many seeds; 0: not asked for
+    unsigned right = 0, first = 0;          // right: how many right samplers; 0: not asked for
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false;
 };
 int check(const CheckFlags& flags);
 
 struct CompareFlags {
-    std::string file, out;                                       // "": none; out/compare
-    std::vector<std::string> arms, reference, regions, masks;    // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
-    std::vector<std::string> layers, spp, seconds, assertions;   // NAME=LAYER, [NAME=]N, [NAME=]S, a check
-    std::string expect, smallest, exposure, alpha, trim;         // "": the file's
+    std::string file, out;                                      // "": none; out/compare
+    std::vector<std::string> arms, reference, regions, masks;   // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
+    std::vector<std::string> layers, spp, seconds, assertions;  // NAME=LAYER, [NAME=]N, [NAME=]S, a check
+    std::string expect, smallest, exposure, alpha, trim;        // "": the file's
     bool pair = false, schema = false, quiet = false;
 };
 int compare(const CompareFlags& flags);

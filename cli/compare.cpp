@@ -13,19 +13,22 @@ namespace {
 /// "NAME=VALUE" of a flag; `what` stands in the complaint.
 std::pair<std::string, std::string> cut(const std::string& flag, const std::string& text, const char* what) {
     const std::size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos) throw InputError({flag + " " + text, 0, 0}, std::string("expected ") + what);
+    if (equals == 0 || equals == std::string::npos)
+        throw InputError({flag + " " + text, 0, 0}, std::string("expected ") + what);
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 /// A number for all arms, or for one by name.
-void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all, const std::string& flag, const char* key) {
+void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all,
+    const std::string& flag, const char* key) {
     for (const std::string& text : all) {
         if (text.find('=') != std::string::npos) {
             const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
             out.push_back({{"arms", arm, key}, value, true, flag + " " + text});
             continue;
         }
-        for (const std::string& arm : flags.arms) out.push_back({{"arms", arm.substr(0, arm.find('=')), key}, text, true, flag + " " + text});
+        for (const std::string& arm : flags.arms)
+            out.push_back({{"arms", arm.substr(0, arm.find('=')), key}, text, true, flag + " " + text});
     }
 }
 
@@ -51,10 +54,12 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     }
     per_arm(out, f, f.spp, "--spp", "spp");
     per_arm(out, f, f.seconds, "--seconds", "seconds");
-    for (const std::string& text : f.assertions) out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
+    for (const std::string& text : f.assertions)
+        out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
     if (f.pair) out.push_back({{"pair"}, "true", true, "--pair"});
     if (!f.expect.empty()) out.push_back({{"expect"}, f.expect, false, "--expect " + f.expect});
-    const std::pair<const char*, std::string> numbers[] = {{"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}};
+    const std::pair<const char*, std::string> numbers[] = {
+        {"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}};
     for (const auto& [key, text] : numbers)
         if (!text.empty()) out.push_back({{key}, text, true, std::string("--") + key + " " + text});
     if (!f.smallest.empty()) {
@@ -71,10 +76,12 @@ std::string command_of(const CompareFlags& f) {
     const auto all = [&](const char* flag, const std::vector<std::string>& values) {
         for (const std::string& value : values) out += fmt::format(" {} {}", flag, shell_word(value));
     };
-    all("--arm", f.arms), all("--reference", f.reference), all("--region", f.regions), all("--mask", f.masks), all("--layer", f.layers);
+    all("--arm", f.arms), all("--reference", f.reference), all("--region", f.regions), all("--mask", f.masks),
+        all("--layer", f.layers);
     all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
     if (f.pair) out += " --pair";
-    const std::pair<const char*, std::string> rest[] = {{"--expect", f.expect}, {"--smallest", f.smallest}, {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}};
+    const std::pair<const char*, std::string> rest[] = {{"--expect", f.expect}, {"--smallest", f.smallest},
+        {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}};
     for (const auto& [flag, value] : rest)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     return out;
@@ -84,17 +91,22 @@ std::string command_of(const CompareFlags& f) {
 
 int compare(const CompareFlags& flags) {
     if (flags.schema) return print(compare_schema_text()), held;
-    if (flags.file.empty() && flags.arms.empty()) throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
+    if (flags.file.empty() && flags.arms.empty())
+        throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);
     Provenance provenance;
-    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(), provenance.command = command_of(flags);
+    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
+    provenance.command = command_of(flags);
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
     std::string summary;
-    const CompareResult result = crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
+    const CompareResult result =
+        crescent::compare(plan, {flags.out.empty() ? "out/compare" : flags.out}, provenance, progress, summary);
     progress.clear();
     print(summary);
-    return result.state == CompareResult::State::holds ? held : result.state == CompareResult::State::fails ? failed : inconclusive;
+    return result.state == CompareResult::State::holds ? held
+        : result.state == CompareResult::State::fails  ? failed
+                                                       : inconclusive;
 }
 
 }  // namespace crescent::cli

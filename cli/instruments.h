@@ -8,8 +8,8 @@
 
 namespace crescent::cli {
 
-/// Null for "cpu", which is built in. Throws InputError where flags do not fit together, OutputError where this build has
-/// no such instrument or the machine lacks a part of it.
+/// Null for "cpu", which is built in. Throws InputError where flags do not fit together, OutputError where this build
+/// has no such instrument or the machine lacks a part of it.
 std::shared_ptr<Instrument> instrument(const RunFlags& flags);
 
 }  // namespace crescent::cli

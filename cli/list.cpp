@@ -16,7 +16,8 @@ struct Word {
 /// The words that a key of a section takes.
 std::vector<Word> words_of_key(const char* section, const char* key) {
     std::vector<Word> out;
-    for (const std::string& word : crescent::schema().find_section(section)->find_key(key)->words) out.push_back({word, ""});
+    for (const std::string& word : crescent::schema().find_section(section)->find_key(key)->words)
+        out.push_back({word, ""});
     return out;
 }
 
@@ -42,7 +43,8 @@ std::vector<Word> instruction_sets() {
 std::vector<Word> devices() {
     std::vector<Word> out;
     for (const auto& kind : instrument_kinds())
-        for (const InstrumentDevice& device : kind->devices()) out.push_back({fmt::format("{}  {}", device.number, device.means), ""});
+        for (const InstrumentDevice& device : kind->devices())
+            out.push_back({fmt::format("{}  {}", device.number, device.means), ""});
     return out;
 }
 
@@ -66,7 +68,8 @@ const std::vector<Topic>& topics() {
 
 std::string lines(const std::vector<Word>& words, const char* indent) {
     std::string out;
-    for (const Word& w : words) out += indent + (w.means.empty() ? w.word : fmt::format("{:<32}  {}", w.word, w.means)) + "\n";
+    for (const Word& w : words)
+        out += indent + (w.means.empty() ? w.word : fmt::format("{:<32}  {}", w.word, w.means)) + "\n";
     return out;
 }
 
@@ -78,7 +81,8 @@ std::string lines(const std::vector<Word>& words, const char* indent) {
         all += (all.empty() ? "" : ", ") + topic.name;
     }
     const std::string near = nearest(what, names);
-    throw InputError({"crescent list", 0, 0}, "expected one of " + all + ", not '" + what + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    throw InputError({"crescent list", 0, 0},
+        "expected one of " + all + ", not '" + what + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 }  // namespace
@@ -90,7 +94,8 @@ int list(const ListFlags& flags) {
         known = known || flags.what == topic.name;
         if (flags.what.empty())
             out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" +
-                   (topic.by_name_alone ? "  `crescent list " + topic.name + "` asks the machine\n" : lines(topic.words(), "  "));
+                (topic.by_name_alone ? "  `crescent list " + topic.name + "` asks the machine\n"
+                                     : lines(topic.words(), "  "));
         if (flags.what == topic.name) out = lines(topic.words(), "");
     }
     if (!known) unknown(flags.what);

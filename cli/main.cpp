@@ -40,17 +40,13 @@ int complain(int code, const std::string& text) {
 int perform(int argc, char** argv) {
     try {
         return parse(argc, argv)();
-    } catch (const InputError& e) {
-        return complain(misused, e.what());
-    } catch (const OutputError& e) {
+    } catch (const InputError& e) { return complain(misused, e.what()); } catch (const OutputError& e) {
         return complain(unwritable, std::string("crescent: ") + e.what());
     } catch (const Interrupted&) {
         return complain(interrupted, "crescent: interrupted; what was there before is untouched");
     } catch (const std::bad_alloc&) {
         return complain(unwritable, "crescent: out of memory");
-    } catch (const std::exception& e) {
-        return complain(bug, std::string("crescent: a bug of its own: ") + e.what());
-    }
+    } catch (const std::exception& e) { return complain(bug, std::string("crescent: a bug of its own: ") + e.what()); }
 }
 
 }  // namespace

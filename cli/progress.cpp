@@ -40,7 +40,8 @@ void to_stderr(const std::string& text) {
 std::string progress_line(std::string_view what, double done, double total, double seconds) {
     const double part = total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0;
     const auto cells = static_cast<std::size_t>(std::lround(part * bar_cells));
-    std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(cells, '#'), std::string(bar_cells - cells, '-'), std::floor(100 * part));
+    std::string line = fmt::format(
+        "[{}{}] {:3.0f} %", std::string(cells, '#'), std::string(bar_cells - cells, '-'), std::floor(100 * part));
     if (seconds > 0.2 && done > 0) {
         line += fmt::format("  {:>9}", rate(done / seconds));
         if (total > done) line += fmt::format("  {} left", minutes(seconds * (total - done) / done));

@@ -20,7 +20,7 @@ std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no lon
 timer_t deadline;
 constexpr long patience_ns = 500'000'000;  // a large process takes a while to end
 
-constexpr long moving_patience_s = 5;         // outputs that are being moved are let finish, as a disk permits
+constexpr long moving_patience_s = 5;  // outputs that are being moved are let finish, as a disk permits
 
 /// What stands under the final names when the process ends here.
 const char* last_words() {
@@ -60,7 +60,7 @@ extern "C" void ask_to_stop(int signal) {
 }
 
 void handle(int signal, void (*handler)(int)) {
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
@@ -70,7 +70,7 @@ void handle(int signal, void (*handler)(int)) {
 }  // namespace
 
 void end_on_signals() {
-    struct sigaction before {};
+    struct sigaction before{};
     for (const int signal : {SIGINT, SIGTERM}) handle(signal, end_now);
     if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(SIGHUP, end_now);  // nohup
 }
@@ -93,7 +93,7 @@ StopOnSignal::StopOnSignal(Watch& watch) {
     event.sigev_signo = SIGALRM;
     ::timer_create(CLOCK_MONOTONIC, &event, &deadline);
     handle(SIGALRM, time_is_up);
-    struct sigaction before {};
+    struct sigaction before{};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, ask_to_stop);
 }

@@ -55,7 +55,7 @@ std::vector<Tick> values(const std::vector<double>& at, int digits) {
 }
 
 void Axes::draw(Frame& f, const std::vector<Tick>& below, const std::vector<Tick>& left, const Words& across_name,
-                const Words& up_name, double alpha) const {
+    const Words& up_name, double alpha) const {
     constexpr double room = 150, line = 36;
     f.line({box.x, box.y}, {box.x, box.bottom()}, muted, 2, alpha);
     f.line({box.x, box.bottom()}, {box.right(), box.bottom()}, muted, 2, alpha);

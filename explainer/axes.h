@@ -36,7 +36,7 @@ struct Axes {
 
     /// The two axes with their ticks, labels left and below, and what each is: over the upright one, under the other.
     void draw(Frame& f, const std::vector<Tick>& below, const std::vector<Tick>& left, const Words& across_name,
-              const Words& up_name, double alpha = 1) const;
+        const Words& up_name, double alpha = 1) const;
 };
 
 }  // namespace crescent::film

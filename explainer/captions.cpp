@@ -54,7 +54,9 @@ std::string subrip(const Timeline& timeline, const Part& part) {
     std::string text;
     int number = 0;
     for (const Caption& c : within(timeline, part))
-        text += fmt::format("{}{}\n{} --> {}\n{}\n", number > 0 ? "\n" : "", number + 1, stamp(c.from, ','), stamp(c.to, ','), c.words.plain()), ++number;
+        text += fmt::format("{}{}\n{} --> {}\n{}\n", number > 0 ? "\n" : "", number + 1, stamp(c.from, ','),
+            stamp(c.to, ','), c.words.plain()),
+            ++number;
     return text;
 }
 
@@ -76,10 +78,11 @@ std::string transcript(const Timeline& timeline, const Part& part) {
 std::string chapters(const Timeline& timeline, const Part& part, const std::string& title) {
     std::string text = ";FFMETADATA1\ntitle=" + in_ffmetadata(title) + "\n";
     for (std::size_t k = 0; k < timeline.shots().size(); ++k) {
-        const int from = std::max(timeline.begin(k), part.first) - part.first, to = std::min(timeline.begin(k + 1), part.last) - part.first;
+        const int from = std::max(timeline.begin(k), part.first) - part.first,
+                  to = std::min(timeline.begin(k + 1), part.last) - part.first;
         if (from >= to) continue;
         text += fmt::format("[CHAPTER]\nTIMEBASE=1/{}\nSTART={}\nEND={}\ntitle={}\n", frames_a_second, from, to,
-                            in_ffmetadata(timeline.shots()[k].title.plain()));
+            in_ffmetadata(timeline.shots()[k].title.plain()));
     }
     return text;
 }

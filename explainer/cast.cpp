@@ -19,8 +19,9 @@ std::string needed(const Experiment& e, const std::string& sampler, std::vector<
     std::vector<std::string> there;
     for (const ArmPlan& arm : e.arms) there.push_back(arm.sampler);
     const std::string near = nearest(sampler, there);
-    wrong.push_back({e.place_of("arms"), fmt::format("the film compares 'cosine' with 'phong', and no arm here samples by '{}'{}; expected [arms.{}]", sampler,
-                                                     near.empty() ? "" : " (nearest: '" + near + "')", sampler)});
+    wrong.push_back({e.place_of("arms"),
+        fmt::format("the film compares 'cosine' with 'phong', and no arm here samples by '{}'{}; expected [arms.{}]",
+            sampler, near.empty() ? "" : " (nearest: '" + near + "')", sampler)});
     return "";
 }
 
@@ -55,12 +56,20 @@ Cast cast_of(Experiment& e) {
     if (const ArmPlan* arm = by_sampler(e, "uniform")) c.uniform = arm->name;
     if (!c.cosine.empty() && !c.phong.empty()) {
         c.rungs = shared(*e.find_arm(c.cosine), *e.find_arm(c.phong));
-        if (c.rungs.size() < 2) wrong.push_back({e.place_of("arms." + c.phong), fmt::format("the film follows '{}' and '{}' up one ladder; expected two n or more that both have", c.cosine, c.phong)});
+        if (c.rungs.size() < 2)
+            wrong.push_back({e.place_of("arms." + c.phong),
+                fmt::format("the film follows '{}' and '{}' up one ladder; expected two n or more that both have",
+                    c.cosine, c.phong)});
     }
-    if (e.regions.size() < 2) wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
-    if (e.disks.empty()) wrong.push_back({e.place_of("disks"), "the film needs a disk light: it is what a cosine sample rarely meets"});
-    const bool lobe = std::ranges::any_of(e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == BrdfKind::phong; });
-    if (!lobe) wrong.push_back({e.place_of("shapes"), "the film needs a shape with a Phong lobe: rho_s above 0 and brdf = \"phong\""});
+    if (e.regions.size() < 2)
+        wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
+    if (e.disks.empty())
+        wrong.push_back({e.place_of("disks"), "the film needs a disk light: it is what a cosine sample rarely meets"});
+    const bool lobe = std::ranges::any_of(
+        e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == BrdfKind::phong; });
+    if (!lobe)
+        wrong.push_back(
+            {e.place_of("shapes"), "the film needs a shape with a Phong lobe: rho_s above 0 and brdf = \"phong\""});
     if (!wrong.empty()) throw InputError(std::move(wrong));
 
     c.highlight = e.regions.front().name;
@@ -69,7 +78,8 @@ Cast cast_of(Experiment& e) {
     c.s = e.s(), c.seed = e.seed;
     c.n = std::ranges::find(c.rungs, e.n) != c.rungs.end() ? e.n : c.rungs[c.rungs.size() / 2];
     c.mixture = added(e, "mixture", {c.n});
-    c.mis = added(e, "mis-balance", c.n > 1 ? std::vector<std::uint64_t>{c.n / 2, c.n} : std::vector<std::uint64_t>{c.n});
+    c.mis =
+        added(e, "mis-balance", c.n > 1 ? std::vector<std::uint64_t>{c.n / 2, c.n} : std::vector<std::uint64_t>{c.n});
     return c;
 }
 

@@ -20,7 +20,8 @@ struct Cast {
     std::vector<std::uint64_t> rungs;  // that cosine and phong share, ascending
 };
 
-/// Adds the arms that go beyond the story to `experiment` and says who is who. InputError with everything that is missing.
+/// Adds the arms that go beyond the story to `experiment` and says who is who. InputError with everything that is
+/// missing.
 Cast cast_of(Experiment& experiment);
 
 }  // namespace crescent::film

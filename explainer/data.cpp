@@ -21,7 +21,9 @@ std::vector<Film> opening_of(const Experiment& experiment, const Cast& cast, con
 
 }  // namespace
 
-RunKey Data::key(const std::string& arm, std::uint64_t n, double s) const { return {arm, n > 0 ? n : cast.n, s > 0 ? s : cast.s, cast.seed}; }
+RunKey Data::key(const std::string& arm, std::uint64_t n, double s) const {
+    return {arm, n > 0 ? n : cast.n, s > 0 ? s : cast.s, cast.seed};
+}
 
 const Film* Data::film(const RunKey& key) const {
     const auto found = std::ranges::find(films, key, &std::pair<RunKey, Film>::first);

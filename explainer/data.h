@@ -14,7 +14,7 @@ namespace crescent::film {
 struct Measures;  // measures/measures.h
 
 struct Data {
-    Experiment experiment;  // with the arms that the film adds
+    Experiment experiment;        // with the arms that the film adds
     std::string experiment_hash;  // of the experiment as it was given
     Cast cast;
     Metrics metrics;
@@ -23,7 +23,7 @@ struct Data {
     ShapeMap shapes;
     std::vector<std::pair<RunKey, Film>> films;
     std::vector<ReferenceFilm> references;  // the ones the meters use, one an exponent
-    std::vector<Film> opening;  // the cosine arm's doublings from one sample on
+    std::vector<Film> opening;              // the cosine arm's doublings from one sample on
     std::shared_ptr<const Measures> measures;
 
     RunKey key(const std::string& arm, std::uint64_t n = 0, double s = 0) const;  // 0: the cast's
@@ -46,7 +46,8 @@ plates::Block photograph_of(const Data& data, const plates::View& view, const Bo
 /// A box of w x h around the middle of `of`, moved so that it lies in the image.
 Box around(const Data& data, const Box& of, int w, int h);
 
-/// Runs the experiment in memory, with the arms and rungs that the film adds. InputError where it lacks what the film needs.
+/// Runs the experiment in memory, with the arms and rungs that the film adds. InputError where it lacks what the film
+/// needs.
 Data collect(const Experiment& experiment, const RunOptions& options, Watch& watch);
 
 }  // namespace crescent::film

@@ -6,7 +6,9 @@
 namespace crescent::film {
 
 Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin) {
-    const auto times_for = [&](double w, double h) { return std::clamp(static_cast<int>(std::min(slot.w / w, slot.h / h)), 1, 12); };
+    const auto times_for = [&](double w, double h) {
+        return std::clamp(static_cast<int>(std::min(slot.w / w, slot.h / h)), 1, 12);
+    };
     Closeup c;
     c.times = times_for(margin * of.width(), margin * of.height());
     c.box = around(data, of, static_cast<int>(slot.w) / c.times, static_cast<int>(slot.h) / c.times);
@@ -26,7 +28,8 @@ Rect show(Frame& f, const Block& block, int times, const Rect& slot, double alph
 
 Rect on_picture(const Rect& r, const Box& shown, const Box& box) {
     const double times = r.w / shown.width();
-    return {r.x + double(box.x0 - shown.x0) * times, r.y + double(shown.y1 - box.y1) * times, double(box.width()) * times, double(box.height()) * times};
+    return {r.x + double(box.x0 - shown.x0) * times, r.y + double(shown.y1 - box.y1) * times,
+        double(box.width()) * times, double(box.height()) * times};
 }
 
 void mark(Frame& f, const Rect& r, Colour ink, double alpha) {
@@ -57,7 +60,8 @@ Block residual_of(const Film& film, const ReferenceFilm& reference, const Box& b
     Block block(box.width(), box.height());
     const std::vector<double> values = residuals(film, reference, box);
     for (int j = 0; j < box.height(); ++j)
-        for (int i = 0; i < box.width(); ++i) block.set(i, j, turbo(values[std::size_t(j) * std::size_t(box.width()) + std::size_t(i)] / top));
+        for (int i = 0; i < box.width(); ++i)
+            block.set(i, j, turbo(values[std::size_t(j) * std::size_t(box.width()) + std::size_t(i)] / top));
     return block;
 }
 
@@ -66,7 +70,8 @@ Point LogPlot::at(double x, double y) const {
     return {plot.x + plot.w * u, plot.bottom() - plot.h * v};
 }
 
-void LogPlot::axes(Frame& f, const std::vector<std::uint64_t>& at_x, const Words& x_name, const Words& y_name, double alpha) const {
+void LogPlot::axes(
+    Frame& f, const std::vector<std::uint64_t>& at_x, const Words& x_name, const Words& y_name, double alpha) const {
     f.line({plot.x, plot.bottom()}, {plot.right(), plot.bottom()}, muted, 2, alpha);
     f.line({plot.x, plot.y}, {plot.x, plot.bottom()}, muted, 2, alpha);
     const Text below = with(small_text, Align::centre), beside = with(small_text, Align::right);
@@ -90,7 +95,8 @@ void LogPlot::axes(Frame& f, const std::vector<std::uint64_t>& at_x, const Words
 
 std::vector<Point> begun(const std::vector<Point>& path, double part) {
     double length = 0;
-    for (std::size_t k = 1; k < path.size(); ++k) length += math::hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y);
+    for (std::size_t k = 1; k < path.size(); ++k)
+        length += math::hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y);
     double left = part * length;
     std::vector<Point> out;
     for (std::size_t k = 0; k < path.size(); ++k) {
@@ -110,7 +116,9 @@ std::vector<Point> begun(const std::vector<Point>& path, double part) {
     return out;
 }
 
-Rect column_of(double x, double w, double between, std::size_t k) { return {x + double(k) * (w + between), stage.y, w, stage.h}; }
+Rect column_of(double x, double w, double between, std::size_t k) {
+    return {x + double(k) * (w + between), stage.y, w, stage.h};
+}
 
 Order order_of(const Data& data, const RunKey& a, const RunKey& b, const std::string& region) {
     const RegionMeter *ra = data.region(a, region), *rb = data.region(b, region);

@@ -38,7 +38,8 @@ struct LogPlot {
     double x0 = 1, x1 = 10, y0 = 1, y1 = 10;
     Point at(double x, double y) const;
     /// Frame lines, powers of ten on the left, the given values below.
-    void axes(Frame& f, const std::vector<std::uint64_t>& at_x, const Words& x_name, const Words& y_name, double alpha) const;
+    void axes(
+        Frame& f, const std::vector<std::uint64_t>& at_x, const Words& x_name, const Words& y_name, double alpha) const;
 };
 
 /// The part of a polyline up to `part` of its length, 0 .. 1.

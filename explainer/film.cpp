@@ -19,14 +19,19 @@ namespace {
 /// "1:30" or "90" -> frames.
 int frame_of(const std::string& text) {
     const std::size_t colon = text.find(':');
-    const double seconds = colon == std::string::npos ? std::stod(text) : 60 * std::stod(text.substr(0, colon)) + std::stod(text.substr(colon + 1));
+    const double seconds = colon == std::string::npos
+        ? std::stod(text)
+        : 60 * std::stod(text.substr(0, colon)) + std::stod(text.substr(colon + 1));
     return static_cast<int>(seconds * frames_a_second + 0.5);
 }
 
-std::string clock(int frames) { return fmt::format("{}:{:02}", frames / frames_a_second / 60, frames / frames_a_second % 60); }
+std::string clock(int frames) {
+    return fmt::format("{}:{:02}", frames / frames_a_second / 60, frames / frames_a_second % 60);
+}
 
 [[noreturn]] void outside(const std::string& flag, const Timeline& timeline) {
-    throw InputError({flag}, fmt::format("outside the film, which lasts {} ({} shots)", clock(timeline.frames()), timeline.shots().size()));
+    throw InputError({flag},
+        fmt::format("outside the film, which lasts {} ({} shots)", clock(timeline.frames()), timeline.shots().size()));
 }
 
 Part part_of(const Timeline& timeline, const FilmOptions& o) {
@@ -40,15 +45,21 @@ Part part_of(const Timeline& timeline, const FilmOptions& o) {
 }
 
 std::vector<std::pair<std::string, std::string>> attributes_of(const Data& data) {
-    return {{"crescent", data.provenance.version + " " + data.provenance.commit}, {"experiment", data.provenance.experiment_file + " " + data.experiment_hash},
-            {"command", data.provenance.command}};
+    return {{"crescent", data.provenance.version + " " + data.provenance.commit},
+        {"experiment", data.provenance.experiment_file + " " + data.experiment_hash},
+        {"command", data.provenance.command}};
 }
 
 /// A film in the making.
 class Making {
 public:
     Making(const Data& data, const Timeline& timeline, const FilmOptions& options, Staging& staging, Watch& watch)
-        : data_(data), timeline_(timeline), options_(options), staging_(staging), watch_(watch), painter_(timeline, options.height) {}
+        : data_(data),
+          timeline_(timeline),
+          options_(options),
+          staging_(staging),
+          watch_(watch),
+          painter_(timeline, options.height) {}
 
     std::string one_still() {
         const int frame = frame_of(options_.still);
@@ -60,7 +71,8 @@ public:
         std::string said;
         for (std::size_t k = 0; k < timeline_.shots().size(); ++k) {
             const int frame = timeline_.still(k);
-            if (frame >= part.first && frame < part.last) said += still(frame, fmt::format("stills/{:02}-{}.png", k + 1, timeline_.shots()[k].name));
+            if (frame >= part.first && frame < part.last)
+                said += still(frame, fmt::format("stills/{:02}-{}.png", k + 1, timeline_.shots()[k].name));
         }
         return said;
     }
@@ -77,9 +89,11 @@ public:
         std::ranges::sort(unlike);
         const auto distinct = std::ranges::distance(unlike.begin(), std::ranges::unique(unlike).begin());
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return fmt::format("{}\n  {} long, {} frames, {} of them unlike, drawn and encoded in {:.0f} s\n  captions crescent.vtt, crescent.srt; transcript "
-                           "crescent.txt; stills/; frames.json\n",
-                           options_.out + "/crescent.mp4", clock(part.last - part.first), hashes.size(), distinct, seconds);
+        return fmt::format(
+            "{}\n  {} long, {} frames, {} of them unlike, drawn and encoded in {:.0f} s\n  captions crescent.vtt, "
+            "crescent.srt; transcript "
+            "crescent.txt; stills/; frames.json\n",
+            options_.out + "/crescent.mp4", clock(part.last - part.first), hashes.size(), distinct, seconds);
     }
 
 private:
@@ -114,13 +128,17 @@ private:
     }
 
     std::string frames_json(const Part& part, const std::vector<std::uint64_t>& hashes) const {
-        std::string text = fmt::format("{{\n  \"experiment\": \"{}\",\n  \"width\": {},\n  \"height\": {},\n  \"frames_a_second\": {},\n  \"first\": {},\n",
-                                       data_.experiment_hash, options_.height * 16 / 9, options_.height, frames_a_second, part.first);
+        std::string text = fmt::format(
+            "{{\n  \"experiment\": \"{}\",\n  \"width\": {},\n  \"height\": {},\n  \"frames_a_second\": {},\n  "
+            "\"first\": {},\n",
+            data_.experiment_hash, options_.height * 16 / 9, options_.height, frames_a_second, part.first);
         text += "  \"hash\": \"XXH3-64 of the frame as yuv420p, bt709, limited range\",\n  \"shots\": [";
         for (std::size_t k = 0; k < timeline_.shots().size(); ++k)
-            text += fmt::format("{}\n    {{\"name\": \"{}\", \"first\": {}}}", k > 0 ? "," : "", timeline_.shots()[k].name, timeline_.begin(k));
+            text += fmt::format("{}\n    {{\"name\": \"{}\", \"first\": {}}}", k > 0 ? "," : "",
+                timeline_.shots()[k].name, timeline_.begin(k));
         text += "\n  ],\n  \"frames\": [";
-        for (std::size_t k = 0; k < hashes.size(); ++k) text += fmt::format("{}\n    \"{:016x}\"", k > 0 ? "," : "", hashes[k]);
+        for (std::size_t k = 0; k < hashes.size(); ++k)
+            text += fmt::format("{}\n    \"{:016x}\"", k > 0 ? "," : "", hashes[k]);
         return text + "\n  ]\n}\n";
     }
 
@@ -154,11 +172,15 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Watch
     Data data = collect(experiment, run, watch);
     Voice voice(options.voice, staging.scratch(), watch);
     if (!options.voice.empty()) watch.begin("the voice", 1);
-    const Timeline timeline(shots_of(data), options.voice.empty() ? nullptr : std::function<double(const Words&)>([&](const Words& w) { return voice.seconds(w); }));
+    const Timeline timeline(shots_of(data),
+        options.voice.empty() ? nullptr
+                              : std::function<double(const Words&)>([&](const Words& w) { return voice.seconds(w); }));
     data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
     Making making(data, timeline, options, staging, watch);
-    const std::string said = !options.still.empty() ? making.one_still() : options.stills ? making.stills(part) : making.film(part, options.voice.empty() ? nullptr : &voice);
+    const std::string said = !options.still.empty() ? making.one_still()
+        : options.stills                            ? making.stills(part)
+                                                    : making.film(part, options.voice.empty() ? nullptr : &voice);
     staging.commit(watch);
     return said;
 }

@@ -1,5 +1,5 @@
-// Every shot of the film, on a small run: what is set can be read, nothing is cut off or runs into its neighbour, no digit is
-// typed, captions keep their laws, and frames are the same however they are drawn.
+// Every shot of the film, on a small run: what is set can be read, nothing is cut off or runs into its neighbour, no
+// digit is typed, captions keep their laws, and frames are the same however they are drawn.
 #include <gtest/gtest.h>
 
 #include <oneapi/tbb/global_control.h>
@@ -33,7 +33,8 @@ std::vector<int> looked_at(std::size_t shot) {
 }
 
 std::string what(std::size_t shot, int frame, const plates::Setting& s) {
-    return timeline().shots()[shot].name + " frame " + std::to_string(frame) + ": \"" + s.text + "\" at " + std::to_string(s.extents.x) + ", " + std::to_string(s.extents.y);
+    return timeline().shots()[shot].name + " frame " + std::to_string(frame) + ": \"" + s.text + "\" at " +
+        std::to_string(s.extents.x) + ", " + std::to_string(s.extents.y);
 }
 
 TEST(Film, EveryTextIsWholeAndLargeEnoughToReadOnAPhone) {
@@ -44,7 +45,8 @@ TEST(Film, EveryTextIsWholeAndLargeEnoughToReadOnAPhone) {
             for (const plates::Setting& s : painter.canvas().settings()) {
                 EXPECT_FALSE(s.ellipsized) << what(k, frame, s) << " is cut off";
                 EXPECT_GE(s.px, least_px) << what(k, frame, s);
-                EXPECT_TRUE(s.extents.x >= 0 && s.extents.y >= 0 && s.extents.right() <= sheet_width && s.extents.bottom() <= sheet_height)
+                EXPECT_TRUE(s.extents.x >= 0 && s.extents.y >= 0 && s.extents.right() <= sheet_width &&
+                    s.extents.bottom() <= sheet_height)
                     << what(k, frame, s) << " leaves the sheet";
             }
         }
@@ -58,12 +60,15 @@ TEST(Film, OnNoStillDoTextsRunIntoEachOther) {
         const std::vector<plates::Setting>& all = painter.canvas().settings();
         for (std::size_t a = 0; a < all.size(); ++a)
             for (std::size_t b = a + 1; b < all.size(); ++b)
-                EXPECT_FALSE(all[a].extents.inset(3).meets(all[b].extents.inset(3))) << what(k, timeline().still(k), all[a]) << " meets " << what(k, timeline().still(k), all[b]);
+                EXPECT_FALSE(all[a].extents.inset(3).meets(all[b].extents.inset(3)))
+                    << what(k, timeline().still(k), all[a]) << " meets " << what(k, timeline().still(k), all[b]);
     }
 }
 
 /// WCAG 2.1 relative luminance of 8-bit sRGB or of an ink.
-double luminance_of(double r, double g, double b) { return 0.2126 * srgb_decode(r) + 0.7152 * srgb_decode(g) + 0.0722 * srgb_decode(b); }
+double luminance_of(double r, double g, double b) {
+    return 0.2126 * srgb_decode(r) + 0.7152 * srgb_decode(g) + 0.0722 * srgb_decode(b);
+}
 
 TEST(Film, OnEveryStillTextStandsOutFromWhatIsBehindIt) {
     Painter painter(timeline(), small_height);
@@ -77,7 +82,8 @@ TEST(Film, OnEveryStillTextStandsOutFromWhatIsBehindIt) {
             const double ink = luminance_of(s.ink.r, s.ink.g, s.ink.b);
             for (int y = int(s.extents.y * scale); y < int(s.extents.bottom() * scale); ++y) {
                 for (int x = int(s.extents.x * scale); x < int(s.extents.right() * scale); ++x) {
-                    const unsigned char* p = &behind.rgb[3 * (std::size_t(y) * std::size_t(behind.width) + std::size_t(x))];
+                    const unsigned char* p =
+                        &behind.rgb[3 * (std::size_t(y) * std::size_t(behind.width) + std::size_t(x))];
                     const double ground_there = luminance_of(p[0] / 255.0, p[1] / 255.0, p[2] / 255.0);
                     contrasts.push_back((std::max(ink, ground_there) + 0.05) / (std::min(ink, ground_there) + 0.05));
                 }
@@ -96,16 +102,19 @@ TEST(Film, NoDigitIsTyped) {
     for (std::size_t k = 0; k < timeline().shots().size(); ++k) {
         for (const int frame : looked_at(k)) {
             painter.draw(frame);
-            // What stands on the canvas went through Words, and every part of it that holds a digit says where it was read.
+            // What stands on the canvas went through Words, and every part of it that holds a digit says where it was
+            // read.
             std::multiset<std::string> said;
             for (const Words& words : painter.frame().said()) {
                 said.insert(words.markup());
                 for (const Words::Part& part : words.parts()) {
                     const std::string plain = plain_of(part.markup);
-                    if (std::ranges::any_of(plain, [](char c) { return c >= '0' && c <= '9'; })) EXPECT_FALSE(part.source.empty()) << plain;
+                    if (std::ranges::any_of(plain, [](char c) { return c >= '0' && c <= '9'; }))
+                        EXPECT_FALSE(part.source.empty()) << plain;
                 }
             }
-            for (const plates::Setting& s : painter.canvas().settings()) EXPECT_TRUE(said.contains(s.text)) << what(k, frame, s) << " was set past Words";
+            for (const plates::Setting& s : painter.canvas().settings())
+                EXPECT_TRUE(said.contains(s.text)) << what(k, frame, s) << " was set past Words";
         }
     }
 }
@@ -142,7 +151,8 @@ void expect_laws(const Timeline& t) {
         }
         const double silence = c.question ? question_silence : 0;
         EXPECT_LE(double(length(plain)) / (c.to - c.from - silence), reading_speed + 0.01) << plain;
-        EXPECT_EQ(c.question, plain.find('?') != std::string::npos) << plain << ": a question, and nothing else, is followed by silence";
+        EXPECT_EQ(c.question, plain.find('?') != std::string::npos)
+            << plain << ": a question, and nothing else, is followed by silence";
         if (k > 0) EXPECT_GE(c.from, t.captions()[k - 1].to - 1e-9) << plain;
     }
 }

@@ -14,10 +14,10 @@ Colour faded(Colour c, double alpha) { return c.a *= alpha, c; }
 double Frame::answer(const Question& q, double t) {
     const double x = q.to > q.from ? std::clamp((t - q.from) / (q.to - q.from), 0.0, 1.0) : double(t >= q.from);
     switch (q.kind) {
-    case Kind::ramp: return x;
-    case Kind::ease: return x * x * (3 - 2 * x);
-    case Kind::after: return t >= q.from;
-    case Kind::steps: return t >= q.to ? q.n : std::floor(x * q.n);
+        case Kind::ramp: return x;
+        case Kind::ease: return x * x * (3 - 2 * x);
+        case Kind::after: return t >= q.from;
+        case Kind::steps: return t >= q.to ? q.n : std::floor(x * q.n);
     }
     return 0;
 }

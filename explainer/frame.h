@@ -1,5 +1,5 @@
-// One frame being drawn, on a sheet of 1920 x 1080 units. A shot asks the frame for the time only through ramp, ease, after
-// and count, so that frames in which nothing moved are known to be equal without being drawn.
+// One frame being drawn, on a sheet of 1920 x 1080 units. A shot asks the frame for the time only through ramp, ease,
+// after and count, so that frames in which nothing moved are known to be equal without being drawn.
 #pragma once
 
 #include <vector>
@@ -36,7 +36,9 @@ public:
     double ease(double from, double to) { return ask({Kind::ease, from, to}); }
     bool after(double at) { return ask({Kind::after, at, at}) > 0; }
     /// In and out again: 1 between the two, eased over `over` seconds on either side.
-    double during(double from, double to, double over = 0.4) { return ease(from - over, from) * (1 - ease(to, to + over)); }
+    double during(double from, double to, double over = 0.4) {
+        return ease(from - over, from) * (1 - ease(to, to + over));
+    }
     /// 0 .. n: how many of n equal steps from `from` to `to` are over.
     int steps(double from, double to, int n) { return static_cast<int>(ask({Kind::steps, from, to, n})); }
 

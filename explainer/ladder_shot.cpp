@@ -43,7 +43,8 @@ std::vector<std::size_t> shown_of(const Ladder& ladder) {
 }  // namespace
 
 const Ladder& ladder_of(const Data& data, const std::string& arm) {
-    const auto found = std::ranges::find_if(data.metrics.ladders, [&](const Ladder& l) { return l.arm == arm && l.region == data.cast.highlight && l.s == data.cast.s; });
+    const auto found = std::ranges::find_if(data.metrics.ladders,
+        [&](const Ladder& l) { return l.arm == arm && l.region == data.cast.highlight && l.s == data.cast.s; });
     ensure(found != data.metrics.ladders.end(), "both arms of the film have a ladder");
     return *found;
 }
@@ -52,7 +53,8 @@ Words slope_words(const Ladder& l) {
     const std::string source = "ladder of " + l.arm + " in " + l.region;
     Words words("slope ", figure(l.slope, 3, source));
     if (l.heavy) return words << ", heavy tail: no interval";
-    if (std::isfinite(l.low) && std::isfinite(l.high)) words << " (" << figure(l.low, 3, source) << " to " << figure(l.high, 3, source) << ")";
+    if (std::isfinite(l.low) && std::isfinite(l.high))
+        words << " (" << figure(l.low, 3, source) << " to " << figure(l.high, 3, source) << ")";
     return words;
 }
 
@@ -70,7 +72,8 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
     const std::vector<Point> points = points_of(ladder, plot);
     std::vector<Point> old;
     if (!story.before.empty()) old = points_of(ladder_of(data, story.before), plot);
-    const Words slope = slope_words(ladder), name(data.arm(story.arm)), old_name(story.before.empty() ? Words() : Words(data.arm(story.before)));
+    const Words slope = slope_words(ladder), name(data.arm(story.arm)),
+                old_name(story.before.empty() ? Words() : Words(data.arm(story.before)));
     const Colour ink = data.ink(story.arm), old_ink = story.before.empty() ? ink : data.ink(story.before);
     std::vector<std::uint64_t> ticks = ladder.n;
 
@@ -86,7 +89,8 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
         if (!old.empty()) {
             f.polyline(old, old_ink, 4, 0.55 * f.ease(0.6, 1.2));
             for (const Point& p : old) f.dot(p, 7, old_ink, 0.55 * f.ease(0.6, 1.2));
-            f.text({old.back().x - 250, old.back().y - 96, 270, 44}, old_name, with(with(label_text, old_ink), Align::right), f.ease(0.6, 1.2));
+            f.text({old.back().x - 250, old.back().y - 96, 270, 44}, old_name,
+                with(with(label_text, old_ink), Align::right), f.ease(0.6, 1.2));
         }
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const double at = first + each * double(k), in = f.ease(at, at + 0.5);
@@ -101,8 +105,10 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
             f.dot(points[k], 11, ink, f.ease(at + 0.4, at + 0.9));
         }
         if (n == 0 && points.empty()) return;
-        f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, name, with(label_text, ink), f.ease(first, first + 0.6));
-        f.text({plot.plot.x + 30, plot.plot.bottom() - 66, plot.plot.w - 40, 48}, slope, with_px(label_text, 34), f.ease(line + 1.2, line + 1.8));
+        f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, name, with(label_text, ink),
+            f.ease(first, first + 0.6));
+        f.text({plot.plot.x + 30, plot.plot.bottom() - 66, plot.plot.w - 40, 48}, slope, with_px(label_text, 34),
+            f.ease(line + 1.2, line + 1.8));
     };
     return shot;
 }

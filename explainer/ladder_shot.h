@@ -7,9 +7,9 @@
 namespace crescent::film {
 
 struct LadderStory {
-    std::string arm, before;  // `before`: the arm whose line stands there already, dim; "": none
-    Words opening;            // said first
-    std::vector<Words> after; // said when the line stands
+    std::string arm, before;   // `before`: the arm whose line stands there already, dim; "": none
+    Words opening;             // said first
+    std::vector<Words> after;  // said when the line stands
 };
 
 /// Pictures, chart and times; name, title and what is seen are the caller's.

@@ -11,11 +11,13 @@ constexpr double fade = 0.3;  // s at either end of a shot
 void heading(Frame& f, const Shot& shot) {
     const double in = f.ease(0, fade);
     const Rect& bar = heading_band;
-    f.fill({bar.x, bar.y + 6, 7, bar.h - 12}, shot.kind == Kind::photograph ? photograph_accent : instrument_accent, in);
+    f.fill(
+        {bar.x, bar.y + 6, 7, bar.h - 12}, shot.kind == Kind::photograph ? photograph_accent : instrument_accent, in);
     f.text({bar.x + 26, bar.y, 1200, bar.h}, shot.title, title_text, in);
     if (shot.kind == Kind::words) return;
     const bool photograph = shot.kind == Kind::photograph;
-    const Words label(photograph ? "PHOTOGRAPH" : "INSTRUMENT", photograph ? ", no number is read off it" : ", read off the float films");
+    const Words label(photograph ? "PHOTOGRAPH" : "INSTRUMENT",
+        photograph ? ", no number is read off it" : ", read off the float films");
     Text how = with(with(small_text, photograph ? photograph_accent : instrument_accent), Align::right);
     f.text({bar.right() - 560, bar.y, 560, bar.h}, label, how, in);
 }
@@ -31,7 +33,8 @@ void Painter::caption(Frame& f, const Shot& shot) const {
         const double end = k + 1 < shot.cues.size() ? shot.cues[k + 1].at : shot.seconds;
         if (!f.after(cue.at) || f.after(end)) continue;
         const double alpha = f.ease(cue.at, cue.at + 0.2);
-        f.text(caption_band, broken(cue.words), cue.question ? with(caption_text, photograph_accent) : caption_text, alpha);
+        f.text(caption_band, broken(cue.words), cue.question ? with(caption_text, photograph_accent) : caption_text,
+            alpha);
     }
 }
 
@@ -45,7 +48,8 @@ bool Painter::draw(int frame) {
     Frame& f = *frame_;
     shot.draw(f);
     heading(f, shot);
-    f.fill({0, 0, sheet_width, caption_band.y}, ground, 1 - f.ease(0, fade) * (1 - f.ease(shot.seconds - fade, shot.seconds - 0.03)));
+    f.fill({0, 0, sheet_width, caption_band.y}, ground,
+        1 - f.ease(0, fade) * (1 - f.ease(shot.seconds - fade, shot.seconds - 0.03)));
     caption(f, shot);
     return true;
 }

@@ -42,7 +42,8 @@ struct Descriptors {
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& words, const std::string& stdin_file, const std::string& stdout_file, const std::string& stderr_file) {
+Process::Process(const std::vector<std::string>& words, const std::string& stdin_file, const std::string& stdout_file,
+    const std::string& stderr_file) {
     std::vector<char*> argv;
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);

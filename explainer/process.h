@@ -12,14 +12,16 @@ namespace crescent::film {
 class Process {
 public:
     /// `stdin_file` "": a pipe that write() feeds. OutputError where the program cannot be started.
-    Process(const std::vector<std::string>& argv, const std::string& stdin_file, const std::string& stdout_file, const std::string& stderr_file);
+    Process(const std::vector<std::string>& argv, const std::string& stdin_file, const std::string& stdout_file,
+        const std::string& stderr_file);
     ~Process();
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
     /// False: the program does not read any more.
     bool write(const unsigned char* bytes, std::size_t size);
-    /// Closes the pipe and waits; the exit code, 128 + signal where a signal ended it. Interrupted where the watch says so.
+    /// Closes the pipe and waits; the exit code, 128 + signal where a signal ended it. Interrupted where the watch says
+    /// so.
     int wait(const Watch& watch);
 
 private:

@@ -24,7 +24,8 @@ constexpr int r_g = fixed(-chroma * kg / (2 - 2 * kr)), r_b = fixed(-chroma * kb
 
 void luma_row(const unsigned char* from, unsigned char* to, int width) {  // B, G, R, unused
     for (int i = 0; i < width; ++i, from += 4)
-        to[i] = static_cast<unsigned char>((y_r * from[2] + y_g * from[1] + y_b * from[0] + (16 << 16) + (1 << 15)) >> 16);
+        to[i] =
+            static_cast<unsigned char>((y_r * from[2] + y_g * from[1] + y_b * from[0] + (16 << 16) + (1 << 15)) >> 16);
 }
 
 /// Left-sited: across 1 2 1 around even columns, down the mean of two rows.
@@ -33,7 +34,8 @@ void chroma_row(const unsigned char* row0, const unsigned char* row1, unsigned c
         const std::ptrdiff_t here = std::ptrdiff_t(4) * i, before = i > 0 ? here - 4 : here;
         int sum[3];
         for (int k = 0; k < 3; ++k) {
-            sum[k] = row0[before + k] + 2 * row0[here + k] + row0[here + 4 + k] + row1[before + k] + 2 * row1[here + k] + row1[here + 4 + k];
+            sum[k] = row0[before + k] + 2 * row0[here + k] + row0[here + 4 + k] + row1[before + k] +
+                2 * row1[here + k] + row1[here + 4 + k];
         }
         constexpr int offset = (128 << 19) + (1 << 18);
         cb[i / 2] = static_cast<unsigned char>((b_r * sum[2] + b_g * sum[1] + b_b * sum[0] + offset) >> 19);
@@ -70,7 +72,8 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas) {
     return raster;
 }
 
-void for_each_frame(const Timeline& timeline, int height, int first, int last, Watch& watch, const std::function<void(const Raster&)>& take) {
+void for_each_frame(const Timeline& timeline, int height, int first, int last, Watch& watch,
+    const std::function<void(const Raster&)>& take) {
     tbb::enumerable_thread_specific<std::unique_ptr<Desk>> desks;
     int next = first;
     const auto deal = [&](tbb::flow_control& control) {
@@ -95,9 +98,10 @@ void for_each_frame(const Timeline& timeline, int height, int first, int last, W
         }
     };
     const std::size_t tokens = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) + 1;
-    tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, deal) &
-                                       tbb::make_filter<int, Chunk>(tbb::filter_mode::parallel, draw) &
-                                       tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, hand_over));
+    tbb::parallel_pipeline(tokens,
+        tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, deal) &
+            tbb::make_filter<int, Chunk>(tbb::filter_mode::parallel, draw) &
+            tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, hand_over));
     watch.check();
 }
 

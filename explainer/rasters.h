@@ -1,5 +1,5 @@
-// Frames as an encoder takes them: planar Y'CbCr 4:2:0 of ITU-R BT.709, limited range, chroma sited left, in integers, so that
-// the same drawing gives the same bytes everywhere.
+// Frames as an encoder takes them: planar Y'CbCr 4:2:0 of ITU-R BT.709, limited range, chroma sited left, in integers,
+// so that the same drawing gives the same bytes everywhere.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,9 @@ struct Raster {
 /// What stands on a canvas, whose sides are even.
 std::shared_ptr<const Raster> raster_of(const Canvas& canvas);
 
-/// Draws frames first .. last - 1 on all cores and hands them over one by one in their order. A frame that is like the one
-/// before it is handed over again without being drawn.
-void for_each_frame(const Timeline& timeline, int height, int first, int last, Watch& watch, const std::function<void(const Raster&)>& take);
+/// Draws frames first .. last - 1 on all cores and hands them over one by one in their order. A frame that is like the
+/// one before it is handed over again without being drawn.
+void for_each_frame(const Timeline& timeline, int height, int first, int last, Watch& watch,
+    const std::function<void(const Raster&)>& take);
 
 }  // namespace crescent::film

@@ -5,8 +5,22 @@ namespace crescent::film {
 std::vector<Shot> shots_of(const Data& data) {
     using Make = Shot (*)(const Data&);
     constexpr Make makes[] = {
-        title,     columns,    one_pixel, same_randoms, firefly, ladder_cosine, ladder_phong, heat,
-        failure_b, heavy_tail, tilt,      exponent,     seeds,   beyond,        claims,       closing,
+        title,
+        columns,
+        one_pixel,
+        same_randoms,
+        firefly,
+        ladder_cosine,
+        ladder_phong,
+        heat,
+        failure_b,
+        heavy_tail,
+        tilt,
+        exponent,
+        seeds,
+        beyond,
+        claims,
+        closing,
     };
     std::vector<Shot> shots;
     for (const Make make : makes)

@@ -1,4 +1,5 @@
-// Type and inks of the film, in units of the 1920 x 1080 sheet: no text under 27, which is 9 pixels on a phone at 640 x 360.
+// Type and inks of the film, in units of the 1920 x 1080 sheet: no text under 27, which is 9 pixels on a phone at 640 x
+// 360.
 #pragma once
 
 #include "frame.h"

@@ -53,7 +53,7 @@ box = [48, 36, 64, 48]
 [regions.S]
 box = [20, 2, 76, 12]
 )",
-                 "small.toml");
+        "small.toml");
 }
 
 inline const Data& small_data() {

@@ -60,7 +60,8 @@ Words broken(const Words& words) {
     return out;
 }
 
-Timeline::Timeline(std::vector<Shot> shots, const std::function<double(const Words&)>& spoken) : shots_(std::move(shots)), holds_(shots_.size()) {
+Timeline::Timeline(std::vector<Shot> shots, const std::function<double(const Words&)>& spoken)
+    : shots_(std::move(shots)), holds_(shots_.size()) {
     begins_.push_back(0);
     for (std::size_t k = 0; k < shots_.size(); ++k) place(k, spoken);
 }

@@ -1,5 +1,5 @@
-// The shots one after another: which shot stands at a time of the film, and when each caption is there. Where a caption asks
-// for more time than its slot has, to be read, spoken or thought about, the shot holds still at the slot's end.
+// The shots one after another: which shot stands at a time of the film, and when each caption is there. Where a caption
+// asks for more time than its slot has, to be read, spoken or thought about, the shot holds still at the slot's end.
 #pragma once
 
 #include <functional>
@@ -10,15 +10,15 @@
 namespace crescent::film {
 
 inline constexpr int frames_a_second = 30;
-inline constexpr double reading_speed = 15;      // characters a second, at most
-inline constexpr double question_silence = 4;    // s after every question
-inline constexpr std::size_t line_length = 42;   // characters, two lines at most
+inline constexpr double reading_speed = 15;     // characters a second, at most
+inline constexpr double question_silence = 4;   // s after every question
+inline constexpr std::size_t line_length = 42;  // characters, two lines at most
 
 /// A caption in the film's time.
 struct Caption {
     double from = 0, to = 0;  // s
     std::size_t shot = 0, cue = 0;
-    Words words;              // with its line break
+    Words words;  // with its line break
     bool question = false;
 };
 

@@ -17,7 +17,8 @@ constexpr double lead = 0.15;      // s between a caption and its first word
 
 std::uint32_t little(const std::string& bytes, std::size_t at, int size) {
     std::uint32_t v = 0;
-    for (int k = 0; k < size && at + std::size_t(k) < bytes.size(); ++k) v |= std::uint32_t(static_cast<unsigned char>(bytes[at + std::size_t(k)])) << (8 * k);
+    for (int k = 0; k < size && at + std::size_t(k) < bytes.size(); ++k)
+        v |= std::uint32_t(static_cast<unsigned char>(bytes[at + std::size_t(k)])) << (8 * k);
     return v;
 }
 
@@ -53,7 +54,8 @@ std::vector<float> samples_of_wav(const std::string& bytes, int& rate) {
             std::vector<float> out(size / (2 * channels));
             for (std::size_t i = 0; i < out.size(); ++i)
                 for (unsigned c = 0; c < channels; ++c)
-                    out[i] += float(static_cast<std::int16_t>(little(bytes, at + 8 + 2 * (i * channels + c), 2))) / (32768.0f * float(channels));
+                    out[i] += float(static_cast<std::int16_t>(little(bytes, at + 8 + 2 * (i * channels + c), 2))) /
+                        (32768.0f * float(channels));
             return out;
         }
         at += 8 + size + size % 2;
@@ -61,7 +63,8 @@ std::vector<float> samples_of_wav(const std::string& bytes, int& rate) {
     return {};
 }
 
-Voice::Voice(std::string command, std::string folder, Watch& watch) : command_(std::move(command)), folder_(std::move(folder)), watch_(watch) {}
+Voice::Voice(std::string command, std::string folder, Watch& watch)
+    : command_(std::move(command)), folder_(std::move(folder)), watch_(watch) {}
 
 const std::vector<float>& Voice::said(const std::string& text) {
     const auto known = said_.find(text);
@@ -74,8 +77,10 @@ const std::vector<float>& Voice::said(const std::string& text) {
     const std::vector<float> samples = samples_of_wav(contents_of(out), rate);
     if (code != 0 || samples.empty()) {
         const std::string log = contents_of(err);
-        throw OutputError(fmt::format("--voice '{}' {}; expected a program that reads text on stdin and writes a 16-bit WAV to stdout{}", command_,
-                                      code != 0 ? fmt::format("ended with {}", code) : "gave no WAV", log.empty() ? "" : "; it said: " + log.substr(0, 300)));
+        throw OutputError(fmt::format(
+            "--voice '{}' {}; expected a program that reads text on stdin and writes a 16-bit WAV to stdout{}",
+            command_, code != 0 ? fmt::format("ended with {}", code) : "gave no WAV",
+            log.empty() ? "" : "; it said: " + log.substr(0, 300)));
     }
     return said_[text] = resampled(samples, rate);
 }
@@ -96,8 +101,13 @@ std::string Voice::track(const Timeline& timeline, int first, int last) {
     std::string wav = "RIFF";
     const auto size = static_cast<std::uint32_t>(2 * mix.size());
     put(wav, 36 + size, 4), wav += "WAVEfmt ", put(wav, 16, 4), put(wav, 1, 2), put(wav, 1, 2);
-    put(wav, track_rate, 4), put(wav, 2 * track_rate, 4), put(wav, 2, 2), put(wav, 16, 2), wav += "data", put(wav, size, 4);
-    for (const float v : mix) put(wav, static_cast<std::uint32_t>(static_cast<std::int16_t>(std::lround(32767 * std::clamp(v, -1.0f, 1.0f)))) & 0xffff, 2);
+    put(wav, track_rate, 4), put(wav, 2 * track_rate, 4), put(wav, 2, 2), put(wav, 16, 2), wav += "data",
+        put(wav, size, 4);
+    for (const float v : mix)
+        put(wav,
+            static_cast<std::uint32_t>(static_cast<std::int16_t>(std::lround(32767 * std::clamp(v, -1.0f, 1.0f)))) &
+                0xffff,
+            2);
     return wav;
 }
 

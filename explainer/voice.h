@@ -27,8 +27,8 @@ private:
     std::map<std::string, std::vector<float>> said_;  // at `rate`, one channel
 };
 
-/// Samples in [-1, 1] of a RIFF WAVE file with 16-bit PCM, its channels averaged; `rate` receives samples a second. Sizes that a
-/// program could not know when it began to write count as "to the end". Empty where it is none.
+/// Samples in [-1, 1] of a RIFF WAVE file with 16-bit PCM, its channels averaged; `rate` receives samples a second.
+/// Sizes that a program could not know when it began to write count as "to the end". Empty where it is none.
 std::vector<float> samples_of_wav(const std::string& bytes, int& rate);
 
 }  // namespace crescent::film

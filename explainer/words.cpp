@@ -9,7 +9,9 @@ namespace crescent::film {
 Number figure(double value, int digits, const std::string& source) { return {plates::figure(value, digits), source}; }
 Number number(double value, int digits, const std::string& source) { return {plates::number(value, digits), source}; }
 Number count(std::uint64_t value, const std::string& source) { return {plates::count(value), source}; }
-Number percent(double part, int digits, const std::string& source) { return {plates::number(100 * part, digits) + " %", source}; }
+Number percent(double part, int digits, const std::string& source) {
+    return {plates::number(100 * part, digits) + " %", source};
+}
 Number name(const std::string& plain) { return {plates::escaped(plain), "name in the experiment"}; }
 
 namespace {
@@ -24,7 +26,8 @@ template <class Visit> void outside_tags(std::string_view markup, Visit visit) {
 }
 
 void replace_all(std::string& text, std::string_view what, std::string_view by) {
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+        text.replace(at, what.size(), by);
 }
 
 }  // namespace
@@ -47,7 +50,8 @@ std::string plain_of(const std::string& markup) {
     replace_all(text, "<sup>", "^");
     replace_all(text, "<sub>", "_");
     outside_tags(text, [&](char c) { plain += c; });
-    const std::pair<const char*, const char*> entities[] = {{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&#39;", "'"}, {"&amp;", "&"}};
+    const std::pair<const char*, const char*> entities[] = {
+        {"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&#39;", "'"}, {"&amp;", "&"}};
     for (const auto& [entity, character] : entities) replace_all(plain, entity, character);
     return plain;
 }
@@ -56,7 +60,8 @@ std::string Words::plain() const { return plain_of(markup()); }
 
 Words tinted(const Words& words, const plates::Colour& ink) {
     const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
-    const std::string open = fmt::format("<span foreground='#{:02x}{:02x}{:02x}'>", byte(ink.r), byte(ink.g), byte(ink.b));
+    const std::string open =
+        fmt::format("<span foreground='#{:02x}{:02x}{:02x}'>", byte(ink.r), byte(ink.g), byte(ink.b));
     return Words(open.c_str(), words, "</span>");
 }
 

@@ -1,5 +1,5 @@
-// What stands on the screen and in the captions: words that are typed in hold no digit; every number comes in as a value that
-// says where it was read. Everything is Pango markup.
+// What stands on the screen and in the captions: words that are typed in hold no digit; every number comes in as a
+// value that says where it was read. Everything is Pango markup.
 #pragma once
 
 #include <string>

@@ -19,9 +19,12 @@ std::string DriverLog::text() const {
 
 namespace {
 
-void APIENTRY keep(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* message, const void* log) {
+void APIENTRY keep(
+    GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* message, const void* log) {
     if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) return;
-    static_cast<DriverLog*>(const_cast<void*>(log))->add(std::string(message, length < 0 ? std::char_traits<char>::length(message) : static_cast<std::size_t>(length)));
+    static_cast<DriverLog*>(const_cast<void*>(log))
+        ->add(std::string(
+            message, length < 0 ? std::char_traits<char>::length(message) : static_cast<std::size_t>(length)));
 }
 
 const char* reset_words(GLenum status) {
@@ -49,7 +52,8 @@ const char* error_words(GLenum error) {
 
 void Context::take_functions(const std::function<void*(const char*)>& address_of) {
     gl_ = functions_from(address_of);
-    if (version_number() < 3.3) throw OutputError("the GL instrument needs core 3.3; the driver has " + version() + log_.text());
+    if (version_number() < 3.3)
+        throw OutputError("the GL instrument needs core 3.3; the driver has " + version() + log_.text());
     if (gl_.DebugMessageCallback) {
         gl_.DebugMessageCallback(keep, &log_);
         gl_.Enable(GL_DEBUG_OUTPUT);
@@ -71,21 +75,28 @@ double Context::version_number() const {
 
 bool Context::software() const {
     const std::string name = renderer();
-    return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos || name.find("swrast") != std::string::npos;
+    return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos ||
+        name.find("swrast") != std::string::npos;
 }
 
 void Context::check(const char* after) const {
-    if (!is_current()) throw OutputError(fmt::format("the GL context was lost: after {} it is no longer current{}", after, log_.text()));
+    if (!is_current())
+        throw OutputError(
+            fmt::format("the GL context was lost: after {} it is no longer current{}", after, log_.text()));
     if (gl_.GetGraphicsResetStatus)
-        if (const char* words = reset_words(gl_.GetGraphicsResetStatus())) throw OutputError(fmt::format("the GL context was lost: after {}, {}{}", after, words, log_.text()));
+        if (const char* words = reset_words(gl_.GetGraphicsResetStatus()))
+            throw OutputError(fmt::format("the GL context was lost: after {}, {}{}", after, words, log_.text()));
     if (const GLenum error = gl_.GetError(); error != GL_NO_ERROR)
-        throw OutputError(fmt::format("GL failed: {} after {} on {}{}", error_words(error), after, renderer(), log_.text()));
+        throw OutputError(
+            fmt::format("GL failed: {} after {} on {}{}", error_words(error), after, renderer(), log_.text()));
 }
 
 std::unique_ptr<Context> open_context(const InstrumentChoice& choice) {
     if (choice.context.empty() || choice.context == "egl") return open_egl(choice.device);
-    if (choice.context != "osmesa") throw InputError({"--gl-context", 0, 0}, "expected egl or osmesa, not '" + choice.context + "'");
-    if (choice.device >= 0) throw InputError({"--gl-device", 0, 0}, "expected with --gl-context egl: OSMesa has no devices");
+    if (choice.context != "osmesa")
+        throw InputError({"--gl-context", 0, 0}, "expected egl or osmesa, not '" + choice.context + "'");
+    if (choice.device >= 0)
+        throw InputError({"--gl-device", 0, 0}, "expected with --gl-context egl: OSMesa has no devices");
     return open_osmesa();
 }
 

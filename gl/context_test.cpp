@@ -1,4 +1,5 @@
-// What goes wrong with contexts, framebuffers and shaders is an OutputError (exit 3) that says why, in the driver's words.
+// What goes wrong with contexts, framebuffers and shaders is an OutputError (exit 3) that says why, in the driver's
+// words.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,29 +16,33 @@ using testing::HasSubstr;
 template <class Error, class Call> std::string what_of(Call&& call) {
     try {
         call();
-    } catch (const Error& e) {
-        return e.what();
-    }
+    } catch (const Error& e) { return e.what(); }
     return "nothing was thrown";
 }
 
 TEST(Shaders, EveryArmHasItsFileAndCompilesOnEveryLobe) {
     for (const std::string& arm : test::all_arms())
-        for (const int lobe : {-1, 0, 1, 2}) EXPECT_NO_THROW(Program(test::context(), estimator_source(arm, lobe, 2, {1, 1, 1, 1, 1}))) << arm << " on lobe " << lobe;
+        for (const int lobe : {-1, 0, 1, 2})
+            EXPECT_NO_THROW(Program(test::context(), estimator_source(arm, lobe, 2, {1, 1, 1, 1, 1})))
+                << arm << " on lobe " << lobe;
 }
 
 TEST(Shaders, OneThatDoesNotCompileIsToldWithTheDriversLogAndTheFile) {
     ShaderSource source;
     source.include("random.glsl");
-    source.add("planted.glsl", "#include \"math.glsl\"\nout vec4 colour;\nvoid main() { colour = vec4(sincos_turns(0.5)); }\n");
+    source.add("planted.glsl",
+        "#include \"math.glsl\"\nout vec4 colour;\nvoid main() { colour = vec4(sincos_turns(0.5)); }\n");
     EXPECT_THAT(what_of<OutputError>([&] { Program(test::context(), source); }),
-                AllOf(HasSubstr("does not compile"), HasSubstr("1000 + n: planted.glsl"), HasSubstr("1003"), HasSubstr(test::context().renderer())));
+        AllOf(HasSubstr("does not compile"), HasSubstr("1000 + n: planted.glsl"), HasSubstr("1003"),
+            HasSubstr(test::context().renderer())));
 }
 
 TEST(Shaders, OneThatDoesNotLinkIsToldToo) {
     ShaderSource source;
-    source.add("planted.glsl", "float missing(float x);\nout vec4 colour;\nvoid main() { colour = vec4(missing(0.5)); }\n");
-    EXPECT_THAT(what_of<OutputError>([&] { Program(test::context(), source); }), AllOf(HasSubstr("does not link"), HasSubstr("missing")));
+    source.add(
+        "planted.glsl", "float missing(float x);\nout vec4 colour;\nvoid main() { colour = vec4(missing(0.5)); }\n");
+    EXPECT_THAT(what_of<OutputError>([&] { Program(test::context(), source); }),
+        AllOf(HasSubstr("does not link"), HasSubstr("missing")));
 }
 
 TEST(Framebuffers, AreCompleteRgba32fWithoutSrgbAndMsaa) {
@@ -57,7 +62,8 @@ TEST(Framebuffers, WithMoreBuffersThanTheDriverHasAreRefused) {
 TEST(Framebuffers, LargerThanTheDriverTakesAreRefusedWithItsLog) {
     GLint largest = 0;
     test::context().gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    EXPECT_THAT(what_of<OutputError>([&] { Framebuffer(test::context(), largest + 1, 4, 1); }), AllOf(HasSubstr("GL_INVALID_VALUE"), HasSubstr("of a framebuffer")));
+    EXPECT_THAT(what_of<OutputError>([&] { Framebuffer(test::context(), largest + 1, 4, 1); }),
+        AllOf(HasSubstr("GL_INVALID_VALUE"), HasSubstr("of a framebuffer")));
     EXPECT_NO_THROW(Framebuffer(test::context(), 16, 16, 1));  // and the context is well afterwards
 }
 
@@ -79,7 +85,7 @@ TEST(Contexts, AWrongChoiceIsTheReadersMistakeAndNamesWhatIsThere) {
 
 TEST(Contexts, ALibraryThatIsNotThereIsNamedWithWhatNeedsIt) {
     EXPECT_THAT(what_of<OutputError>([] { Library("libNoSuchGL.so.7", "--instrument gl"); }),
-                AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file")));
+        AllOf(HasSubstr("libNoSuchGL.so.7 cannot be opened"), HasSubstr("--instrument gl"), HasSubstr("No such file")));
 }
 
 TEST(GlInstrument, IsRegisteredByItsWordAndSaysWhatItRunsOn) {
@@ -105,14 +111,17 @@ TEST(Pacer, NeverAsksForMoreThanTheLastDrawsSpeedAllowsAndGrowsSlowly) {
 }
 
 TEST(Rectangles, CoverTheImageOnceAndStaySmall) {
-    for (const auto& [width, height, disks, side] : {std::tuple{960, 540, 1, 16384}, {7680, 4320, 64, 4096}, {5, 3, 0, 2}, {100000, 1, 2, 16384}}) {
+    for (const auto& [width, height, disks, side] :
+        {std::tuple{960, 540, 1, 16384}, {7680, 4320, 64, 4096}, {5, 3, 0, 2}, {100000, 1, 2, 16384}}) {
         std::vector<int> times(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
         const auto all = rectangles_of(width, height, static_cast<std::size_t>(disks), side);
         for (const TileBox& box : all) {
             EXPECT_LE(box.x1 - box.x0, side);
             EXPECT_LE(box.y1 - box.y0, side);
             for (int y = box.y0; y < box.y1; ++y)
-                for (int x = box.x0; x < box.x1; ++x) ++times[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+                for (int x = box.x0; x < box.x1; ++x)
+                    ++times[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(x)];
         }
         EXPECT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(times.size()));
     }

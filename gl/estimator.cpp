@@ -8,7 +8,8 @@
 
 namespace crescent::gl {
 
-ShaderSource estimator_source(const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies) {
+ShaderSource estimator_source(
+    const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies) {
     ShaderSource source;
     const std::size_t recorded = recorded_disks(disks);
     std::size_t body_count = 0;
@@ -53,7 +54,8 @@ Estimator::Kernel& Estimator::kernel(const std::string& sampler, int lobe, std::
 
 const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, Watch& watch) {
     const Experiment& e = scene.experiment();
-    const std::string key = fmt::format("{:x} {} {}x{} {},{} {},{}", hash(e), e.s(), e.image.width, e.image.height, box.x0, box.y0, box.x1, box.y1);
+    const std::string key = fmt::format(
+        "{:x} {} {}x{} {},{} {},{}", hash(e), e.s(), e.image.width, e.image.height, box.x0, box.y0, box.x1, box.y1);
     if (sites_ && key == sites_key_) return *sites_;
     sites_.reset();
     sites_.emplace(context_, scene, box, watch);
@@ -62,7 +64,8 @@ const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, Watc
 }
 
 const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t attachments) {
-    if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height || framebuffer_->attachments() != attachments) {
+    if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height ||
+        framebuffer_->attachments() != attachments) {
         framebuffer_.reset();
         framebuffer_.emplace(context_, width, height, attachments);
     }
@@ -72,7 +75,8 @@ const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t att
 namespace {
 
 /// What every draw of a program reads besides the samples' range.
-void set_scene(const Program& program, const Sites& lights, const Bodies& bodies, const TileBox& box, int image_width, std::uint32_t seed) {
+void set_scene(const Program& program, const Sites& lights, const Bodies& bodies, const TileBox& box, int image_width,
+    std::uint32_t seed) {
     program.use();
     program.set("sites", 0);
     program.set("corner", box.x0, box.y0);
@@ -86,7 +90,8 @@ void set_scene(const Program& program, const Sites& lights, const Bodies& bodies
 
 }  // namespace
 
-void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed, std::vector<Film>& films, Watch& watch) {
+void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
+    std::vector<Film>& films, Watch& watch) {
     const std::size_t disks = scene.disks().size();
     const SiteTexture& here = sites(scene, box, watch);
     if (here.groups().empty()) return;
@@ -112,12 +117,15 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     }
 }
 
-std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed, Watch& watch) {
+std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
+    std::uint32_t seed, Watch& watch) {
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
     const Image& image = scene.experiment().image;
     std::vector<Film> out;
-    for (const std::uint64_t rung : n) out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
-    for (const TileBox& box : rectangles_of(image.width, image.height, scene.disks().size(), largest_texture_)) estimate(scene, box, sampler, seed, out, watch);
+    for (const std::uint64_t rung : n)
+        out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
+    for (const TileBox& box : rectangles_of(image.width, image.height, scene.disks().size(), largest_texture_))
+        estimate(scene, box, sampler, seed, out, watch);
     return out;
 }
 

@@ -1,5 +1,5 @@
-// Integrand + arm -> films on a GL context: src/estimator/ with gl/shaders/estimator.glsl as its kernel. Moments of a draw
-// come back as floats and are added up in double.
+// Integrand + arm -> films on a GL context: src/estimator/ with gl/shaders/estimator.glsl as its kernel. Moments of a
+// draw come back as floats and are added up in double.
 #pragma once
 
 #include <map>
@@ -21,7 +21,8 @@ public:
     explicit Estimator(const Context& context, int largest_texture = 0);
 
     /// One film per rung of n (ascending), as estimate_films() makes them.
-    std::vector<Film> films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed, Watch& watch);
+    std::vector<Film> films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
+        std::uint32_t seed, Watch& watch);
     /// The draw that took longest so far.
     double longest_draw_s() const;
     int largest_texture() const { return largest_texture_; }
@@ -37,7 +38,8 @@ private:
     Kernel& kernel(const std::string& sampler, int lobe, std::size_t disks, const Bodies& bodies);
     const SiteTexture& sites(const Scene& scene, const TileBox& box, Watch& watch);
     const Framebuffer& framebuffer(int width, int height, std::size_t attachments);
-    void estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed, std::vector<Film>& films, Watch& watch);
+    void estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
+        std::vector<Film>& films, Watch& watch);
 
     const Context& context_;
     GLuint vertex_array_ = 0;
@@ -49,6 +51,7 @@ private:
 };
 
 /// The fragment shader of one arm on one lobe (-1 to 2).
-ShaderSource estimator_source(const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies);
+ShaderSource estimator_source(
+    const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies);
 
 }  // namespace crescent::gl

@@ -11,12 +11,14 @@ namespace {
 using test::Difference;
 using test::Tolerance;
 
-Difference differences(const Scene& scene, Estimator& gl, const std::string& arm, std::uint64_t n, std::uint32_t seeds) {
+Difference differences(
+    const Scene& scene, Estimator& gl, const std::string& arm, std::uint64_t n, std::uint32_t seeds) {
     Watch watch;
     const ShapeMap shapes = shape_map(scene);
     Difference out;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed)
-        test::compare(scene, shapes, estimate_films(scene, arm, {n}, seed, "", watch)[0], gl.films(scene, arm, {n}, seed, watch)[0], out);
+        test::compare(scene, shapes, estimate_films(scene, arm, {n}, seed, "", watch)[0],
+            gl.films(scene, arm, {n}, seed, watch)[0], out);
     return out;
 }
 
@@ -38,7 +40,8 @@ TEST_P(FilmLaw, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
     expect_within(differences(scene, gl, arm, 48, 1), GetParam(), 48, software);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryArm, FilmLaw, testing::ValuesIn(test::software_tolerances), [](const auto& each) { return glsl_word(std::string(each.param.arm)); });
+INSTANTIATE_TEST_SUITE_P(EveryArm, FilmLaw, testing::ValuesIn(test::software_tolerances),
+    [](const auto& each) { return glsl_word(std::string(each.param.arm)); });
 
 TEST(FilmLaw, CoversEveryArmOfTheList) {
     std::vector<std::string> stated;
@@ -54,7 +57,8 @@ TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
     Watch watch;
     Estimator gl(test::context());
     Difference d;
-    test::compare(scene, shapes, estimate_films(other, "phong", {48}, 1, "", watch)[0], gl.films(scene, "phong", {48}, 1, watch)[0], d);
+    test::compare(scene, shapes, estimate_films(other, "phong", {48}, 1, "", watch)[0],
+        gl.films(scene, "phong", {48}, 1, watch)[0], d);
     EXPECT_GT(d.largest, 7e-6);
 }
 
@@ -65,7 +69,8 @@ TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
     Estimator gl(test::context());
     Difference d;
     for (std::uint32_t seed = 1; seed <= 4; ++seed)
-        test::compare(scene, shapes, estimate_films(other, "uniform", {48}, seed, "", watch)[0], gl.films(scene, "uniform", {48}, seed, watch)[0], d);
+        test::compare(scene, shapes, estimate_films(other, "uniform", {48}, seed, "", watch)[0],
+            gl.films(scene, "uniform", {48}, seed, watch)[0], d);
     EXPECT_GT(static_cast<double>(d.changed), test::gpu_side_rate * static_cast<double>(d.pixels * 48));
 }
 
@@ -73,7 +78,8 @@ TEST(Films, EveryPlaneIsTheCpus) {
     const Scene scene(test::small_scene());
     Watch watch;
     Estimator gl(test::context());
-    const Film a = estimate_films(scene, "cosine", {64}, 5, "", watch)[0], b = gl.films(scene, "cosine", {64}, 5, watch)[0];
+    const Film a = estimate_films(scene, "cosine", {64}, 5, "", watch)[0],
+               b = gl.films(scene, "cosine", {64}, 5, watch)[0];
     for (std::size_t at = 0; at < a.size(); ++at) {
         if (a.hits[at] != b.hits[at]) continue;
         for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::y2, &Film::largest})
@@ -85,11 +91,13 @@ TEST(Films, EveryPlaneIsTheCpus) {
 }
 
 TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
-    const Scene scene(test::small_scene({"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
+    const Scene scene(test::small_scene(
+        {"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
     Watch watch;
     Estimator gl(test::context());
     for (const std::uint64_t n : {4u, 64u, 1000u}) {
-        const Film a = estimate_films(scene, "light-area", {n}, 5, "", watch)[0], b = gl.films(scene, "light-area", {n}, 5, watch)[0];
+        const Film a = estimate_films(scene, "light-area", {n}, 5, "", watch)[0],
+                   b = gl.films(scene, "light-area", {n}, 5, watch)[0];
         double cpu = 0, gpu = 0;
         for (std::size_t at = 0; at < a.size(); ++at) cpu += a.var[at], gpu += b.var[at];
         EXPECT_NEAR(gpu / cpu, 1, 1e-3) << n;
@@ -97,7 +105,8 @@ TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
 }
 
 TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
-    const Scene scene(test::small_scene({"disks.left.radius=1e-6", "disks.right.radius=1e-6", "fill.radiance=[0,0,0]", "image.width=24", "image.height=16"}));
+    const Scene scene(test::small_scene({"disks.left.radius=1e-6", "disks.right.radius=1e-6", "fill.radiance=[0,0,0]",
+        "image.width=24", "image.height=16"}));
     Watch watch;
     Estimator gl(test::context());
     for (const char* arm : {"light-area", "light-solid-angle", "mis-balance"}) {
@@ -117,7 +126,8 @@ TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
         const Film alone = gl.films(scene, "mixture", {film.n}, 9, watch)[0];
         EXPECT_EQ(alone.hits, film.hits) << film.n;
         EXPECT_EQ(alone.largest, film.largest) << film.n;
-        for (std::size_t at = 0; at < film.size(); ++at) EXPECT_NEAR(alone.y[at], film.y[at], 1e-6 * static_cast<double>(film.y[at])) << film.n;
+        for (std::size_t at = 0; at < film.size(); ++at)
+            EXPECT_NEAR(alone.y[at], film.y[at], 1e-6 * static_cast<double>(film.y[at])) << film.n;
     }
 }
 
@@ -125,7 +135,8 @@ TEST(Films, AFilmInRectanglesIsTheFilmAtOnce) {
     const Scene scene(test::small_scene());
     Watch watch;
     Estimator whole(test::context()), parts(test::context(), 40);
-    EXPECT_EQ(hash(parts.films(scene, "cosine", {16}, 3, watch)[0]), hash(whole.films(scene, "cosine", {16}, 3, watch)[0]));
+    EXPECT_EQ(
+        hash(parts.films(scene, "cosine", {16}, 3, watch)[0]), hash(whole.films(scene, "cosine", {16}, 3, watch)[0]));
 }
 
 TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
@@ -133,8 +144,10 @@ TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
     Watch watch;
     Estimator gl(test::context());
     for (const char* arm : {"uniform", "cosine"}) {
-        const Film a = estimate_films(scene, arm, {65536}, 5, "", watch)[0], b = gl.films(scene, arm, {65536}, 5, watch)[0];
-        for (std::size_t at = 0; at < a.size(); ++at) EXPECT_NEAR(b.y[at], a.y[at], 1e-6 * static_cast<double>(a.y[at])) << arm << ", pixel " << at;
+        const Film a = estimate_films(scene, arm, {65536}, 5, "", watch)[0],
+                   b = gl.films(scene, arm, {65536}, 5, watch)[0];
+        for (std::size_t at = 0; at < a.size(); ++at)
+            EXPECT_NEAR(b.y[at], a.y[at], 1e-6 * static_cast<double>(a.y[at])) << arm << ", pixel " << at;
     }
     RecordProperty("longest_draw_ms", static_cast<int>(1000 * gl.longest_draw_s()));
 }
@@ -142,17 +155,20 @@ TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
 TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
     std::string text = test::scene_text;
     for (int k = 0; k < 13; ++k)
-        text += "[disks.more" + std::to_string(k) + "]\ncenter = [" + std::to_string(0.35 * k - 2) + ", 3, 1]\nnormal = [0, -1, 0]\nradius = 0.15\nradiance = [" +
-                std::to_string(k + 1) + ", 9, " + std::to_string(20 - k) + "]\n";
+        text += "[disks.more" + std::to_string(k) + "]\ncenter = [" + std::to_string(0.35 * k - 2) +
+            ", 3, 1]\nnormal = [0, -1, 0]\nradius = 0.15\nradiance = [" + std::to_string(k + 1) + ", 9, " +
+            std::to_string(20 - k) + "]\n";
     const Experiment experiment = parse(text, "lights.toml", {"image.width=48", "image.height=32"});
     const Scene scene(experiment);
     ASSERT_EQ(scene.disks().size(), 15u);
     Estimator gl(test::context());
     Watch watch;
-    const Film a = estimate_films(scene, "light-area", {32}, 2, "", watch)[0], b = gl.films(scene, "light-area", {32}, 2, watch)[0];
+    const Film a = estimate_films(scene, "light-area", {32}, 2, "", watch)[0],
+               b = gl.films(scene, "light-area", {32}, 2, watch)[0];
     EXPECT_EQ(a.hits, b.hits);
     for (std::size_t at = 0; at < a.size(); ++at)
-        for (const auto plane : {&Film::r, &Film::g, &Film::b}) EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 5e-6 * static_cast<double>((a.*plane)[at])) << at;
+        for (const auto plane : {&Film::r, &Film::g, &Film::b})
+            EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 5e-6 * static_cast<double>((a.*plane)[at])) << at;
 }
 
 TEST(Films, ASceneWithoutLightsAndBodiesIsDrawnToo) {
@@ -178,11 +194,12 @@ n = [16]
 [regions.all]
 box = [0, 0, 3, 3]
 )",
-                                        "plain.toml");
+        "plain.toml");
     const Scene scene(experiment);
     Watch watch;
     Estimator gl(test::context());
-    const Film a = estimate_films(scene, "cosine", {16}, 1, "", watch)[0], b = gl.films(scene, "cosine", {16}, 1, watch)[0];
+    const Film a = estimate_films(scene, "cosine", {16}, 1, "", watch)[0],
+               b = gl.films(scene, "cosine", {16}, 1, watch)[0];
     for (std::size_t at = 0; at < a.size(); ++at) EXPECT_NEAR(b.y[at], a.y[at], 1e-6);
     EXPECT_NEAR(b.y[0], 0.5, 1e-6);
 }

@@ -11,17 +11,21 @@ Framebuffer::Framebuffer(const Context& context, int width, int height, std::siz
     : context_(context), width_(width), height_(height), texel_(texel), textures_(attachments) {
     GLint most = 0;
     gl().GetIntegerv(GL_MAX_DRAW_BUFFERS, &most);
-    if (attachments > static_cast<std::size_t>(most)) throw OutputError(fmt::format("the GL driver draws to {} buffers at most; {} are needed", most, attachments));
+    if (attachments > static_cast<std::size_t>(most))
+        throw OutputError(fmt::format("the GL driver draws to {} buffers at most; {} are needed", most, attachments));
     gl().GenFramebuffers(1, &framebuffer_);
     gl().GenTextures(static_cast<GLsizei>(attachments), textures_.data());
     gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     std::vector<GLenum> targets;
     for (std::size_t k = 0; k < attachments; ++k) {
         gl().BindTexture(GL_TEXTURE_2D, textures_[k]);
-        if (texel == Texel::rgba32f) gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
-        else gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32UI, width, height, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, nullptr);
+        if (texel == Texel::rgba32f)
+            gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
+        else
+            gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32UI, width, height, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, nullptr);
         context_.check("making the textures of a framebuffer");
-        for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) gl().TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+        for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+            gl().TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
         targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(k));
         gl().FramebufferTexture(GL_FRAMEBUFFER, targets.back(), textures_[k], 0);
     }
@@ -37,34 +41,39 @@ Framebuffer::~Framebuffer() {
 }
 
 void Framebuffer::check() const {
-    const std::string what = fmt::format("framebuffer {}x{} RGBA32{} on {}", width_, height_, texel_ == Texel::rgba32f ? "F" : "UI", context_.renderer());
+    const std::string what = fmt::format("framebuffer {}x{} RGBA32{} on {}", width_, height_,
+        texel_ == Texel::rgba32f ? "F" : "UI", context_.renderer());
     if (const GLenum status = gl().CheckFramebufferStatus(GL_FRAMEBUFFER); status != GL_FRAMEBUFFER_COMPLETE)
         throw OutputError(fmt::format("the {} is not complete (status 0x{:x}){}", what, status, context_.log().text()));
     if (bits() != 32) throw OutputError(fmt::format("the {} has {} bits a channel", what, bits()));
     const GLint type = texel_ == Texel::rgba32f ? GL_FLOAT : GL_UNSIGNED_INT;
     for (std::size_t k = 0; k < textures_.size(); ++k)
-        if (of_attachment(k, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) != type) throw OutputError("the " + what + " is kept as another type of number");
+        if (of_attachment(k, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) != type)
+            throw OutputError("the " + what + " is kept as another type of number");
     if (srgb()) throw OutputError("the " + what + " is encoded as sRGB");
     if (multisamples() != 0) throw OutputError("the " + what + " is multisampled");
 }
 
 GLint Framebuffer::of_attachment(std::size_t k, GLenum what) const {
     GLint value = 0;
-    gl().GetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(k), what, &value);
+    gl().GetFramebufferAttachmentParameteriv(
+        GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(k), what, &value);
     return value;
 }
 
 int Framebuffer::bits() const {
     GLint least = 32;
     for (std::size_t k = 0; k < textures_.size(); ++k)
-        for (const GLenum size : {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE, GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE})
+        for (const GLenum size : {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE,
+                 GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE})
             least = std::min(least, of_attachment(k, size));
     return least;
 }
 
 bool Framebuffer::srgb() const {
     bool encoded = gl().IsEnabled(GL_FRAMEBUFFER_SRGB) == GL_TRUE;
-    for (std::size_t k = 0; k < textures_.size(); ++k) encoded = encoded || of_attachment(k, GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING) == GL_SRGB;
+    for (std::size_t k = 0; k < textures_.size(); ++k)
+        encoded = encoded || of_attachment(k, GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING) == GL_SRGB;
     return encoded;
 }
 

@@ -1,5 +1,5 @@
-// A framebuffer of 32-bit float textures, checked: complete, every channel a 32-bit float, no sRGB, no multisampling. One
-// that a driver makes of fewer bits is an error, never a fallback.
+// A framebuffer of 32-bit float textures, checked: complete, every channel a 32-bit float, no sRGB, no multisampling.
+// One that a driver makes of fewer bits is an error, never a fallback.
 #pragma once
 
 #include <string>
@@ -30,7 +30,7 @@ public:
 
     /// Smallest number of bits of any channel of any attachment.
     int bits() const;
-    bool srgb() const;     // GL_FRAMEBUFFER_SRGB or an attachment encoded so
+    bool srgb() const;  // GL_FRAMEBUFFER_SRGB or an attachment encoded so
     int multisamples() const;
 
 private:

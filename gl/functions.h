@@ -1,5 +1,6 @@
-// The entry points of OpenGL that this folder calls, by pointer: the driver's library is opened when it is asked for, so
-// that the program runs on machines without one. Core 3.3 but for the last lines, which are null where a driver has none.
+// The entry points of OpenGL that this folder calls, by pointer: the driver's library is opened when it is asked for,
+// so that the program runs on machines without one. Core 3.3 but for the last lines, which are null where a driver has
+// none.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -11,20 +12,24 @@ namespace crescent::gl {
 // clang-format off
 #define CRESCENT_GL_CORE(X) \
     X(ACTIVETEXTURE, ActiveTexture) X(ATTACHSHADER, AttachShader) X(BINDFRAMEBUFFER, BindFramebuffer) \
-    X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) \
-    X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) \
-    X(DELETEFRAMEBUFFERS, DeleteFramebuffers) X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) \
-    X(DELETETEXTURES, DeleteTextures) X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DISABLE, Disable) X(DRAWARRAYS, DrawArrays) \
+    X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) \
+    X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(COMPILESHADER, CompileShader) \
+    X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) X(DELETEFRAMEBUFFERS, DeleteFramebuffers) \
+    X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) X(DELETETEXTURES, DeleteTextures) \
+    X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DISABLE, Disable) X(DRAWARRAYS, DrawArrays) \
     X(DRAWBUFFERS, DrawBuffers) X(ENABLE, Enable) X(FINISH, Finish) X(FRAMEBUFFERTEXTURE, FramebufferTexture) \
-    X(GENFRAMEBUFFERS, GenFramebuffers) X(GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays) X(GETERROR, GetError) \
-    X(GETFRAMEBUFFERATTACHMENTPARAMETERIV, GetFramebufferAttachmentParameteriv) X(GETINTEGERV, GetIntegerv) \
-    X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv) X(GETSHADERINFOLOG, GetShaderInfoLog) \
-    X(GETSHADERIV, GetShaderiv) X(GETSTRING, GetString) X(GETUNIFORMLOCATION, GetUniformLocation) X(ISENABLED, IsEnabled) \
-    X(LINKPROGRAM, LinkProgram) X(PIXELSTOREI, PixelStorei) X(READBUFFER, ReadBuffer) X(READPIXELS, ReadPixels) \
-    X(SCISSOR, Scissor) X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D) X(TEXIMAGE3D, TexImage3D) \
-    X(TEXPARAMETERI, TexParameteri) X(TEXSUBIMAGE3D, TexSubImage3D) X(UNIFORM1I, Uniform1i) X(UNIFORM1UI, Uniform1ui) \
-    X(UNIFORM2I, Uniform2i) X(UNIFORM3FV, Uniform3fv) X(UNIFORM4FV, Uniform4fv) X(USEPROGRAM, UseProgram) X(VIEWPORT, Viewport)
-#define CRESCENT_GL_LATER(X) X(DEBUGMESSAGECALLBACK, DebugMessageCallback) X(GETGRAPHICSRESETSTATUS, GetGraphicsResetStatus)
+    X(GENFRAMEBUFFERS, GenFramebuffers) X(GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays) \
+    X(GETERROR, GetError) X(GETFRAMEBUFFERATTACHMENTPARAMETERIV, GetFramebufferAttachmentParameteriv) \
+    X(GETINTEGERV, GetIntegerv) X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv) \
+    X(GETSHADERINFOLOG, GetShaderInfoLog) X(GETSHADERIV, GetShaderiv) X(GETSTRING, GetString) \
+    X(GETUNIFORMLOCATION, GetUniformLocation) X(ISENABLED, IsEnabled) X(LINKPROGRAM, LinkProgram) \
+    X(PIXELSTOREI, PixelStorei) X(READBUFFER, ReadBuffer) X(READPIXELS, ReadPixels) X(SCISSOR, Scissor) \
+    X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D) X(TEXIMAGE3D, TexImage3D) \
+    X(TEXPARAMETERI, TexParameteri) X(TEXSUBIMAGE3D, TexSubImage3D) X(UNIFORM1I, Uniform1i) \
+    X(UNIFORM1UI, Uniform1ui) X(UNIFORM2I, Uniform2i) X(UNIFORM3FV, Uniform3fv) X(UNIFORM4FV, Uniform4fv) \
+    X(USEPROGRAM, UseProgram) X(VIEWPORT, Viewport)
+#define CRESCENT_GL_LATER(X) \
+    X(DEBUGMESSAGECALLBACK, DebugMessageCallback) X(GETGRAPHICSRESETSTATUS, GetGraphicsResetStatus)
 // clang-format on
 
 struct Functions {

@@ -9,14 +9,16 @@ namespace crescent::gl {
 
 namespace {
 
-AssertionResult claim(const std::string& name, double measured, const char* op, double bound, const std::string& quantity) {
+AssertionResult claim(
+    const std::string& name, double measured, const char* op, double bound, const std::string& quantity) {
     const bool pass = std::string_view(op) == "==" ? measured == bound : measured >= bound;
     return {name, pass, measured, bound, op, fmt::format("{} {} {}", quantity, op, bound)};
 }
 
 /// Random integers that differ from the CPU's, over some blocks of both dimensions.
 double unlike_integers_here(const Context& context, std::uint32_t seed) {
-    const std::vector<IntegerBlock> blocks = {{256, 64, 0, 0, seed}, {256, 64, 1, 1, seed}, {256, 64, 0x7fffffffu, 0, ~seed}};
+    const std::vector<IntegerBlock> blocks = {
+        {256, 64, 0, 0, seed}, {256, 64, 1, 1, seed}, {256, 64, 0x7fffffffu, 0, ~seed}};
     const auto integers = driver_integers(context, blocks);
     std::uint64_t unlike = 0;
     for (std::size_t k = 0; k < blocks.size(); ++k) unlike += unlike_integers(blocks[k], integers[k]);
@@ -26,7 +28,9 @@ double unlike_integers_here(const Context& context, std::uint32_t seed) {
 class GlKind : public InstrumentKind {
 public:
     std::string name() const override { return "gl"; }
-    std::shared_ptr<Instrument> open(const InstrumentChoice& choice) const override { return std::make_shared<GlInstrument>(open_context(choice)); }
+    std::shared_ptr<Instrument> open(const InstrumentChoice& choice) const override {
+        return std::make_shared<GlInstrument>(open_context(choice));
+    }
     std::vector<InstrumentDevice> devices() const override { return egl_devices(); }
 };
 
@@ -38,11 +42,14 @@ const bool registered = [] {
 }  // namespace
 
 GlInstrument::GlInstrument(std::unique_ptr<Context> context) : context_(std::move(context)), estimator_(*context_) {
-    claims_.push_back(claim("the GL context is core 3.3 or later", context_->version_number(), ">=", 3.3, "GL_VERSION"));
+    claims_.push_back(
+        claim("the GL context is core 3.3 or later", context_->version_number(), ">=", 3.3, "GL_VERSION"));
     claim_framebuffer("composite", 1280, 720, 1);
 }
 
-std::string GlInstrument::name() const { return fmt::format("GL {}, {}, {}", context_->version(), context_->renderer(), context_->kind()); }
+std::string GlInstrument::name() const {
+    return fmt::format("GL {}, {}, {}", context_->version(), context_->renderer(), context_->kind());
+}
 
 std::vector<std::pair<std::string, std::string>> GlInstrument::details() const {
     return {{"GL_VERSION", context_->version()}, {"GL_RENDERER", context_->renderer()}, {"context", context_->kind()}};
@@ -60,9 +67,11 @@ std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch&
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.experiment().image;
-        const TileBox first = rectangles_of(image.width, image.height, scene.disks().size(), estimator_.largest_texture()).front();
+        const TileBox first =
+            rectangles_of(image.width, image.height, scene.disks().size(), estimator_.largest_texture()).front();
         claim_framebuffer("film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(scene.disks().size()));
-        claims_.push_back(claim("the random integers are the CPU's", unlike_integers_here(*context_, job.seed), "==", 0, "integers that differ"));
+        claims_.push_back(claim("the random integers are the CPU's", unlike_integers_here(*context_, job.seed), "==", 0,
+            "integers that differ"));
         claimed_film_ = true;
     }
     return estimator_.films(scene, job.arm->sampler, job.n, job.seed, watch);

@@ -5,7 +5,8 @@
 
 namespace crescent::gl {
 
-std::vector<std::vector<std::uint32_t>> driver_integers(const Context& context, const std::vector<IntegerBlock>& blocks) {
+std::vector<std::vector<std::uint32_t>> driver_integers(
+    const Context& context, const std::vector<IntegerBlock>& blocks) {
     ShaderSource source;
     source.include("integers.glsl");
     const Program program(context, source);

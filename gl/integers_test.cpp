@@ -12,7 +12,8 @@ namespace {
 std::vector<IntegerBlock> many_blocks() {
     std::vector<IntegerBlock> out;
     for (const std::uint32_t pair : {0u, 1u, 31u, 32767u, 0x7fffffffu})
-        for (const auto& [block, seed] : {std::pair{0u, 0u}, {0u, 329363537u}, {1u, 1374605335u}, {2u, 0xffffffffu}}) out.push_back({512, 512, pair, block, seed});
+        for (const auto& [block, seed] : {std::pair{0u, 0u}, {0u, 329363537u}, {1u, 1374605335u}, {2u, 0xffffffffu}})
+            out.push_back({512, 512, pair, block, seed});
     return out;
 }
 
@@ -20,7 +21,8 @@ TEST(Integers, EveryBitOfEveryDrawIsTheCpus) {
     const std::vector<IntegerBlock> blocks = many_blocks();
     const auto integers = driver_integers(test::context(), blocks);
     for (std::size_t k = 0; k < blocks.size(); ++k)
-        EXPECT_EQ(unlike_integers(blocks[k], integers[k]), 0u) << "pair " << blocks[k].pair << ", block " << blocks[k].block << ", seed " << blocks[k].seed;
+        EXPECT_EQ(unlike_integers(blocks[k], integers[k]), 0u)
+            << "pair " << blocks[k].pair << ", block " << blocks[k].block << ", seed " << blocks[k].seed;
 }
 
 TEST(Integers, AFlippedBitAndAnotherSeedAreCounted) {

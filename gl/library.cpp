@@ -6,7 +6,8 @@
 
 namespace crescent::gl {
 
-Library::Library(const std::string& file, const std::string& needed_for) : file_(file), handle_(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+Library::Library(const std::string& file, const std::string& needed_for)
+    : file_(file), handle_(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
     if (handle_) return;
     const char* why = ::dlerror();
     throw OutputError(file + " cannot be opened, and " + needed_for + " needs it: " + (why ? why : "no reason given"));

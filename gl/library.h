@@ -13,7 +13,9 @@ public:
     /// Null where the library has no such name.
     void* address_of(const char* name) const;
     /// The same as a function; throws OutputError where it is not there.
-    template <class Function> Function* function(const char* name) const { return reinterpret_cast<Function*>(required(name)); }
+    template <class Function> Function* function(const char* name) const {
+        return reinterpret_cast<Function*>(required(name));
+    }
 
 private:
     void* required(const char* name) const;

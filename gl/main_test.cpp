@@ -1,4 +1,5 @@
-// Runs the tests of this folder where a GL context is to be had; else says so and returns 77, which ctest counts as skipped.
+// Runs the tests of this folder where a GL context is to be had; else says so and returns 77, which ctest counts as
+// skipped.
 #include <gtest/gtest.h>
 
 #include <iostream>

@@ -1,4 +1,5 @@
-// Whole runs: what the meters read off GL films is what they read off the CPU's, within 1 % of the band that the seeds span.
+// Whole runs: what the meters read off GL films is what they read off the CPU's, within 1 % of the band that the seeds
+// span.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -18,11 +19,12 @@ box = [20, 24, 76, 44]
 [regions.ground]
 box = [4, 4, 90, 16]
 )",
-                 "metered.toml", {"seeds=8", "n=64", "arms.phong.n=[4,16,64]"});
+        "metered.toml", {"seeds=8", "n=64", "arms.phong.n=[4,16,64]"});
 }
 
 RunResult run_with(const std::shared_ptr<Instrument>& instrument) {
-    const std::filesystem::path out = std::filesystem::temp_directory_path() / ("crescent-gl-" + std::to_string(::getpid()));
+    const std::filesystem::path out =
+        std::filesystem::temp_directory_path() / ("crescent-gl-" + std::to_string(::getpid()));
     RunOptions options;
     options.out = out.string();
     options.instrument = instrument;

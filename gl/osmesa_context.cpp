@@ -19,9 +19,10 @@ public:
         make_current_ = library_.function<decltype(OSMesaMakeCurrent)>("OSMesaMakeCurrent");
         current_ = library_.function<decltype(OSMesaGetCurrentContext)>("OSMesaGetCurrentContext");
         destroy_ = library_.function<decltype(OSMesaDestroyContext)>("OSMesaDestroyContext");
-        const int attributes[] = {OSMESA_FORMAT,                OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
-                                  OSMESA_CONTEXT_MINOR_VERSION, 3,           0};
-        context_ = library_.function<decltype(OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs")(attributes, nullptr);
+        const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
+            OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+        context_ =
+            library_.function<decltype(OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs")(attributes, nullptr);
         if (!context_) throw OutputError("OSMesa makes no core 3.3 context");
         make_current();
         const auto address = library_.function<decltype(OSMesaGetProcAddress)>("OSMesaGetProcAddress");
@@ -33,7 +34,8 @@ public:
 
     std::string kind() const override { return "OSMesa"; }
     void make_current() override {
-        if (make_current_(context_, window_, GL_UNSIGNED_BYTE, 1, 1) != GL_TRUE) throw OutputError("the OSMesa context cannot be made current" + log_.text());
+        if (make_current_(context_, window_, GL_UNSIGNED_BYTE, 1, 1) != GL_TRUE)
+            throw OutputError("the OSMesa context cannot be made current" + log_.text());
     }
     void release() override { make_current_(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
     bool is_current() const override { return context_ && current_() == context_; }

@@ -1,5 +1,6 @@
-// How much one draw may hold. Drivers end a draw that takes too long, and nobody can interrupt one: draws are made to last
-// about a tenth of a second, so that none comes near 0.2 s on llvmpipe even where the next rows cost twice as much.
+// How much one draw may hold. Drivers end a draw that takes too long, and nobody can interrupt one: draws are made to
+// last about a tenth of a second, so that none comes near 0.2 s on llvmpipe even where the next rows cost twice as
+// much.
 #pragma once
 
 #include <algorithm>

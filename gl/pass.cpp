@@ -14,10 +14,18 @@ constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may 
 
 }  // namespace
 
-Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts, std::size_t disks, Watch& watch)
-    : context_(context), sites_(sites), framebuffer_(framebuffer), parts_(std::move(parts)), disks_(disks), watch_(watch), moments_(sites.groups().size()),
+Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer,
+    std::vector<LobePart> parts, std::size_t disks, Watch& watch)
+    : context_(context),
+      sites_(sites),
+      framebuffer_(framebuffer),
+      parts_(std::move(parts)),
+      disks_(disks),
+      watch_(watch),
+      moments_(sites.groups().size()),
       met_(framebuffer.attachments() - 2) {
-    for (std::size_t g = 0; g < moments_.size(); ++g) moments_[g].resize(sites.groups()[g].count, disks), means_.emplace_back(sites.groups()[g].count);
+    for (std::size_t g = 0; g < moments_.size(); ++g)
+        moments_[g].resize(sites.groups()[g].count, disks), means_.emplace_back(sites.groups()[g].count);
 }
 
 void Pass::advance_to(std::uint64_t n) {
@@ -52,7 +60,8 @@ void Pass::take(int samples) {
     }
 }
 
-/// A draw of no samples: drivers finish compiling when a program is first drawn with, and that is no measure of its speed.
+/// A draw of no samples: drivers finish compiling when a program is first drawn with, and that is no measure of its
+/// speed.
 void Pass::warm_up(const LobePart& part) {
     part.program->set("samples", 0);
     draw_strips(part, 0, 1);
@@ -76,7 +85,8 @@ void Pass::draw_part(LobePart& part, int samples) {
 
 void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
     const Functions& gl = context_.gl();
-    const int y0 = static_cast<int>(from) * strip_rows, y1 = std::min(static_cast<int>(to) * strip_rows, sites_.height());
+    const int y0 = static_cast<int>(from) * strip_rows,
+              y1 = std::min(static_cast<int>(to) * strip_rows, sites_.height());
     gl.Enable(GL_SCISSOR_TEST);
     gl.Scissor(part.pixels.x0, y0, part.pixels.x1 - part.pixels.x0, y1 - y0);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
@@ -104,12 +114,14 @@ void Pass::gather(std::size_t first_disk, int samples) {
                 m.spread[i] += static_cast<double>(sums_[at + 2]) + by * by * (before * more / (before + more));
                 means_[g][i] += by * (more / (before + more));
                 m.largest[i] = std::max(m.largest[i], sums_[at + 3]);
-                m.horizon[i] += static_cast<std::uint32_t>(counts_[at]), m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
+                m.horizon[i] += static_cast<std::uint32_t>(counts_[at]),
+                    m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
                 m.bad[i] += static_cast<std::uint32_t>(counts_[at + 2]);
             }
             for (std::size_t k = 0; k < disks; ++k) {
                 const float* pair = met_[k / 2].data() + at + 2 * (k % 2);
-                m.disk_g[first_disk + k][i] += static_cast<double>(pair[0]), m.disk_g_lobe[first_disk + k][i] += static_cast<double>(pair[1]);
+                m.disk_g[first_disk + k][i] += static_cast<double>(pair[0]),
+                    m.disk_g_lobe[first_disk + k][i] += static_cast<double>(pair[1]);
             }
         }
     });

@@ -1,4 +1,5 @@
-// One rectangle of a film: draws of bounded length, the moments they bring back, a rung whenever its samples are complete.
+// One rectangle of a film: draws of bounded length, the moments they bring back, a rung whenever its samples are
+// complete.
 #pragma once
 
 #include <functional>
@@ -26,7 +27,8 @@ struct LobePart {
 
 class Pass {
 public:
-    Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts, std::size_t disks, Watch& watch);
+    Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts,
+        std::size_t disks, Watch& watch);
 
     /// Takes samples [done, n); then moments() are those of n samples.
     void advance_to(std::uint64_t n);

@@ -25,10 +25,12 @@ GLuint Program::compile(GLenum stage, const std::string& text, const std::string
     gl().GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
     if (compiled == GL_TRUE) return shader;
     gl().GetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
-    const std::string log = log_of(length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetShaderInfoLog(shader, n, written, to); });
+    const std::string log =
+        log_of(length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetShaderInfoLog(shader, n, written, to); });
     gl().DeleteShader(shader);
     context_.check("compiling a shader");
-    throw OutputError(fmt::format("a shader does not compile on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, key));
+    throw OutputError(fmt::format(
+        "a shader does not compile on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, key));
 }
 
 Program::Program(const Context& context, const ShaderSource& fragment) : context_(context) {
@@ -45,9 +47,11 @@ Program::Program(const Context& context, const ShaderSource& fragment) : context
     gl().GetProgramiv(program_, GL_LINK_STATUS, &linked);
     if (linked == GL_TRUE) return;
     gl().GetProgramiv(program_, GL_INFO_LOG_LENGTH, &length);
-    const std::string log = log_of(length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetProgramInfoLog(program_, n, written, to); });
+    const std::string log = log_of(
+        length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetProgramInfoLog(program_, n, written, to); });
     gl().DeleteProgram(program_);
-    throw OutputError(fmt::format("a shader does not link on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, fragment.key()));
+    throw OutputError(fmt::format(
+        "a shader does not link on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, fragment.key()));
 }
 
 Program::~Program() { gl().DeleteProgram(program_); }

@@ -38,7 +38,8 @@ void ShaderSource::add(const std::string& path, const std::string& text) {
 
 std::string ShaderSource::key() const {
     std::string out = "lines";
-    for (std::size_t k = 0; k < paths_.size(); ++k) out += (k ? ", " : " ") + std::to_string(lines_per_file * k) + " + n: " + paths_[k];
+    for (std::size_t k = 0; k < paths_.size(); ++k)
+        out += (k ? ", " : " ") + std::to_string(lines_per_file * k) + " + n: " + paths_[k];
     return out;
 }
 

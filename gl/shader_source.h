@@ -16,8 +16,8 @@ extern const int shader_file_count;
 /// Null where there is none of that path.
 const char* shader_text(const std::string& path);
 
-/// A compilation unit: #version 330, #define lines, then files. Drivers do not agree on how to name a source, so each file
-/// has line numbers of its own in their logs: line n of file k is 1000 k + n.
+/// A compilation unit: #version 330, #define lines, then files. Drivers do not agree on how to name a source, so each
+/// file has line numbers of its own in their logs: line n of file k is 1000 k + n.
 class ShaderSource {
 public:
     static constexpr std::size_t lines_per_file = 1000;

@@ -13,7 +13,8 @@ constexpr std::size_t layer_of_lobe = 5;
 
 std::vector<TileBox> tiles_in(const TileBox& box) {
     std::vector<TileBox> out;
-    for (const TileBox& t : tiles_of(box.x1 - box.x0, box.y1 - box.y0)) out.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
+    for (const TileBox& t : tiles_of(box.x1 - box.x0, box.y1 - box.y0))
+        out.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
     return out;
 }
 
@@ -30,7 +31,8 @@ SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileB
     for (std::vector<Sites>& groups : all)
         for (Sites& group : groups) groups_.push_back(std::move(group));
 
-    const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()), layer_count = site_layers(scene.disks().size());
+    const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
+                      layer_count = site_layers(scene.disks().size());
     std::vector<float> layers(4 * texels * layer_count, 0.0f);
     for (std::size_t k = 0; k < texels; ++k) layers[4 * (layer_of_lobe * texels + k) + 3] = -1;
     tbb::parallel_for(std::size_t{0}, groups_.size(), [&](std::size_t g) {
@@ -64,9 +66,11 @@ void SiteTexture::upload(const std::vector<float>& layers, std::size_t layer_cou
     const Functions& gl = context_.gl();
     gl.GenTextures(1, &texture_);
     bind();
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) gl.TexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        gl.TexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
     gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 0);
-    gl.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, width(), height(), static_cast<GLsizei>(layer_count), 0, GL_RGBA, GL_FLOAT, layers.data());
+    gl.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, width(), height(), static_cast<GLsizei>(layer_count), 0, GL_RGBA,
+        GL_FLOAT, layers.data());
     context_.check("sending the sites to the device");
 }
 
@@ -77,7 +81,8 @@ void SiteTexture::bind() const {
 
 std::size_t SiteTexture::texel(const Sites& group, std::size_t i) const {
     const std::size_t x = group.pixel[i] % image_width_, y = group.pixel[i] / image_width_;
-    return (y - static_cast<std::size_t>(box_.y0)) * static_cast<std::size_t>(width()) + (x - static_cast<std::size_t>(box_.x0));
+    return (y - static_cast<std::size_t>(box_.y0)) * static_cast<std::size_t>(width()) +
+        (x - static_cast<std::size_t>(box_.x0));
 }
 
 std::vector<int> SiteTexture::lobes() const {
@@ -90,7 +95,8 @@ std::vector<int> SiteTexture::lobes() const {
 
 LobePixels SiteTexture::pixels_of(int lobe) const {
     const std::size_t across = static_cast<std::size_t>(width());
-    LobePixels out{std::vector<std::uint64_t>(static_cast<std::size_t>((height() + strip_rows - 1) / strip_rows)), width(), 0};
+    LobePixels out{
+        std::vector<std::uint64_t>(static_cast<std::size_t>((height() + strip_rows - 1) / strip_rows)), width(), 0};
     for (const Sites& group : groups_) {
         for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) {
             const std::size_t at = texel(group, i);
@@ -108,7 +114,8 @@ std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int
     const int up = std::clamp(texels / across, 1, std::min(height, largest_texture));
     std::vector<TileBox> out;
     for (int y = 0; y < height; y += up)
-        for (int x = 0; x < width; x += across) out.push_back({x, y, std::min(x + across, width), std::min(y + up, height)});
+        for (int x = 0; x < width; x += across)
+            out.push_back({x, y, std::min(x + across, width), std::min(y + up, height)});
     return out;
 }
 

@@ -1,5 +1,5 @@
-// A small scene for the tests of this folder, with one of everything that a shader has a line for: every lobe, every kind of
-// body before the lights, two lights of which one emits from both sides.
+// A small scene for the tests of this folder, with one of everything that a shader has a line for: every lobe, every
+// kind of body before the lights, two lights of which one emits from both sides.
 #pragma once
 
 #include <cstdlib>
@@ -107,7 +107,9 @@ n = [4, 64]
 box = [0, 0, 7, 7]
 )";
 
-inline Experiment small_scene(const std::vector<std::string>& overrides = {}) { return parse(scene_text, "test.toml", overrides); }
+inline Experiment small_scene(const std::vector<std::string>& overrides = {}) {
+    return parse(scene_text, "test.toml", overrides);
+}
 
 /// Every sampler of the list.
 inline std::vector<std::string> all_arms() {
@@ -116,8 +118,8 @@ inline std::vector<std::string> all_arms() {
     return names;
 }
 
-/// What the tests draw with, opened once: CRESCENT_GL_CONTEXT (egl, osmesa), by default the instrument's own choice. EGL's
-/// and OSMesa's drivers share tables within a process, so that one process has one of them.
+/// What the tests draw with, opened once: CRESCENT_GL_CONTEXT (egl, osmesa), by default the instrument's own choice.
+/// EGL's and OSMesa's drivers share tables within a process, so that one process has one of them.
 inline Context& context() {
     const char* kind = std::getenv("CRESCENT_GL_CONTEXT");
     static const std::unique_ptr<Context> one = open_context({kind ? kind : "", -1});

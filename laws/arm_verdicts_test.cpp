@@ -50,7 +50,12 @@ TEST(Verdicts, SeeTheNearerOfTwoLights) {
             both += far && near;
             front += near && !far;
             back += far && !near;
-            EXPECT_EQ(light(wi), near ? light.disks[1].radiance : far ? light.disks[0].radiance : wi.z > 0 ? 1 : 0) << theta << " " << azimuth;
+            EXPECT_EQ(light(wi),
+                near           ? light.disks[1].radiance
+                    : far      ? light.disks[0].radiance
+                    : wi.z > 0 ? 1
+                               : 0)
+                << theta << " " << azimuth;
         }
     EXPECT_GT(both, 50);
     EXPECT_GT(front, 50);
@@ -61,7 +66,8 @@ TEST(Verdicts, QuickModeCatchesEveryPlantedFault) {
     Watch watch;
     const auto faults = planted_faults(false);
     EXPECT_GE(faults.size(), 24u);
-    for (const PlantedFault& fault : faults) EXPECT_EQ(judge(fault.trials, Rigour::quick(), watch).state, State::wrong) << fault.name;
+    for (const PlantedFault& fault : faults)
+        EXPECT_EQ(judge(fault.trials, Rigour::quick(), watch).state, State::wrong) << fault.name;
 }
 
 struct CosineOfMine {
@@ -74,7 +80,9 @@ struct CosineOfMine {
         const float r = std::sqrt(u[0]), phi = 6.2831853f * u[1], z = std::sqrt(1 - u[0]);
         return {{r * std::cos(phi), r * std::sin(phi), z}, too_much * z / 3.14159265f};
     }
-    float pdf(std::array<float, 3>, std::array<float, 3> wi) const { return wi[2] > 0 ? too_much * wi[2] / 3.14159265f : 0; }
+    float pdf(std::array<float, 3>, std::array<float, 3> wi) const {
+        return wi[2] > 0 ? too_much * wi[2] / 3.14159265f : 0;
+    }
 };
 
 TEST(Verdicts, JudgeAStructOfPlainFloats) {
@@ -88,12 +96,15 @@ TEST(Verdicts, LeaveARightSamplerOfAConeAlone) {
             const float z = 1 - 0.2f * u[0], sin = std::sqrt(1 - z * z), phi = 6.2831853f * u[1];
             return {{sin * std::cos(phi), sin * std::sin(phi), z}, 1 / (6.2831853f * 0.2f)};
         }
-        float pdf(std::array<float, 3>, std::array<float, 3> wi) const { return wi[2] >= 0.8f ? 1 / (6.2831853f * 0.2f) : 0; }
+        float pdf(std::array<float, 3>, std::array<float, 3> wi) const {
+            return wi[2] >= 0.8f ? 1 / (6.2831853f * 0.2f) : 0;
+        }
     };
     EXPECT_THAT(Cone{}, IsARightSampler());
 }
 
-/// A density tabulated over 8 x 16 cells of the hemisphere, one of them forty times as bright: its warp has a seam at every cell.
+/// A density tabulated over 8 x 16 cells of the hemisphere, one of them forty times as bright: its warp has a seam at
+/// every cell.
 struct Tabulated {
     struct Drawn {
         Vec3d wi;
@@ -112,7 +123,9 @@ struct Tabulated {
     }
     double pdf(Vec3d, Vec3d wi) const {
         const double turns = std::atan2(wi.y, wi.x) / (2 * pi);
-        return wi.z <= 0 ? 0 : cell(std::min(7, int(wi.z * 8)), std::min(15, int((turns < 0 ? turns + 1 : turns) * 16))) / all() * 128 / (2 * pi);
+        return wi.z <= 0 ? 0
+                         : cell(std::min(7, int(wi.z * 8)), std::min(15, int((turns < 0 ? turns + 1 : turns) * 16))) /
+                all() * 128 / (2 * pi);
     }
     Drawn sample(Vec3d wo, Vec2d u) const {
         int i = 0, j = 0;
@@ -120,7 +133,8 @@ struct Tabulated {
         for (; i < 7 && x >= row(i); ++i) x -= row(i);
         double y = u.y * row(i);
         for (; j < 15 && y >= cell(i, j); ++j) y -= cell(i, j);
-        const double z = (i + std::min(x / row(i), 1 - 1e-9)) / 8, phi = 2 * pi * (j + std::min(y / cell(i, j), 1 - 1e-9)) / 16, sin = std::sqrt(1 - z * z);
+        const double z = (i + std::min(x / row(i), 1 - 1e-9)) / 8,
+                     phi = 2 * pi * (j + std::min(y / cell(i, j), 1 - 1e-9)) / 16, sin = std::sqrt(1 - z * z);
         const Vec3d wi{sin * std::cos(phi), sin * std::sin(phi), z};
         return {wi, pdf(wo, wi)};
     }
@@ -151,7 +165,8 @@ TEST(Verdicts, AskForThePdfWhereNothingIsDrawn) {
 TEST(Verdicts, CallAProgramTooSlowRatherThanWrong) {
     PipeLimits limits;
     limits.total_seconds = 0.5;
-    const std::string slow = "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
+    const std::string slow =
+        "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
     Rigour rigour;
     Watch watch;
     rigour.accept_few = true;  // few, not none
@@ -169,15 +184,15 @@ std::string fault_of(const std::string& command) {
         std::vector<Vec2d> u(100, {0.5, 0.5});
         std::vector<Draw> out(100);
         pipe->sample(0, {0, 0, 1}, u, out);
-    } catch (const SubjectFault& fault) {
-        return fault.what();
-    }
+    } catch (const SubjectFault& fault) { return fault.what(); }
     return "";
 }
 
 TEST(Verdicts, SayWhatAPipeDidWrongAndWhere) {
-    EXPECT_NE(fault_of("sleep 20").find("request 1 ('hello 1'): expected 'hello 1 NAME', got nothing"), std::string::npos);
-    EXPECT_NE(fault_of("sleep 20 & exit 0").find("the program ended with exit code 0, and what it left running"), std::string::npos);
+    EXPECT_NE(
+        fault_of("sleep 20").find("request 1 ('hello 1'): expected 'hello 1 NAME', got nothing"), std::string::npos);
+    EXPECT_NE(fault_of("sleep 20 & exit 0").find("the program ended with exit code 0, and what it left running"),
+        std::string::npos);
     EXPECT_NE(fault_of("echo hallo").find("got 'hallo'"), std::string::npos);
     EXPECT_NE(fault_of("exit 3").find("exit code 3"), std::string::npos);
     EXPECT_NE(fault_of("echo hello 1 x; echo 1; exit 0").find("request"), std::string::npos);

@@ -1,4 +1,5 @@
-// Structs of somebody's own: what they may look like, what is said where they cannot be judged, and what happens when they throw.
+// Structs of somebody's own: what they may look like, what is said where they cannot be judged, and what happens when
+// they throw.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <optional>
@@ -65,7 +66,8 @@ TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
     std::size_t errors = 0;
     for (const Verdict& v : j.verdicts) errors += v.state == State::error;
     EXPECT_EQ(errors, 2 * verdict_names.size()) << what_is_wrong(j);  // w_o at 85 and 89 deg
-    EXPECT_NE(what_is_wrong(j).find("sample(wo, u) threw 'no grazing light' at w_o = ("), std::string::npos) << what_is_wrong(j);
+    EXPECT_NE(what_is_wrong(j).find("sample(wo, u) threw 'no grazing light' at w_o = ("), std::string::npos)
+        << what_is_wrong(j);
 }
 
 TEST(Doors, JudgingStopsWhenItsWatchSaysSo) {

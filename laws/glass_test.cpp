@@ -1,5 +1,5 @@
-// Samplers that reach under the surface: right glass is left alone whatever its index and whichever way f scales by eta^2, glass
-// that creates energy is wrong, and a half that is not judged is said not to be.
+// Samplers that reach under the surface: right glass is left alone whatever its index and whichever way f scales by
+// eta^2, glass that creates energy is wrong, and a half that is not judged is said not to be.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,8 @@ struct Drawn {
     double pdf;
 };
 
-/// Rough dielectric, GGX with visible normals (Walter et al. 2007, equations 20, 21 and 17; Heitz 2018). Half of the draws reflect.
+/// Rough dielectric, GGX with visible normals (Walter et al. 2007, equations 20, 21 and 17; Heitz 2018). Half of the
+/// draws reflect.
 struct Glass {
     double alpha = 0.3, eta = 1.5;  // index below over above
     bool radiance = true;           // f divided by eta^2 across the surface
@@ -50,7 +51,8 @@ struct Glass {
     double f(Vec3d wo, Vec3d wi) const {
         if (wi.z == 0 || wo.z <= 0) return 0;
         const Vec3d m = half(wo, wi);
-        const double o = dot(wo, m), F = fresnel(o, eta), common = D(m) * G1(wo) * G1(wi) * std::fabs(o) / (wo.z * std::fabs(wi.z)) * jacobian(wo, wi, m);
+        const double o = dot(wo, m), F = fresnel(o, eta),
+                     common = D(m) * G1(wo) * G1(wi) * std::fabs(o) / (wo.z * std::fabs(wi.z)) * jacobian(wo, wi, m);
         const double value = wi.z > 0 ? F * common : lift * (1 - F) * common / (radiance ? eta * eta : 1);
         return std::isfinite(value) ? value : 0;
     }
@@ -80,7 +82,10 @@ struct Paper {
     double f(Vec3d, Vec3d wi) const { return (wi.z > 0 ? above : below) / pi; }
     Drawn sample(Vec3d wo, Vec2d u) const {
         const bool under = draws_below && u.x >= 0.5;
-        const double x = !draws_below ? u.x : under ? 2 * u.x - 1 : 2 * u.x, z = std::sqrt(1 - x), r = std::sqrt(x), phi = 2 * pi * u.y;
+        const double x = !draws_below ? u.x
+            : under                   ? 2 * u.x - 1
+                                      : 2 * u.x,
+                     z = std::sqrt(1 - x), r = std::sqrt(x), phi = 2 * pi * u.y;
         const Vec3d wi{r * std::cos(phi), r * std::sin(phi), under ? -z : z};
         return {wi, pdf(wo, wi)};
     }

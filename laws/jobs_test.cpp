@@ -17,7 +17,9 @@ std::vector<std::string> told(const Experiment& e) {
 }
 
 TEST(Jobs, AreEachArmAtTheExperimentsOwnExponent) {
-    EXPECT_EQ(told(test::small_scene()), (std::vector<std::string>{"uniform n=64 s=24", "cosine n=4 s=24", "cosine n=64 s=24", "phong n=4 s=24", "phong n=64 s=24"}));
+    EXPECT_EQ(told(test::small_scene()),
+        (std::vector<std::string>{
+            "uniform n=64 s=24", "cosine n=4 s=24", "cosine n=64 s=24", "phong n=4 s=24", "phong n=64 s=24"}));
 }
 
 TEST(Jobs, AddTheExponentControlWhereAPassHasItNotAlready) {

@@ -9,7 +9,7 @@ namespace {
 
 Experiment tiny(int width, int height) {
     return load(std::string(CRESCENT_SOURCE_DIR) + "/laws/scripts/tiny.toml",
-                {"image.width=" + std::to_string(width), "image.height=" + std::to_string(height)});
+        {"image.width=" + std::to_string(width), "image.height=" + std::to_string(height)});
 }
 
 TEST(Needs, GrowWithThePixelsAndTheRungs) {

@@ -109,7 +109,8 @@ private:
 TEST(OwnSamplers, ThatKeepAStateAreToldSo) {
     const Judgement j = judged(std::make_shared<Delayed>());
     EXPECT_EQ(named(j, "identity").state, State::wrong);
-    EXPECT_NE(named(j, "identity").say.find("another answer when it is asked again"), std::string::npos) << named(j, "identity").say;
+    EXPECT_NE(named(j, "identity").say.find("another answer when it is asked again"), std::string::npos)
+        << named(j, "identity").say;
 }
 
 TEST(OwnSamplers, WithANaNInOneCornerAreStillJudgedWhole) {
@@ -195,7 +196,9 @@ TEST(Efficiencies, AreRankedOnlyWhereIntervalsAreApart) {
     }
     std::vector<Efficiency> all(3);
     const double variance[] = {1, 10, 1.01};
-    for (std::size_t i = 0; i < 3; ++i) all[i].trial = i, all[i].variance = variance[i], all[i].relative_se = 0.02, all[i].nanoseconds = 10, all[i].cost_se = 0.02;
+    for (std::size_t i = 0; i < 3; ++i)
+        all[i].trial = i, all[i].variance = variance[i], all[i].relative_se = 0.02, all[i].nanoseconds = 10,
+        all[i].cost_se = 0.02;
     const std::vector<Verdict> v = judge_efficiency(trials, all);
     EXPECT_EQ(v[0].state, State::right);
     all[1].heavy = true;

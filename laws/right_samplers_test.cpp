@@ -1,5 +1,5 @@
-// Right samplers at random parameters are never accused. `crescent check --right N` judges as many as one likes, docs/error-rates.md
-// has what came of it; here a few of every family.
+// Right samplers at random parameters are never accused. `crescent check --right N` judges as many as one likes,
+// docs/error-rates.md has what came of it; here a few of every family.
 #include <gtest/gtest.h>
 
 #include "laws/right/law.h"

@@ -35,7 +35,7 @@ n = [4]
 [regions.all]
 box = [0, 0, 3, 3]
 )",
-                 "wall.toml", overrides);
+        "wall.toml", overrides);
 }
 
 TEST(Camera, PixelsCountFromTheBottomLeftAndAreSquare) {
@@ -54,7 +54,8 @@ TEST(Camera, UpIsUpHoweverItIsTilted) {
     for (const char* up : {"[1, 0, 0]", "[0.6, 0.8, 0]", "[0, 0.8, 0.6]"}) {
         const Experiment e = wall({std::string("camera.up=") + up});
         const Scene scene(e);
-        const Vec3d rise = scene.primary(40, 39)->x - scene.primary(40, 0)->x, right = scene.primary(79, 20)->x - scene.primary(0, 20)->x;
+        const Vec3d rise = scene.primary(40, 39)->x - scene.primary(40, 0)->x,
+                    right = scene.primary(79, 20)->x - scene.primary(0, 20)->x;
         EXPECT_GT(dot(rise, e.camera.up), 0) << up;
         EXPECT_NEAR(dot(right, e.camera.up), 0, 1e-9) << up;
         EXPECT_GT(dot(cross(right, rise), Vec3d{0, 0, 1}), 0) << up;  // towards the eye: right-handed

@@ -12,15 +12,15 @@ namespace crescent {
 
 struct FilmOptions {
     std::string out = "out/film";
-    int height = 1080;        // of 16:9 frames
-    int threads = 0;          // 0: as many as the machine has
-    int shot = 0;             // 1 ..: that shot alone; 0: all
-    std::string still;        // "MM:SS" or "SS": this frame alone, as a PNG
-    bool stills = false;      // one PNG a shot and nothing else
-    std::string from, to;     // "MM:SS": this part alone; "": beginning, end
-    std::string voice;        // a command: text on stdin, WAV on stdout; "": silent
-    std::string isa;          // "": the best this machine has
-    std::string command;      // as typed, for the last shot
+    int height = 1080;     // of 16:9 frames
+    int threads = 0;       // 0: as many as the machine has
+    int shot = 0;          // 1 ..: that shot alone; 0: all
+    std::string still;     // "MM:SS" or "SS": this frame alone, as a PNG
+    bool stills = false;   // one PNG a shot and nothing else
+    std::string from, to;  // "MM:SS": this part alone; "": beginning, end
+    std::string voice;     // a command: text on stdin, WAV on stdout; "": silent
+    std::string isa;       // "": the best this machine has
+    std::string command;   // as typed, for the last shot
     bool webm = false;
 };
 

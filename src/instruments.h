@@ -55,7 +55,7 @@ struct InstrumentDevice {
 class InstrumentKind {
 public:
     virtual ~InstrumentKind() = default;
-    virtual std::string name() const = 0;                                              // "gl"
+    virtual std::string name() const = 0;  // "gl"
     /// Throws OutputError where a part is missing, InputError where the choice is not to be had.
     virtual std::shared_ptr<Instrument> open(const InstrumentChoice& choice) const = 0;
     /// None where its library is missing.

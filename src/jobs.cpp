@@ -32,7 +32,8 @@ std::shared_ptr<Instrument> cpu_instrument(std::string isa) { return std::make_s
 std::vector<std::uint32_t> seeds_of(const Experiment& experiment) {
     std::vector<std::uint32_t> series;
     for (std::uint32_t k = 0; series.size() < static_cast<std::size_t>(experiment.seeds); ++k)
-        if (const std::uint32_t seed = seed_of(experiment.seed, k); std::ranges::find(series, seed) == series.end()) series.push_back(seed);
+        if (const std::uint32_t seed = seed_of(experiment.seed, k); std::ranges::find(series, seed) == series.end())
+            series.push_back(seed);
     return series;
 }
 
@@ -42,7 +43,8 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
     for (const ArmPlan& arm : experiment.arms) jobs.push_back({&arm, arm.n, own, seed, nullptr});
     if (!experiment.exponent) return jobs;
     const ExponentControl& control = *experiment.exponent;
-    const auto arm = std::find_if(experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == control.arm; });
+    const auto arm = std::find_if(
+        experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == control.arm; });
     for (double s : control.s) {
         const bool there = s == own && std::find(arm->n.begin(), arm->n.end(), control.n) != arm->n.end();
         if (!there) jobs.push_back({&*arm, {control.n}, s, seed, nullptr});
@@ -50,7 +52,8 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
     return jobs;
 }
 
-std::optional<Tail> region_tail(const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch) {
+std::optional<Tail> region_tail(
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch) {
     constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
     const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
     const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);

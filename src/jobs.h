@@ -20,9 +20,10 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed);
 /// The instrument that is built in; `isa` is a name of isas().
 std::shared_ptr<Instrument> cpu_instrument(std::string isa);
 
-/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too few
-/// spread.
-std::optional<Tail> region_tail(const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch);
+/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
+/// few spread.
+std::optional<Tail> region_tail(
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch);
 
 Provenance provenance_of(const Experiment& experiment, const Instrument& instrument, const std::string& command);
 

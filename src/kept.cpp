@@ -25,13 +25,14 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string mark_of(const char* path) {
-    struct stat about {};
+    struct stat about{};
     if (!path || stat(path, &about) != 0) return "";
-    return fmt::format("{:x}-{:x}-{:x}-{:x}.{:x}", about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec);
+    return fmt::format("{:x}-{:x}-{:x}-{:x}.{:x}", about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec,
+        about.st_mtim.tv_nsec);
 }
 
-/// Which files the program and, where it is another one, the library with this code are, and of when: what another build
-/// kept is not for this one.
+/// Which files the program and, where it is another one, the library with this code are, and of when: what another
+/// build kept is not for this one.
 std::string build_mark() {
     Dl_info about{};
     const bool known = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
@@ -44,14 +45,12 @@ std::vector<RunMeter> meters_of(Journal::Bytes record) {
     const auto* from = reinterpret_cast<const std::uint8_t*>(record.data());
     try {
         return nlohmann::json::from_cbor(from, from + record.size()).get<std::vector<RunMeter>>();
-    } catch (const nlohmann::json::exception&) {
-        return {};
-    }
+    } catch (const nlohmann::json::exception&) { return {}; }
 }
 
 bool are_of(const Experiment& experiment, const std::vector<RegionMeter>& meters) {
     return std::equal(meters.begin(), meters.end(), experiment.regions.begin(), experiment.regions.end(),
-                      [](const RegionMeter& m, const Region& region) { return m.region == region.name; });
+        [](const RegionMeter& m, const Region& region) { return m.region == region.name; });
 }
 
 std::string key_of(const Experiment& experiment, const std::string& instrument) {
@@ -71,11 +70,19 @@ bool holds_files(const std::string& folder) {
 
 }  // namespace
 
-Kept::Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s, Watch& watch)
-    : all_(out + "/.crescent-kept"), key_(key_of(experiment, instrument)), folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
-      patience_s_(patience_s), watch_(watch), start_(std::chrono::steady_clock::now()), journal_(folder_ + "/meters", key_, watch) {
+Kept::Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s,
+    Watch& watch)
+    : all_(out + "/.crescent-kept"),
+      key_(key_of(experiment, instrument)),
+      folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
+      patience_s_(patience_s),
+      watch_(watch),
+      start_(std::chrono::steady_clock::now()),
+      journal_(folder_ + "/meters", key_, watch) {
     for (const std::string& folder : {all_, folder_})
-        if (leads_elsewhere(folder)) throw OutputError(fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder));
+        if (leads_elsewhere(folder))
+            throw OutputError(
+                fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder));
     journal_.read([&](Journal::Bytes record) {
         for (RunMeter& meter : meters_of(record))
             if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
@@ -85,7 +92,8 @@ Kept::Kept(const Experiment& experiment, const std::string& instrument, const st
 }
 
 Kept::~Kept() {
-    if (holds_files(folder_)) watch_.say("what was finished is kept in " + folder_ + ": the same command goes on from there");
+    if (holds_files(folder_))
+        watch_.say("what was finished is kept in " + folder_ + ": the same command goes on from there");
 }
 
 TileKeeper Kept::tiles(const Job& job) {
@@ -95,13 +103,16 @@ TileKeeper Kept::tiles(const Job& job) {
     return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, watch_};
 }
 
-TileKeeper Kept::tiles(const std::string& name) { return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_}; }
+TileKeeper Kept::tiles(const std::string& name) {
+    return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_};
+}
 
 std::vector<RunMeter> Kept::meters(const Job& job) const {
     std::vector<RunMeter> out;
     for (const std::uint64_t n : job.n) {
         const RunKey key{job.arm->name, n, job.s, job.seed};
-        const auto meter = std::find_if(meters_.begin(), meters_.end(), [&](const RunMeter& m) { return m.key == key; });
+        const auto meter =
+            std::find_if(meters_.begin(), meters_.end(), [&](const RunMeter& m) { return m.key == key; });
         if (meter == meters_.end()) return {};
         out.push_back(*meter);
     }

@@ -1,5 +1,6 @@
 // What a long run has finished, kept in OUT/.crescent-kept while it lasts, so that the same command goes on where a run
-// was stopped or killed: tiles of passes that take long, and the meters of finished passes. Gone once the outputs stand.
+// was stopped or killed: tiles of passes that take long, and the meters of finished passes. Gone once the outputs
+// stand.
 #pragma once
 
 #include <chrono>
@@ -16,9 +17,10 @@ namespace crescent {
 
 class Kept {
 public:
-    /// Outputs go to `out`; nothing is kept before `patience_s` seconds; `instrument` as provenance names it. Says so where
-    /// there is something to go on from.
-    Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s, Watch& watch);
+    /// Outputs go to `out`; nothing is kept before `patience_s` seconds; `instrument` as provenance names it. Says so
+    /// where there is something to go on from.
+    Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s,
+        Watch& watch);
     /// Where the run ends before forget(): says what is kept.
     ~Kept();
     Kept(const Kept&) = delete;

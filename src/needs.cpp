@@ -17,9 +17,9 @@ namespace crescent {
 
 namespace {
 
-constexpr double for_itself = 150e6;           // code, fonts, plates, the report; measured on the gallery at 64 x 36
-constexpr double primaries_kept = 1u << 20;    // Scene::remember_primaries keeps no more
-constexpr double working_bytes = 8;            // shape map, site counts and rows on their way to a file, a pixel
+constexpr double for_itself = 150e6;         // code, fonts, plates, the report; measured on the gallery at 64 x 36
+constexpr double primaries_kept = 1u << 20;  // Scene::remember_primaries keeps no more
+constexpr double working_bytes = 8;          // shape map, site counts and rows on their way to a file, a pixel
 
 double megapixels_that_fit(double pixels, double needed, double available) {
     const double each = (needed - for_itself) / pixels;
@@ -29,7 +29,8 @@ double megapixels_that_fit(double pixels, double needed, double available) {
 }  // namespace
 
 std::uint64_t memory_needed(const Experiment& experiment) {
-    const double film = 4.0 * static_cast<double>(Film().planes().size()), reference = 4.0 * static_cast<double>(ReferenceFilm().planes().size());
+    const double film = 4.0 * static_cast<double>(Film().planes().size()),
+                 reference = 4.0 * static_cast<double>(ReferenceFilm().planes().size());
     double rungs = 0, most = 0;
     std::set<double> exponents;
     for (const Job& job : jobs_of(experiment, experiment.seed)) {
@@ -39,7 +40,8 @@ std::uint64_t memory_needed(const Experiment& experiment) {
     }
     const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
     const double again = experiment.seeds > 1 ? most : 0;
-    const double a_pixel = film * (rungs + again) + 2 * reference * static_cast<double>(exponents.size()) + working_bytes;
+    const double a_pixel =
+        film * (rungs + again) + 2 * reference * static_cast<double>(exponents.size()) + working_bytes;
     return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + std::min(pixels, primaries_kept) * sizeof(Hit));
 }
 
@@ -48,11 +50,17 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
     if (needed <= there) return "";
     const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
     const double scale = std::sqrt(megapixels_that_fit(pixels, needed, there) / pixels);
-    const int width = static_cast<int>(experiment.image.width * scale), height = static_cast<int>(experiment.image.height * scale);
-    std::string say = fmt::format("this run needs about {:.2g} GB of memory, and {:.2g} GB are to be had: every rung of every arm is held at {} x {} pixels",
-                                  needed / 1e9, there / 1e9, experiment.image.width, experiment.image.height);
+    const int width = static_cast<int>(experiment.image.width * scale),
+              height = static_cast<int>(experiment.image.height * scale);
+    std::string say = fmt::format(
+        "this run needs about {:.2g} GB of memory, and {:.2g} GB are to be had: every rung of every arm is held at {} "
+        "x {} pixels",
+        needed / 1e9, there / 1e9, experiment.image.width, experiment.image.height);
     if (width > 0 && height > 0)
-        say += fmt::format("; expected fewer rungs, or a smaller image, such as --set image.width={} --set image.height={} with its boxes", width, height);
+        say += fmt::format(
+            "; expected fewer rungs, or a smaller image, such as --set image.width={} --set image.height={} with its "
+            "boxes",
+            width, height);
     return say;
 }
 

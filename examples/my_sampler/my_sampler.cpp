@@ -1,4 +1,5 @@
-// A sampler of one's own, judged: a struct with sample(wo, u) and pdf(wo, wi) in plain floats. Prints what is not right.
+// A sampler of one's own, judged: a struct with sample(wo, u) and pdf(wo, wi) in plain floats. Prints what is not
+// right.
 #include <cmath>
 #include <cstdio>
 
@@ -13,7 +14,9 @@ struct MySampler {
         const float r = std::sqrt(u[0]), phi = 6.2831853f * u[1], z = std::sqrt(1 - u[0]);
         return {{r * std::cos(phi), r * std::sin(phi), z}, z / 3.14159265f};
     }
-    float pdf(std::array<float, 3> /*wo*/, std::array<float, 3> wi) const { return wi[2] > 0 ? wi[2] / 3.14159265f : 0; }
+    float pdf(std::array<float, 3> /*wo*/, std::array<float, 3> wi) const {
+        return wi[2] > 0 ? wi[2] / 3.14159265f : 0;
+    }
 };
 
 int main() {

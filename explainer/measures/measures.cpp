@@ -17,8 +17,7 @@ double sine(double turns) { return math::sin(2 * pi * turns); }
 double cosine(double turns) { return math::cos(2 * pi * turns); }
 
 /// Calls visit(w) with the middles of equal solid angles over the upper hemisphere, 2 pi / count each.
-template <class Visit>
-std::size_t over_hemisphere(Visit&& visit) {
+template <class Visit> std::size_t over_hemisphere(Visit&& visit) {
     constexpr int rings = 256, sectors = 512;
     for (int j = 0; j < rings; ++j) {
         const double z = (j + 0.5) / rings, r = std::sqrt(1 - z * z);
@@ -123,8 +122,8 @@ LostSupport lost_in(const Data& data, const Box& box) {
 
 }  // namespace
 
-std::pair<int, int> worst_pixel(const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes,
-                                const Box& box) {
+std::pair<int, int> worst_pixel(
+    const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, const Box& box) {
     std::pair<int, int> worst{box.x0, box.y0};
     double most = -1;
     for (int j = box.y0; j <= box.y1; ++j) {

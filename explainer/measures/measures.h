@@ -61,8 +61,8 @@ struct Measures {
 Measures take_measures(const Data& data, const std::string& isa, Watch& watch);
 
 /// The pixel of a box with the largest |Y - Y_ref| where something is seen; the first of equals in storage order.
-std::pair<int, int> worst_pixel(const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes,
-                                const Box& box);
+std::pair<int, int> worst_pixel(
+    const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, const Box& box);
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed);
 
 }  // namespace crescent::film

@@ -50,7 +50,7 @@ TEST(Measures, TheLargestSampleWeighedByTheOtherArmKeepsAllButItsDensity) {
     EXPECT_NEAR(double(a.x) * double(a.pdf), double(b.x) * double(b.pdf), 1e-5 * double(a.x) * double(a.pdf));
     for (const PixelSample& s : story.phong.samples)  // where the arm draws, it is weighed as it was drawn
         EXPECT_NEAR(story.pixel->pdf("phong", {double(s.wi.x), double(s.wi.y), double(s.wi.z)}), double(s.pdf),
-                    1e-3 * double(s.pdf));
+            1e-3 * double(s.pdf));
 }
 
 TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {

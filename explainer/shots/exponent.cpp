@@ -51,9 +51,10 @@ Shot exponent(const Data& data) {
         const RunKey key = data.key(control->arm, control->n, s);
         const Point foot{x0 + (w + between) * double(k) + w / 2 - 60, 312};
         const std::string sampler = data.experiment.find_arm(control->arm)->sampler;
-        cols.push_back({photograph_of(data, plates::view(data.film(key)), crop.box), Words("s\u00a0=\u00a0", data.s_of(key)),
-                        Words("highlight ", data.rmse(key, c.highlight)), Words("surround ", data.rmse(key, c.surround)),
-                        lobe_of(plates::Density(data.experiment, sampler, s, leaning), foot, 150), foot});
+        cols.push_back(
+            {photograph_of(data, plates::view(data.film(key)), crop.box), Words("s\u00a0=\u00a0", data.s_of(key)),
+                Words("highlight ", data.rmse(key, c.highlight)), Words("surround ", data.rmse(key, c.surround)),
+                lobe_of(plates::Density(data.experiment, sampler, s, leaning), foot, 150), foot});
         errors.push_back(data.region(key, c.highlight)->rmse);
     }
     const Colour ink = data.ink(control->arm);
@@ -61,11 +62,15 @@ Shot exponent(const Data& data) {
     const Words arm(data.arm(control->arm));
 
     shot.name = "exponent", shot.title = Words("A sharper lobe"), shot.kind = Kind::photograph;
-    shot.seen = Words("Three columns, one for each exponent: the lobe as a curve, narrower and narrower, and under it the highlight as it comes out.");
+    shot.seen = Words(
+        "Three columns, one for each exponent: the lobe as a curve, narrower and narrower, and under it the highlight "
+        "as it comes out.");
     shot.cues = {{0.5, Words("The exponent s sharpens the gloss, and with it the lobe that aims.")},
-                 {6, Words("Density and surface change together, and so does the highlight that is right.")},
-                 {11.5, Words("Error in the highlight: lowest at ", cols[best].name, " at this seed. Sharper is not safer.")}};
-    if (best + 1 == cols.size()) shot.cues[2].words = Words("Error in the highlight: lowest at ", cols[best].name, ", the sharpest, at this seed.");
+        {6, Words("Density and surface change together, and so does the highlight that is right.")},
+        {11.5, Words("Error in the highlight: lowest at ", cols[best].name, " at this seed. Sharper is not safer.")}};
+    if (best + 1 == cols.size())
+        shot.cues[2].words =
+            Words("Error in the highlight: lowest at ", cols[best].name, ", the sharpest, at this seed.");
     shot.seconds = 18, shot.still = 17;
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < cols.size(); ++k) {
@@ -78,7 +83,8 @@ Shot exponent(const Data& data) {
             show(f, col.block, crop.times, {x, 342, w, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
             const double told = f.ease(11.5, 12.1);
             f.text({x, 748, w, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
-            f.text({x, 796, w, 48}, col.surround, with(with(label_text, surround_ink), Align::centre), f.ease(14, 14.6));
+            f.text(
+                {x, 796, w, 48}, col.surround, with(with(label_text, surround_ink), Align::centre), f.ease(14, 14.6));
         }
     };
     return shot;

@@ -1,4 +1,5 @@
-// Shot 9: Failure B. The question why not to aim at the mirror direction everywhere; the surround enlarged; the mean of the frame.
+// Shot 9: Failure B. The question why not to aim at the mirror direction everywhere; the surround enlarged; the mean of
+// the frame.
 #include <algorithm>
 
 #include "drawing.h"
@@ -30,7 +31,8 @@ std::vector<Bar> bars_of(const Data& data) {
     for (const std::string& arm : {c.cosine, c.phong}) {
         const RunKey key = data.key(arm);
         const double mean = data.meter(key)->y_mean;
-        all.push_back({{Words(data.arm(arm)), Words(figure(mean, 3, "y_mean of " + to_string(key))), 0, data.ink(arm)}, mean});
+        all.push_back(
+            {{Words(data.arm(arm)), Words(figure(mean, 3, "y_mean of " + to_string(key))), 0, data.ink(arm)}, mean});
     }
     double most = 0;
     for (const auto& [bar, value] : all) most = std::max(most, value);
@@ -43,7 +45,8 @@ std::vector<Bar> bars_of(const Data& data) {
 
 Shot failure_b(const Data& data) {
     const Cast& c = data.cast;
-    const Closeup all = whole_or_part(data, whole_slot), crop = close_up(data, data.box(c.surround), {0, 0, 840, 552}, 0.98);
+    const Closeup all = whole_or_part(data, whole_slot),
+                  crop = close_up(data, data.box(c.surround), {0, 0, 840, 552}, 0.98);
     const Block whole = photograph_of(data, plates::view(data.film(data.key(c.phong))), all.box);
     const std::vector<std::string> arms = {c.cosine, c.phong};
     std::vector<Block> blocks;
@@ -65,15 +68,24 @@ Shot failure_b(const Data& data) {
     Shot shot;
     shot.name = "failure-b", shot.kind = Kind::photograph;
     shot.title = starved ? Words("Failure B: Phong starves the surround") : Words("The surround, both ways");
-    shot.seen = Words("The whole picture by the Phong arm. Then the surround enlarged, cosine beside Phong; then the mean of the frame as bars: "
-                      "reference, cosine, Phong.");
-    shot.cues = {{0.5, h.low.arm == c.phong ? Words("It wins the highlight. So why not aim along the mirror direction everywhere?")
-                                            : Words("And if every pixel is aimed along the mirror direction?"), true},
-                 {10.5, Words("Plinth and floor are matt: they gather light from the whole hemisphere.")},
-                 {16, starved ? Words("A lobe around one direction leaves the rest to rare, huge samples: specks.")
-                              : Words("Here the lobe does no worse than the cosine, at this seed.")},
-                 {21.5, phong < 0.9 * reference ? Words("And the whole picture is too dark: ", percent(1 - phong / reference, 2, "y_mean and reference"), " of its light is missing.")
-                                                : Words("The mean of the frame is close to the reference, at this seed.")}};
+    shot.seen = Words(
+        "The whole picture by the Phong arm. Then the surround enlarged, cosine beside Phong; then the mean of the "
+        "frame as bars: "
+        "reference, cosine, Phong.");
+    shot.cues = {
+        {0.5,
+            h.low.arm == c.phong ? Words("It wins the highlight. So why not aim along the mirror direction everywhere?")
+                                 : Words("And if every pixel is aimed along the mirror direction?"),
+            true},
+        {10.5, Words("Plinth and floor are matt: they gather light from the whole hemisphere.")},
+        {16,
+            starved ? Words("A lobe around one direction leaves the rest to rare, huge samples: specks.")
+                    : Words("Here the lobe does no worse than the cosine, at this seed.")},
+        {21.5,
+            phong < 0.9 * reference
+                ? Words("And the whole picture is too dark: ",
+                      percent(1 - phong / reference, 2, "y_mean and reference"), " of its light is missing.")
+                : Words("The mean of the frame is close to the reference, at this seed.")}};
     shot.seconds = 27.5, shot.still = 26.5;
     shot.draw = [=](Frame& f) {
         const double before = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), now = f.ease(10.4, 11.1);
@@ -83,13 +95,15 @@ Shot failure_b(const Data& data) {
             const double x = 90 + 900.0 * double(k);
             f.text({x, 112, 840, 46}, names[k], with(with(title_text, inks[k]), Align::centre), now);
             show(f, blocks[k], crop.times, {x, 162, 840, 552}, now);
-            f.text({x, 720, 840, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre), f.ease(16, 16.6) * (1 - up));
+            f.text({x, 720, 840, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre),
+                f.ease(16, 16.6) * (1 - up));
         }
         for (std::size_t k = 0; k < bars.size() && up > 0; ++k) {
             const double y = 730 + 54.0 * double(k), grown = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));
             f.text({90, y, 300, 44}, bars[k].name, with(label_text, bars[k].ink), up);
             f.fill({400, y + 6, 1150 * bars[k].part * grown, 32}, bars[k].ink, up);
-            f.text({1600, y, 200, 44}, bars[k].value, label_text, up * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
+            f.text({1600, y, 200, 44}, bars[k].value, label_text,
+                up * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
         }
     };
     return shot;

@@ -32,9 +32,11 @@ Shot heat(const Data& data) {
     for (const std::string& arm : {c.cosine, c.phong}) {
         const Film& film = *data.film(data.key(arm));
         const std::vector<double> values = residuals(film, reference, crop);
-        const double part = double(std::ranges::count_if(values, [top](double v) { return v > top; })) / double(values.size());
-        maps.push_back({residual_of(film, reference, crop, top), Words(data.arm(arm), ", N\u00a0=\u00a0", data.n_of(data.key(arm))),
-                        Words(percent(part, 2, "residuals of " + arm), " of the pixels above the scale"), data.ink(arm), part});
+        const double part =
+            double(std::ranges::count_if(values, [top](double v) { return v > top; })) / double(values.size());
+        maps.push_back({residual_of(film, reference, crop, top),
+            Words(data.arm(arm), ", N\u00a0=\u00a0", data.n_of(data.key(arm))),
+            Words(percent(part, 2, "residuals of " + arm), " of the pixels above the scale"), data.ink(arm), part});
     }
     const Box box_h = data.box(c.highlight);
     const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
@@ -45,20 +47,27 @@ Shot heat(const Data& data) {
 
     Shot shot;
     shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::instrument;
-    shot.seen = Words("Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue for little, red for much, "
-                      "on one scale; first for the cosine arm, then for the Phong arm.");
+    shot.seen = Words(
+        "Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue "
+        "for little, red for much, "
+        "on one scale; first for the cosine arm, then for the Phong arm.");
     shot.cues = {{0.5, Words("How far each pixel is from the reference: blue is little, red is much.")},
-                 {7, maps[1].part < maps[0].part ? Words("Now aimed along the mirror direction, on the same scale: the heat leaves.")
-                                                 : Words("Now aimed along the mirror direction, on the same scale.")},
-                 {11.5, Words("Off by ", data.rmse(h.low, c.highlight), " inside the frame with ", data.arm(h.low.arm), ", by ", data.rmse(h.high, c.highlight), " with ",
-                              data.arm(h.high.arm), ".")}};
+        {7,
+            maps[1].part < maps[0].part
+                ? Words("Now aimed along the mirror direction, on the same scale: the heat leaves.")
+                : Words("Now aimed along the mirror direction, on the same scale.")},
+        {11.5,
+            Words("Off by ", data.rmse(h.low, c.highlight), " inside the frame with ", data.arm(h.low.arm), ", by ",
+                data.rmse(h.high, c.highlight), " with ", data.arm(h.high.arm), ".")}};
     shot.seconds = 17, shot.still = 16;
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < maps.size(); ++k) {
             const double in = k == 0 ? f.ease(0.3, 1) : f.ease(7.2, 8);
             const Rect r = show(f, maps[k].block, close.times, {70 + 824.0 * double(k), 182, 784, 624}, in);
-            f.text({70 + 824.0 * double(k), 122, 784, 50}, maps[k].name, with(with(title_text, maps[k].ink), Align::centre), in);
-            f.text({70 + 824.0 * double(k), r.bottom() + 12, 784, 48}, maps[k].above, with(with(body_text, Vertical::middle), Align::centre), k == 0 ? f.ease(4, 4.6) : f.ease(9, 9.6));
+            f.text({70 + 824.0 * double(k), 122, 784, 50}, maps[k].name,
+                with(with(title_text, maps[k].ink), Align::centre), in);
+            f.text({70 + 824.0 * double(k), r.bottom() + 12, 784, 48}, maps[k].above,
+                with(with(body_text, Vertical::middle), Align::centre), k == 0 ? f.ease(4, 4.6) : f.ease(9, 9.6));
             mark(f, on_picture(r, crop, box_h), bright, f.ease(12.3, 12.8));
         }
         const double scale = f.ease(2, 2.6);

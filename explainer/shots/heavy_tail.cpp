@@ -49,7 +49,7 @@ private:
     void weights(Frame& f) const {
         const double shown = f.ease(0, 0.6);
         histogram_.draw(f, decades(histogram_.across, 2), decades(histogram_.up, 2), Words("weight of a sample"),
-                        Words("how many samples of ", count(tail_.n, "draws of the weights")), shown);
+            Words("how many samples of ", count(tail_.n, "draws of the weights")), shown);
         const int bars = f.steps(drawn, drawn + 3, int(tail_.bins.size()));
         const Colour ink = data_.ink(phong_);
         for (std::size_t k = 0; k < std::size_t(bars); ++k) {
@@ -70,12 +70,12 @@ private:
         f.polyline(line, bright, 4, fitted, 14);
         const Rect box{left.x + 380, left.y + 10, 480, 50};
         f.text(box, Words(formulas::tail_index, " = ", figure(tail_.k, 3, "tail index of the weights in theory")),
-               label_text, fitted);
+            label_text, fitted);
         if (tail_.fit)
             f.text({box.x, box.y + 54, box.w, 50},
-                   Words("fitted: k̂ = ", figure(tail_.fit->k, 3, "k-hat of the weights"), " ± ",
-                         figure(tail_.fit->se, 1, "standard error of k-hat")),
-                   with(label_text, ink), f.ease(law + 1.4, law + 2));
+                Words("fitted: k̂ = ", figure(tail_.fit->k, 3, "k-hat of the weights"), " ± ",
+                    figure(tail_.fit->se, 1, "standard error of k-hat")),
+                with(label_text, ink), f.ease(law + 1.4, law + 2));
     }
 
     /// An upright line at a weight, its words over it; `row` 0 or 1 counts from the top.
@@ -93,12 +93,12 @@ private:
         std::vector<Tick> below;
         for (const double v : n) below.push_back({v, Words(count(std::uint64_t(v), "N of a furnace"))});
         readings_.draw(f, below, round_values(readings_.up, 5), Words("N"),
-                       Words("white furnace: median and ", percent(0.9, 2, "width of an interval"), " of runs"), shown);
+            Words("white furnace: median and ", percent(0.9, 2, "width of an interval"), " of runs"), shown);
         const double level = readings_.y(data_.evidence.expected);
         f.line({right.x, level}, {right.right(), level}, bright, 2, shown, 12);
         f.text({right.x + 16, level - 44, 300, 40},
-               Words("answer: ", figure(data_.evidence.expected, 3, "expected reading of the furnace")),
-               with(small_text, bright), shown);
+            Words("answer: ", figure(data_.evidence.expected, 3, "expected reading of the furnace")),
+            with(small_text, bright), shown);
         series(f, single_, -11, data_.ink(phong_), f.steps(furnace + 0.8, furnace + 3, int(single_.size())));
         series(f, twofold_, 11, bright, f.steps(alike, alike + 2, int(twofold_.size())));
         legend(f, 0, data_.ink(phong_), Words("float"), shown);
@@ -134,17 +134,18 @@ std::vector<Cue> HeavyTail::cues() const {
     out.push_back(
         {0.3, Words("What samples of ", data_.arm(phong_), " weigh on a matt surface, R = n, in even light.")});
     Words half("Half weigh under ", figure(tail_.median, 2, "median weight"), ". The mean, ",
-               number(1, 1, "mean of the weights in theory"));
+        number(1, 1, "mean of the weights in theory"));
     out.push_back({halves, heavy ? Words(half, ", rests on few huge ones.") : Words(half, ", is not far above.")});
     const Words slope("A straight fall of slope ", formulas::tail_slope,
-                      ", k = ", figure(tail_.k, 3, "tail index of the weights in theory"), ". ");
-    out.push_back({law, heavy ? Words(slope, "From ", formulas::half, " on the variance is infinite.")
-                              : Words(slope, "Below ", formulas::half, " the variance is finite.")});
-    out.push_back(
-        {furnace, Words("In white light the answer is known: ", figure(expected, 3, "expected reading of the furnace"),
-                        is_short(one) ? ". Most runs read less." : ". Runs read it.")});
+        ", k = ", figure(tail_.k, 3, "tail index of the weights in theory"), ". ");
+    out.push_back({law,
+        heavy ? Words(slope, "From ", formulas::half, " on the variance is infinite.")
+              : Words(slope, "Below ", formulas::half, " the variance is finite.")});
+    out.push_back({furnace,
+        Words("In white light the answer is known: ", figure(expected, 3, "expected reading of the furnace"),
+            is_short(one) ? ". Most runs read less." : ". Runs read it.")});
     const Words both(figure(one, 3, "median reading of the furnace in float"), " in float, ",
-                     figure(two, 3, "median reading of the furnace in double"), " in double.");
+        figure(two, 3, "median reading of the furnace in double"), " in double.");
     out.push_back({alike, is_short(one) && is_short(two) ? Words(both, " The tail does it, not rounding.") : both});
     return out;
 }
@@ -158,8 +159,7 @@ Shot heavy_tail(const Data& data) {
     shot.name = "heavy-tail";
     shot.kind = Kind::instrument;
     shot.title = Words("Why it does not go away");
-    shot.seen = Words(
-        "Left, on logarithmic axes, how many samples of ", data.arm(data.cast.phong),
+    shot.seen = Words("Left, on logarithmic axes, how many samples of ", data.arm(data.cast.phong),
         " weigh how much: a straight fall over many decades. "
         "Right, the reading of a white furnace against N, in float and in double, with the value it should have.");
     shot.seconds = end;

@@ -13,8 +13,9 @@ Shot ladder_phong(const Data& data) {
     LadderStory story;
     story.arm = c.phong, story.before = c.cosine;
     story.opening = Words("The same rungs, the same random numbers, now aimed along the mirror direction.");
-    story.after = {Words("At N\u00a0=\u00a0", data.n_of(at_n.low), " the error of ", data.arm(at_n.low.arm), " is ", figure(at_n.high_value / at_n.low_value, 2, source),
-                         " times smaller than that of ", data.arm(at_n.high.arm), ".")};
+    story.after = {Words("At N\u00a0=\u00a0", data.n_of(at_n.low), " the error of ", data.arm(at_n.low.arm), " is ",
+        figure(at_n.high_value / at_n.low_value, 2, source), " times smaller than that of ", data.arm(at_n.high.arm),
+        ".")};
     if (l.heavy) story.after.push_back(Words("But rare huge samples remain: the line bends where one of them falls."));
     Shot shot = ladder_shot(data, story);
     shot.name = "ladder-phong", shot.title = Words("The same rungs, aimed along the mirror direction");

@@ -86,8 +86,8 @@ private:
         if (shown <= 0) return;
         f.picture(photo_, photo_slot.x, photo_slot.y, 1, shown);
         f.text({photo_slot.x, photo_slot.bottom() + 10, 960, 40},
-               Words("photograph: ", data_.arm(data_.cast.cosine), ", N = ", data_.n_of(data_.key(data_.cast.cosine))),
-               small_text, shown);
+            Words("photograph: ", data_.arm(data_.cast.cosine), ", N = ", data_.n_of(data_.key(data_.cast.cosine))),
+            small_text, shown);
         const double near = shown * f.ease(zoomed, zoomed + 0.6);
         const Point a = in_photo(near_.x0, near_.y1), b = in_photo(near_.x1 + 1, near_.y0 - 1);
         f.outline({a.x, a.y, b.x - a.x, b.y - a.y}, highlight_ink, 4, near);
@@ -96,10 +96,9 @@ private:
         f.line({b.x, b.y}, {crop_corner.x, crop_corner.y + side}, rule, 2, near);
         f.picture(crop_, crop_corner.x, crop_corner.y, crop_times, near);
         f.outline(square().inset(-3), highlight_ink, 6, near);
-        f.text(
-            {crop_corner.x, crop_corner.y + side + 10, side, 40},
+        f.text({crop_corner.x, crop_corner.y + side + 10, side, 40},
             Words("pixel ", count(std::uint64_t(pixel_.i()), "the opened pixel"), ", ",
-                  count(std::uint64_t(pixel_.j()), "the opened pixel"), ",  × ", number(crop_times, 2, "enlargement")),
+                count(std::uint64_t(pixel_.j()), "the opened pixel"), ",  × ", number(crop_times, 2, "enlargement")),
             small_text, near);
     }
 
@@ -129,8 +128,8 @@ private:
         const double dome = f.ease(opening + 1.9, opening + 2.6);
         dome_.grid(f, dome);
         dome_.arrow(f, {0, 0, 1}, 1.62, Words("n"), bright, dome);
-        dome_.arrow(f, pixel_.wo(), 1.6, Words("ω<sub>o</sub>, to the eye"), bright,
-                    f.ease(opening + 3, opening + 3.6));
+        dome_.arrow(
+            f, pixel_.wo(), 1.6, Words("ω<sub>o</sub>, to the eye"), bright, f.ease(opening + 3, opening + 3.6));
         dome_.arrow(f, pixel_.mirror(), 1.45, Words("R"), bright, f.ease(reflects + 0.8, reflects + 1.4));
         disk(f);
         scale(f, starts);
@@ -145,7 +144,7 @@ private:
         f.line({at.x + 26, at.y + 10}, {label.x - 10, label.y}, bright, 2, shown);
         f.text({label.x, label.y - 24, 240, 44}, Words(name(disk.name)), label_text, shown);
         f.text({label.x, label.y + 20, 240, 44},
-               Words("radius ", number(disk.angular_radius, 3, "angle of the disk light"), "°"), small_text, shown);
+            Words("radius ", number(disk.angular_radius, 3, "angle of the disk light"), "°"), small_text, shown);
     }
 
     /// The colour bar of the field that is shown, with what it is and its ends.
@@ -155,14 +154,13 @@ private:
         const Rect under{bar_corner.x, bar_corner.y + bar_height + 8, bar_width, 40};
         f.text(under, Words(number(0, 1, "least of a scale")), small_text, shown);
         const Words whats[] = {Words(formulas::f, ", per sr"), Words(formulas::light, ", ", formulas::radiance_unit),
-                               Words(formulas::cosine),
-                               Words(formulas::f, " ", formulas::light, " ", formulas::cosine)};
+            Words(formulas::cosine), Words(formulas::f, " ", formulas::light, " ", formulas::cosine)};
         for (int k = 0; k < 4; ++k) {
             const double gone = k < 3 ? f.ease(starts[k + 1], starts[k + 1] + 0.1) : 0;
             const double now = f.ease(starts[k] + 0.1, starts[k] + 0.6) * (1 - gone);
             f.text({bar_corner.x, bar_corner.y - 56, bar_width, 44}, whats[k], with(label_text, Align::centre), now);
             f.text(under, Words(figure(fields_[k].top, 3, "largest value over the hemisphere")),
-                   with(small_text, Align::right), now);
+                with(small_text, Align::right), now);
         }
     }
 
@@ -200,15 +198,17 @@ std::vector<Cue> OnePixel::cues() const {
         out.push_back({lights, Words("L: what comes in, dim but for ", count(disks, "disk lights"), " disks.")});
     } else {
         const double angle = pixel_.disks()[std::size_t(story_.disk)].angular_radius;
-        out.push_back({lights, Words("L: what comes in, dim but for a disk of ",
-                                     number(angle, 3, "angular radius of the disk light"), "° radius.")});
+        out.push_back({lights,
+            Words("L: what comes in, dim but for a disk of ", number(angle, 3, "angular radius of the disk light"),
+                "° radius.")});
     }
     out.push_back({leans, Words("cos θ: low light is spread thin.")});
     const double part = story_.solid_angle / (2 * pi);
     if (story_.disk >= 0)
-        out.push_back({product, Words("The product: ", percent(story_.disk_share, 2, "the disk's share of the light"),
-                                      " of the light comes through ",
-                                      percent(part, 2, "the disk's share of the hemisphere"), " of the hemisphere.")});
+        out.push_back({product,
+            Words("The product: ", percent(story_.disk_share, 2, "the disk's share of the light"),
+                " of the light comes through ", percent(part, 2, "the disk's share of the hemisphere"),
+                " of the hemisphere.")});
     else out.push_back({product, Words("The product is what must be summed over all directions.")});
     out.push_back({divided, Words("Draw directions, divide by their density p, average.")});
     return out;

@@ -59,11 +59,11 @@ public:
             {appear, Words(data_.n_of(data_.key(cosine)), " pairs of random numbers: every arm gets the same.")});
         out.push_back({cosine_go, Words(data_.arm(cosine), " makes directions of them, seen from above.")});
         out.push_back({cosine_met, Words(met(story_.cosine), " met the light.")});
-        out.push_back({back, Words("The same pairs by ", data_.arm(phong), " gather about R. ", met(story_.phong),
-                                   " met the light.")});
-        out.push_back(
-            {in_the_long_run, Words("Only the map differs: by ", data_.arm(cosine), " ", one_in(story_.cosine),
-                                    " meets the light, by ", data_.arm(phong), " ", one_in(story_.phong), ".")});
+        out.push_back({back,
+            Words("The same pairs by ", data_.arm(phong), " gather about R. ", met(story_.phong), " met the light.")});
+        out.push_back({in_the_long_run,
+            Words("Only the map differs: by ", data_.arm(cosine), " ", one_in(story_.cosine), " meets the light, by ",
+                data_.arm(phong), " ", one_in(story_.phong), ".")});
         return out;
     }
 
@@ -71,7 +71,7 @@ private:
     Words met(const ArmAtPixel& arm) const {
         if (arm.met == 0) return Words("None");
         return Words(count(arm.met, "samples of " + arm.arm + " that met a disk light in the opened pixel"), " of ",
-                     count(arm.samples.size(), "samples of " + arm.arm));
+            count(arm.samples.size(), "samples of " + arm.arm));
     }
     Words one_in(const ArmAtPixel& arm) const {
         if (!(arm.share_met > 0)) return Words("none");
@@ -85,11 +85,11 @@ private:
         const double shown = f.ease(0, appear);
         f.outline(square, muted, 3, shown);
         f.text({square.x, square.bottom() + 14, square.w, 40}, Words(formulas::first_random),
-               with(label_text, Align::centre), shown);
+            with(label_text, Align::centre), shown);
         f.text({square.x - 90, square.y + square.h / 2 - 20, 70, 40}, Words(formulas::second_random),
-               with(label_text, Align::right), shown);
-        f.text({square.x, square.y - 64, square.w, 44}, Words("random pairs u"), with(label_text, Align::centre),
-               shown);
+            with(label_text, Align::right), shown);
+        f.text(
+            {square.x, square.y - 64, square.w, 44}, Words("random pairs u"), with(label_text, Align::centre), shown);
     }
 
     void hemisphere(Frame& f) const {
@@ -144,8 +144,7 @@ private:
     void counts(Frame& f) const {
         const Rect at{disc_.centre().x - 330, 122, 660, 50};
         const auto head = [&](const std::string& arm, double alpha) {
-            const Words words(
-                data_.arm(arm), ":  ",
+            const Words words(data_.arm(arm), ":  ",
                 Formula{arm == data_.cast.cosine ? formulas::cosine_density.markup : formulas::phong_density.markup});
             f.text(at, words, with(with(label_text, data_.ink(arm)), Align::centre), alpha);
         };

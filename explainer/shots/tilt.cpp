@@ -74,8 +74,8 @@ private:
         side_.arrow(f, {0, 0, 1}, 1.16, Words("n"), bright, shown * f.ease(leans + 0.4, leans + 1));
         side_.arrow(f, mirror(theta), 1.16, Words("R"), data_.ink(data_.cast.phong), shown);
         f.text({side_centre.x - 250, side_centre.y + 20, 500, 44},
-               Words("from the side:  θ = ", number(std::round(theta), 3, "tilt of the mirror direction"), "°"),
-               with(label_text, Align::centre), shown);
+            Words("from the side:  θ = ", number(std::round(theta), 3, "tilt of the mirror direction"), "°"),
+            with(label_text, Align::centre), shown);
     }
 
     void from_above(Frame& f, double theta) const {
@@ -96,7 +96,7 @@ private:
         f.dot(tip, 9, data_.ink(data_.cast.phong), shown);
         f.text({tip.x + 14, tip.y - 22, 50, 44}, Words("R"), with(label_text, data_.ink(data_.cast.phong)), shown);
         f.text({disc_centre.x - 250, disc_centre.y - disc_radius - 66, 500, 44}, Words("from above"),
-               with(label_text, Align::centre), shown);
+            with(label_text, Align::centre), shown);
         const Rect under{disc_centre.x - 280, disc_centre.y + disc_radius + 22, 560, 44};
         f.text(under, Words("each dot: the same share of light"), with(label_text, Align::centre), shown);
     }
@@ -105,7 +105,7 @@ private:
         const double shown = f.ease(sweep, sweep + 0.6);
         if (shown <= 0) return;
         axes_.draw(f, round_values(axes_.across, 6), round_values(axes_.up, 5), Words("tilt θ, degrees"),
-                   Words("never reached, %"), shown);
+            Words("never reached, %"), shown);
         std::vector<Point> path;
         for (int k = 0; k <= 75 && k * most_ / 75 <= theta + 1e-9; ++k) {
             const double a = k * most_ / 75;
@@ -140,10 +140,11 @@ std::vector<Cue> Tilt::cues() const {
     out.push_back(
         {never, Words("Behind it ", data_.arm(data_.cast.phong), " has no density: it never looks there, at any N.")});
     out.push_back({above, Words("From above, each dot is an equal share of light. The coloured are lost.")});
-    out.push_back({sweep, Words("In region ", name(data_.cast.surround), ", R leans by ", tilt,
-                                "° in the median: ", figure(100 * l.measured, 3, "share never reached"), " ± ",
-                                percent(l.se, 1, "standard error of the share never reached"),
-                                " is lost. Theory: ", percent(l.theory, 3, "share never reached, in theory"), ".")});
+    out.push_back({sweep,
+        Words("In region ", name(data_.cast.surround), ", R leans by ", tilt,
+            "° in the median: ", figure(100 * l.measured, 3, "share never reached"), " ± ",
+            percent(l.se, 1, "standard error of the share never reached"),
+            " is lost. Theory: ", percent(l.theory, 3, "share never reached, in theory"), ".")});
     return out;
 }
 

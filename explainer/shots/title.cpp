@@ -33,20 +33,24 @@ Shot title(const Data& data) {
     shot.name = "title";
     shot.title = length(data.experiment.title) > 50 ? Words("The experiment") : Words(name(data.experiment.title));
     shot.kind = Kind::photograph;
-    shot.seen = Words("A lacquer sphere on a plinth comes out of noise as the number of samples doubles; then the title.");
+    shot.seen =
+        Words("A lacquer sphere on a plinth comes out of noise as the number of samples doubles; then the title.");
     shot.seconds = last + 6.5;
     shot.still = shot.seconds - 1.5;
     shot.cues = {{0.5, Words("A picture is computed by aiming rays at random.")},
-                 {last - 1.5, Words("More rays, less noise. But how they are aimed decides where the noise goes.")}};
+        {last - 1.5, Words("More rays, less noise. But how they are aimed decides where the noise goes.")}};
     shot.draw = [=](Frame& f) {
         const int n = static_cast<int>(blocks.size());
         const int k = f.after(first) ? std::min(f.steps(first, first + each * n, n), n - 1) : 0;
         const Block& block = blocks[std::size_t(k)];
         const double in = f.ease(0, 0.8);
         const Rect r = show(f, block, part.times, slot, in);
-        f.text({slot.x, r.bottom() + 10, slot.w, 48}, labels[std::size_t(k)], with(with(label_text, muted), Align::right), in);
-        f.text({60, 120, sheet_width - 120, 110}, Words("Where the noise goes"), with(big_text, Align::centre), f.ease(last, last + 0.8));
-        f.text({60, 226, sheet_width - 120, 54}, under, with(with(label_text, muted), Align::centre), f.ease(last + 0.6, last + 1.4));
+        f.text({slot.x, r.bottom() + 10, slot.w, 48}, labels[std::size_t(k)],
+            with(with(label_text, muted), Align::right), in);
+        f.text({60, 120, sheet_width - 120, 110}, Words("Where the noise goes"), with(big_text, Align::centre),
+            f.ease(last, last + 0.8));
+        f.text({60, 226, sheet_width - 120, 54}, under, with(with(label_text, muted), Align::centre),
+            f.ease(last + 0.6, last + 1.4));
     };
     return shot;
 }

@@ -1,6 +1,6 @@
 // The bits of what crescent computes: functions of math/, and, for every experiment, each film at its own seed on each
-// instruction set of this machine, and its references. Two builds agree where this prints the same; it needs none of the
-// folders that draw and report, so that a second compiler has little to build.
+// instruction set of this machine, and its references. Two builds agree where this prints the same; it needs none of
+// the folders that draw and report, so that a second compiler has little to build.
 //
 //   film_hashes FILE.toml...            the hashes
 //   film_hashes --fewer FILE.toml...    of small images and few samples
@@ -54,7 +54,8 @@ void print(const Experiment& experiment) {
     for (const std::string& isa : isas())
         for (const ArmPlan& arm : experiment.arms)
             for (const Film& film : estimate_films(scene, arm.sampler, arm.n, experiment.seed, isa, watch))
-                std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film) << '\n';
+                std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film)
+                          << '\n';
     for (const std::string& isa : isas())
         for (const ReferenceFilm& film : note_reference(scene, {experiment.s()}, isa, watch))
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';

@@ -15,7 +15,9 @@ namespace crescent::plain {
 struct Writer {
     std::ostream& to;
     void item(const double& x) { to << std::hexfloat << x << '\n'; }
-    template <class T> requires std::integral<T> || std::is_enum_v<T> void item(const T& x) {
+    template <class T>
+        requires std::integral<T> || std::is_enum_v<T>
+    void item(const T& x) {
         to << static_cast<long long>(x) << '\n';
     }
     void item(const std::string& x) { to << x << '\n'; }
@@ -31,7 +33,9 @@ struct Reader {
         return text;
     }
     void item(double& x) { x = std::strtod(line().c_str(), nullptr); }
-    template <class T> requires std::integral<T> || std::is_enum_v<T> void item(T& x) {
+    template <class T>
+        requires std::integral<T> || std::is_enum_v<T>
+    void item(T& x) {
         x = static_cast<T>(std::strtoll(line().c_str(), nullptr, 10));
     }
     void item(std::string& x) { x = line(); }
@@ -70,7 +74,8 @@ template <class V> void visit(V& v, ExponentControl& c) { each(v, c.arm, c.n, c.
 
 template <class V> void visit(V& v, Experiment& e) {
     each(v, e.file, e.seed, e.n, e.image.width, e.image.height);
-    each(v, e.camera.eye, e.camera.target, e.camera.up, e.camera.vfov_deg, e.shapes, e.disks, e.fill, e.arms, e.exponent);
+    each(v, e.camera.eye, e.camera.target, e.camera.up, e.camera.vfov_deg, e.shapes, e.disks, e.fill, e.arms,
+        e.exponent);
     each(v, e.reference.seed, e.reference.lobe_spp, e.reference.disk_spp);
 }
 

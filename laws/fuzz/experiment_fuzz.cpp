@@ -26,11 +26,13 @@ std::vector<std::string> split_overrides(std::string& text) {
 void keeps_its_promises(const Experiment& e) {
     ensure(!e.shapes.empty() && !e.arms.empty(), "shapes and arms are required");
     for (const Region& r : e.regions)
-        ensure(r.box.x0 >= 0 && r.box.y0 >= 0 && r.box.width() > 0 && r.box.height() > 0 && r.box.x1 < e.image.width && r.box.y1 < e.image.height,
-               "a region lies on the image");
+        ensure(r.box.x0 >= 0 && r.box.y0 >= 0 && r.box.width() > 0 && r.box.height() > 0 && r.box.x1 < e.image.width &&
+                r.box.y1 < e.image.height,
+            "a region lies on the image");
     for (const ArmPlan& arm : e.arms) ensure(!arm.n.empty() && arm.n.back() <= 16777216, "an arm has rungs");
     for (const PlatePlan& plate : e.plates)
-        for (const PlateRun& run : plate.runs) ensure(e.find_arm(run.arm) && run.n > 0, "a plate's run names an arm and a rung");
+        for (const PlateRun& run : plate.runs)
+            ensure(e.find_arm(run.arm) && run.n > 0, "a plate's run names an arm and a rung");
     for (const AssertionPlan& a : e.assertions) {
         std::string why;
         ensure(parse_quantity(a.left, why) && parse_quantity(a.right, why), "a check is written as it is read");

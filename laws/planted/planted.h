@@ -1,5 +1,5 @@
-// Planted faults: each wraps a right arm in a few lines that break it in one way that samplers are broken in. The bench must
-// catch every one of them; `crescent check --planted` prints which verdict does.
+// Planted faults: each wraps a right arm in a few lines that break it in one way that samplers are broken in. The bench
+// must catch every one of them; `crescent check --planted` prints which verdict does.
 #pragma once
 
 #include <memory>

@@ -51,9 +51,11 @@ RightLaw measure_right(std::uint64_t first, std::uint64_t count, const Rigour& g
 
 std::string right_law_text(const RightLaw& law) {
     std::string out = "| family | judged | accused | inconclusive |\n|---|---|---|---|\n";
-    for (const RightFamily& f : law.families) out += fmt::format("| {} | {} | {} | {} |\n", f.name, f.judged, f.accused, f.undecided);
-    out += fmt::format("\nAccused in {} mode: {}; promised: at most {:g}. Inconclusive: {}.\n", law.full ? "full" : "quick",
-                       rate_text(law.accused, law.judged), law.alpha, rate_text(law.undecided, law.judged));
+    for (const RightFamily& f : law.families)
+        out += fmt::format("| {} | {} | {} | {} |\n", f.name, f.judged, f.accused, f.undecided);
+    out += fmt::format("\nAccused in {} mode: {}; promised: at most {:g}. Inconclusive: {}.\n",
+        law.full ? "full" : "quick", rate_text(law.accused, law.judged), law.alpha,
+        rate_text(law.undecided, law.judged));
     return out;
 }
 

@@ -1,4 +1,5 @@
-// How often right samplers at random parameters are accused, by family: the law that `crescent check --right N` measures.
+// How often right samplers at random parameters are accused, by family: the law that `crescent check --right N`
+// measures.
 #pragma once
 
 #include "laws/right/right.h"

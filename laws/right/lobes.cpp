@@ -1,4 +1,5 @@
-// Densities about an axis, with and without jumps: cosine powers, cones, bands, polygonal lights, phase functions, mixtures.
+// Densities about an axis, with and without jumps: cosine powers, cones, bands, polygonal lights, phase functions,
+// mixtures.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -26,7 +27,8 @@ struct Lobe {
 /// Draws under the horizon draw nothing where `clipped`; then the density there is 0 and the rest is not renormalised.
 Recipe of_lobe(std::string family, std::string parameters, Lobe lobe, bool clipped = false) {
     Recipe r{std::move(family), std::move(parameters), {}, {}, {}};
-    const auto pdf = [lobe, clipped](Vec3d, Vec3d wi) { return clipped && wi.z <= 0 ? 0.0 : lobe.density(dot(wi, lobe.axis)); };
+    const auto pdf = [lobe, clipped](
+                         Vec3d, Vec3d wi) { return clipped && wi.z <= 0 ? 0.0 : lobe.density(dot(wi, lobe.axis)); };
     r.pdf = pdf;
     r.sample = [lobe, pdf](Vec3d wo, Vec2d u) {
         const Vec3d wi = about(lobe.axis, lobe.cos(u.x), u.y);
@@ -37,23 +39,23 @@ Recipe of_lobe(std::string family, std::string parameters, Lobe lobe, bool clipp
 
 Lobe power(Vec3d axis, double s) {
     return {axis, [s](double u) { return math::pow(u, 1 / (s + 1)); },
-            [s](double c) { return c > 0 ? (s + 1) / (2 * pi) * math::pow(std::min(c, 1.0), s) : 0.0; }};
+        [s](double c) { return c > 0 ? (s + 1) / (2 * pi) * math::pow(std::min(c, 1.0), s) : 0.0; }};
 }
 /// Uniform in solid angle from cos `low` to cos `high`. The rim itself is granted a rounding: it belongs to the draws.
 Lobe band(Vec3d axis, double low, double high) {
     return {axis, [low, high](double u) { return high + (low - high) * u; },
-            [low, high](double c) { return c >= low - 1e-14 && c <= high + 1e-14 ? 1 / (2 * pi * (high - low)) : 0.0; }};
+        [low, high](double c) { return c >= low - 1e-14 && c <= high + 1e-14 ? 1 / (2 * pi * (high - low)) : 0.0; }};
 }
 /// von Mises & Fisher.
 Lobe fisher(Vec3d axis, double k) {
     const double tail = math::exp(-2 * k);
     return {axis, [k, tail](double u) { return 1 + math::log(u + (1 - u) * tail) / k; },
-            [k, tail](double c) { return k / (2 * pi * (1 - tail)) * math::exp(k * (c - 1)); }};
+        [k, tail](double c) { return k / (2 * pi * (1 - tail)) * math::exp(k * (c - 1)); }};
 }
 /// Henyey & Greenstein 1941.
 Lobe greenstein(Vec3d axis, double g) {
     return {axis, [g](double u) { return (1 + g * g - sqr((1 - g * g) / (1 - g + 2 * g * u))) / (2 * g); },
-            [g](double c) { return (1 - g * g) / (4 * pi * math::pow(std::max(1 + g * g - 2 * g * c, 1e-300), 1.5)); }};
+        [g](double c) { return (1 - g * g) / (4 * pi * math::pow(std::max(1 + g * g - 2 * g * c, 1e-300), 1.5)); }};
 }
 
 Recipe cosine_power(Dice& d) {
@@ -74,12 +76,14 @@ Recipe cone(Dice& d) {
 Recipe clipped_cone(Dice& d) {
     const double gap = d.log(1e-2, 1.5);
     const Vec3d axis = d.direction(-0.05, 0.5);
-    return of_lobe("clipped cone", fmt::format("1 - cos {:.4g}, axis z {:.3f}", gap, axis.z), band(axis, 1 - gap, 1), true);
+    return of_lobe(
+        "clipped cone", fmt::format("1 - cos {:.4g}, axis z {:.3f}", gap, axis.z), band(axis, 1 - gap, 1), true);
 }
 Recipe ring(Dice& d) {
     const double high = d.uniform(-0.5, 0.98), low = high - d.log(3e-3, 0.4);
     const Vec3d axis = d.direction(-1, 1);
-    return of_lobe("ring", fmt::format("cos {:.4f} to {:.4f}, axis z {:.3f}", low, high, axis.z), band(axis, low, high));
+    return of_lobe(
+        "ring", fmt::format("cos {:.4f} to {:.4f}, axis z {:.3f}", low, high, axis.z), band(axis, low, high));
 }
 Recipe phase(Dice& d) {
     const double g = d.uniform(-0.95, 0.95);
@@ -92,8 +96,10 @@ Recipe rectangle(Dice& d) {
     const Vec3d normal = d.direction(-1, 1), centre = d.direction(-0.3, 1) * d.log(0.3, 3);
     const Frame<double> f = frame_about(normal);
     const double a = d.log(0.05, 2), b = d.log(0.05, 2), area = 4 * a * b;
-    Recipe r{"rectangle light", fmt::format("{:.3f} x {:.3f} at {:.3f}", 2 * a, 2 * b, std::sqrt(dot(centre, centre))), {}, {}, {}};
-    const auto at = [normal, area](Vec3d wi, double r2) { return r2 / (area * std::max(std::fabs(dot(wi, normal)), 1e-12)); };
+    Recipe r{"rectangle light", fmt::format("{:.3f} x {:.3f} at {:.3f}", 2 * a, 2 * b, std::sqrt(dot(centre, centre))),
+        {}, {}, {}};
+    const auto at = [normal, area](
+                        Vec3d wi, double r2) { return r2 / (area * std::max(std::fabs(dot(wi, normal)), 1e-12)); };
     r.pdf = [f, a, b, centre, normal, at](Vec3d, Vec3d wi) {
         const double t = dot(centre, normal) / dot(wi, normal);
         if (!(t > 0) || !std::isfinite(t)) return 0.0;
@@ -151,21 +157,25 @@ Recipe cones(Dice& d) {
 
 /// Lambert and Phong, drawn by both in proportion.
 Recipe plastic(Dice& d) {
-    const double s = d.log(1, 3000), rho_d = d.uniform(0.1, 0.5), rho_s = d.uniform(0.1, 0.5), share = rho_d / (rho_d + rho_s);
+    const double s = d.log(1, 3000), rho_d = d.uniform(0.1, 0.5), rho_s = d.uniform(0.1, 0.5),
+                 share = rho_d / (rho_d + rho_s);
     Recipe r{"plastic", fmt::format("s {:.4g}, {:.2f} + {:.2f}", s, rho_d, rho_s), {}, {}, {}};
     const auto pdf = [s, share](Vec3d wo, Vec3d wi) {
-        return share * std::max(wi.z, 0.0) / pi + (1 - share) * power({-wo.x, -wo.y, wo.z}, s).density(dot(wi, Vec3d{-wo.x, -wo.y, wo.z}));
+        return share * std::max(wi.z, 0.0) / pi +
+            (1 - share) * power({-wo.x, -wo.y, wo.z}, s).density(dot(wi, Vec3d{-wo.x, -wo.y, wo.z}));
     };
     r.pdf = pdf;
     r.sample = [s, share, pdf](Vec3d wo, Vec2d u) {
         const bool flat = u.x < share;
         u.x = flat ? u.x / share : (u.x - share) / (1 - share);
-        const Vec3d wi = flat ? about({0, 0, 1}, std::sqrt(std::max(1 - u.x, 0.0)), u.y) : about({-wo.x, -wo.y, wo.z}, math::pow(u.x, 1 / (s + 1)), u.y);
+        const Vec3d wi = flat ? about({0, 0, 1}, std::sqrt(std::max(1 - u.x, 0.0)), u.y)
+                              : about({-wo.x, -wo.y, wo.z}, math::pow(u.x, 1 / (s + 1)), u.y);
         return Draw{wi, pdf(wo, wi), {}, {}};
     };
     r.f = [s, rho_d, rho_s](Vec3d wo, Vec3d wi) {
         if (!(wo.z > 0 && wi.z > 0)) return 0.0;
-        return rho_d / pi + rho_s * (s + 2) / (2 * pi) * math::pow(std::clamp(dot(wi, Vec3d{-wo.x, -wo.y, wo.z}), 0.0, 1.0), s);
+        return rho_d / pi +
+            rho_s * (s + 2) / (2 * pi) * math::pow(std::clamp(dot(wi, Vec3d{-wo.x, -wo.y, wo.z}), 0.0, 1.0), s);
     };
     return r;
 }

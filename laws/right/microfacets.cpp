@@ -1,6 +1,6 @@
-// Microfacet samplers over anisotropic distributions of normals. Heitz 2018, "Sampling the GGX Distribution of Visible Normals";
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces"; Ward 1992, "Measuring and Modeling Anisotropic
-// Reflection". F is the number that the sampler computes in: float or double.
+// Microfacet samplers over anisotropic distributions of normals. Heitz 2018, "Sampling the GGX Distribution of Visible
+// Normals"; Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces"; Ward 1992, "Measuring and
+// Modeling Anisotropic Reflection". F is the number that the sampler computes in: float or double.
 #include <cmath>
 #include <fmt/format.h>
 
@@ -33,9 +33,7 @@ template <class F> struct Ggx2 {
     }
     F G1(Vec3<F> w) const { return 1 / (1 + lambda(w)); }
     F G2(Vec3<F> o, Vec3<F> i) const { return 1 / (1 + lambda(o) + lambda(i)); }
-    F f(Vec3<F> o, Vec3<F> i) const {
-        return o.z > 0 && i.z > 0 ? D(unit(o + i)) * G2(o, i) / (4 * o.z * i.z) : F(0);
-    }
+    F f(Vec3<F> o, Vec3<F> i) const { return o.z > 0 && i.z > 0 ? D(unit(o + i)) * G2(o, i) / (4 * o.z * i.z) : F(0); }
     F visible_pdf(Vec3<F> o, Vec3<F> i) const {
         const Vec3<F> h = unit(o + i);
         return dot(o, h) > 0 ? D(h) * G1(o) / (4 * o.z) : F(0);
@@ -43,7 +41,8 @@ template <class F> struct Ggx2 {
     Vec3<F> visible_normal(Vec3<F> o, F u1, F u2) const {
         const Vec3<F> v = unit(Vec3<F>{ax * o.x, ay * o.y, o.z});
         const F size = sqr(v.x) + sqr(v.y);
-        const Vec3<F> t1 = size > 0 ? Vec3<F>{-v.y, v.x, 0} * (1 / std::sqrt(size)) : Vec3<F>{1, 0, 0}, t2 = cross(v, t1);
+        const Vec3<F> t1 = size > 0 ? Vec3<F>{-v.y, v.x, 0} * (1 / std::sqrt(size)) : Vec3<F>{1, 0, 0},
+                      t2 = cross(v, t1);
         const F r = std::sqrt(u1), phi = turn<F> * u2, x = r * math::cos(phi), s = (1 + v.z) / 2;
         const F y = (1 - s) * std::sqrt(std::max(1 - x * x, F(0))) + s * r * math::sin(phi);
         const Vec3<F> n = t1 * x + t2 * y + v * std::sqrt(std::max(1 - x * x - y * y, F(0)));
@@ -78,7 +77,8 @@ template <class F> Recipe visible(std::string family, F ax, F ay, bool says_weig
     r.pdf = [g](Vec3d wo, Vec3d wi) { return static_cast<double>(g.visible_pdf(as<F>(wo), as<F>(wi))); };
     r.f = [g](Vec3d wo, Vec3d wi) { return static_cast<double>(g.f(as<F>(wo), as<F>(wi))); };
     r.sample = [g, says_weight](Vec3d wo, Vec2d u) {
-        const Vec3<F> o = as<F>(wo), h = g.visible_normal(o, static_cast<F>(u.x), static_cast<F>(u.y)), i = reflected(o, h);
+        const Vec3<F> o = as<F>(wo), h = g.visible_normal(o, static_cast<F>(u.x), static_cast<F>(u.y)),
+                      i = reflected(o, h);
         Draw d{widen(i), static_cast<double>(g.visible_pdf(o, i)), {}, {}};
         if (says_weight && d.pdf > 0 && i.z > 0) d.weight = static_cast<double>(g.G2(o, i) / g.G1(o));
         return d;
@@ -105,9 +105,12 @@ template <class M> Recipe by_normals(std::string family, M m, std::function<doub
 }
 
 Recipe ggx_visible(Dice& d) { return visible<double>("ggx-visible", d.log(0.02, 1), d.log(0.02, 1), true); }
-Recipe ggx_visible_mild(Dice& d) { return visible<double>("ggx-visible-mild", d.log(0.08, 0.6), d.log(0.08, 0.6), false); }
+Recipe ggx_visible_mild(Dice& d) {
+    return visible<double>("ggx-visible-mild", d.log(0.08, 0.6), d.log(0.08, 0.6), false);
+}
 Recipe ggx_visible_float(Dice& d) {
-    return visible<float>("ggx-visible-float", static_cast<float>(d.log(0.02, 1)), static_cast<float>(d.log(0.02, 1)), true);
+    return visible<float>(
+        "ggx-visible-float", static_cast<float>(d.log(0.02, 1)), static_cast<float>(d.log(0.02, 1)), true);
 }
 Recipe ggx_normals(Dice& d) {
     const Ggx2<double> g{d.log(0.03, 1), d.log(0.03, 1)};

@@ -39,12 +39,15 @@ Vec3d Dice::direction(double least_cos, double most_cos) {
     return about({0, 0, 1}, cos, uniform(0, 1));
 }
 
-std::shared_ptr<const JudgedSampler> subject_of(Recipe recipe) { return std::make_shared<FromRecipe>(std::move(recipe)); }
+std::shared_ptr<const JudgedSampler> subject_of(Recipe recipe) {
+    return std::make_shared<FromRecipe>(std::move(recipe));
+}
 
 Recipe right_sampler(std::uint64_t index, std::uint32_t seed) {
     static const std::vector<RecipeFamily> all = [] {
         std::vector<RecipeFamily> out;
-        for (const auto& some : {microfacet_families(), lobe_families(), table_families()}) out.insert(out.end(), some.begin(), some.end());
+        for (const auto& some : {microfacet_families(), lobe_families(), table_families()})
+            out.insert(out.end(), some.begin(), some.end());
         return out;
     }();
     Dice dice = dice_of(index, seed);

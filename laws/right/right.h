@@ -1,5 +1,5 @@
-// Right samplers at random parameters: a bench that calls one of them wrong is itself wrong. Each is written in double from its
-// source, with sample and pdf apart, as users write theirs; `crescent check --right N` judges N of them.
+// Right samplers at random parameters: a bench that calls one of them wrong is itself wrong. Each is written in double
+// from its source, with sample and pdf apart, as users write theirs; `crescent check --right N` judges N of them.
 #pragma once
 
 #include <functional>
@@ -23,10 +23,14 @@ struct Recipe {
 class Dice {
 public:
     explicit Dice(std::uint64_t seed) : bits_(seed) {}
-    double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(bits_() >> 11) * 0x1p-53); }
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(bits_() >> 11) * 0x1p-53);
+    }
     /// Uniform in the logarithm.
     double log(double low, double high);
-    int whole(int low, int high) { return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1)); }
+    int whole(int low, int high) {
+        return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1));
+    }
     Vec3d direction(double least_cos, double most_cos);
 
 private:

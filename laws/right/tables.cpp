@@ -11,10 +11,11 @@ namespace crescent {
 
 namespace {
 
-/// A discrete density over rows x columns, drawn by its sums: row by u.x, column by u.y, the rests stretched for use again.
+/// A discrete density over rows x columns, drawn by its sums: row by u.x, column by u.y, the rests stretched for use
+/// again.
 struct Table {
     int rows, columns;
-    std::vector<double> mass;           // by row; sums to 1
+    std::vector<double> mass;            // by row; sums to 1
     std::vector<double> row_sums, sums;  // running: of rows; within each row
 
     Table(int m, int n, std::vector<double> weights) : rows(m), columns(n), mass(std::move(weights)), row_sums{0} {
@@ -34,7 +35,8 @@ struct Table {
     };
     static std::pair<int, double> find(const double* sum, int count, double u) {
         u *= sum[count];
-        const int k = static_cast<int>(std::clamp<std::ptrdiff_t>(std::upper_bound(sum, sum + count + 1, u) - sum - 1, 0, count - 1));
+        const int k = static_cast<int>(
+            std::clamp<std::ptrdiff_t>(std::upper_bound(sum, sum + count + 1, u) - sum - 1, 0, count - 1));
         return {k, std::clamp((u - sum[k]) / (sum[k + 1] - sum[k]), 0.0, 1 - 0x1p-53)};
     }
     Spot draw(Vec2d u) const {
@@ -68,14 +70,17 @@ Recipe cells(Dice& d) {
     const double floor = d.whole(0, 1) ? 0 : -1;
     const bool sun = d.whole(0, 2) == 0;
     const auto t = std::make_shared<Table>(rows, columns, weights(d, rows, columns, d.log(1.5, 30), sun));
-    Recipe r{"cells", fmt::format("{} x {}{}{}", rows, columns, floor < 0 ? ", sphere" : "", sun ? ", sun" : ""), {}, {}, {}};
+    Recipe r{"cells", fmt::format("{} x {}{}{}", rows, columns, floor < 0 ? ", sphere" : "", sun ? ", sun" : ""), {},
+        {}, {}};
     const double per_sr = rows * columns / (2 * pi * (1 - floor));
     r.pdf = [t, floor, per_sr](Vec3d, Vec3d w) {
-        return w.z < floor ? 0.0 : t->at(cell((w.z - floor) / (1 - floor), t->rows), cell(turns_of(w), t->columns)) * per_sr;
+        return w.z < floor ? 0.0
+                           : t->at(cell((w.z - floor) / (1 - floor), t->rows), cell(turns_of(w), t->columns)) * per_sr;
     };
     r.sample = [t, floor, per_sr](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
-        return Draw{spherical(floor + (1 - floor) * (s.i + s.x) / t->rows, (s.j + s.y) / t->columns), t->at(s.i, s.j) * per_sr, {}, {}};
+        return Draw{spherical(floor + (1 - floor) * (s.i + s.x) / t->rows, (s.j + s.y) / t->columns),
+            t->at(s.i, s.j) * per_sr, {}, {}};
     };
     return r;
 }
@@ -89,33 +94,40 @@ Recipe even_texels(Dice& d) {
         for (int j = 0; j < columns; ++j) w[static_cast<std::size_t>(i * columns + j)] *= edge(i) - edge(i + 1);
     const auto t = std::make_shared<Table>(rows, columns, std::move(w));
     Recipe r{"even texels", fmt::format("{} x {}", rows, columns), {}, {}, {}};
-    const auto value = [t, edge](int i, int j) { return t->at(i, j) * t->columns / (2 * pi * (edge(i) - edge(i + 1))); };
+    const auto value = [t, edge](
+                           int i, int j) { return t->at(i, j) * t->columns / (2 * pi * (edge(i) - edge(i + 1))); };
     r.pdf = [t, value](Vec3d, Vec3d wi) {
         return value(cell(math::acos(std::clamp(wi.z, -1.0, 1.0)) / pi, t->rows), cell(turns_of(wi), t->columns));
     };
     r.sample = [t, edge, value](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
-        return Draw{spherical(edge(s.i) + (edge(s.i + 1) - edge(s.i)) * s.x, (s.j + s.y) / t->columns), value(s.i, s.j), {}, {}};
+        return Draw{spherical(edge(s.i) + (edge(s.i + 1) - edge(s.i)) * s.x, (s.j + s.y) / t->columns), value(s.i, s.j),
+            {}, {}};
     };
     return r;
 }
 
-/// The same, even in theta and phi: p = T / (2 pi^2 sin theta), as pbrt-v3's InfiniteAreaLight; 0 at the poles themselves.
+/// The same, even in theta and phi: p = T / (2 pi^2 sin theta), as pbrt-v3's InfiniteAreaLight; 0 at the poles
+/// themselves.
 Recipe texels(Dice& d) {
     const int rows = d.whole(4, 24), columns = 2 * rows;
     std::vector<double> w = weights(d, rows, columns, d.log(1.5, 30), d.whole(0, 3) == 0);
     for (int i = 0; i < rows; ++i)
-        for (int j = 0; j < columns; ++j) w[static_cast<std::size_t>(i * columns + j)] *= math::sin(pi * (i + 0.5) / rows);
+        for (int j = 0; j < columns; ++j)
+            w[static_cast<std::size_t>(i * columns + j)] *= math::sin(pi * (i + 0.5) / rows);
     const auto t = std::make_shared<Table>(rows, columns, std::move(w));
     Recipe r{"texels over sin theta", fmt::format("{} x {}", rows, columns), {}, {}, {}};
-    const auto value = [t](int i, int j, double sin) { return sin > 0 ? t->at(i, j) * t->rows * t->columns / (2 * pi * pi * sin) : 0.0; };
+    const auto value = [t](int i, int j, double sin) {
+        return sin > 0 ? t->at(i, j) * t->rows * t->columns / (2 * pi * pi * sin) : 0.0;
+    };
     r.pdf = [t, value](Vec3d, Vec3d w2) {
         const double theta = math::atan2(math::hypot(w2.x, w2.y), w2.z);
         return value(cell(theta / pi, t->rows), cell(turns_of(w2), t->columns), math::sin(theta));
     };
     r.sample = [t, value](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
-        const double theta = pi * (s.i + s.x) / t->rows, phi = 2 * pi * (s.j + s.y) / t->columns, sin = math::sin(theta);
+        const double theta = pi * (s.i + s.x) / t->rows, phi = 2 * pi * (s.j + s.y) / t->columns,
+                     sin = math::sin(theta);
         return Draw{{sin * math::cos(phi), sin * math::sin(phi), math::cos(theta)}, value(s.i, s.j, sin), {}, {}};
     };
     return r;
@@ -127,13 +139,15 @@ double linear(double a, double b, double u) {
     return std::clamp(t / (a + std::sqrt(std::max(a * a + (b - a) * t, 0.0))), 0.0, 1.0);
 }
 
-/// p bilinear in cos theta x phi between points, periodic in phi; a cell by its mass, then a straight line along each side.
+/// p bilinear in cos theta x phi between points, periodic in phi; a cell by its mass, then a straight line along each
+/// side.
 Recipe bilinear(Dice& d) {
     const int rows = d.whole(2, 16), columns = d.whole(4, 32);
     const double contrast = d.log(1.5, 20);
     auto point = std::make_shared<std::vector<double>>();
     for (int i = 0; i < (rows + 1) * columns; ++i) point->push_back(d.log(1, contrast));
-    const auto p = [point, columns](int i, int j) { return (*point)[static_cast<std::size_t>(i * columns + j % columns)]; };
+    const auto p = [point, columns](
+                       int i, int j) { return (*point)[static_cast<std::size_t>(i * columns + j % columns)]; };
     std::vector<double> w;
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) w.push_back((p(i, j) + p(i + 1, j) + p(i, j + 1) + p(i + 1, j + 1)) / 4);
@@ -143,7 +157,8 @@ Recipe bilinear(Dice& d) {
     const auto t = std::make_shared<Table>(rows, columns, std::move(w));
     Recipe r{"bilinear", fmt::format("{} x {}", rows, columns), {}, {}, {}};
     const auto value = [p, per_sr](int i, int j, double x, double y) {
-        return per_sr * ((1 - x) * ((1 - y) * p(i, j) + y * p(i, j + 1)) + x * ((1 - y) * p(i + 1, j) + y * p(i + 1, j + 1)));
+        return per_sr *
+            ((1 - x) * ((1 - y) * p(i, j) + y * p(i, j + 1)) + x * ((1 - y) * p(i + 1, j) + y * p(i + 1, j + 1)));
     };
     r.pdf = [t, value](Vec3d, Vec3d wi) {
         if (wi.z <= 0) return 0.0;
@@ -154,7 +169,8 @@ Recipe bilinear(Dice& d) {
     r.sample = [t, p, value](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
         const double x = linear(p(s.i, s.j) + p(s.i, s.j + 1), p(s.i + 1, s.j) + p(s.i + 1, s.j + 1), s.x);
-        const double y = linear((1 - x) * p(s.i, s.j) + x * p(s.i + 1, s.j), (1 - x) * p(s.i, s.j + 1) + x * p(s.i + 1, s.j + 1), s.y);
+        const double y = linear(
+            (1 - x) * p(s.i, s.j) + x * p(s.i + 1, s.j), (1 - x) * p(s.i, s.j + 1) + x * p(s.i + 1, s.j + 1), s.y);
         return Draw{spherical((s.i + x) / t->rows, (s.j + y) / t->columns), value(s.i, s.j, x, y), {}, {}};
     };
     return r;

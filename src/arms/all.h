@@ -22,7 +22,8 @@ template <template <class> class... A> struct ArmList {
     static constexpr std::size_t count = sizeof...(A);
 };
 
-using Arms = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD, GgxVndf>;
+using Arms =
+    ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD, GgxVndf>;
 
 /// Calls f.template operator()<A>() for every arm A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_arm(ArmList<A...>, Call&& f) {

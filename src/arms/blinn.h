@@ -1,6 +1,7 @@
 // blinn: a cosine-power half-vector about n, mirrored to wi.
 //   p_m = (s+1)/(2 pi) (n.m)^s;  cos = u1^(1/(s+1)), phi = 2 pi u2;  p = p_m / (4 (wo.m)).
-// Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures", sampled as in Walter et al. 2007, eq. (14).
+// Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures", sampled as in Walter et al. 2007, eq.
+// (14).
 #pragma once
 
 #include "arms/halfway.h"
@@ -11,7 +12,9 @@ template <class F> struct Blinn {
     static constexpr std::string_view name = "blinn";
     F s, inverse, scale;
     explicit Blinn(const Site<F>& site)
-        : s(site.s), inverse(number<F>(1) / (site.s + number<F>(1))), scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
+        : s(site.s),
+          inverse(number<F>(1) / (site.s + number<F>(1))),
+          scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const Power<F> root = power(u.x, inverse);
@@ -25,7 +28,8 @@ template <class F> struct Blinn {
     }
     PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {
         const Vec3<F> m = halfway(wo, wi);
-        return above(wo, wi, scale * cosine_power(m, Vec3<F>{number<F>(0), number<F>(0), number<F>(1)}, s) / half_jacobian(dot(wo, m)));
+        return above(wo, wi,
+            scale * cosine_power(m, Vec3<F>{number<F>(0), number<F>(0), number<F>(1)}, s) / half_jacobian(dot(wo, m)));
     }
 };
 

@@ -1,8 +1,8 @@
 // ggx-vndf: a GGX normal among those that wo sees, mirrored to wi.
 //   p = G1(wo) D(m) max(wo.m, 0) / wo.z / (4 wo.m) = G1(wo) D(m) / (4 wo.z).
-// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eq. (3) and (17); the draw by a spherical cap in
-// the stretched space: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.
-// With u1 the height on the cap and u2 the angle.
+// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eq. (3) and (17); the draw by a spherical
+// cap in the stretched space: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8),
+// listing 3. With u1 the height on the cap and u2 the angle.
 #pragma once
 
 #include "arms/halfway.h"
@@ -18,11 +18,12 @@ template <class F> struct GgxVndf {
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1), a = ggx.alpha;
         const Vec3<F> stretched = normalize(Vec3<F>{a * wo.x, a * wo.y, wo.z});
-        const F rise = (one - u.x) * (one + stretched.z);     // z + stretched.z on the cap
+        const F rise = (one - u.x) * (one + stretched.z);  // z + stretched.z on the cap
         const F z = rise - stretched.z;
         const F sin = sqrt(larger((one - z) * (one + z), number<F>(0)));
         const SinCos<F> phi = sincos_turns(u.y);
-        const Vec3<F> m = normalize(Vec3<F>{a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise});
+        const Vec3<F> m =
+            normalize(Vec3<F>{a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise});
         const Vec3<F> wi = mirror_about(wo, m);
         return {wi, density(wo, wi, m)};
     }

@@ -1,7 +1,7 @@
 // What the half-vector arms share: m is drawn about n, wi is wo mirrored in m, and
 //   dw_i = 4 (wo.m) dw_m,  hence  p(wi) = p_m(m) / (4 (wo.m)).        Walter et al. 2007, eq. (14)
-// Where wi falls under the horizon nothing is drawn: the sample weighs 0 and counts, and p is not renormalised, so that it
-// integrates to one less that share. (Under the horizon p would grow without bound towards wi = -wo.)
+// Where wi falls under the horizon nothing is drawn: the sample weighs 0 and counts, and p is not renormalised, so that
+// it integrates to one less that share. (Under the horizon p would grow without bound towards wi = -wo.)
 #pragma once
 
 #include "arms/sampler.h"

@@ -22,7 +22,8 @@ template <class F> struct LightArea {
             const Frame<F> frame = frame_about(d.normal);
             const auto lit = d.faces();
             center = d.to_center, t = frame.t * d.radius, b = frame.b * d.radius;
-            scale = select(lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
+            scale = select(
+                lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
         }
     };
     Aim first;  // most scenes have but one
@@ -39,11 +40,13 @@ template <class F> struct LightArea {
         }
         Drawn<F> drawn = {{zero, zero, one}, {zero}};
         F below = zero, own = zero;
-        for (int k = 0; k < count; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
+        for (int k = 0; k < count;
+            ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
             const F above = k + 1 < count ? below + disks[k].power : one;
             const auto chosen = (u.x >= below) & (u.x < above);
             const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - below) / (above - below), u.y});
-            drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y), select(chosen, one_disk.wi.z, drawn.wi.z)};
+            drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y),
+                select(chosen, one_disk.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
             own = select(chosen, number<F>(k), own);
             below = above;
@@ -54,18 +57,22 @@ template <class F> struct LightArea {
         return {drawn, own, some};
     }
 
-    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const { return {density_of_others(wi, number<F>(-1))}; }
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
+        return {density_of_others(wi, number<F>(-1))};
+    }
 
 private:
-    /// The density with which the disks but for one draw wi. The question whether wi meets a disk is that of the estimator
-    /// (meets_disk in estimator/disk_hit.h), bit for bit, so that no sample is worth a disk and weighed as if it met none.
+    /// The density with which the disks but for one draw wi. The question whether wi meets a disk is that of the
+    /// estimator (meets_disk in estimator/disk_hit.h), bit for bit, so that no sample is worth a disk and weighed as if
+    /// it met none.
     [[gnu::always_inline]] F density_of_others(Vec3<F> wi, F but) const {
         F sum = number<F>(0);
         for (int k = 0; k < count; ++k) {
             const LocalDisk<F>& d = disks[k];
             const F c = d.along, v = dot(wi, d.normal);
             const Vec3<F> off = wi * c - d.to_center * v;
-            const auto met = (dot(off, off) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) & !(but == number<F>(k));
+            const auto met = (dot(off, off) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) &
+                !(but == number<F>(k));
             const F t = c / select(met, v, number<F>(1));
             sum = sum + select(met, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));
         }

@@ -1,8 +1,9 @@
-// light-solid-angle: next-event estimation (NEE), a disk light by solid angle: uniform over the smallest cap of directions
-// about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
+// light-solid-angle: next-event estimation (NEE), a disk light by solid angle: uniform over the smallest cap of
+// directions about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
 //   p = 1 / (2 pi (1 - cos b)),  cos = 1 - u1 (1 - cos b), phi = 2 pi u2, about the ellipse's centre a.
-// The ellipse (Guillen et al. 2017, "Area-Preserving Parameterizations for Spherical Ellipses", section 3): with t the disk's
-// direction away from x's foot in its plane, as long as its radius, a bisects c + t and c - t, and so meets the plane at
+// The ellipse (Guillen et al. 2017, "Area-Preserving Parameterizations for Spherical Ellipses", section 3): with t the
+// disk's direction away from x's foot in its plane, as long as its radius, a bisects c + t and c - t, and so meets the
+// plane at
 //   y = c + q t,  q = (|c-t| - |c+t|) / (|c-t| + |c+t|) = -4 c.t / (|c-t| + |c+t|)^2;
 // its long half-axis b lies across, tan b = half chord / |y|, half chord^2 = r^2 (1 - q^2).
 // A facing disk fills its cap; of an oblique one some directions miss, see what is behind it and are worth that: no pdf
@@ -36,11 +37,14 @@ template <class F> struct LightSolidAngle {
         if (count == 1) return towards(0, first, u);
         DrawnToDisk<F> drawn = {{{zero, zero, one}, {zero}}, zero, zero > zero};
         F below = zero;
-        for (int k = 0; k < count; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
+        for (int k = 0; k < count;
+            ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
             const F above = k + 1 < count ? below + disks[k].power : one;
             const auto chosen = (u.x >= below) & (u.x < above);
-            const DrawnToDisk<F> w = towards(k, cap_of(disks[k]), {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
-            drawn.wi = {select(chosen, w.wi.x, drawn.wi.x), select(chosen, w.wi.y, drawn.wi.y), select(chosen, w.wi.z, drawn.wi.z)};
+            const DrawnToDisk<F> w =
+                towards(k, cap_of(disks[k]), {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
+            drawn.wi = {select(chosen, w.wi.x, drawn.wi.x), select(chosen, w.wi.y, drawn.wi.y),
+                select(chosen, w.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * w.pdf.v, drawn.pdf.v);
             drawn.disk = select(chosen, w.disk, drawn.disk);
             drawn.met = (chosen & w.met) | (drawn.met & !chosen);

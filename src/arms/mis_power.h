@@ -9,7 +9,8 @@ namespace crescent {
 struct PowerHeuristic {
     template <class F> static F weight(F own, F other) {
         const auto drawn = own > number<F>(0);
-        return select(drawn, number<F>(1) / (number<F>(1) + sqr(other / select(drawn, own, number<F>(1)))), number<F>(0));
+        return select(
+            drawn, number<F>(1) / (number<F>(1) + sqr(other / select(drawn, own, number<F>(1)))), number<F>(0));
     }
 };
 

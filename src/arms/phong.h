@@ -12,7 +12,9 @@ template <class F> struct Phong {
     static constexpr std::string_view name = "phong";
     F s, inverse, scale;
     explicit Phong(const Site<F>& site)
-        : s(site.s), inverse(number<F>(1) / (site.s + number<F>(1))), scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
+        : s(site.s),
+          inverse(number<F>(1) / (site.s + number<F>(1))),
+          scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const Power<F> lobe = root(u.x, inverse);
@@ -23,7 +25,9 @@ template <class F> struct Phong {
         const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 is 0, not 0/0
         return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * along}};
     }
-    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const { return {scale * cosine_power(wi, mirror(wo), s)}; }
+    [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {
+        return {scale * cosine_power(wi, mirror(wo), s)};
+    }
 };
 
 }  // namespace crescent

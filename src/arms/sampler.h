@@ -41,10 +41,11 @@ template <class F> struct LocalDisk {
     F radius;           // m
     F two_sided;        // 1: emits from both sides
     F power;            // Y(L) pi r^2: how much it is worth choosing
-    F along;            // to_center.normal, m; 0 where the disk's plane passes through the point, which it then gives nothing
+    F along;  // to_center.normal, m; 0 where the disk's plane passes through the point, which it then gives nothing
 
     LocalDisk() = default;
-    LocalDisk(Vec3<F> c, Vec3<F> n, F r, F sides, F share) : to_center(c), normal(n), radius(r), two_sided(sides), power(share) {
+    LocalDisk(Vec3<F> c, Vec3<F> n, F r, F sides, F share)
+        : to_center(c), normal(n), radius(r), two_sided(sides), power(share) {
         const F height = dot(c, n);
         along = select(abs(height) > number<F>(1e-6) * (sqrt(dot(c, c)) + r), height, number<F>(0));
     }

@@ -49,8 +49,8 @@ public:
 };
 
 /// Stop here if a claim about our own code does not hold, in release builds too.
-inline void ensure(bool holds, std::string_view claim,
-                   const std::source_location& at = std::source_location::current()) {
+inline void ensure(
+    bool holds, std::string_view claim, const std::source_location& at = std::source_location::current()) {
     if (!holds) throw Bug(at, claim);
 }
 

@@ -36,13 +36,14 @@ constexpr std::string_view owner_text = "a run of crescent that is writing, or w
 /// Nobody can know it beforehand and put something in its place.
 std::string new_stage_name() {
     std::uint64_t bits = 0;
-    if (getrandom(&bits, sizeof bits, 0) != sizeof bits) fail("cannot read", "the system's random numbers", std::strerror(errno));
+    if (getrandom(&bits, sizeof bits, 0) != sizeof bits)
+        fail("cannot read", "the system's random numbers", std::strerror(errno));
     return fmt::format("{}{:016x}", stage_prefix, bits);
 }
 
 bool is_stage_name(const std::string& name) {
     return name.size() == stage_prefix.size() + 16 && name.starts_with(stage_prefix) &&
-           name.find_first_not_of("0123456789abcdef", stage_prefix.size()) == std::string::npos;
+        name.find_first_not_of("0123456789abcdef", stage_prefix.size()) == std::string::npos;
 }
 
 enum class Life { alive, gone, not_ours };
@@ -50,8 +51,10 @@ enum class Life { alive, gone, not_ours };
 /// A stage is ours to clear where its owner file says so, is this user's, and no living process holds it.
 Life life_of(const Folder& out, const std::string& stage) {
     const Folder here = out.sub(stage);
-    struct stat about {};
-    if (!here || here.read(owner_file) != owner_text || fstat(here.descriptor(), &about) != 0 || about.st_uid != geteuid()) return Life::not_ours;
+    struct stat about{};
+    if (!here || here.read(owner_file) != owner_text || fstat(here.descriptor(), &about) != 0 ||
+        about.st_uid != geteuid())
+        return Life::not_ours;
     const int owner = openat(here.descriptor(), owner_file, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
     if (owner < 0) return Life::not_ours;
     const bool held = flock(owner, LOCK_EX | LOCK_NB) != 0;
@@ -64,7 +67,8 @@ Life life_of(const Folder& out, const std::string& stage) {
 Staging::Staging(std::string folder, std::string kind) : folder_(std::move(folder)), kind_(std::move(kind)) {
     std::error_code error;
     fs::create_directories(folder_, error);
-    if (error || !fs::is_directory(folder_)) fail("cannot make the folder", folder_, error ? error.message() : "something else has that name");
+    if (error || !fs::is_directory(folder_))
+        fail("cannot make the folder", folder_, error ? error.message() : "something else has that name");
     out_ = Folder(folder_);
     if (flock(out_.descriptor(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) in_use(folder_);
     clear_stale();
@@ -107,14 +111,16 @@ void Staging::make_stage() {
 
 Staging::~Staging() {
     if (owner_ >= 0) close(owner_);
-    if (out_.kind(".crescent-current") == Folder::Kind::link && out_.link_text(".crescent-current").starts_with(stage_)) return;  // the next run settles it
+    if (out_.kind(".crescent-current") == Folder::Kind::link && out_.link_text(".crescent-current").starts_with(stage_))
+        return;  // the next run settles it
     std::error_code ignored;
     fs::remove_all(fs::path(folder_) / stage_, ignored);
 }
 
 std::string Staging::path(const std::string& name) {
     const fs::path at = fs::path(folder_) / stage_ / "new" / name;
-    if (!out_.sub(stage_ + "/new").parent_of(name, true)) fail("cannot make the folder", at.parent_path(), std::strerror(errno));
+    if (!out_.sub(stage_ + "/new").parent_of(name, true))
+        fail("cannot make the folder", at.parent_path(), std::strerror(errno));
     if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
     return at;
 }
@@ -122,7 +128,8 @@ std::string Staging::path(const std::string& name) {
 void Staging::write(const std::string& name, std::span<const unsigned char> bytes) {
     const std::string at = path(name);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (!out_.sub(stage_ + "/new").parent_of(name, false).write(leaf_of(name), text)) fail("cannot write", at, std::strerror(errno));
+    if (!out_.sub(stage_ + "/new").parent_of(name, false).write(leaf_of(name), text))
+        fail("cannot write", at, std::strerror(errno));
 }
 void Staging::write(const std::string& name, const std::string& text) {
     write(name, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));

@@ -15,8 +15,8 @@ namespace crescent {
 /// Throws OutputError where something cannot be written, and where another process is writing into the same folder.
 class Staging {
 public:
-    /// Makes `folder` if it is not there, and ends or clears what earlier, killed runs left behind. Work of another kind
-    /// may write into the same folder: it has outputs of its own.
+    /// Makes `folder` if it is not there, and ends or clears what earlier, killed runs left behind. Work of another
+    /// kind may write into the same folder: it has outputs of its own.
     explicit Staging(std::string folder, std::string kind = "outputs");
     ~Staging();
     Staging(const Staging&) = delete;
@@ -38,7 +38,7 @@ private:
 
     std::string folder_, kind_, stage_;  // stage_: its name in the folder
     Folder out_;
-    int owner_ = -1;              // a locked file in the stage: whoever holds it is alive
+    int owner_ = -1;  // a locked file in the stage: whoever holds it is alive
     std::vector<std::string> names_, said_;
 };
 

@@ -21,8 +21,10 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Files = std::map<std::string, std::string>;  // name -> content
 
-const Files old_run = {{"metrics.json", "old"}, {"report.html", "old"}, {"plates/hero.png", "old"}, {"plates/heat.png", "old"}, {"films/a/b.exr", "old"}};
-const Files new_run = {{"metrics.json", "new"}, {"report.html", "new"}, {"plates/hero.png", "new"}, {"plates/rose.png", "new"}};
+const Files old_run = {{"metrics.json", "old"}, {"report.html", "old"}, {"plates/hero.png", "old"},
+    {"plates/heat.png", "old"}, {"films/a/b.exr", "old"}};
+const Files new_run = {
+    {"metrics.json", "new"}, {"report.html", "new"}, {"plates/hero.png", "new"}, {"plates/rose.png", "new"}};
 
 int steps_left = 0;
 void end_at_last_step() {
@@ -32,7 +34,8 @@ void end_at_last_step() {
 class Publishing : public testing::Test {
 protected:
     // In memory, where there is such a place: these tests sync some thousand times.
-    fs::path top_ = fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : testing::TempDir()) / ("publishing-" + std::to_string(getpid()));
+    fs::path top_ = fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
+        ("publishing-" + std::to_string(getpid()));
     fs::path out_ = top_ / "out";
     Watch watch_;
     void SetUp() override { fs::remove_all(top_), fs::create_directories(top_); }
@@ -64,7 +67,9 @@ protected:
         std::vector<std::string> out;
         for (const auto& entry : fs::recursive_directory_iterator(out_))
             if (!entry.is_directory() || entry.is_symlink())
-                if (entry.path().filename() != manifest_file("outputs")) out.push_back(entry.path().lexically_relative(out_).string() + (entry.is_symlink() ? " (a link)" : ""));
+                if (entry.path().filename() != manifest_file("outputs"))
+                    out.push_back(
+                        entry.path().lexically_relative(out_).string() + (entry.is_symlink() ? " (a link)" : ""));
         std::sort(out.begin(), out.end());
         return out;
     }
@@ -111,7 +116,7 @@ TEST_F(Publishing, StoppedBeforeAnyStepLeavesOneRunWhole) {
 }
 
 TEST_F(Publishing, ForTheFirstTimeShowsAllOrNothing) {
-    for (int step = 0; ; ++step) {
+    for (int step = 0;; ++step) {
         fs::remove_all(out_);
         const bool done = publish_until(step, new_run);
         ASSERT_TRUE(seen().empty() || seen() == new_run) << "ended before step " << step;
@@ -162,8 +167,8 @@ TEST_F(Publishing, WhatIsInTheWayAfterTheFirstStepsLeavesEverythingOld) {
 }
 
 TEST_F(Publishing, LeavesFilesOfOthersAlone) {
-    const std::vector<std::string> theirs = {".crescent-99999-backup/thesis.txt", ".crescent-123abc/notes", "plates/mine.png",
-                                             ".crescent-stage-0123456789abcdef/kept", "thesis.tex"};
+    const std::vector<std::string> theirs = {".crescent-99999-backup/thesis.txt", ".crescent-123abc/notes",
+        "plates/mine.png", ".crescent-stage-0123456789abcdef/kept", "thesis.tex"};
     for (const std::string& name : theirs) put(out_ / name, "theirs");
     put(out_ / "report.html", "written by hand");
     publish(old_run);
@@ -209,9 +214,7 @@ TEST_F(Publishing, IsForOneRunAtATime) {
     try {
         Staging second(out_);
         FAIL();
-    } catch (const OutputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("another run"));
-    }
+    } catch (const OutputError& error) { EXPECT_THAT(error.what(), HasSubstr("another run")); }
     first.write("metrics.json", "first");
     first.commit(watch_);
     EXPECT_EQ(text_of(out_ / "metrics.json"), "first");

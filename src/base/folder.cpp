@@ -82,7 +82,7 @@ Folder Folder::parent_of(const std::string& name, bool make) const {
 }
 
 Folder::Kind Folder::kind(const std::string& leaf) const {
-    struct stat about {};
+    struct stat about{};
     if (fstatat(file_, leaf.c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0) return Kind::none;
     if (S_ISREG(about.st_mode)) return Kind::file;
     if (S_ISLNK(about.st_mode)) return Kind::link;

@@ -21,10 +21,15 @@
 
 namespace crescent {
 
-Journal::Journal(std::string path, std::string key, Watch& watch) : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
+Journal::Journal(std::string path, std::string key, Watch& watch)
+    : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
 
 Journal::Journal(Journal&& other) noexcept
-    : path_(std::move(other.path_)), key_(std::move(other.key_)), watch_(other.watch_), file_(std::exchange(other.file_, -1)), off_(other.off_) {}
+    : path_(std::move(other.path_)),
+      key_(std::move(other.key_)),
+      watch_(other.watch_),
+      file_(std::exchange(other.file_, -1)),
+      off_(other.off_) {}
 
 #ifndef CRESCENT_NO_FILES
 
@@ -75,7 +80,7 @@ bool Journal::open(int flags) {
 }
 
 void Journal::read(const std::function<void(Bytes)>& take) {
-    struct stat about {};
+    struct stat about{};
     if (!open(0) || off_ || fstat(file_, &about) != 0) return;
     const auto size = static_cast<std::uint64_t>(about.st_size);
     std::uint64_t whole = 0;

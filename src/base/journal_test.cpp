@@ -27,7 +27,8 @@ protected:
 
     Texts read(Journal& journal) const {
         Texts out;
-        journal.read([&](Journal::Bytes bytes) { out.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size()); });
+        journal.read(
+            [&](Journal::Bytes bytes) { out.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size()); });
         return out;
     }
     Texts read(const std::string& key = "work") const {
@@ -103,7 +104,8 @@ TEST_F(Journals, TakeNoRecordThatWasWrittenForOtherWork) {
     add_bytes_of(path_ + "-stranger");
     EXPECT_EQ(read(), Texts{"one"});
     add_bytes_of(path_ + "-other");
-    EXPECT_EQ(read(), (Texts{"one", "work", "two"})) << "of the same work, and whole: the reader must know it from its own";
+    EXPECT_EQ(read(), (Texts{"one", "work", "two"}))
+        << "of the same work, and whole: the reader must know it from its own";
 }
 
 TEST_F(Journals, AreNotLedElsewhereByALink) {

@@ -92,7 +92,8 @@ double granted_processors(const std::string& root, const std::string& own) {
         std::istringstream both(text_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
         double quota = 0, period = 0;
         if (both >> quota >> period) grant(quota, period);
-        if (number_in(group + "/cpu.cfs_quota_us", quota) && number_in(group + "/cpu.cfs_period_us", period)) grant(quota, period);
+        if (number_in(group + "/cpu.cfs_quota_us", quota) && number_in(group + "/cpu.cfs_period_us", period))
+            grant(quota, period);
     }
     return least;
 }
@@ -101,7 +102,8 @@ std::uint64_t granted_memory(const std::string& root, const std::string& own) {
     std::uint64_t least = no_limit;
     for (const std::string& group : groups(root, own, "memory")) {
         least = std::min(least, left_in(group, "/memory.max", "/memory.current", "inactive_file"));
-        least = std::min(least, left_in(group, "/memory.limit_in_bytes", "/memory.usage_in_bytes", "total_inactive_file"));
+        least =
+            std::min(least, left_in(group, "/memory.limit_in_bytes", "/memory.usage_in_bytes", "total_inactive_file"));
     }
     return least;
 }

@@ -9,11 +9,12 @@ namespace crescent {
 /// Processors that this process may run on, and no more than its control groups grant it time for; 1 at least.
 int usable_threads();
 
-/// Bytes that this process can still allocate: what the machine has free, within its control groups (v1, v2) and RLIMIT_AS.
+/// Bytes that this process can still allocate: what the machine has free, within its control groups (v1, v2) and
+/// RLIMIT_AS.
 std::uint64_t available_memory();
 
 /// The same read from files below `root` ("" in use), for tests. `own` is the process's /proc/self/cgroup.
-double granted_processors(const std::string& root, const std::string& own);    // 0: no limit
+double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
 std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit
 
 }  // namespace crescent

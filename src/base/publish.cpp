@@ -39,7 +39,9 @@ std::string manifest_of(const std::vector<std::string>& names) {
     return text;
 }
 
-bool holds(const std::vector<std::string>& all, const std::string& one) { return std::find(all.begin(), all.end(), one) != all.end(); }
+bool holds(const std::vector<std::string>& all, const std::string& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+}
 
 }  // namespace
 
@@ -58,13 +60,17 @@ Publication::Publication(const Folder& out, const std::string& shown_as, const s
     : out_(out), shown_as_(shown_as), stage_(stage) {}
 
 void Publication::fail(const std::string& name, const std::string& why) const {
-    throw OutputError(fmt::format("cannot write {}/{}: {}; every output there is the one of before", shown_as_, name, why));
+    throw OutputError(
+        fmt::format("cannot write {}/{}: {}; every output there is the one of before", shown_as_, name, why));
 }
 
 void Publication::check_places(const std::vector<std::string>& names) const {
     for (const std::string& name : names) {
         const Folder at = out_.parent_of(name, true);
-        if (!at) fail(name, errno == ELOOP || errno == ENOTDIR ? "something else than a folder stands on the way" : std::strerror(errno));
+        if (!at)
+            fail(name,
+                errno == ELOOP || errno == ENOTDIR ? "something else than a folder stands on the way"
+                                                   : std::strerror(errno));
         const Folder::Kind there = at.kind(leaf_of(name));
         if (there == Folder::Kind::folder) fail(name, std::strerror(EISDIR));
         if (there != Folder::Kind::none && there != Folder::Kind::file) fail(name, "a link or a device has that name");
@@ -94,7 +100,8 @@ void Publication::publish(std::vector<std::string> names, const std::string& kin
     sync_new(names);
     std::vector<std::string> all = names;
     for (std::string& name : names_in(out_.read(manifest)))
-        if (const Folder at = out_.parent_of(name, false); !holds(all, name) && at && at.kind(leaf_of(name)) == Folder::Kind::file)
+        if (const Folder at = out_.parent_of(name, false);
+            !holds(all, name) && at && at.kind(leaf_of(name)) == Folder::Kind::file)
             all.push_back(std::move(name));
     if (!stage.write("names", manifest_of(all)) || !stage.make_folder("old") || !stage.sync() || !out_.sync())
         fail(stage_, std::strerror(errno));
@@ -118,7 +125,8 @@ void Publication::publish(std::vector<std::string> names, const std::string& kin
 bool Publication::sync_folders(const std::vector<std::string>& names) const {
     std::set<std::string> folders = {""};
     for (const std::string& name : names)
-        if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) folders.insert(name.substr(0, slash));
+        if (const std::size_t slash = name.rfind('/'); slash != std::string::npos)
+            folders.insert(name.substr(0, slash));
     return std::all_of(folders.begin(), folders.end(), [&](const std::string& name) {
         const Folder folder = out_.sub(name);
         return !folder || folder.sync();
@@ -126,7 +134,8 @@ bool Publication::sync_folders(const std::vector<std::string>& names) const {
 }
 
 void Publication::hide(const std::string& name) {
-    const Folder at = out_.parent_of(name, true), old = out_.sub(stage_ + "/old").parent_of(name, true), stage = out_.sub(stage_);
+    const Folder at = out_.parent_of(name, true), old = out_.sub(stage_ + "/old").parent_of(name, true),
+                 stage = out_.sub(stage_);
     const std::string leaf = leaf_of(name);
     if (!at || !old) fail(name, std::strerror(errno));
     if (at.kind(leaf) == Folder::Kind::none) {
@@ -157,7 +166,8 @@ bool Publication::show(const std::string& name, const Folder& set) {
     if (!at.remove(leaf)) return false;
     for (std::size_t slash = name.rfind('/'); slash != std::string::npos; slash = name.rfind('/', slash - 1)) {
         const std::string folder = name.substr(0, slash);
-        if (!out_.parent_of(folder, false).remove_folder(leaf_of(folder)) || slash == 0) break;  // others' files are in it
+        if (!out_.parent_of(folder, false).remove_folder(leaf_of(folder)) || slash == 0)
+            break;  // others' files are in it
     }
     return true;
 }
@@ -165,7 +175,8 @@ bool Publication::show(const std::string& name, const Folder& set) {
 bool Publication::settle() {
     const Step now = step();
     if (now == Step::none) return true;
-    const Folder stage = out_.sub(stage_), set = stage.sub(now == Step::new_files ? "new" : "old"), old = stage.sub("old");
+    const Folder stage = out_.sub(stage_), set = stage.sub(now == Step::new_files ? "new" : "old"),
+                 old = stage.sub("old");
     bool good = true;
     const std::vector<std::string> names = names_in(stage.read("names"));
     for (const std::string& name : names) good = show(name, set) && good;

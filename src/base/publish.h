@@ -1,16 +1,17 @@
-// How files take the place of earlier ones as one. A file of theirs is always seen whole and always with the others of its
-// run, whichever system call is the last one:
+// How files take the place of earlier ones as one. A file of theirs is always seen whole and always with the others of
+// its run, whichever system call is the last one:
 //
-//   1. The new files stand in OUT/.crescent-stage-ID/new, on the disk. OUT/.crescent-current is made, a link to .../old.
+//   1. The new files stand in OUT/.crescent-stage-ID/new, on the disk. OUT/.crescent-current is made, a link to
+//   .../old.
 //   2. Each final name in turn becomes a link through OUT/.crescent-current, its file a second name in .../old: what is
 //      read under the name is what was read before.
 //   3. OUT/.crescent-current is replaced by a link to .../new. This one rename() publishes all.
 //   4. Each new file is renamed over its link: what is read under the name is what was read before. A link that leads
 //      nowhere, since the new run has no such file, is removed.
 //
-// Where it ends between two of these steps, settle() goes on from there: to the old files before step 3, to the new ones
-// after it. Only files that earlier work of the same kind listed in OUT/.crescent-KIND are replaced or removed; another file that
-// stands under one of the names is kept as NAME.~1~.
+// Where it ends between two of these steps, settle() goes on from there: to the old files before step 3, to the new
+// ones after it. Only files that earlier work of the same kind listed in OUT/.crescent-KIND are replaced or removed;
+// another file that stands under one of the names is kept as NAME.~1~.
 #pragma once
 
 #include <atomic>

@@ -6,12 +6,13 @@
 
 namespace crescent {
 
-/// For XML and XHTML-compatible HTML: & < > " ' as references; control characters that XML 1.0 forbids, and broken UTF-8, as U+FFFD.
+/// For XML and XHTML-compatible HTML: & < > " ' as references; control characters that XML 1.0 forbids, and broken
+/// UTF-8, as U+FFFD.
 std::string escape(std::string_view text);
 
-/// For one line of a terminal: valid UTF-8 in which nothing moves the cursor, sets a colour or turns the direction of writing.
-/// Control characters (C0, DEL, C1, U+2028 to U+202E, U+2066 to U+2069) and broken bytes are shown as \xNN or \u{N}. At most
-/// `longest` bytes of `text` are taken, cut between characters.
+/// For one line of a terminal: valid UTF-8 in which nothing moves the cursor, sets a colour or turns the direction of
+/// writing. Control characters (C0, DEL, C1, U+2028 to U+202E, U+2066 to U+2069) and broken bytes are shown as \xNN or
+/// \u{N}. At most `longest` bytes of `text` are taken, cut between characters.
 std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
 /// The same for text of several lines: tabs and newlines stay.
 std::string printable_lines(std::string_view text);

@@ -10,8 +10,12 @@ namespace {
 
 TEST(Text, NothingThatMovesACursorIsPrinted) {
     EXPECT_EQ(printable("a\x1b[31mb\a\n\x7f"), "a\\x1b[31mb\\x07\\x0a\\x7f");
-    EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\u{9b}31m");              // CSI of one character
-    EXPECT_EQ(printable("\xe2\x80\xae" "abc"), "\\u{202e}abc");        // right to left
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "31m"),
+        "\\u{9b}31m");  // CSI of one character
+    EXPECT_EQ(printable("\xe2\x80\xae"
+                        "abc"),
+        "\\u{202e}abc");  // right to left
     EXPECT_EQ(printable("na\xefve \xc3\xa9\xe2\x82\xac"), "na\\xefve \xc3\xa9\xe2\x82\xac");
 }
 
@@ -19,7 +23,8 @@ TEST(Text, HasNoControlCharacterWhateverTheBytes) {
     std::mt19937 random(7);
     for (int round = 0; round < 20000; ++round) {
         std::string text(random() % 12, ' ');
-        for (char& c : text) c = static_cast<char>(round % 2 ? random() : "\x1b\xc2\x9b\xe2\x80\xae\xf0\x80[a\n"[random() % 11]);
+        for (char& c : text)
+            c = static_cast<char>(round % 2 ? random() : "\x1b\xc2\x9b\xe2\x80\xae\xf0\x80[a\n"[random() % 11]);
         const std::string shown = printable_lines(text);
         for (std::size_t k = 0; k < shown.size(); ++k) {
             const auto byte = static_cast<unsigned char>(shown[k]);
@@ -32,7 +37,8 @@ TEST(Text, HasNoControlCharacterWhateverTheBytes) {
 
 TEST(Text, ForAShellIsReadBackByIt) {
     EXPECT_EQ(shell_word("experiments/gallery.toml"), "experiments/gallery.toml");
-    for (const std::string word : {"my tiny; echo pwned.toml", "it's", "$(id)", "`id`", "", "-n", "a\\b", "a\nb", "n=[4,16]", "*"}) {
+    for (const std::string word :
+        {"my tiny; echo pwned.toml", "it's", "$(id)", "`id`", "", "-n", "a\\b", "a\nb", "n=[4,16]", "*"}) {
         FILE* shell = popen(("printf %s. " + shell_word(word)).c_str(), "r");
         std::string back(4096, '\0');
         back.resize(fread(back.data(), 1, back.size(), shell));

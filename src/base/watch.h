@@ -12,7 +12,8 @@ struct Interrupted : std::exception {
     const char* what() const noexcept override { return "interrupted"; }
 };
 
-/// What stands under the final names of a run's outputs: what was there before; one or the other, all of one run; its own.
+/// What stands under the final names of a run's outputs: what was there before; one or the other, all of one run; its
+/// own.
 enum class Outputs { untouched, moving, stand };
 
 /// Someone who watches long work. Called from many threads at once; every call is cheap.

@@ -93,7 +93,9 @@ private:
         for (std::size_t r = 0; r < p.size(); ++r) {
             MeanTest& t = out_.regions[r];
             t.differs = differs[r] && !by_chance(t.a - t.b, static_cast<double>(all_.regions[r].pixels.size()));
-            if (t.why.empty()) t.smallest = detectable(t.welch, alpha / static_cast<double>(p.size())) / std::max(std::fabs(t.b), 1e-300);
+            if (t.why.empty())
+                t.smallest =
+                    detectable(t.welch, alpha / static_cast<double>(p.size())) / std::max(std::fabs(t.b), 1e-300);
         }
     }
 
@@ -117,7 +119,8 @@ private:
             else out_.tile_p[t] = by_chance(out_.tile_difference[t], pixels_of(t)) ? 1 : w.p, ++out_.tiles_tested;
         }
         out_.tile_differs = discoveries(out_.tile_p, alpha, out_.dependent);
-        out_.tiles_different = static_cast<std::size_t>(std::count(out_.tile_differs.begin(), out_.tile_differs.end(), true));
+        out_.tiles_different =
+            static_cast<std::size_t>(std::count(out_.tile_differs.begin(), out_.tile_differs.end(), true));
     }
 
     /// A t-test cannot see rare events that none of the renders met. A difference that a few errors of the largest size
@@ -125,19 +128,23 @@ private:
     bool by_chance(double difference, double pixels) const {
         double largest = 0;
         for (const ArmReadings* arm : {&a_, other_ ? &b_ : nullptr})
-            if (arm && !arm->largest.back().empty()) largest = std::max(largest, std::sqrt(static_cast<double>(arm->largest.back().front())));
+            if (arm && !arm->largest.back().empty())
+                largest = std::max(largest, std::sqrt(static_cast<double>(arm->largest.back().front())));
         const std::size_t renders = other_ ? std::min(a_.files.size(), b_.files.size()) : a_.files.size();
         return std::fabs(difference) * pixels * static_cast<double>(renders) < few_events * largest;
     }
 
     double pixels_of(std::size_t tile) const {
-        const int size = all_.tiles.size, column = static_cast<int>(tile) % all_.tiles.across, row = static_cast<int>(tile) / all_.tiles.across;
-        return static_cast<double>(std::min(size, all_.width - column * size)) * std::min(size, all_.height - row * size);
+        const int size = all_.tiles.size, column = static_cast<int>(tile) % all_.tiles.across,
+                  row = static_cast<int>(tile) / all_.tiles.across;
+        return static_cast<double>(std::min(size, all_.width - column * size)) *
+            std::min(size, all_.height - row * size);
     }
 
     static bool alone(const ArmReadings& arm, std::size_t tile) {
         double sum = 0, largest = 0;
-        for (const auto& render : arm.tiles) sum += render[tile].spread, largest = std::max(largest, render[tile].largest);
+        for (const auto& render : arm.tiles)
+            sum += render[tile].spread, largest = std::max(largest, render[tile].largest);
         return sum > 0 && largest > lone_pixel * sum;
     }
 
@@ -157,8 +164,11 @@ private:
     void say(double alpha) {
         std::vector<std::string> parts;
         for (const MeanTest& t : out_.regions)
-            if (t.differs) parts.push_back(fmt::format("mean Y in {} is {} where {} has {} ({:+.2g} %, p = {:.2g})", t.region, figures(t.a), out_.b, figures(t.b), 100 * (t.a / t.b - 1), t.welch.p));
-        if (out_.tiles_different) parts.push_back(fmt::format("{} of {} tiles differ", out_.tiles_different, out_.tiles_tested));
+            if (t.differs)
+                parts.push_back(fmt::format("mean Y in {} is {} where {} has {} ({:+.2g} %, p = {:.2g})", t.region,
+                    figures(t.a), out_.b, figures(t.b), 100 * (t.a / t.b - 1), t.welch.p));
+        if (out_.tiles_different)
+            parts.push_back(fmt::format("{} of {} tiles differ", out_.tiles_different, out_.tiles_tested));
         if (!parts.empty()) {
             out_.sentence = fmt::format("{} differs from {}: {}.", out_.a, out_.b, fmt::join(parts, "; "));
             return;
@@ -169,8 +179,10 @@ private:
             else not_seen.push_back(fmt::format("{}: {}", t.region, t.why));
         }
         out_.sentence = seen.empty() ? fmt::format("{} and {} could not be compared", out_.a, out_.b)
-                                     : fmt::format("No difference between {} and {} was found; one of {} of mean Y would have been, nine times out of ten (alpha {})",
-                                                   out_.a, out_.b, fmt::join(seen, ", "), figures(alpha, 2));
+                                     : fmt::format(
+                                           "No difference between {} and {} was found; one of {} of mean Y would have "
+                                           "been, nine times out of ten (alpha {})",
+                                           out_.a, out_.b, fmt::join(seen, ", "), figures(alpha, 2));
         if (!not_seen.empty()) out_.sentence += fmt::format("; not tested: {}", fmt::join(not_seen, "; "));
         out_.sentence += ".";
     }
@@ -186,10 +198,12 @@ private:
 }  // namespace
 
 bool BiasResult::differs() const {
-    return tiles_different > 0 || std::any_of(regions.begin(), regions.end(), [](const MeanTest& t) { return t.differs; });
+    return tiles_different > 0 ||
+        std::any_of(regions.begin(), regions.end(), [](const MeanTest& t) { return t.differs; });
 }
 
-BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a, std::size_t b, double alpha) {
+BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
+    std::size_t b, double alpha) {
     return BiasTest(plan, all, measured, a, b).judge(alpha);
 }
 
@@ -200,7 +214,8 @@ std::vector<std::uint64_t> own_numbers(const ArmReadings& arm, std::size_t file)
     std::vector<std::uint64_t> out;
     const auto& own = arm.files[file].numbers;
     for (std::size_t i = 0; i < own.size(); ++i) {
-        const bool varies = std::any_of(arm.files.begin(), arm.files.end(), [&](const RenderFile& f) { return f.numbers.size() != own.size() || f.numbers[i] != own[i]; });
+        const bool varies = std::any_of(arm.files.begin(), arm.files.end(),
+            [&](const RenderFile& f) { return f.numbers.size() != own.size() || f.numbers[i] != own[i]; });
         if (varies) out.push_back(own[i]);
     }
     return out.empty() ? own : out;
@@ -215,10 +230,13 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const ArmReadings& a, 
         for (std::size_t j = 0; j < b.files.size(); ++j)
             if (own_numbers(a, i) == own_numbers(b, j)) partners.push_back(j);
         if (partners.size() != 1)
-            throw InputError({a.files[i].path, 0, 0}, fmt::format("--pair: expected one render of the other arm with the same number in its name, found {}", partners.size()));
+            throw InputError({a.files[i].path, 0, 0},
+                fmt::format("--pair: expected one render of the other arm with the same number in its name, found {}",
+                    partners.size()));
         out.emplace_back(i, partners[0]);
     }
-    if (out.size() != b.files.size()) throw InputError({b.files[0].path, 0, 0}, "--pair: expected as many renders of one arm as of the other");
+    if (out.size() != b.files.size())
+        throw InputError({b.files[0].path, 0, 0}, "--pair: expected as many renders of one arm as of the other");
     return out;
 }
 
@@ -233,7 +251,8 @@ NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_
     Values p;
     for (std::size_t t = 0; t < all.tiles.count(); ++t) {
         const MeanInterval va = spreads(all.arms[a], t), vb = spreads(all.arms[b], t);
-        out.log2_ratio.push_back(va.mean > 0 && vb.mean > 0 ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
+        out.log2_ratio.push_back(
+            va.mean > 0 && vb.mean > 0 ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
         p.push_back(std::isfinite(out.log2_ratio.back()) && va.n > 2 && vb.n > 2 ? welch_test(va, vb).p : std::nan(""));
     }
     out.told_apart = discoveries(p, alpha, false);

@@ -10,13 +10,15 @@
 
 namespace crescent {
 
-CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance, Watch& watch, std::string& summary) {
+CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
+    Watch& watch, std::string& summary) {
     const plates::Canvas probe(1, 1, {});  // a missing font is told before the work
     const Readings all = read_all(plan, watch);
     const CompareResult result = judge(plan, all, watch);
     std::map<std::string, std::vector<unsigned char>> pictures;
     for (const auto& [name, picture] : compare_plates(plan, all, result))
-        pictures[name] = encode_png(picture, {{"Software", "crescent " + provenance.version}, {"Title", name}, {"Command", provenance.command}});
+        pictures[name] = encode_png(picture,
+            {{"Software", "crescent " + provenance.version}, {"Title", name}, {"Command", provenance.command}});
     watch.check();
     Staging staging(options.out);
     for (const auto& [name, png] : pictures) staging.write("plates/" + name + ".png", png);

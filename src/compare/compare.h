@@ -14,6 +14,7 @@ struct CompareOptions {
 
 /// Reads, measures and writes everything under options.out; outputs appear whole or not at all. `summary` is for the
 /// terminal. Throws InputError, OutputError, Interrupted.
-CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance, Watch& watch, std::string& summary);
+CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
+    Watch& watch, std::string& summary);
 
 }  // namespace crescent

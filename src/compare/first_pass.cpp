@@ -25,7 +25,8 @@ void MeanFilm::add(const Render& render) {
         const double value = static_cast<double>(render.y(i)), off = value - y[i];
         y[i] += off / n;
         m2[i] += off * (value - y[i]);
-        r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share, b[i] += (render.b[i] - b[i]) * share;
+        r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share,
+            b[i] += (render.b[i] - b[i]) * share;
     }
     for (std::size_t i = 0; i < told_variance.size(); ++i) told_variance[i] += static_cast<double>(render.variance[i]);
 }
@@ -63,7 +64,8 @@ namespace {
 std::string hash_of(const Render& render) {
     XXH3_state_t* state = XXH3_createState();
     XXH3_64bits_reset(state);
-    for (const std::vector<float>* plane : {&render.r, &render.g, &render.b}) XXH3_64bits_update(state, plane->data(), plane->size() * sizeof(float));
+    for (const std::vector<float>* plane : {&render.r, &render.g, &render.b})
+        XXH3_64bits_update(state, plane->data(), plane->size() * sizeof(float));
     const std::uint64_t hash = XXH3_64bits_digest(state);
     XXH3_freeState(state);
     return fmt::format("{:016x}", hash);
@@ -78,26 +80,31 @@ std::vector<std::uint64_t> numbers_in(const std::string& path) {
             continue;
         }
         std::uint64_t value = 0;
-        for (; i < name.size() && name[i] >= '0' && name[i] <= '9'; ++i) value = value * 10 + static_cast<std::uint64_t>(name[i] - '0');
+        for (; i < name.size() && name[i] >= '0' && name[i] <= '9'; ++i)
+            value = value * 10 + static_cast<std::uint64_t>(name[i] - '0');
         out.push_back(value);
     }
     return out;
 }
 
 bool all_equal(const Render& render) {
-    const auto same = [](const std::vector<float>& p) { return std::all_of(p.begin(), p.end(), [&](float v) { return v == p[0]; }); };
+    const auto same = [](const std::vector<float>& p) {
+        return std::all_of(p.begin(), p.end(), [&](float v) { return v == p[0]; });
+    };
     return same(render.r) && same(render.g) && same(render.b);
 }
 
 }  // namespace
 
-void FirstPass::arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name) {
+void FirstPass::arm(
+    ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name) {
     for (const std::string& path : files) {
         watch_.check();
         const Render render = read_render(path, layer);
         fit(render);
         look(render);
-        RenderFile file{path, hash_of(render), render.layer, render.variance_channels, render.spp, render.seconds, numbers_in(path)};
+        RenderFile file{path, hash_of(render), render.layer, render.variance_channels, render.spp, render.seconds,
+            numbers_in(path)};
         known(file, name);
         to.film.add(render);
         to.files.push_back(std::move(file));
@@ -111,8 +118,9 @@ void FirstPass::fit(const Render& render) {
         all_.width = render.width, all_.height = render.height;
         all_.bad.assign(render.size(), false);
     } else if (render.width != all_.width || render.height != all_.height) {
-        throw InputError({render.file, 0, 0}, fmt::format("expected {} x {} pixels as in {}, found {} x {}", all_.width, all_.height,
-                                                          first_, render.width, render.height));
+        throw InputError({render.file, 0, 0},
+            fmt::format("expected {} x {} pixels as in {}, found {} x {}", all_.width, all_.height, first_,
+                render.width, render.height));
     }
 }
 
@@ -124,7 +132,8 @@ void FirstPass::look(const Render& render) {
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
     }
     const auto warn = [&](std::uint64_t count, const char* what) {
-        if (count) all_.warnings.push_back(fmt::format("{}: {} pixel{} {}", render.file, count, count == 1 ? "" : "s", what));
+        if (count)
+            all_.warnings.push_back(fmt::format("{}: {} pixel{} {}", render.file, count, count == 1 ? "" : "s", what));
     };
     warn(bad, "not finite: left out of every meter");
     warn(negative, "with a negative channel");
@@ -137,7 +146,8 @@ void FirstPass::known(const RenderFile& file, const std::string& arm) {
     if (fresh) return;
     const auto& [path, other] = before->second;
     if (other == arm)
-        throw InputError({file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
+        throw InputError(
+            {file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
     all_.warnings.push_back(fmt::format("{}: the same pixels as {} of {}", file.path, path, other));
 }
 

@@ -20,11 +20,10 @@ constexpr double pi = std::numbers::pi;
 // --- colour spaces: linear Rec.709 -> XYZ (IEC 61966-2-1) -> YyCxCz and CIELAB, white (1, 1, 1) ---------------------
 
 constexpr double to_xyz[3][3] = {{10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
-                                 {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
-                                 {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382}};
-constexpr double from_xyz[3][3] = {{3.241003275, -1.537398934, -0.498615861},
-                                   {-0.969224334, 1.875930071, 0.041554224},
-                                   {0.055639423, -0.204011202, 1.057148933}};
+    {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
+    {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382}};
+constexpr double from_xyz[3][3] = {{3.241003275, -1.537398934, -0.498615861}, {-0.969224334, 1.875930071, 0.041554224},
+    {0.055639423, -0.204011202, 1.057148933}};
 
 Triple times(const double (&m)[3][3], const Triple& v) {
     Triple out{};
@@ -65,13 +64,16 @@ Triple hunt_lab(const Triple& rgb) {
 /// HyAB: city block in lightness, Euclid in colour.
 double hyab(const Triple& a, const Triple& b) { return std::fabs(a[0] - b[0]) + math::hypot(a[1] - b[1], a[2] - b[2]); }
 
-// --- separable filters, edges repeated --------------------------------------------------------------------------------
+// --- separable filters, edges repeated
+// --------------------------------------------------------------------------------
 
 using Kernel = std::vector<double>;  // odd length
 
 struct Size {
     int w, h;
-    std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x); }
+    std::size_t at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+    }
 };
 
 Plane filtered(const Plane& in, Size size, const Kernel& across, const Kernel& down) {
@@ -83,7 +85,8 @@ Plane filtered(const Plane& in, Size size, const Kernel& across, const Kernel& d
                 double sum = 0;
                 for (int k = -radius; k <= radius; ++k)
                     sum += kernel[static_cast<std::size_t>(k + radius)] *
-                           static_cast<double>(from[size.at(std::clamp(x + k * dx, 0, size.w - 1), std::clamp(y + k * dy, 0, size.h - 1))]);
+                        static_cast<double>(from[size.at(
+                            std::clamp(x + k * dx, 0, size.w - 1), std::clamp(y + k * dy, 0, size.h - 1))]);
                 to[size.at(x, y)] = static_cast<float>(sum);
             }
     };
@@ -120,7 +123,8 @@ Plane blurred(const Plane& in, Size size, std::span<const Sensitivity> parts, do
     double total = 0;
     std::vector<Kernel> kernels;
     for (const Sensitivity& part : parts) {
-        kernels.push_back(kernel_of(radius, [&](double k) { return math::exp(-(pi * k / ppd) * (pi * k / ppd) / part.b); }));
+        kernels.push_back(
+            kernel_of(radius, [&](double k) { return math::exp(-(pi * k / ppd) * (pi * k / ppd) / part.b); }));
         total += part.a * std::sqrt(pi / part.b) * sum_of(kernels.back()) * sum_of(kernels.back());
     }
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -148,7 +152,8 @@ Plane feature(const Plane& lightness, Size size, double ppd, bool edge, bool acr
 Plane magnitude(const Plane& lightness, Size size, double ppd, bool edge) {
     Plane x = feature(lightness, size, ppd, edge, true);
     const Plane y = feature(lightness, size, ppd, edge, false);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(math::hypot(static_cast<double>(x[i]), static_cast<double>(y[i])));
+    for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = static_cast<float>(math::hypot(static_cast<double>(x[i]), static_cast<double>(y[i])));
     return x;
 }
 
@@ -167,9 +172,11 @@ Planes opponent(const FlipImage& image) {
 
 /// What the eye resolves of the picture, as Hunt-adjusted CIELAB.
 Planes perceived(const Planes& c, Size size, double ppd) {
-    Planes out{blurred(c[0], size, {&achromatic, 1}, ppd), blurred(c[1], size, {&red_green, 1}, ppd), blurred(c[2], size, blue_yellow, ppd)};
+    Planes out{blurred(c[0], size, {&achromatic, 1}, ppd), blurred(c[1], size, {&red_green, 1}, ppd),
+        blurred(c[2], size, blue_yellow, ppd)};
     for (std::size_t i = 0; i < out[0].size(); ++i) {
-        Triple rgb = rgb_of({static_cast<double>(out[0][i]), static_cast<double>(out[1][i]), static_cast<double>(out[2][i])});
+        Triple rgb =
+            rgb_of({static_cast<double>(out[0][i]), static_cast<double>(out[1][i]), static_cast<double>(out[2][i])});
         for (double& v : rgb) v = std::clamp(v, 0.0, 1.0);
         const Triple lab = hunt_lab(rgb);
         for (std::size_t k = 0; k < 3; ++k) out[k][i] = static_cast<float>(lab[k]);
@@ -177,7 +184,9 @@ Planes perceived(const Planes& c, Size size, double ppd) {
     return out;
 }
 
-Triple at(const Planes& p, std::size_t i) { return {static_cast<double>(p[0][i]), static_cast<double>(p[1][i]), static_cast<double>(p[2][i])}; }
+Triple at(const Planes& p, std::size_t i) {
+    return {static_cast<double>(p[0][i]), static_cast<double>(p[1][i]), static_cast<double>(p[2][i])};
+}
 
 /// Colour difference brought to [0, 1]: compressed, the largest differences most.
 double remapped(double difference) {
@@ -202,7 +211,8 @@ constexpr double aces[6] = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0, 0.6 * 0.6 * 2.43, 0
 float tone_mapped(float radiance, double exposure) {
     const double x = std::max(0.0, static_cast<double>(radiance)) * exposure;
     if (std::isinf(x)) return 1;
-    return static_cast<float>(std::clamp((aces[0] * x * x + aces[1] * x + aces[2]) / (aces[3] * x * x + aces[4] * x + aces[5]), 0.0, 1.0));
+    return static_cast<float>(
+        std::clamp((aces[0] * x * x + aces[1] * x + aces[2]) / (aces[3] * x * x + aces[4] * x + aces[5]), 0.0, 1.0));
 }
 
 Planes tone_mapped(const FlipImage& image, double exposure) {
@@ -236,7 +246,9 @@ std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, d
 FlipExposures flip_exposures(const FlipImage& reference) {
     std::vector<double> y;
     for (std::size_t i = 0; i < reference.r.size(); ++i) {
-        const double v = times(to_xyz, {static_cast<double>(reference.r[i]), static_cast<double>(reference.g[i]), static_cast<double>(reference.b[i])})[1];
+        const double v = times(to_xyz,
+            {static_cast<double>(reference.r[i]), static_cast<double>(reference.g[i]),
+                static_cast<double>(reference.b[i])})[1];
         if (std::isfinite(v)) y.push_back(std::max(0.0, v));
     }
     if (y.empty()) return {};
@@ -257,7 +269,8 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
     for (int k = 0; k < e.count; ++k) {
         const double exposure = math::exp2(e.start + k * (e.stop - e.start) / (e.count - 1));
         const Planes a = tone_mapped(reference, exposure), b = tone_mapped(test, exposure);
-        const std::vector<float> one = ldr_flip({reference.width, reference.height, a[0], a[1], a[2]}, {test.width, test.height, b[0], b[1], b[2]}, ppd);
+        const std::vector<float> one = ldr_flip(
+            {reference.width, reference.height, a[0], a[1], a[2]}, {test.width, test.height, b[0], b[1], b[2]}, ppd);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(out[i], one[i]);
     }
     return out;

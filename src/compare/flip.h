@@ -17,7 +17,8 @@ struct FlipImage {
 
 /// Channels in [0, 1] (clamped). `pixels_per_degree` of the viewer, 67 at an ordinary desk.
 std::vector<float> ldr_flip(const FlipImage& reference, const FlipImage& test, double pixels_per_degree);
-/// Radiance of any range: the largest LDR-FLIP over exposures that the reference's luminances ask for, tone-mapped by ACES.
+/// Radiance of any range: the largest LDR-FLIP over exposures that the reference's luminances ask for, tone-mapped by
+/// ACES.
 std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, double pixels_per_degree);
 
 /// The exposures that HDR-FLIP looks at: 2^start .. 2^stop in `count` equal steps.

@@ -14,9 +14,12 @@ std::vector<float> plane(int c, bool changed, double lift) {
     std::vector<float> out;
     for (int y = 0; y < 60; ++y)
         for (int x = 0; x < 90; ++x) {
-            const double base = c == 0 ? 0.5 + 0.4 * std::sin(x / 7.0) : c == 1 ? 0.3 + 0.3 * std::cos(y / 5.0) : (x / 9 + y / 7) % 2 * 0.8;
+            const double base = c == 0 ? 0.5 + 0.4 * std::sin(x / 7.0)
+                : c == 1               ? 0.3 + 0.3 * std::cos(y / 5.0)
+                                       : (x / 9 + y / 7) % 2 * 0.8;
             const double off = changed ? 0.2 * std::sin(1.7 * x + 2.3 * y + c) : 0;
-            out.push_back(static_cast<float>(std::clamp(base + off, 0.0, 1.0) * std::exp(lift * std::sin(x / 20.0 + y / 9.0))));
+            out.push_back(
+                static_cast<float>(std::clamp(base + off, 0.0, 1.0) * std::exp(lift * std::sin(x / 20.0 + y / 9.0))));
         }
     return out;
 }

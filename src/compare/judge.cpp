@@ -31,7 +31,8 @@ std::vector<std::optional<double>> flips(const ComparePlan& plan, const Readings
     watch.begin("FLIP", 1);
     const MeanFilm& ref = all.reference->film;
     const Render test = read_render(all.arms[a].files[0].path, plan.arms[a].layer);
-    const std::vector<float> map = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b}, {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
+    const std::vector<float> map = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
+        {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
     for (std::size_t r = 0; r < all.regions.size(); ++r) {
         double sum = 0;
         for (const std::uint32_t i : all.regions[r].pixels) sum += static_cast<double>(map[i]);
@@ -48,7 +49,8 @@ ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t 
     out.spp = told(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
     out.seconds = told(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
     const auto flip = flips(plan, all, a, watch);
-    for (std::size_t r = 0; r < all.regions.size(); ++r) out.regions.push_back(measure_region(all, arm, r, out.seconds, flip[r]));
+    for (std::size_t r = 0; r < all.regions.size(); ++r)
+        out.regions.push_back(measure_region(all, arm, r, out.seconds, flip[r]));
     return out;
 }
 
@@ -57,7 +59,8 @@ double value_of(const std::string& text, const CompareResult& result) {
     const auto check = parse_comparison(text + " == 0", why, compare_words());
     if (check->left.number) return *check->left.number;
     for (const ArmResult& arm : result.arms)
-        if (arm.name == check->left.subject) return arm.region(check->left.region).meter(check->left.word).value.value_or(std::nan(""));
+        if (arm.name == check->left.subject)
+            return arm.region(check->left.region).meter(check->left.word).value.value_or(std::nan(""));
     return std::nan("");
 }
 
@@ -65,7 +68,11 @@ AssertionResult asserted(const AssertionPlan& plan, const CompareResult& result)
     AssertionResult out;
     out.name = plan.name, out.op = plan.op, out.text = fmt::format("{} {} {}", plan.left, plan.op, plan.right);
     const double a = out.measured = value_of(plan.left, result), b = out.bound = value_of(plan.right, result);
-    out.pass = plan.op == "<" ? a < b : plan.op == "<=" ? a <= b : plan.op == ">" ? a > b : plan.op == ">=" ? a >= b : a == b;
+    out.pass = plan.op == "<" ? a < b
+        : plan.op == "<="     ? a <= b
+        : plan.op == ">"      ? a > b
+        : plan.op == ">="     ? a >= b
+                              : a == b;
     return out;
 }
 
@@ -74,8 +81,10 @@ std::string not_seen(const ComparePlan& plan, const BiasResult& bias) {
     for (const MeanTest& t : bias.regions) {
         if (!t.why.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.why);
         if (t.smallest > plan.smallest)
-            return fmt::format("{} and {} in {}: a difference of {:.2g} % would have been seen, {:.2g} % was asked; more renders would tell", bias.a, bias.b,
-                               t.region, 100 * t.smallest, 100 * plan.smallest);
+            return fmt::format(
+                "{} and {} in {}: a difference of {:.2g} % would have been seen, {:.2g} % was asked; more renders "
+                "would tell",
+                bias.a, bias.b, t.region, 100 * t.smallest, 100 * plan.smallest);
     }
     return "";
 }
@@ -101,14 +110,16 @@ CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch) 
     out.warnings = all.warnings;
     const std::size_t arms = all.arms.size();
     for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, all, a, watch));
-    for (std::size_t r = 0; r < all.regions.size() && all.reference; ++r) out.reference_error[all.regions[r].name] = reference_error(all, r);
+    for (std::size_t r = 0; r < all.regions.size() && all.reference; ++r)
+        out.reference_error[all.regions[r].name] = reference_error(all, r);
     const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
     const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
     for (std::size_t a = 0; a < arms; ++a) {
         if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, alpha));
         for (std::size_t b = 0; b < a; ++b) {
             out.bias.push_back(judge_bias(plan, all, out, a, b, alpha));
-            if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1) out.noise.push_back(judge_noise(plan, all, a, b, alpha));
+            if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1)
+                out.noise.push_back(judge_noise(plan, all, a, b, alpha));
         }
     }
     for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, out));

@@ -7,14 +7,15 @@
 namespace crescent {
 
 /// Every meter of one arm in one region. `flip`: the mean over the region's pixels, where there is a reference.
-RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::size_t region, const std::optional<double>& seconds,
-                            const std::optional<double>& flip);
+RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::size_t region,
+    const std::optional<double>& seconds, const std::optional<double>& flip);
 
 /// Root mean square standard error of the reference's Y over a region; NaN where nothing tells it.
 double reference_error(const Readings& all, std::size_t region);
 
 /// Whether two arms (b = arms.size(): the reference) have the same expectation; `alpha` is shared by all its tests.
-BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a, std::size_t b, double alpha);
+BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
+    std::size_t b, double alpha);
 
 /// Where the variance of arm a differs from that of b.
 NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_t a, std::size_t b, double alpha);

@@ -102,7 +102,8 @@ void tail_of(const ArmReadings& arm, std::size_t region, RegionResult& out) {
     double sum = 0;
     for (const auto& render : arm.regions) sum += render[region].mse > 0 ? render[region].mse : render[region].spread;
     sum *= static_cast<double>(out.pixels);
-    if (sum > 0 && !arm.largest[region].empty()) out.largest_share = static_cast<double>(arm.largest[region].front()) / sum;
+    if (sum > 0 && !arm.largest[region].empty())
+        out.largest_share = static_cast<double>(arm.largest[region].front()) / sum;
 }
 
 }  // namespace
@@ -117,7 +118,8 @@ const MeterValue& RegionResult::meter(const std::string& name) const {
 bool RegionResult::heavy() const { return (tail && tail->k - 2 * tail->se >= 0.5) || largest_share > heavy_share; }
 
 const RegionResult& ArmResult::region(const std::string& wanted) const {
-    const auto it = std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == wanted; });
+    const auto it =
+        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == wanted; });
     ensure(it != regions.end(), "a region that was measured");
     return *it;
 }
@@ -126,7 +128,8 @@ double reference_error(const Readings& all, std::size_t region) {
     return all.reference ? std::sqrt(reference_variance(*all.reference, all.regions[region])) : std::nan("");
 }
 
-RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::size_t region, const std::optional<double>& seconds, const std::optional<double>& flip) {
+RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::size_t region,
+    const std::optional<double>& seconds, const std::optional<double>& flip) {
     const PixelSet& set = all.regions[region];
     RegionResult out;
     out.region = set.name, out.pixels = set.pixels.size();
@@ -135,16 +138,19 @@ RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::si
     const auto root = [](double v) { return std::sqrt(v); };
     const auto same = [](double v) { return v; };
     const auto against = [&](const char* name, auto read, auto transform) {
-        out.meters.emplace_back(name, referred ? mean_of(over_renders(arm, region, read), heavy, transform) : missing("no reference"));
+        out.meters.emplace_back(
+            name, referred ? mean_of(over_renders(arm, region, read), heavy, transform) : missing("no reference"));
     };
     against("rmse", [](const RegionReading& r) { return r.mse; }, root);
     const MeterValue var = variance(arm, set, region, heavy);
     out.meters.emplace_back("var", var);
-    out.meters.emplace_back("bias2", referred ? squared_bias(arm, region, reference_variance(*all.reference, set), heavy) : missing("no reference"));
+    out.meters.emplace_back("bias2",
+        referred ? squared_bias(arm, region, reference_variance(*all.reference, set), heavy) : missing("no reference"));
     against("relmse", [](const RegionReading& r) { return r.relmse; }, same);
     against("mape", [](const RegionReading& r) { return r.mape; }, same);
     against("fireflies", [](const RegionReading& r) { return r.fireflies; }, same);
-    out.meters.emplace_back("y_mean", plain_mean(over_renders(arm, region, [](const RegionReading& r) { return r.y; })));
+    out.meters.emplace_back(
+        "y_mean", plain_mean(over_renders(arm, region, [](const RegionReading& r) { return r.y; })));
     out.meters.emplace_back("flip", flip ? MeterValue{*flip, {}, "of the first render"} : missing("no reference"));
     out.meters.emplace_back("efficiency", efficiency(var, seconds));
     out.power = arm.power[region];

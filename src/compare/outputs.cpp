@@ -28,14 +28,17 @@ Json measured_json(const MeterValue& m) {
 Json region_json(const RegionResult& r) {
     Json out = {{"pixels", r.pixels}};
     for (const auto& [name, value] : r.meters) out["meters"][name] = measured_json(value);
-    out["tail"] = r.tail ? Json{{"k", number(r.tail->k)}, {"se", number(r.tail->se)}, {"exceedances", r.tail->exceedances}} : Json(nullptr);
+    out["tail"] = r.tail
+        ? Json{{"k", number(r.tail->k)}, {"se", number(r.tail->se)}, {"exceedances", r.tail->exceedances}}
+        : Json(nullptr);
     out["largest_share"] = number(r.largest_share);
     out["spectrum"] = {{"power", numbers(r.power)}, {"noise", to_string(r.colour)}};
     return out;
 }
 
 Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vector<PixelSet>& sets, bool referred) {
-    Json out = {{"arm", arm.name}, {"renders", arm.renders}, {"spp", optional(arm.spp)}, {"seconds", optional(arm.seconds)}};
+    Json out = {
+        {"arm", arm.name}, {"renders", arm.renders}, {"spp", optional(arm.spp)}, {"seconds", optional(arm.seconds)}};
     for (const RegionResult& r : arm.regions) out["regions"][r.region] = region_json(r);
     for (std::size_t k = 0; k < readings.files.size(); ++k) {
         const RenderFile& f = readings.files[k];
@@ -44,7 +47,9 @@ Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vect
         for (std::size_t r = 0; r < sets.size(); ++r) {
             const RegionReading& read = readings.regions[k][r];
             Json& at = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
-            if (referred) at["rmse"] = number(std::sqrt(read.mse)), at["relmse"] = number(read.relmse), at["mape"] = number(read.mape), at["fireflies"] = read.fireflies;
+            if (referred)
+                at["rmse"] = number(std::sqrt(read.mse)), at["relmse"] = number(read.relmse),
+                at["mape"] = number(read.mape), at["fireflies"] = read.fireflies;
         }
         out["files"].push_back(std::move(file));
     }
@@ -52,13 +57,17 @@ Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vect
 }
 
 Json bias_json(const BiasResult& b) {
-    Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"paired", b.paired}, {"say", b.sentence}, {"regions", Json::object()}};
+    Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"paired", b.paired}, {"say", b.sentence},
+        {"regions", Json::object()}};
     for (const MeanTest& t : b.regions) {
         Json& at = out["regions"][t.region] = {{"a", number(t.a)}, {"b", number(t.b)}, {"differs", t.differs}};
-        if (t.why.empty()) at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df), at["smallest"] = number(t.smallest);
+        if (t.why.empty())
+            at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
+            at["smallest"] = number(t.smallest);
         else at["why"] = t.why;
     }
-    out["tiles"] = {{"tested", b.tiles_tested}, {"left_out", b.tiles_left_out}, {"different", b.tiles_different}, {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"}};
+    out["tiles"] = {{"tested", b.tiles_tested}, {"left_out", b.tiles_left_out}, {"different", b.tiles_different},
+        {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"}};
     out["pixel_p"] = b.pixel_p;
     return out;
 }
@@ -71,30 +80,39 @@ Json noise_json(const NoiseResult& n, const std::vector<PixelSet>&) {
 }
 
 const char* word_of(CompareResult::State state) {
-    return state == CompareResult::State::holds ? "holds" : state == CompareResult::State::fails ? "fails" : "inconclusive";
+    return state == CompareResult::State::holds ? "holds"
+        : state == CompareResult::State::fails  ? "fails"
+                                                : "inconclusive";
 }
 
 }  // namespace
 
-std::string compare_json(const ComparePlan& plan, const Readings& all, const CompareResult& result, const Provenance& p) {
-    Json out = {{"format", "crescent comparison 1"}, {"title", plan.title}, {"width", all.width}, {"height", all.height},
-                {"state", word_of(result.state)}, {"say", result.say}, {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
-    for (std::size_t a = 0; a < result.arms.size(); ++a) out["arms"].push_back(arm_json(result.arms[a], all.arms[a], all.regions, all.reference.has_value()));
+std::string compare_json(
+    const ComparePlan& plan, const Readings& all, const CompareResult& result, const Provenance& p) {
+    Json out = {{"format", "crescent comparison 1"}, {"title", plan.title}, {"width", all.width},
+        {"height", all.height}, {"state", word_of(result.state)}, {"say", result.say}, {"alpha", number(plan.alpha)},
+        {"trim", number(plan.trim)}};
+    for (std::size_t a = 0; a < result.arms.size(); ++a)
+        out["arms"].push_back(arm_json(result.arms[a], all.arms[a], all.regions, all.reference.has_value()));
     out["reference"] = nullptr;
     if (all.reference) {
         Json reference = {{"files", Json::array()}, {"standard_error", Json::object()}};
-        for (const RenderFile& f : all.reference->files) reference["files"].push_back({{"file", f.path}, {"hash", f.hash}});
-        for (const auto& [region, error] : result.reference_error) reference["standard_error"][region] = std::isnan(error) ? Json(nullptr) : number(error);
+        for (const RenderFile& f : all.reference->files)
+            reference["files"].push_back({{"file", f.path}, {"hash", f.hash}});
+        for (const auto& [region, error] : result.reference_error)
+            reference["standard_error"][region] = std::isnan(error) ? Json(nullptr) : number(error);
         out["reference"] = std::move(reference);
     }
     out["bias"] = out["noise"] = out["assertions"] = Json::array();
     for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b));
     for (const NoiseResult& n : result.noise) out["noise"].push_back(noise_json(n, all.regions));
     for (const AssertionResult& a : result.assertions)
-        out["assertions"].push_back({{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)}, {"bound", number(a.bound)}, {"op", a.op}, {"text", a.text}});
+        out["assertions"].push_back({{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)},
+            {"bound", number(a.bound)}, {"op", a.op}, {"text", a.text}});
     out["bad_pixels"] = all.bad_pixels;
     out["warnings"] = result.warnings;
-    out["provenance"] = {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"command", p.command}};
+    out["provenance"] = {
+        {"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"command", p.command}};
     return text(out);
 }
 
@@ -103,8 +121,9 @@ std::string compare_csv(const CompareResult& result) {
     for (const ArmResult& arm : result.arms)
         for (const RegionResult& r : arm.regions)
             for (const auto& [name, m] : r.meters)
-                out += fmt::format("{},{},{},{},{},{},{},{}\r\n", csv_field(arm.name), arm.renders, csv_field(r.region), name, m.value ? shortest(*m.value) : "",
-                                   m.interval ? shortest(m.interval->first) : "", m.interval ? shortest(m.interval->second) : "", csv_field(m.why));
+                out += fmt::format("{},{},{},{},{},{},{},{}\r\n", csv_field(arm.name), arm.renders, csv_field(r.region),
+                    name, m.value ? shortest(*m.value) : "", m.interval ? shortest(m.interval->first) : "",
+                    m.interval ? shortest(m.interval->second) : "", csv_field(m.why));
     return out;
 }
 
@@ -114,32 +133,48 @@ std::string compare_junit(const ComparePlan& plan, const CompareResult& result) 
     };
     std::vector<Case> cases;
     for (const AssertionResult& a : result.assertions)
-        cases.push_back({a.name, a.pass ? "" : fmt::format("{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound))});
-    if (plan.expect == Expectation::same) cases.push_back({"the arms are the same", result.state == CompareResult::State::holds ? "" : result.say});
+        cases.push_back({a.name,
+            a.pass ? ""
+                   : fmt::format(
+                         "{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound))});
+    if (plan.expect == Expectation::same)
+        cases.push_back({"the arms are the same", result.state == CompareResult::State::holds ? "" : result.say});
     const auto failed = std::count_if(cases.begin(), cases.end(), [](const Case& c) { return !c.failure.empty(); });
     const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\"", cases.size(), failed);
-    std::string out = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent\" {0}>\n  <testsuite name=\"{1}\" {0} skipped=\"0\">\n", counts, escape(plan.title));
+    std::string out = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent\" {0}>\n  <testsuite name=\"{1}\" {0} "
+        "skipped=\"0\">\n",
+        counts, escape(plan.title));
     for (const Case& c : cases) {
-        const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escape(plan.file), escape(c.name));
-        out += c.failure.empty() ? head + " />\n" : fmt::format("{}>\n      <failure type=\"assertion\" message=\"{}\" />\n    </testcase>\n", head, escape(c.failure));
+        const std::string head =
+            fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escape(plan.file), escape(c.name));
+        out += c.failure.empty()
+            ? head + " />\n"
+            : fmt::format("{}>\n      <failure type=\"assertion\" message=\"{}\" />\n    </testcase>\n", head,
+                  escape(c.failure));
     }
     return out + "  </testsuite>\n</testsuites>\n";
 }
 
-std::string compare_summary(const ComparePlan& plan, const Readings& all, const CompareResult& result, const std::string& out_dir) {
+std::string compare_summary(
+    const ComparePlan& plan, const Readings& all, const CompareResult& result, const std::string& out_dir) {
     std::string out = plan.title + "\n";
     for (const std::string& w : result.warnings) out += "warning: " + w + "\n";
     if (!result.say.empty()) out += result.say + "\n";
     else if (!result.assertions.empty()) out += fmt::format("All {} assertions hold.\n", result.assertions.size());
     for (const PixelSet& set : all.regions) {
-        out += fmt::format("\n{} ({} pixels)\n  {} {} {} {} {}\n", set.name, set.pixels.size(), left("arm", 18), right("renders", 8), right("RMSE", 24), right("variance", 12), right("mean Y", 12));
+        out += fmt::format("\n{} ({} pixels)\n  {} {} {} {} {}\n", set.name, set.pixels.size(), left("arm", 18),
+            right("renders", 8), right("RMSE", 24), right("variance", 12), right("mean Y", 12));
         for (const ArmResult& arm : result.arms) {
             const RegionResult& r = arm.region(set.name);
             const MeterValue &rmse = r.meter("rmse"), &var = r.meter("var"), &y = r.meter("y_mean");
             std::string spread = rmse.value ? figures(*rmse.value) : "-";
-            if (rmse.interval) spread += fmt::format(" ({}..{})", figures(rmse.interval->first, 3), figures(rmse.interval->second, 3));
+            if (rmse.interval)
+                spread += fmt::format(" ({}..{})", figures(rmse.interval->first, 3), figures(rmse.interval->second, 3));
             else if (rmse.value && rmse.why == "heavy tail") spread += " (heavy tail)";
-            out += fmt::format("  {} {} {} {} {}\n", left(arm.name, 18), right(std::to_string(arm.renders), 8), right(spread, 24), right(var.value ? figures(*var.value) : "-", 12), right(y.value ? figures(*y.value) : "-", 12));
+            out += fmt::format("  {} {} {} {} {}\n", left(arm.name, 18), right(std::to_string(arm.renders), 8),
+                right(spread, 24), right(var.value ? figures(*var.value) : "-", 12),
+                right(y.value ? figures(*y.value) : "-", 12));
         }
     }
     out += "\n";

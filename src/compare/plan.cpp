@@ -1,5 +1,5 @@
-// A compare file, flags, or both -> ComparePlan. Flags are put into the file's tree before it is read, so that they meet
-// the same checks as the file.
+// A compare file, flags, or both -> ComparePlan. Flags are put into the file's tree before it is read, so that they
+// meet the same checks as the file.
 #include "compare/plan.h"
 
 #include <fmt/format.h>
@@ -37,8 +37,7 @@ Node value_of(const CompareFlag& flag, const Place& at) {
             move_to(tree.members[0].value, at);
             return std::move(tree.members[0].value);
         }
-    } catch (const InputError&) {
-    }
+    } catch (const InputError&) {}
     return text_node(flag.value, at);
 }
 
@@ -77,7 +76,8 @@ void check_names(Draft& draft, const ComparePlan& plan) {
         regions.push_back(m.name);
     }
     for (const Region& r : plan.regions)
-        if (r.name == whole_frame) draft.complain("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
+        if (r.name == whole_frame)
+            draft.complain("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
     for (const RenderArm& a : plan.arms) arms.push_back(a.name);
     for (const AssertionPlan& a : plan.assertions) {
         std::string why;
@@ -89,9 +89,13 @@ void check_names(Draft& draft, const ComparePlan& plan) {
         for (const ParsedQuantity* q : {&check->left, &check->right}) {
             if (q->number) continue;
             if (!std::count(arms.begin(), arms.end(), q->subject))
-                draft.complain(a.name, a.at, fmt::format("{}: no arm '{}': expected one of {}{}", a.left, q->subject, listed(arms, ", "), hint(q->subject, arms)));
+                draft.complain(a.name, a.at,
+                    fmt::format("{}: no arm '{}': expected one of {}{}", a.left, q->subject, listed(arms, ", "),
+                        hint(q->subject, arms)));
             if (!std::count(regions.begin(), regions.end(), q->region))
-                draft.complain(a.name, a.at, fmt::format("{}: no region '{}': expected one of {}{}", a.left, q->region, listed(regions, ", "), hint(q->region, regions)));
+                draft.complain(a.name, a.at,
+                    fmt::format("{}: no region '{}': expected one of {}{}", a.left, q->region, listed(regions, ", "),
+                        hint(q->region, regions)));
         }
     }
     if (plan.expect == Expectation::same && plan.arms.size() < 2 && plan.reference.empty())

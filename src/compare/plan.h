@@ -39,23 +39,22 @@ struct ComparePlan {
     std::vector<Region> regions;
     std::vector<MaskPlan> masks;
     std::vector<AssertionPlan> assertions;
-    bool pair = false;        // renders of two arms with the same number in their names share their random numbers
-    double exposure = 1;      // of photographs
-    double alpha = 0.01;      // chance that a call says "a difference" where there is none
-    double firefly_k = 4;     // a firefly: |Y - Y_ref| > k Y_ref
-    double trim = 0;          // share of pixels left out of relMSE and MAPE, the largest first
+    bool pair = false;     // renders of two arms with the same number in their names share their random numbers
+    double exposure = 1;   // of photographs
+    double alpha = 0.01;   // chance that a call says "a difference" where there is none
+    double firefly_k = 4;  // a firefly: |Y - Y_ref| > k Y_ref
+    double trim = 0;       // share of pixels left out of relMSE and MAPE, the largest first
     double pixels_per_degree = 67.0206;  // of the viewer, for FLIP: 0.7 m from a 0.7 m wide display of 3840 pixels
     Expectation expect = Expectation::nothing;
-    double smallest = 0.01;   // with expect = "same": the relative difference of Y that must have been seen
+    double smallest = 0.01;  // with expect = "same": the relative difference of Y that must have been seen
 };
-
 
 /// A flag of the command line: the key it stands for, its value, and the words it was typed as.
 struct CompareFlag {
     std::vector<std::string> path;  // {"arms", "a", "files"}
     std::string value;              // text, or TOML where `toml` is set
     bool toml = false;
-    std::string typed;              // "--arm a=*.exr"
+    std::string typed;  // "--arm a=*.exr"
 };
 /// Reads a compare file (none: ""), with flags over it; every mistake with its place in one InputError.
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file = {});

@@ -52,10 +52,11 @@ std::string joined(const std::string& part, const std::string& layer) {
 
 /// What an instrument or a mask wrote, by its name: no radiance.
 bool is_data(const std::string& layer) {
-    static constexpr const char* words[] = {"crypto", "normal", "depth", "position", "variance", "motion", "vector", "uv", "albedo",
-                                            "error",  "second_moment", "largest", "horizon", "hits", "stddev", "samplecount", "denois"};
+    static constexpr const char* words[] = {"crypto", "normal", "depth", "position", "variance", "motion", "vector",
+        "uv", "albedo", "error", "second_moment", "largest", "horizon", "hits", "stddev", "samplecount", "denois"};
     const std::string name = lower(layer);
-    return std::any_of(std::begin(words), std::end(words), [&](const char* word) { return name.find(word) != std::string::npos; });
+    return std::any_of(
+        std::begin(words), std::end(words), [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
 using Channels = std::map<std::string, std::map<std::string, std::string>>;  // layer -> colour -> channel
@@ -89,14 +90,16 @@ std::vector<Layer> layers_of(Imf::MultiPartInputFile& file) {
 
 std::string names_of(const std::vector<Layer>& layers) {
     std::string out;
-    for (const Layer& layer : layers) out += (out.empty() ? "" : ", ") + (layer.name.empty() ? "(R, G, B)" : "'" + layer.name + "'");
+    for (const Layer& layer : layers)
+        out += (out.empty() ? "" : ", ") + (layer.name.empty() ? "(R, G, B)" : "'" + layer.name + "'");
     return out;
 }
 
 /// The beauty, by the names that renderers give it, the most certain first.
 const Layer* beauty(const std::vector<Layer>& layers) {
     if (layers.size() == 1) return &layers[0];
-    static constexpr const char* usual[] = {"", "rgba", "rgb", "beauty", "combined", "color", "colour", "default", "composite"};
+    static constexpr const char* usual[] = {
+        "", "rgba", "rgb", "beauty", "combined", "color", "colour", "default", "composite"};
     for (const char* word : usual) {
         std::vector<const Layer*> found;
         for (const Layer& layer : layers) {
@@ -121,8 +124,9 @@ const Layer& chosen(const std::string& path, const std::vector<Layer>& layers, c
     std::vector<std::string> names;
     for (const Layer& layer : layers) names.push_back(layer.name);
     const std::string near = nearest(wanted, names);
-    throw InputError({path, 0, 0}, fmt::format("no layer '{}': expected one of {}{}", wanted, names_of(layers),
-                                               near.empty() ? "" : "; did you mean '" + near + "'?"));
+    throw InputError({path, 0, 0},
+        fmt::format("no layer '{}': expected one of {}{}", wanted, names_of(layers),
+            near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 /// Planes of the display window, read bottom-up out of the part's data window.
@@ -136,7 +140,8 @@ public:
     /// Asks for a channel; it is there after read().
     void want(const std::string& channel, std::vector<float>& to) {
         const auto& d = header_.dataWindow();
-        const auto w = static_cast<std::size_t>(d.max.x - d.min.x + 1), h = static_cast<std::size_t>(d.max.y - d.min.y + 1);
+        const auto w = static_cast<std::size_t>(d.max.x - d.min.x + 1),
+                   h = static_cast<std::size_t>(d.max.y - d.min.y + 1);
         data_.push_back({&to, std::vector<float>(w * h)});
         char* base = reinterpret_cast<char*>(data_.back().second.data());
         const auto row = static_cast<std::ptrdiff_t>(4 * w);
@@ -162,7 +167,8 @@ private:
                 const int x = display.min.x + i;
                 if (x < data.min.x || x > data.max.x) continue;
                 to[static_cast<std::size_t>(j) * static_cast<std::size_t>(w) + static_cast<std::size_t>(i)] =
-                    from[static_cast<std::size_t>(y - data.min.y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x - data.min.x)];
+                    from[static_cast<std::size_t>(y - data.min.y) * static_cast<std::size_t>(stride) +
+                        static_cast<std::size_t>(x - data.min.x)];
             }
         }
     }
@@ -243,7 +249,8 @@ void add_variance(Render& out, const std::vector<std::vector<float>>& planes, bo
 Render read_layer(Imf::MultiPartInputFile& file, const std::string& path, const Layer& layer) {
     Planes planes(file, layer.part);
     const Imf::Header& header = file.header(layer.part);
-    if (planes.width() > 65536 || planes.height() > 65536) throw InputError({path, 0, 0}, "expected at most 65536 pixels a side");
+    if (planes.width() > 65536 || planes.height() > 65536)
+        throw InputError({path, 0, 0}, "expected at most 65536 pixels a side");
     Render out(path, planes.width(), planes.height());
     out.layer = layer.name;
     std::vector<float>* colours[] = {&out.r, &out.g, &out.b};
@@ -268,9 +275,7 @@ Render read_exr(const std::string& path, const std::string& layer) {
     try {
         Imf::MultiPartInputFile file(path.c_str());
         return read_layer(file, path, chosen(path, layers_of(file), layer));
-    } catch (const InputError&) {
-        throw;
-    } catch (const std::exception& error) {
+    } catch (const InputError&) { throw; } catch (const std::exception& error) {
         throw InputError({path, 0, 0}, std::string("expected an OpenEXR file that can be read: ") + error.what());
     }
 }

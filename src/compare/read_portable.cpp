@@ -1,4 +1,5 @@
-// PFM (Debevec), Radiance HDR (Ward 1991, "Real Pixels"; RGBE, run-length encoded scanlines) and NPY (NumPy format 1-3).
+// PFM (Debevec), Radiance HDR (Ward 1991, "Real Pixels"; RGBE, run-length encoded scanlines) and NPY (NumPy format
+// 1-3).
 #include <fmt/format.h>
 
 #include <bit>
@@ -31,7 +32,8 @@ public:
         return all.substr(0, end);
     }
     std::span<const char> take(std::size_t count) {
-        if (rest_.size() < count) fail(fmt::format("the file is cut off: expected {} more bytes, found {}", count, rest_.size()));
+        if (rest_.size() < count)
+            fail(fmt::format("the file is cut off: expected {} more bytes, found {}", count, rest_.size()));
         const auto taken = rest_.first(count);
         rest_ = rest_.subspan(count);
         return taken;
@@ -145,7 +147,8 @@ Render read_radiance_hdr(const std::string& path, std::span<const char> bytes) {
     }
     const std::vector<std::string_view> size = words_of(in.line());
     int w = 0, h = 0;
-    const bool known = size.size() == 4 && (size[0] == "-Y" || size[0] == "+Y") && size[2] == "+X" && parse(size[1], h) && parse(size[3], w);
+    const bool known = size.size() == 4 && (size[0] == "-Y" || size[0] == "+Y") && size[2] == "+X" &&
+        parse(size[1], h) && parse(size[3], w);
     if (!known) in.fail("expected a resolution such as '-Y 540 +X 960'");
     in.check_size(w, h);
     Render out(path, w, h);
@@ -186,14 +189,16 @@ std::string_view value_of(const Reader& in, std::string_view header, std::string
 NpyHeader npy_header(const Reader& in, std::string_view text) {
     NpyHeader out;
     const std::string_view type = value_of(in, text, "descr");
-    if (type.size() < 5 || type[0] != '\'' || type[2] != 'f' || !(type[3] == '2' || type[3] == '4' || type[3] == '8') || type[4] != '\'')
+    if (type.size() < 5 || type[0] != '\'' || type[2] != 'f' || !(type[3] == '2' || type[3] == '4' || type[3] == '8') ||
+        type[4] != '\'')
         in.fail("expected floats ('<f2', '<f4' or '<f8') in the NPY header");
     out.kind = 'f', out.bytes = type[3] - '0';
     out.swap = (type[1] == '>') == (std::endian::native == std::endian::little);
     out.fortran = value_of(in, text, "fortran_order").starts_with("True");
     std::string_view shape = value_of(in, text, "shape");
     const std::size_t end = shape.find(')');
-    if (!shape.starts_with('(') || end == std::string_view::npos) in.fail("expected a shape such as (540, 960, 3) in the NPY header");
+    if (!shape.starts_with('(') || end == std::string_view::npos)
+        in.fail("expected a shape such as (540, 960, 3) in the NPY header");
     std::string numbers(shape.substr(1, end - 1));
     for (char& c : numbers) c = c == ',' ? ' ' : c;
     for (const std::string_view word : words_of(numbers)) {

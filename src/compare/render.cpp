@@ -22,8 +22,8 @@ struct Magic {
     const char* name;
 };
 /// Pictures made to be looked at: 8 bits, tone-mapped, gamma-encoded.
-constexpr Magic pictures[] = {{"\x89PNG", "PNG"}, {"\xff\xd8\xff", "JPEG"}, {"GIF8", "GIF"},  {"BM", "BMP"},
-                              {"RIFF", "WebP"},   {"II*", "TIFF"},          {"MM", "TIFF"},   {"P6", "PPM"}};
+constexpr Magic pictures[] = {{"\x89PNG", "PNG"}, {"\xff\xd8\xff", "JPEG"}, {"GIF8", "GIF"}, {"BM", "BMP"},
+    {"RIFF", "WebP"}, {"II*", "TIFF"}, {"MM", "TIFF"}, {"P6", "PPM"}};
 
 /// The whole file. Uncompressed formats alone come through here: their size is that of the image.
 std::vector<char> bytes_of(const std::string& path) {
@@ -41,12 +41,13 @@ std::vector<char> bytes_of(const std::string& path) {
 
 std::string first_bytes(const std::string& path) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) throw InputError({path, 0, 0}, "expected a render, found a folder");
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError({path, 0, 0}, "expected a render, found a folder");
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file)
-        throw InputError({path, 0, 0},
-                         std::string("expected a render that can be read: ") + std::strerror(errno ? errno : ENOENT));
+        throw InputError(
+            {path, 0, 0}, std::string("expected a render that can be read: ") + std::strerror(errno ? errno : ENOENT));
     std::array<char, 16> head{};
     file.read(head.data(), head.size());
     return {head.data(), static_cast<std::size_t>(file.gcount())};
@@ -73,9 +74,9 @@ Render read_render(const std::string& path, const std::string& layer) {
     for (const Magic& picture : pictures)
         if (head.starts_with(picture.bytes))
             throw InputError({path, 0, 0},
-                             fmt::format("expected linear radiance (OpenEXR, PFM, Radiance HDR or NPY), found a {}: a picture "
-                                         "has been through a tone map, and no radiance can be read off it",
-                                         picture.name));
+                fmt::format("expected linear radiance (OpenEXR, PFM, Radiance HDR or NPY), found a {}: a picture "
+                            "has been through a tone map, and no radiance can be read off it",
+                    picture.name));
     throw InputError({path, 0, 0}, "expected OpenEXR, PFM, Radiance HDR or NPY, found something else");
 }
 

@@ -11,7 +11,7 @@ namespace crescent {
 
 struct Render {
     std::string file;
-    std::string layer;              // which part and layer of the file was read; "" where there is one alone
+    std::string layer;  // which part and layer of the file was read; "" where there is one alone
     int width = 0, height = 0;
     std::vector<float> r, g, b;     // radiance
     std::vector<float> variance;    // of Y of this render, where the renderer wrote it; empty elsewhere
@@ -25,9 +25,9 @@ struct Render {
     float y(std::size_t i) const;
 };
 
-/// Reads a render. `layer` names a part or layer where the file holds several ("" takes the beauty, by its usual names).
-/// Throws InputError, with the file's name, where it cannot be read, holds no radiance, or is a picture that was made to
-/// be looked at (PNG, JPEG, ...): those have been through a tone map, and no radiance can be read off them.
+/// Reads a render. `layer` names a part or layer where the file holds several ("" takes the beauty, by its usual
+/// names). Throws InputError, with the file's name, where it cannot be read, holds no radiance, or is a picture that
+/// was made to be looked at (PNG, JPEG, ...): those have been through a tone map, and no radiance can be read off them.
 Render read_render(const std::string& path, const std::string& layer = {});
 
 // The formats, by their first bytes; read_render chooses.

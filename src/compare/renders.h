@@ -55,7 +55,7 @@ struct ArmReadings {
     std::vector<std::vector<RegionReading>> regions;  // [render][region]
     std::vector<std::vector<TileReading>> tiles;      // [render][tile]
     std::vector<std::vector<float>> largest;          // [region]: the largest squared errors of all renders, falling
-    std::vector<std::vector<double>> power;           // [region][frequency]: error spectrum, see spectrum.h; empty: none
+    std::vector<std::vector<double>> power;  // [region][frequency]: error spectrum, see spectrum.h; empty: none
 };
 
 /// Square tiles, the last of a row or column cut off; about 512 of them, 8 pixels a side at least.
@@ -64,7 +64,10 @@ struct Tiles {
     Tiles() = default;
     Tiles(int width, int height);
     std::size_t count() const { return static_cast<std::size_t>(across) * static_cast<std::size_t>(down); }
-    std::size_t of(int i, int j) const { return static_cast<std::size_t>(j / size) * static_cast<std::size_t>(across) + static_cast<std::size_t>(i / size); }
+    std::size_t of(int i, int j) const {
+        return static_cast<std::size_t>(j / size) * static_cast<std::size_t>(across) +
+            static_cast<std::size_t>(i / size);
+    }
 };
 
 struct Readings {
@@ -73,7 +76,7 @@ struct Readings {
     std::vector<PixelSet> regions;  // those of the plan, masks, then the whole frame
     std::vector<ArmReadings> arms;  // as in the plan
     std::optional<ArmReadings> reference;
-    std::vector<bool> bad;          // pixels that are not finite in some render: left out everywhere
+    std::vector<bool> bad;  // pixels that are not finite in some render: left out everywhere
     std::uint64_t bad_pixels = 0;
     std::vector<std::string> warnings;
 };

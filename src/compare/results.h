@@ -26,10 +26,11 @@ struct MeterValue {
 struct RegionResult {
     std::string region;
     std::uint64_t pixels = 0;
-    std::vector<std::pair<std::string, MeterValue>> meters;  // rmse, var, bias2, relmse, mape, fireflies, y_mean, flip, efficiency
-    std::optional<Tail> tail;        // of the squared errors of all pixels and renders
-    double largest_share = 0;        // of the largest squared error in their sum
-    std::vector<double> power;       // error spectrum, see spectrum.h
+    std::vector<std::pair<std::string, MeterValue>>
+        meters;                 // rmse, var, bias2, relmse, mape, fireflies, y_mean, flip, efficiency
+    std::optional<Tail> tail;   // of the squared errors of all pixels and renders
+    double largest_share = 0;   // of the largest squared error in their sum
+    std::vector<double> power;  // error spectrum, see spectrum.h
     NoiseColour colour = NoiseColour::unknown;
     const MeterValue& meter(const std::string& name) const;
     /// The tail is too heavy for an interval of a mean of squares to mean anything.
@@ -47,24 +48,24 @@ struct ArmResult {
 /// One test of equal means.
 struct MeanTest {
     std::string region;
-    double a = 0, b = 0;          // mean Y
+    double a = 0, b = 0;  // mean Y
     Welch welch;
     bool differs = false;
-    double smallest = 0;          // the relative difference that would have been seen nine times out of ten
-    std::string why;              // why it was not tested; "" where it was
+    double smallest = 0;  // the relative difference that would have been seen nine times out of ten
+    std::string why;      // why it was not tested; "" where it was
 };
 
 /// Two arms, or an arm and the reference: are their expectations the same?
 struct BiasResult {
     std::string a, b;
     bool paired = false;
-    bool dependent = false;         // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
+    bool dependent = false;  // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
     std::vector<MeanTest> regions;
-    std::vector<double> tile_p;     // NaN: not tested
+    std::vector<double> tile_p;           // NaN: not tested
     std::vector<double> tile_difference;  // mean Y of a less that of b
     std::vector<bool> tile_differs;
     std::size_t tiles_tested = 0, tiles_left_out = 0, tiles_different = 0;
-    std::vector<std::uint64_t> pixel_p;   // histogram of per-pixel p in tenths
+    std::vector<std::uint64_t> pixel_p;  // histogram of per-pixel p in tenths
     bool differs() const;
     std::string sentence;
 };

@@ -12,53 +12,68 @@ constexpr Need required = Need::required, optional = Need::optional, defaulted =
 
 Section arms() {
     return {"arms", Many::named, required, "Sets of independent renders of one view: several seeds of A, several of B.",
-            in<&ComparePlan::arms>,
-            {{"files", Type::texts, none, "", required, "", "Paths or patterns (*, ?, [a-z]) of the renders.", to<&RenderArm::files>},
-             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.", to<&RenderArm::layer>},
-             {"spp", Type::number, positive, "samples/pixel", optional, "what the files say", "Samples a pixel of one render.", to<&RenderArm::spp>},
-             {"seconds", Type::number, positive, "s", optional, "what the files say", "What one render took.", to<&RenderArm::seconds>}},
-            {}};
+        in<&ComparePlan::arms>,
+        {{"files", Type::texts, none, "", required, "", "Paths or patterns (*, ?, [a-z]) of the renders.",
+             to<&RenderArm::files>},
+            {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
+                to<&RenderArm::layer>},
+            {"spp", Type::number, positive, "samples/pixel", optional, "what the files say",
+                "Samples a pixel of one render.", to<&RenderArm::spp>},
+            {"seconds", Type::number, positive, "s", optional, "what the files say", "What one render took.",
+                to<&RenderArm::seconds>}},
+        {}};
 }
 
 Section regions() {
     return {"regions", Many::named, optional, "Boxes in which errors are measured.", in<&ComparePlan::regions>,
-            {{"box", Type::box, pixel_range, "pixels", required, "",
-              "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}}, {}};
+        {{"box", Type::box, pixel_range, "pixels", required, "",
+            "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
+        {}};
 }
 
 Section masks() {
     return {"masks", Many::named, optional, "Sets of pixels in which errors are measured.", in<&ComparePlan::masks>,
-            {{"file", Type::text, none, "", required, "", "A picture of the renders' size; pixels above 0 belong to it.", to<&MaskPlan::file>}}, {}};
+        {{"file", Type::text, none, "", required, "", "A picture of the renders' size; pixels above 0 belong to it.",
+            to<&MaskPlan::file>}},
+        {}};
 }
 
 Section assertions() {
-    return {"assertions", Many::titled, optional, "Claims that must hold, for a build server.", in<&ComparePlan::assertions>,
-            {{"check", Type::check, none, "", required, "", "Two quantities, e.g. \"rmse.H(a) < rmse.H(b)\".", to<&AssertionPlan::left>}}, {}};
+    return {"assertions", Many::titled, optional, "Claims that must hold, for a build server.",
+        in<&ComparePlan::assertions>,
+        {{"check", Type::check, none, "", required, "", "Two quantities, e.g. \"rmse.H(a) < rmse.H(b)\".",
+            to<&AssertionPlan::left>}},
+        {}};
 }
 
 }  // namespace
 
 const Section& compare_schema() {
-    static const Section root = {
-        "", Many::one, required, "Renders of other programs, compared.", {},
+    static const Section root = {"", Many::one, required, "Renders of other programs, compared.", {},
         {{"title", Type::text, none, "", defaulted, "\"renders compared\"", "One line.", to<&ComparePlan::title>},
-         {"reference", Type::texts, none, "", optional, "none", "Paths or patterns of the converged image.", to<&ComparePlan::reference>},
-         {"reference_layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of it.", to<&ComparePlan::reference_layer>},
-         {"pair", Type::flag, none, "", defaulted, "false",
-          "Renders of two arms with the same number in their names share their random numbers.", to<&ComparePlan::pair>},
-         {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1", "Of photographs.", to<&ComparePlan::exposure>},
-         {"alpha", Type::number, {1e-9, 0.5}, "", defaulted, "0.01",
-          "Chance that a call tells of a difference where there is none.", to<&ComparePlan::alpha>},
-         {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
-          "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&ComparePlan::firefly_k>},
-         {"trim", Type::number, share, "", defaulted, "0",
-          "Share of pixels that relMSE and MAPE leave out, the largest first.", to<&ComparePlan::trim>},
-         {"pixels_per_degree", Type::number, {1, 1000}, "", defaulted, "67.0206",
-          "Of the viewer of FLIP: 0.7 m from a display 0.7 m wide with 3840 pixels.", to<&ComparePlan::pixels_per_degree>},
-         {"expect", Type::word, none, "", defaulted, "\"nothing\"",
-          "same: a difference between arms fails the call.", to<&ComparePlan::expect>, {"nothing", "same"}},
-         {"smallest", Type::number, {1e-6, 10}, "", defaulted, "0.01",
-          "With expect = \"same\": the relative difference of mean Y that must have been seen.", to<&ComparePlan::smallest>}},
+            {"reference", Type::texts, none, "", optional, "none", "Paths or patterns of the converged image.",
+                to<&ComparePlan::reference>},
+            {"reference_layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of it.",
+                to<&ComparePlan::reference_layer>},
+            {"pair", Type::flag, none, "", defaulted, "false",
+                "Renders of two arms with the same number in their names share their random numbers.",
+                to<&ComparePlan::pair>},
+            {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1", "Of photographs.",
+                to<&ComparePlan::exposure>},
+            {"alpha", Type::number, {1e-9, 0.5}, "", defaulted, "0.01",
+                "Chance that a call tells of a difference where there is none.", to<&ComparePlan::alpha>},
+            {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
+                "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&ComparePlan::firefly_k>},
+            {"trim", Type::number, share, "", defaulted, "0",
+                "Share of pixels that relMSE and MAPE leave out, the largest first.", to<&ComparePlan::trim>},
+            {"pixels_per_degree", Type::number, {1, 1000}, "", defaulted, "67.0206",
+                "Of the viewer of FLIP: 0.7 m from a display 0.7 m wide with 3840 pixels.",
+                to<&ComparePlan::pixels_per_degree>},
+            {"expect", Type::word, none, "", defaulted, "\"nothing\"",
+                "same: a difference between arms fails the call.", to<&ComparePlan::expect>, {"nothing", "same"}},
+            {"smallest", Type::number, {1e-6, 10}, "", defaulted, "0.01",
+                "With expect = \"same\": the relative difference of mean Y that must have been seen.",
+                to<&ComparePlan::smallest>}},
         {arms(), regions(), masks(), assertions()}};
     return root;
 }
@@ -81,7 +96,8 @@ const std::vector<QuantityWord>& compare_words() {
 std::string compare_schema_text() {
     std::string out = manual_of(compare_schema());
     out += "\nQuantities of a check; REGION may also be a mask or 'frame'\n";
-    for (const QuantityWord& word : compare_words()) out += "  " + std::string(word.word) + ".REGION(ARM)\n      " + std::string(word.means) + "\n";
+    for (const QuantityWord& word : compare_words())
+        out += "  " + std::string(word.word) + ".REGION(ARM)\n      " + std::string(word.means) + "\n";
     return out;
 }
 

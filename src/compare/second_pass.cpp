@@ -40,7 +40,8 @@ private:
 /// Mean of all but the largest `trim` of the values.
 double trimmed_mean(std::vector<double>& values, double trim) {
     const auto keep = values.size() - static_cast<std::size_t>(trim * static_cast<double>(values.size()));
-    if (keep < values.size()) std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(keep), values.end());
+    if (keep < values.size())
+        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(keep), values.end());
     double sum = 0;
     for (std::size_t i = 0; i < keep; ++i) sum += values[i];
     return sum / static_cast<double>(keep);
@@ -48,7 +49,8 @@ double trimmed_mean(std::vector<double>& values, double trim) {
 
 class SecondPass {
 public:
-    SecondPass(const ComparePlan& plan, const Readings& all, const MeanFilm* reference) : plan_(plan), all_(all), reference_(reference) {}
+    SecondPass(const ComparePlan& plan, const Readings& all, const MeanFilm* reference)
+        : plan_(plan), all_(all), reference_(reference) {}
 
     void render(const Render& render, ArmReadings& arm, std::vector<Largest>& largest) const {
         y_.resize(render.size());
@@ -94,7 +96,8 @@ private:
         const double renders = static_cast<double>(arm.film.count);
         const double scale = arm.film.count > 1 ? std::sqrt(renders / (renders - 1)) : 1;
         add_spectrum(power, *set.box, [&](int x, int y) {
-            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
+            const auto i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
             return all_.bad[i] ? 0.0 : scale * (y_[i] - about->y[i]);
         });
     }
@@ -104,7 +107,8 @@ private:
         std::vector<double> pixels(out.size());
         for (int j = 0; j < all_.height; ++j) {
             for (int x = 0; x < all_.width; ++x) {
-                const auto i = static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
+                const auto i =
+                    static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
                 if (all_.bad[i]) continue;
                 const std::size_t t = all_.tiles.of(x, j);
                 const double spread = (y_[i] - film.y[i]) * (y_[i] - film.y[i]);
@@ -112,7 +116,8 @@ private:
                 out[t].largest = std::max(out[t].largest, spread);
             }
         }
-        for (std::size_t t = 0; t < out.size(); ++t) out[t].y /= pixels[t], out[t].spread /= pixels[t], out[t].largest /= pixels[t];
+        for (std::size_t t = 0; t < out.size(); ++t)
+            out[t].y /= pixels[t], out[t].spread /= pixels[t], out[t].largest /= pixels[t];
         return out;
     }
 
@@ -152,14 +157,18 @@ PixelSet boxed(const std::string& name, const Box& box, int width) {
 void regions(const ComparePlan& plan, Readings& all) {
     for (const Region& r : plan.regions) {
         if (r.box.x1 >= all.width || r.box.y1 >= all.height)
-            throw InputError(r.at, fmt::format("regions.{}.box: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]",
-                                               r.name, all.width - 1, all.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
+            throw InputError(r.at,
+                fmt::format("regions.{}.box: expected a box on the image, x from 0 to {} and y from 0 to {}, found "
+                            "[{}, {}, {}, {}]",
+                    r.name, all.width - 1, all.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
         add_set(all, boxed(r.name, r.box, all.width), r.at);
     }
     for (const MaskPlan& m : plan.masks) {
         const Render mask = read_render(m.file);
         if (mask.width != all.width || mask.height != all.height)
-            throw InputError({m.file, 0, 0}, fmt::format("expected {} x {} pixels as the renders have, found {} x {}", all.width, all.height, mask.width, mask.height));
+            throw InputError({m.file, 0, 0},
+                fmt::format("expected {} x {} pixels as the renders have, found {} x {}", all.width, all.height,
+                    mask.width, mask.height));
         PixelSet set{m.name, {}, {}};
         for (std::size_t i = 0; i < mask.size(); ++i)
             if (mask.y(i) > 0) set.pixels.push_back(static_cast<std::uint32_t>(i));
@@ -175,12 +184,14 @@ Readings read_all(const ComparePlan& plan, Watch& watch) {
     std::vector<std::vector<std::string>> files;
     std::size_t total = 0;
     for (const RenderArm& arm : plan.arms) files.push_back(expand(arm.files, arm.at)), total += files.back().size();
-    const std::vector<std::string> reference = plan.reference.empty() ? std::vector<std::string>{} : expand(plan.reference, {plan.file, 0, 0});
+    const std::vector<std::string> reference =
+        plan.reference.empty() ? std::vector<std::string>{} : expand(plan.reference, {plan.file, 0, 0});
     total += reference.size();
     watch.begin("first pass: means", static_cast<double>(total));
     FirstPass first(all, watch);
     all.arms.resize(plan.arms.size());
-    for (std::size_t a = 0; a < plan.arms.size(); ++a) first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name);
+    for (std::size_t a = 0; a < plan.arms.size(); ++a)
+        first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name);
     if (!reference.empty()) first.arm(all.reference.emplace(), reference, plan.reference_layer, "the reference");
     all.tiles = Tiles(all.width, all.height);
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));

@@ -18,7 +18,8 @@ std::vector<std::size_t> rising(std::span<const double> p) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < p.size(); ++i)
         if (std::isfinite(p[i])) order.push_back(i);
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] != p[b] ? p[a] < p[b] : a < b; });
+    std::sort(
+        order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] != p[b] ? p[a] < p[b] : a < b; });
     return order;
 }
 
@@ -87,7 +88,8 @@ std::vector<bool> discoveries(std::span<const double> p, double alpha, bool depe
 std::vector<bool> holm(std::span<const double> p, double alpha) {
     const std::vector<std::size_t> order = rising(p);
     std::vector<bool> out(p.size());
-    for (std::size_t i = 0; i < order.size() && p[order[i]] <= alpha / static_cast<double>(order.size() - i); ++i) out[order[i]] = true;
+    for (std::size_t i = 0; i < order.size() && p[order[i]] <= alpha / static_cast<double>(order.size() - i); ++i)
+        out[order[i]] = true;
     return out;
 }
 

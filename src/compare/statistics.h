@@ -30,9 +30,9 @@ Welch paired_test(const MeanInterval& differences);
 /// The difference that the test sees nine times out of ten at level alpha.
 double detectable(const Welch& test, double alpha);
 
-/// Which hypotheses fall: false discoveries are at most `alpha` of them on average (Benjamini & Hochberg 1995), under any
-/// dependence where `dependent` (Benjamini & Yekutieli 2001). NaN: not tested. Under the global null the chance of any
-/// is at most alpha.
+/// Which hypotheses fall: false discoveries are at most `alpha` of them on average (Benjamini & Hochberg 1995), under
+/// any dependence where `dependent` (Benjamini & Yekutieli 2001). NaN: not tested. Under the global null the chance of
+/// any is at most alpha.
 std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent);
 /// The same with the chance of any false one at most alpha (Holm 1979).
 std::vector<bool> holm(std::span<const double> p, double alpha);

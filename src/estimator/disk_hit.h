@@ -31,8 +31,10 @@ template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& dis
     return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
 }
 
-/// As meets_disk for what an arm drew: where it aimed at disk k it knows whether it meets it. `alone`: there is no other.
-template <class F, class D> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
+/// As meets_disk for what an arm drew: where it aimed at disk k it knows whether it meets it. `alone`: there is no
+/// other.
+template <class F, class D>
+CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
     if constexpr (requires { drawn.met; }) {
         if (alone) {
             v = dot(drawn.wi, disk.n);
@@ -48,8 +50,8 @@ template <class F, class D> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDis
 /// Disks on one ray: the nearer is met, and of two as near as rounding can tell the one that stands first in the file.
 template <class F> CRESCENT_INLINE MaskOf<F> is_nearer(F t, F than) { return t < than * number<F>(1 - 1e-5); }
 
-/// A cone from the surface that holds a disk: a first, cheap question to a direction. It never excludes one that meets the
-/// disk, for directions that are unit to 1e-6.
+/// A cone from the surface that holds a disk: a first, cheap question to a direction. It never excludes one that meets
+/// the disk, for directions that are unit to 1e-6.
 template <class F> struct DiskCone {
     Vec3<F> axis;
     F cos;  // of its half-angle, less what rounding can do; 2 where no emitting side faces the surface
@@ -59,7 +61,8 @@ template <class F> struct DiskCone {
         const F one = number<F>(1), d2 = dot(disk.c, disk.c);
         const auto outside = d2 > disk.r2;
         axis = disk.c * (one / sqrt(larger(d2, number<F>(1e-30))));
-        cos = select(outside, sqrt(larger(one - disk.r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5), number<F>(-2));
+        cos = select(outside, sqrt(larger(one - disk.r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5),
+            number<F>(-2));
         cos = select(disk.r2 < number<F>(0), number<F>(2), cos);
     }
     CRESCENT_INLINE MaskOf<F> holds(Vec3<F> w) const { return dot(w, axis) > cos; }
@@ -77,8 +80,8 @@ template <class F> void clip_slab(F lo, F hi, F o, F d, F& near, F& far) {
 
 template <class F> MaskOf<F> within(F t, F lo, F hi) { return (t > lo) & (t < hi); }
 
-/// Does the body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either end
-/// it does not: a body that touches the surface point or the light hides nothing there.
+/// Does the body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from
+/// either end it does not: a body that touches the surface point or the light hides nothing there.
 template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
     const F zero = number<F>(0), eps = distance * number<F>(1e-5), t_max = distance * number<F>(1 - 1e-5);
     const Vec3<F> a = broadcast<F>(body.a), b = broadcast<F>(body.b);

@@ -42,7 +42,9 @@ struct DiskPoint {
         return t * std::sqrt(s) / wo.z;
     }
     /// Y of what the pair is worth under light of radiance 1.
-    double weigh(Parts p) const { return luminance(surface.rho_d) * std::abs(p.real()) + surface.rho_s * std::abs(p.imag()); }
+    double weigh(Parts p) const {
+        return luminance(surface.rho_d) * std::abs(p.real()) + surface.rho_s * std::abs(p.imag());
+    }
 };
 
 }  // namespace crescent

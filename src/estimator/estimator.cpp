@@ -21,7 +21,8 @@ Kernel kernel_of(const std::string& isa, std::string_view sampler, int lobe) {
 /// Sums of one site over its film's n samples -> the film's pixel.
 class Finish {
 public:
-    Finish(const Scene& scene, const Sites& sites, const Moments& m, Film& film) : scene_(scene), sites_(sites), m_(m), film_(film) {}
+    Finish(const Scene& scene, const Sites& sites, const Moments& m, Film& film)
+        : scene_(scene), sites_(sites), m_(m), film_(film) {}
 
     void pixel(std::size_t i) const {
         const std::size_t at = sites_.pixel[i];
@@ -73,7 +74,8 @@ void develop(const Scene& scene, const Sites& sites, const Moments& moments, Fil
     for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
 }
 
-void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* keeper, const std::function<double(std::size_t)>& work) {
+void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* keeper,
+    const std::function<double(std::size_t)>& work) {
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         if (watch.stop.load(std::memory_order_relaxed) || (keeper && keeper->holds(k))) return;
         const double units = work(k);
@@ -84,8 +86,8 @@ void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* 
     watch.check();
 }
 
-std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n, std::uint32_t seed,
-                                 const std::string& isa, Watch& watch, TileKeeper* keeper) {
+std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n,
+    std::uint32_t seed, const std::string& isa, Watch& watch, TileKeeper* keeper) {
     const Image& image = scene.experiment().image;
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
@@ -95,7 +97,8 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (keeper) keeper->begin(tiles, outputs_of(films, bad));
-    PerThread<std::vector<Moments>> scratch([&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
+    PerThread<std::vector<Moments>> scratch(
+        [&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
     for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
@@ -104,13 +107,15 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
             kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 develop(scene, sites, moments[r], films[r]);
-                bad[r][k] += std::accumulate(moments[r].bad.begin(), moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
+                bad[r][k] += std::accumulate(moments[r].bad.begin(),
+                    moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
             }
             samples += static_cast<double>(sites.count) * static_cast<double>(n.back());
         }
         return samples;
     });
-    for (std::size_t r = 0; r < n.size(); ++r) films[r].bad = std::accumulate(bad[r].begin(), bad[r].end(), std::uint64_t{0});
+    for (std::size_t r = 0; r < n.size(); ++r)
+        films[r].bad = std::accumulate(bad[r].begin(), bad[r].end(), std::uint64_t{0});
     return films;
 }
 
@@ -121,13 +126,14 @@ ShapeMap shape_map(const Scene& scene) {
     parallel_for(0, image.height, [&](int j) {
         for (int i = 0; i < image.width; ++i)
             if (const auto hit = scene.primary(i, j))
-                map.shape[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i)] = static_cast<std::int16_t>(hit->shape);
+                map.shape[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) +
+                    static_cast<std::size_t>(i)] = static_cast<std::int16_t>(hit->shape);
     });
     return map;
 }
 
-Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const std::string& isa,
-                       const std::atomic<bool>* stop, float* samples) {
+Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed,
+    const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
     moments[0].resize(sites.pixel.size(), sites.disks.size());
     const std::array<std::uint64_t, 1> rungs = {n};
@@ -135,13 +141,14 @@ Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64
     return std::move(moments[0]);
 }
 
-std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed, const Box& box,
-                                   std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn) {
+std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed,
+    const Box& box, std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn) {
     std::vector<float> all;
     Mutex lock;
     drawn = 0;
     std::vector<TileBox> tiles;
-    for (const TileBox& t : tiles_of(box.width(), box.height())) tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
+    for (const TileBox& t : tiles_of(box.width(), box.height()))
+        tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
             if (watch.stop.load(std::memory_order_relaxed)) return;
@@ -150,7 +157,8 @@ std::vector<float> largest_samples(const Scene& scene, std::string_view sampler,
             const std::uint64_t here = samples.size();
             std::erase_if(samples, [](float x) { return std::isnan(x); });  // counted by the kernels; not a size
             if (samples.size() > count) {
-                std::nth_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count), samples.end(), std::greater<>());
+                std::nth_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count), samples.end(),
+                    std::greater<>());
                 samples.resize(count);
             }
             const Guard guard(lock);

@@ -31,7 +31,8 @@ TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
     Watch watch;
     for (const std::string& arm : all_arms()) {
         const auto scalar = hashes(estimate_films(scene, arm, {1, 7, 20}, 3, "scalar", watch));
-        for (const std::string& isa : isas()) EXPECT_EQ(hashes(estimate_films(scene, arm, {1, 7, 20}, 3, isa, watch)), scalar) << arm << " on " << isa;
+        for (const std::string& isa : isas())
+            EXPECT_EQ(hashes(estimate_films(scene, arm, {1, 7, 20}, 3, isa, watch)), scalar) << arm << " on " << isa;
     }
 }
 
@@ -57,7 +58,8 @@ TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
     const Scene scene(test::small_scene());
     Watch watch;
     const auto many = estimate_films(scene, "phong", {1, 3, 16, 37, 64}, 9, "", watch);
-    for (const Film& film : many) EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", watch)[0]), hash(film)) << "n = " << film.n;
+    for (const Film& film : many)
+        EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", watch)[0]), hash(film)) << "n = " << film.n;
 }
 
 /// Samples of every site of the test scene beside the moments that the kernel made of them.
@@ -93,9 +95,11 @@ TEST(BadSamples, ANegativeWeightIsCounted) {
 }
 
 TEST(BadSamples, MinusZeroIsNone) {
-    const Scene scene(test::small_scene({"fill.radiance=[-0.0,-0.0,-0.0]", "shapes.ground.rho_d=[-0.0,-0.0,-0.0]", "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
+    const Scene scene(test::small_scene({"fill.radiance=[-0.0,-0.0,-0.0]", "shapes.ground.rho_d=[-0.0,-0.0,-0.0]",
+        "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
     Watch watch;
-    for (const std::string& arm : all_arms()) EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", watch)[0].bad, 0u) << arm;
+    for (const std::string& arm : all_arms())
+        EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", watch)[0].bad, 0u) << arm;
     const Surface black{{-0.0, -0.0, -0.0}, 0, BrdfKind::phong, 0, 0};
     EXPECT_EQ(estimate_sites(furnace_sites(black, 1), "cosine", 50, 1, "", nullptr).bad[0], 0u);
 }
@@ -131,7 +135,8 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     const Scene scene(experiment);
     Watch watch;
     const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, watch)[0];
-    for (const char* arm : {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
+    for (const char* arm :
+        {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
         const Film film = estimate_films(scene, arm, {1024}, 17, "", watch)[0];
         double difference = 0, variance = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {
@@ -159,7 +164,8 @@ TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
 double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
     Watch watch;
-    const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0], note = note_reference(scene, {experiment.s()}, "", watch)[0];
+    const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0],
+                        note = note_reference(scene, {experiment.s()}, "", watch)[0];
     double difference = 0, variance = 0;
     for (std::size_t at = 0; at < q.size(); ++at) {
         difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
@@ -168,7 +174,9 @@ double references_apart(const Experiment& experiment) {
     return std::fabs(difference) / std::sqrt(variance);
 }
 
-TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) { EXPECT_LT(references_apart(test::small_scene()), 4); }
+TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
+    EXPECT_LT(references_apart(test::small_scene()), 4);
+}
 
 TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     Experiment experiment = test::small_scene();

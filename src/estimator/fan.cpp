@@ -14,7 +14,7 @@ double sector(const Direction& d) {
     if (d.al > 0.3) return d.al - d.sin * d.cos;
     const double x = d.al * d.al;
     return d.al * x *
-           (2.0 / 3 - x * (2.0 / 15 - x * (4.0 / 315 - x * (2.0 / 2835 - x * (4.0 / 155925 - x * (4.0 / 6081075))))));
+        (2.0 / 3 - x * (2.0 / 15 - x * (4.0 / 315 - x * (2.0 / 2835 - x * (4.0 / 155925 - x * (4.0 / 6081075))))));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ Frame<double> frame_about_disk(const DiskPoint& point, const DiskLight& disk) {
 class Fans {
 public:
     Fans(const DiskPoint& point, const DiskLight& disk, const std::vector<const Blocker*>& bodies, bool about_lobe,
-         bool at_horizon)
+        bool at_horizon)
         : point_(point),
           disk_(disk),
           about_(about_lobe ? frame_about_lobe(point) : frame_about_disk(point, disk)),
@@ -87,7 +87,7 @@ public:
         hidden_.clear();
         for (const Blocker* b : near_)
             for (const Interval& part :
-                 hidden(b->body, point_.x, point_.x + fan.to0, point_.x + (fan.to0 + fan.step), b->between))
+                hidden(b->body, point_.x, point_.x + fan.to0, point_.x + (fan.to0 + fan.step), b->between))
                 hidden_.push_back(part);
         const bool lobe = point_.surface.rho_s > 0;
         const Vec3d axis = point_.frame.to_local(fan.axis), aside = point_.frame.to_local(fan.aside);
@@ -166,7 +166,7 @@ struct Adaptive {
 }  // namespace
 
 DiskIntegral fan_by_fan(const DiskPoint& point, const DiskLight& disk, const std::vector<const Blocker*>& bodies,
-                        bool about_lobe, bool at_horizon) {
+    bool about_lobe, bool at_horizon) {
     const double open = sqr(disk.radius) / dot(disk.center - point.x, disk.center - point.x);  // Lambert's, about
     if (!(point.weigh({1, 1}) > 0)) return {};                                                 // a black surface
     Fans fans(point, disk, bodies, about_lobe, at_horizon);

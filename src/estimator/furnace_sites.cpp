@@ -22,7 +22,9 @@ Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
     fill(sites.wox, std::sqrt(1 - cos_o * cos_o)), fill(sites.woy, 0), fill(sites.woz, cos_o);
     fill(sites.s, surface.s), fill(sites.alpha, surface.alpha);
     fill(sites.diffuse, luminance(surface.rho_d)), fill(sites.rho_s, surface.rho_s);
-    for (auto* zero : {&sites.px, &sites.py, &sites.pz, &sites.ty, &sites.tz, &sites.bx, &sites.bz, &sites.nx, &sites.ny}) fill(*zero, 0);
+    for (auto* zero :
+        {&sites.px, &sites.py, &sites.pz, &sites.ty, &sites.tz, &sites.bx, &sites.bz, &sites.nx, &sites.ny})
+        fill(*zero, 0);
     for (auto* one : {&sites.tx, &sites.by, &sites.nz}) fill(*one, 1);
     fill(sites.fill_d, luminance(surface.rho_d) / pi + 0.0);  // never -0
     fill(sites.fill_s, surface.rho_s);

@@ -1,4 +1,5 @@
-// Sites in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless told otherwise.
+// Sites in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless told
+// otherwise.
 #pragma once
 
 #include "estimator/sites.h"

@@ -4,10 +4,12 @@
 // isa(name, what a machine must have), in rising order of speed; scalar, which needs nothing, stands before them all.
 #pragma once
 
+// clang-format off: one a line
 #define CRESCENT_ISAS_X86(isa)                                                  \
     isa(sse4, has("sse4.2"))                                                    \
     isa(avx2, has("avx2") && has("f16c"))                                       \
     isa(avx512, has("avx512f") && has("avx512vl") && has("avx512dq") && has("avx512bw") && has("avx512cd"))
+// clang-format on
 #define CRESCENT_ISAS_ARM(isa) isa(neon, true)
 #define CRESCENT_ISAS_WASM(isa) isa(wasm128, has("simd128"))
 

@@ -74,7 +74,7 @@ const KernelTable& kernels_for(const std::string& isa) {
         names.push_back(known.name);
         if (wanted != known.name) continue;
         throw InputError({"--isa", 0, 0},
-                         "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
+            "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
     }
     const std::string near = nearest(wanted, names);
     const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";

@@ -20,10 +20,10 @@ namespace crescent {
 
 /// Moments of n samples, one entry a site; sums are kept in double.
 struct Moments {
-    std::vector<double> g, g_lobe;               // sum of g and of g * lobe over all samples
+    std::vector<double> g, g_lobe;                         // sum of g and of g * lobe over all samples
     std::vector<std::vector<double>> disk_g, disk_g_lobe;  // over the samples that met disk k
-    std::vector<double> spread;                  // sum of (X - mean X)^2
-    std::vector<float> largest;                  // largest X
+    std::vector<double> spread;                            // sum of (X - mean X)^2
+    std::vector<float> largest;                            // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
     /// Entries that are new are 0; kernels write all of them.
     void resize(std::size_t sites, std::size_t disks);
@@ -33,9 +33,9 @@ struct KernelCall {
     const Sites* sites = nullptr;
     std::span<const std::uint64_t> rungs;  // ascending
     std::uint32_t seed = 0;
-    std::span<Moments> out;                // one a rung, sized to the padded count
+    std::span<Moments> out;  // one a rung, sized to the padded count
     const std::atomic<bool>* stop = nullptr;
-    float* samples = nullptr;              // where not null: every X, sample k of site i at i * n + k
+    float* samples = nullptr;  // where not null: every X, sample k of site i at i * n + k
 };
 
 using Kernel = void (*)(const KernelCall&);

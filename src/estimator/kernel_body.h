@@ -20,7 +20,8 @@ inline constexpr std::uint64_t block_length = 16;
 template <class F> struct Gathered {
     F g = number<F>(0), g_lobe = number<F>(0);
     F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
-    F pivot = number<F>(0);  // the smaller of the first two X (outliers are large), then the mean of the first 16, 64, 256, ...
+    F pivot = number<F>(
+        0);  // the smaller of the first two X (outliers are large), then the mean of the first 16, 64, 256, ...
     F largest = number<F>(0);
     UintOf<F> horizon{0u}, bad{0u};
 };
@@ -41,17 +42,19 @@ template <class A, class L, class F> struct Lane : Lights<F> {
     Site<F> site;
 
     Lane(const Sites& all, std::size_t first) : Lights<F>(all, first) {
-        site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at), load_lanes<F>(sites.alpha, at),
-                load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks, static_cast<int>(disk_count)};
+        site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
+            load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks,
+            static_cast<int>(disk_count)};
     }
 
     Constants<F> constants() const {
-        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at), load_lanes<F>(sites.pixel, at),
-                disk_count > 0 ? cones[0] : DiskCone<F>{}};
+        return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at),
+            load_lanes<F>(sites.pixel, at), disk_count > 0 ? cones[0] : DiskCone<F>{}};
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
-    template <class D> [[gnu::always_inline]] F carry(Gathered<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
+    template <class D>
+    [[gnu::always_inline]] F carry(Gathered<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
@@ -71,18 +74,21 @@ template <class A, class L, class F> struct Lane : Lights<F> {
         } else {
             auto near = c.first.holds(drawn.wi);
             for (std::size_t k = 1; k < disk_count; ++k) near = near | cones[k].holds(drawn.wi);
-            if (any(near & up)) [[unlikely]] x = meet(drawn, g, lobe, x, up);
+            if (any(near & up)) [[unlikely]]
+                x = meet(drawn, g, lobe, x, up);
         }
         return x;
     }
 
-    [[gnu::always_inline]] void step(Gathered<F>& to, const Constants<F>& c, const A& arm, const L& brdf, const Vec4u<U>& h, bool odd, std::uint64_t j,
-                                     const KernelCall& call) {
-        const Vec2<F> u = odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
+    [[gnu::always_inline]] void step(Gathered<F>& to, const Constants<F>& c, const A& arm, const L& brdf,
+        const Vec4u<U>& h, bool odd, std::uint64_t j, const KernelCall& call) {
+        const Vec2<F> u =
+            odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
         F x;
         if constexpr (requires { A::techniques; }) {
             const Vec4u<U> second = draws<U>(c.pixel, static_cast<std::uint32_t>(j >> 1), 1, call.seed);
-            const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)} : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
+            const Vec2<F> v = odd ? Vec2<F>{unit_float<F>(second.z), unit_float<F>(second.w)}
+                                  : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
             const auto a = arm.template sample_technique<0>(c.wo, u);
             const auto b = arm.template sample_technique<1>(c.wo, v);
             x = carry(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
@@ -94,8 +100,8 @@ template <class A, class L, class F> struct Lane : Lights<F> {
         to.off = to.off + off;
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
-        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number, arises from
-        // nothing that a site holds (sites.cpp).
+        // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
+        // arises from nothing that a site holds (sites.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
         if (call.samples) keep(x, call.samples, j, call.rungs.back());
     }
@@ -170,7 +176,8 @@ template <class F> struct Totals {
     }
 };
 
-template <class F> [[gnu::noinline]] void write_rung(const Lights<F>& lane, const Gathered<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
+template <class F> [[gnu::noinline]] void write_rung(
+    const Lights<F>& lane, const Gathered<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
     const std::size_t at = lane.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
@@ -210,7 +217,8 @@ template <class A, class L, class F> void estimate_pack(const KernelCall& call, 
                 if (++j == end) break;
             }
             lane.step(gathered, c, arm, brdf, h, true, j, call);
-            if (j == 1) {  // X_1 - X_0 is the sum so far; about the smaller of the two it is its size, and the square is the same
+            if (j == 1) {  // X_1 - X_0 is the sum so far; about the smaller of the two it is its size, and the square
+                           // is the same
                 gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
                 gathered.off = abs(gathered.off);
             }
@@ -218,7 +226,8 @@ template <class A, class L, class F> void estimate_pack(const KernelCall& call, 
         }
         if (j == block_end) {
             totals.take(gathered, lane.met, lane.disk_count);
-            if (j < n && (j & (j - 1)) == 0 && (j & 0x5555555555555555u)) gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
+            if (j < n && (j & (j - 1)) == 0 && (j & 0x5555555555555555u))
+                gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
         }
         if (j == call.rungs[rung]) write_rung(lane, gathered, totals, j, call.out[rung++]);
@@ -230,7 +239,9 @@ template <class A, class L, class F> void estimate(const KernelCall& call) {
 }
 
 template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
-    return {isa, {{{estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, PhongLobe<F>, F>, estimate<A<F>, BlinnPhongLobe<F>, F>, estimate<A<F>, GgxLobe<F>, F>}...}}};
+    return {isa,
+        {{{estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, PhongLobe<F>, F>, estimate<A<F>, BlinnPhongLobe<F>, F>,
+            estimate<A<F>, GgxLobe<F>, F>}...}}};
 }
 
 }  // namespace CRESCENT_ISA

@@ -1,5 +1,5 @@
-// One pack of pixels before the disk lights: what a sample that may meet one finds, and what is gathered from those that
-// do. Included by kernel_body.h alone.
+// One pack of pixels before the disk lights: what a sample that may meet one finds, and what is gathered from those
+// that do. Included by kernel_body.h alone.
 #pragma once
 
 #include "estimator/disk_hit.h"
@@ -9,8 +9,11 @@ namespace crescent {
 namespace CRESCENT_ISA {
 
 template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
-template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t at) { return load_as<UintOf<F>>(a.data() + at); }
-template <class F> Vec3<F> load_lanes(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t at) {
+template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t at) {
+    return load_as<UintOf<F>>(a.data() + at);
+}
+template <class F> Vec3<F> load_lanes(
+    const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t at) {
     return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
 }
 
@@ -32,10 +35,12 @@ template <class F> struct Lights {
     DiskCone<F> cones[most_disks];
     Met<F> met;
 
-    [[gnu::noinline]] Lights(const Sites& all, std::size_t first) : sites(all), at(first), disk_count(all.disks.size()) {
+    [[gnu::noinline]] Lights(const Sites& all, std::size_t first)
+        : sites(all), at(first), disk_count(all.disks.size()) {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const DiskArrays& d = sites.disks[k];
-            disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at), F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
+            disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at),
+                F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
             facing[k] = FacingDisk<F>(disks[k]);
             cones[k] = DiskCone<F>(facing[k]);
             met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
@@ -57,8 +62,8 @@ template <class F> struct Lights {
             nearest = select(nearer, t, nearest);
         }
         const Vec3<F> o = load_lanes<F>(sites.px, sites.py, sites.pz, at);
-        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at), load_lanes<F>(sites.bx, sites.by, sites.bz, at),
-                                load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
+        const Frame<F> frame = {load_lanes<F>(sites.tx, sites.ty, sites.tz, at),
+            load_lanes<F>(sites.bx, sites.by, sites.bz, at), load_lanes<F>(sites.nx, sites.ny, sites.nz, at)};
         const Vec3<F> d = frame.to_world(wi);
         const U own = load_lanes<F>(sites.shape, at);
         F seen = select(up & (nearest < far), number<F>(1), number<F>(0));

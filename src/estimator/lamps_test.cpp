@@ -1,5 +1,5 @@
-// Lamps down to the smallest that the schema permits, and scenes as far from (0, 0, 0) as it permits: every arm that is right
-// there has the reference's mean, within its own doubt and that of the reference.
+// Lamps down to the smallest that the schema permits, and scenes as far from (0, 0, 0) as it permits: every arm that is
+// right there has the reference's mean, within its own doubt and that of the reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,8 @@ Experiment lamps(double radius, double offset, const std::vector<std::string>& o
 /// Films are single precision, and sums of 16 samples: 1e-6 of each pixel.
 constexpr double film_error = 1e-6;
 
-void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::string& arm, std::uint64_t n, const std::string& what) {
+void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::string& arm, std::uint64_t n,
+    const std::string& what) {
     Watch watch;
     const Film film = estimate_films(scene, arm, {n}, 17, "", watch)[0];
     double difference = 0, variance = 0, stated = 0;
@@ -53,7 +54,8 @@ void expect_means(const Experiment& e, const std::vector<std::string>& arms, std
 }
 
 const std::vector<std::string> aiming = {"light-area", "light-solid-angle", "mis-balance", "mis-power"};
-const std::vector<std::string> reaching = {"uniform", "cosine", "mixture"};  // whose hits are too few where a lamp is small
+const std::vector<std::string> reaching = {
+    "uniform", "cosine", "mixture"};  // whose hits are too few where a lamp is small
 
 class LampLaw : public testing::TestWithParam<double> {};
 
@@ -97,7 +99,9 @@ TEST(Lamps, SixtyFourAreAllCounted) {
 
 TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
     Watch watch;
-    const auto film_at = [&](double offset) { return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", watch)[0]; };
+    const auto film_at = [&](double offset) {
+        return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", watch)[0];
+    };
     const Film here = film_at(0), there = film_at(1e6);
     std::size_t other = 0;
     for (std::size_t at = 0; at < here.size(); ++at) other += std::fabs(here.y[at] - there.y[at]) > 1e-3f * here.y[at];

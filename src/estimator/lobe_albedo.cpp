@@ -31,7 +31,7 @@ double phong_albedo(double s, double cos_o) {
         }
         return math::pow(c, s) * math::sin(al) * band;
     };
-    const double horizon = math::asin(cos_o);                      // al where the lobe first dips under the horizon
+    const double horizon = math::asin(cos_o);                     // al where the lobe first dips under the horizon
     const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
     const double cut = std::min(horizon, wide);
     return (s + 2) / (2 * pi) * (integrate(ring, 0, cut) + integrate(ring, cut, wide));
@@ -102,7 +102,7 @@ namespace {
 double through_five(const std::array<double, 5>& v, double t) {
     const double a = t, b = t - 1, c = t - 2, d = t - 3, e = t - 4;
     return v[0] * b * c * d * e / 24 - v[1] * a * c * d * e / 6 + v[2] * a * b * d * e / 4 - v[3] * a * b * c * e / 6 +
-           v[4] * a * b * c * d / 24;
+        v[4] * a * b * c * d / 24;
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, do
     if (halvings == 0 || error <= good || error <= 1e-7 * std::fabs(fine)) return {fine, error};
     const double middle = 0.5 * (lo + hi);
     const AlongLobe a = panel(rule, f, lo, middle, good, halvings - 1),
-                   b = panel(rule, f, middle, hi, good, halvings - 1);
+                    b = panel(rule, f, middle, hi, good, halvings - 1);
     return {a.value + b.value, a.error + b.error};
 }
 

@@ -78,8 +78,8 @@ public:
             for (int j = 0; j < n; ++j) {
                 const Vec3d wi = k == 0 ? cosine() : k == 1 ? lobe() : on_disk(k - 2);
                 const double x = k < 2 || meets(scene_.disks()[k - 2], frame_.to_world(wi)) < 1e300
-                                     ? worth(wi)
-                                     : 0;  // a lamp's back is not aimed at
+                    ? worth(wi)
+                    : 0;  // a lamp's back is not aimed at
                 mean += x / n, square += x * x / n;
                 out.largest = std::max(out.largest, std::fabs(x) / n);
             }
@@ -109,8 +109,7 @@ private:
     Vec3d lobe() {
         if (surface_.brdf == BrdfKind::phong) return frame_about(mirror(wo_)).to_world(power(surface_.s));
         Vec3d m;
-        if (surface_.brdf == BrdfKind::blinn_phong)
-            m = power(surface_.s);
+        if (surface_.brdf == BrdfKind::blinn_phong) m = power(surface_.s);
         else {
             const double v = u(), tan2 = sqr(surface_.alpha) * v / (1 - v), cos = 1 / std::sqrt(1 + tan2);
             m = polar(cos, cos * std::sqrt(tan2));

@@ -143,19 +143,27 @@ Sites site_of(const Scene& scene, int i, int j) {
 }  // namespace
 
 OpenPixel::OpenPixel(const Scene& scene, int i, int j)
-    : i_(i), j_(j), sites_(site_of(scene, i, j)), hit_(*scene.primary(i, j)), surface_(scene.surface(hit_)),
-      wo_(wide(at(sites_.wox, sites_.woy, sites_.woz))), fill_(luminance(scene.fill())), local_(local_disks(sites_)) {
+    : i_(i),
+      j_(j),
+      sites_(site_of(scene, i, j)),
+      hit_(*scene.primary(i, j)),
+      surface_(scene.surface(hit_)),
+      wo_(wide(at(sites_.wox, sites_.woy, sites_.woz))),
+      fill_(luminance(scene.fill())),
+      local_(local_disks(sites_)) {
     for (std::size_t k = 0; k < local_.size(); ++k) disks_.push_back(seen_disk(scene.disks()[k], local_[k]));
 }
 
 Site<float> OpenPixel::aimed_from() const {
     return {at(sites_.wox, sites_.woy, sites_.woz), sites_.s[0], sites_.alpha[0], sites_.diffuse[0], sites_.rho_s[0],
-            local_.data(), static_cast<int>(local_.size())};
+        local_.data(), static_cast<int>(local_.size())};
 }
 
 Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
 
-int OpenPixel::disk_met(Vec3d wi) const { return wi.z > 0 ? met_by(sites_, local_, Drawn<float>{as<float>(wi), {1}}) : -1; }
+int OpenPixel::disk_met(Vec3d wi) const {
+    return wi.z > 0 ? met_by(sites_, local_, Drawn<float>{as<float>(wi), {1}}) : -1;
+}
 
 double OpenPixel::light(Vec3d wi) const {
     const int disk = disk_met(wi);

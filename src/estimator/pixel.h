@@ -22,9 +22,9 @@ struct PixelSample {
     Vec2<float> u{};
     Vec3<float> wi{};
     float pdf = 0, f = 0, light = 0, cos = 0;
-    float weight = 1;   // of multiple importance sampling
+    float weight = 1;  // of multiple importance sampling
     float x = 0;
-    int disk = -1;      // the disk light that was met; -1: the fill
+    int disk = -1;  // the disk light that was met; -1: the fill
     int technique = 0;
 };
 

@@ -52,7 +52,8 @@ TEST(DiskQuadrature, AgreesWithBruteForceInLightPenumbraAndShadow) {
             const auto hit = scene.primary(static_cast<int>(u.x * 67), static_cast<int>(u.y * 45));
             if (!hit) continue;
             const Surface surface = scene.surface(*hit);
-            const DiskIntegral got = quadrature(*hit, surface), want = brute_force(scene, scene.disks()[k], *hit, surface);
+            const DiskIntegral got = quadrature(*hit, surface),
+                               want = brute_force(scene, scene.disks()[k], *hit, surface);
             EXPECT_NEAR(got.diffuse, want.diffuse, 2e-3 * want.diffuse + 2e-6);
             EXPECT_NEAR(got.lobe, want.lobe, 3e-3 * want.lobe + 2e-5);
             lit += got.diffuse > 0;
@@ -73,7 +74,8 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
         for (int i = 0; i < 67; ++i) {
             const auto hit = scene.primary(i, j);
             if (!hit) continue;
-            const double all = unshadowed(*hit, scene.surface(*hit)).diffuse, got = shadowed(*hit, scene.surface(*hit)).diffuse;
+            const double all = unshadowed(*hit, scene.surface(*hit)).diffuse,
+                         got = shadowed(*hit, scene.surface(*hit)).diffuse;
             EXPECT_LE(got, all * (1 + 1e-6) + 1e-12);
             half += got > 0.2 * all && got < 0.8 * all;
             dark += all > 0 && got == 0;
@@ -82,12 +84,14 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
     EXPECT_GT(dark, 50);
 }
 
-/// A lamp of half-angle `half` right above a point that is seen from above, through a body that hides half of it or not.
+/// A lamp of half-angle `half` right above a point that is seen from above, through a body that hides half of it or
+/// not.
 Experiment lamp_above(double half, bool hidden) {
     Experiment e = test::small_scene();
     e.shapes.resize(2);
     e.shapes[0].kind = ShapeKind::plane, e.shapes[0].point = {0, 0, 0}, e.shapes[0].normal = {0, 1, 0};
-    e.shapes[1].kind = ShapeKind::quad, e.shapes[1].corner = {0, 0.5, -9}, e.shapes[1].edge_u = {9, 0, 0}, e.shapes[1].edge_v = {0, 0, 18};
+    e.shapes[1].kind = ShapeKind::quad, e.shapes[1].corner = {0, 0.5, -9}, e.shapes[1].edge_u = {9, 0, 0},
+    e.shapes[1].edge_v = {0, 0, 18};
     e.shapes[1].occludes = hidden;
     e.disks.resize(1);
     e.disks[0].center = {0, 1, 0}, e.disks[0].normal = {0, -1, 0}, e.disks[0].radius = std::tan(half);
@@ -104,10 +108,14 @@ TEST(DiskQuadrature, StatesNoLessThanItsErrorWhereTheIntegralIsKnown) {
                 surface.rho_d = {0.3, 0.3, 0.3}, surface.rho_s = 0.5, surface.s = s;
                 const DiskIntegral got = DiskQuadrature(scene, 0)(hit, surface);
                 const double share = hidden ? 0.5 : 1;  // lobe: (s+2) integral cos^(s+1) sin
-                const double diffuse = share * sqr(std::sin(half)), lobe = -share * std::expm1(0.5 * (s + 2) * std::log1p(-sqr(std::sin(half))));
-                EXPECT_LE(std::fabs(got.diffuse - diffuse), got.diffuse_error + 1e-8 * diffuse) << half << " " << s << " " << hidden;
-                EXPECT_LE(std::fabs(got.lobe - lobe), got.lobe_error + 1e-8 * lobe) << half << " " << s << " " << hidden;
-                EXPECT_LE(got.diffuse_error + got.lobe_error, 1e-3 * (diffuse + lobe)) << half << " " << s << " " << hidden;
+                const double diffuse = share * sqr(std::sin(half)),
+                             lobe = -share * std::expm1(0.5 * (s + 2) * std::log1p(-sqr(std::sin(half))));
+                EXPECT_LE(std::fabs(got.diffuse - diffuse), got.diffuse_error + 1e-8 * diffuse)
+                    << half << " " << s << " " << hidden;
+                EXPECT_LE(std::fabs(got.lobe - lobe), got.lobe_error + 1e-8 * lobe)
+                    << half << " " << s << " " << hidden;
+                EXPECT_LE(got.diffuse_error + got.lobe_error, 1e-3 * (diffuse + lobe))
+                    << half << " " << s << " " << hidden;
             }
 }
 
@@ -135,8 +143,14 @@ TEST(LobeAlbedo, OfHalfVectorLobesIsThatOfAMillionDirections) {
         return sum * 2 * pi / n / n;
     };
     for (double cos_o : {0.05, 0.5, 0.9}) {
-        for (double alpha : {0.3, 0.5, 0.9}) EXPECT_NEAR(lobe_albedo(BrdfKind::ggx, 0, alpha, cos_o), brute_force(GgxLobe<double>(0, alpha), cos_o), 2e-6) << alpha;
-        for (double s : {3.0, 40.0}) EXPECT_NEAR(lobe_albedo(BrdfKind::blinn_phong, s, 0, cos_o), brute_force(BlinnPhongLobe<double>(s, 0), cos_o), 2e-6) << s;
+        for (double alpha : {0.3, 0.5, 0.9})
+            EXPECT_NEAR(
+                lobe_albedo(BrdfKind::ggx, 0, alpha, cos_o), brute_force(GgxLobe<double>(0, alpha), cos_o), 2e-6)
+                << alpha;
+        for (double s : {3.0, 40.0})
+            EXPECT_NEAR(
+                lobe_albedo(BrdfKind::blinn_phong, s, 0, cos_o), brute_force(BlinnPhongLobe<double>(s, 0), cos_o), 2e-6)
+                << s;
     }
     EXPECT_LT(LobeAlbedo(BrdfKind::ggx, 0, 0.5).error(0.5), 3e-6);
 }

@@ -83,11 +83,9 @@ private:
         const double kind = between(0, 4);
         if (kind < 1)
             l.center = l.center + between(0, 1.5) * l.radius * frame_about(l.normal).t;  // in the first one's plane
-        else if (kind < 2)
-            l.center = l.center - between(0, 1) * l.radius * l.normal;  // behind it
-        else if (kind < 3)
-            l.normal = direction();                                     // crossing it
-        l.radiance = {between(1, 20), between(1, 20), between(1, 20)};  // else in its place
+        else if (kind < 2) l.center = l.center - between(0, 1) * l.radius * l.normal;    // behind it
+        else if (kind < 3) l.normal = direction();                                       // crossing it
+        l.radiance = {between(1, 20), between(1, 20), between(1, 20)};                   // else in its place
         e.disks.push_back(l);
         what += " + second";
     }

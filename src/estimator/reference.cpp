@@ -98,7 +98,8 @@ Sites only_disk(const Scene& scene, const Sites& all, std::size_t k) {
     disk.power = 1;
     for (std::size_t i = 0; i < sites.pixel.size(); ++i) {
         disk.d[i] = all.disks[k].d[i] - sites.fill_d[i];  // L_key - L_fill: the disk stands in for the fill behind it
-        disk.s[i] = full > 0 ? static_cast<float>(static_cast<double>(all.disks[k].s[i]) * over / full) : -sites.fill_s[i];
+        disk.s[i] =
+            full > 0 ? static_cast<float>(static_cast<double>(all.disks[k].s[i]) * over / full) : -sites.fill_s[i];
     }
     for (auto* array : {&sites.fill_d, &sites.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
     return sites;
@@ -127,24 +128,31 @@ double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? 
 bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, double n) {
     const Vec3d c = {disk.cx[i], disk.cy[i], disk.cz[i]}, wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
     const auto kind = static_cast<BrdfKind>(sites.lobe);
-    const double s = kind == BrdfKind::ggx ? 2 / sqr(static_cast<double>(sites.alpha[i])) : static_cast<double>(sites.s[i]);
-    const double across = kind == BrdfKind::phong ? 1 : wo.z, far = std::sqrt(dot(c, c)), radius = static_cast<double>(disk.radius);
+    const double s =
+        kind == BrdfKind::ggx ? 2 / sqr(static_cast<double>(sites.alpha[i])) : static_cast<double>(sites.s[i]);
+    const double across = kind == BrdfKind::phong ? 1 : wo.z, far = std::sqrt(dot(c, c)),
+                 radius = static_cast<double>(disk.radius);
     const double off = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
     const bool peak_is_near = off < math::atan2(radius, far) + 8 / std::sqrt(s);
-    return peak_is_near && n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
+    return peak_is_near &&
+        n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
 }
 
 /// The note's reference over one group of sites.
 class NotePixels {
 public:
-    NotePixels(const Scene& scene, const Sites& sites, const std::string& isa, Watch& watch) : scene_(scene), sites_(sites) {
+    NotePixels(const Scene& scene, const Sites& sites, const std::string& isa, Watch& watch)
+        : scene_(scene), sites_(sites) {
         const ReferencePlan& plan = scene.experiment().reference;
         const auto seed = [&](std::uint32_t k) { return reference_seed(scene.experiment(), k); };
-        if (sites.lobe >= 0) lobe_ = estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, seed(0), isa, &watch.stop);
+        if (sites.lobe >= 0)
+            lobe_ =
+                estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, seed(0), isa, &watch.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         disk_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.disks().size(); ++k)
-            disks_.push_back(estimate_sites(only_disk(scene, sites, k), "light-area", plan.disk_spp, seed(static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
+            disks_.push_back(estimate_sites(only_disk(scene, sites, k), "light-area", plan.disk_spp,
+                seed(static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
     }
 
     void write(std::size_t i, ReferenceFilm& film) const {
@@ -157,7 +165,8 @@ public:
         for (std::size_t k = 0; k < disks_.size(); ++k) {
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
-                part[c] = (scene_.disks()[k].radiance[c] - fill[c]) * (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * disks_[k].disk_g_lobe[k][i]);
+                part[c] = (scene_.disks()[k].radiance[c] - fill[c]) *
+                    (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * disks_[k].disk_g_lobe[k][i]);
                 out[c] += part[c] / disk_n_;
             }
             variance += variance_of_mean(disks_[k].spread[i], disk_n_);
@@ -176,8 +185,8 @@ private:
 };
 
 /// One film per exponent, made by calling work(tile, films) for every tile.
-template <class Work>
-std::vector<ReferenceFilm> by_tiles(const Experiment& experiment, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper, Work&& work) {
+template <class Work> std::vector<ReferenceFilm> by_tiles(
+    const Experiment& experiment, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper, Work&& work) {
     std::vector<ReferenceFilm> films;
     for (double s : exponents) films.emplace_back(experiment.image.width, experiment.image.height, s);
     const std::vector<TileBox> tiles = tiles_of(experiment.image.width, experiment.image.height);
@@ -190,7 +199,8 @@ std::vector<ReferenceFilm> by_tiles(const Experiment& experiment, const std::vec
 }
 
 void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
-    to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at], to.error[at] = from.error[at];
+    to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at],
+    to.error[at] = from.error[at];
 }
 
 }  // namespace
@@ -207,14 +217,16 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     return seed;
 }
 
-std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper) {
+std::vector<ReferenceFilm> quadrature_reference(
+    const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper) {
     const Experiment& experiment = scene.experiment();
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     const std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
     const auto pixel = [&](int i, int j, std::vector<ReferenceFilm>& films) {
         const auto hit = scenes[0].primary(i, j);
         if (!hit) return;
-        const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment.image.width) + static_cast<std::size_t>(i);
+        const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment.image.width) +
+            static_cast<std::size_t>(i);
         for (std::size_t e = 0; e < scenes.size(); ++e) {
             const Surface surface = scenes[e].surface(*hit);
             if (e > 0 && !(surface.rho_s > 0)) {  // no lobe, no exponent
@@ -231,7 +243,8 @@ std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::v
     });
 }
 
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper) {
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents,
+    const std::string& isa, Watch& watch, TileKeeper* keeper) {
     const Experiment& experiment = scene.experiment();
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     return by_tiles(experiment, exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {

@@ -20,7 +20,9 @@ namespace crescent {
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
 /// One film per exponent, in order. `keeper`: keeps finished tiles.
-std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper = nullptr);
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
+std::vector<ReferenceFilm> quadrature_reference(
+    const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper = nullptr);
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents,
+    const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
 
 }  // namespace crescent

@@ -41,12 +41,12 @@ struct Comparison {
     bool agree() const { return std::fabs(apart) <= stated + 5 * std::sqrt(variance) + 20 * largest; }
 };
 
-Comparison compare_pixel(const Scene& scene, const ReferenceFilm& film, const Hit& hit, std::size_t at,
-                         std::uint32_t seed) {
+Comparison compare_pixel(
+    const Scene& scene, const ReferenceFilm& film, const Hit& hit, std::size_t at, std::uint32_t seed) {
     const test::Opinion truth = test::Oracle(scene, hit, seed)(draws);
     const double rounding = 1e-6 * truth.y;  // films are floats
     return {static_cast<double>(film.y[at]) - truth.y, static_cast<double>(film.error[at]) + rounding, truth.variance,
-            truth.largest};
+        truth.largest};
 }
 
 class ReferenceOfRandomScenes : public testing::TestWithParam<std::uint32_t> {};
@@ -67,8 +67,8 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthWithinItsStatedError) {
                 const Comparison one =
                     compare_pixel(scene, film, *hit, at, 100 * seed + static_cast<std::uint32_t>(at));
                 if (!one.agree())
-                    off += fmt::format(" ({}, {}): {:.3g} of {:.3g}, stated {:.2g};", i, j, one.apart, film.y[at],
-                                       one.stated);
+                    off += fmt::format(
+                        " ({}, {}): {:.3g} of {:.3g}, stated {:.2g};", i, j, one.apart, film.y[at], one.stated);
                 all.add(one);
             }
         EXPECT_TRUE(off.empty() && all.agree()) << "scene " << seed << off << " all: " << all.apart << "\n"

@@ -34,15 +34,16 @@ OccluderF occluder_about(const Occluder& o, Vec3d origin) {
     using K = Occluder::Kind;
     const Vec3d a = o.a - origin;
     const double offset = o.kind == K::quad ? dot(cross(o.b, o.c), a) : dot(o.b, a);
-    return {o.kind, static_cast<std::uint32_t>(o.shape), single(a), single(o.kind == K::box ? o.b - origin : o.b), single(o.c),
-            static_cast<float>(o.radius), static_cast<float>(offset)};
+    return {o.kind, static_cast<std::uint32_t>(o.shape), single(a), single(o.kind == K::box ? o.b - origin : o.b),
+        single(o.c), static_cast<float>(o.radius), static_cast<float>(offset)};
 }
 
 std::vector<TileBox> tiles_of(int width, int height) {
     constexpr int side = 64;  // pixels: small enough to share out evenly, large enough to fill packs
     std::vector<TileBox> tiles;
     for (int y = 0; y < height; y += side)
-        for (int x = 0; x < width; x += side) tiles.push_back({x, y, std::min(x + side, width), std::min(y + side, height)});
+        for (int x = 0; x < width; x += side)
+            tiles.push_back({x, y, std::min(x + side, width), std::min(y + side, height)});
     return tiles;
 }
 
@@ -102,7 +103,8 @@ void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, c
 
 template <class Work> void Sites::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
-    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d, fill_s, rho_d, rho_s_exact);
+    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
+        fill_s, rho_d, rho_s_exact);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
 }
 
@@ -131,10 +133,12 @@ void Sites::prune(const Scene& scene) {
     const auto [y, half_y] = range(py);
     const auto [z, half_z] = range(pz);
     const auto rounded = [](double middle, double half) { return half + 0x1p-23 * (std::fabs(middle) + half); };
-    const Extent extent = {scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
+    const Extent extent = {
+        scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
     std::size_t kept = 0;
     for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
-        const bool clear = std::all_of(scene.disks().begin(), scene.disks().end(), [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk); });
+        const bool clear = std::all_of(scene.disks().begin(), scene.disks().end(),
+            [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk); });
         if (!clear) occluders[kept++] = occluders[k];
     }
     occluders.resize(kept);
@@ -145,7 +149,10 @@ namespace {
 /// Groups the pixels of a tile by lobe. Neighbours mostly see the same surface, whose shading is then at hand.
 class Sorter {
 public:
-    Sorter(const Scene& scene, const TileBox& tile) : scene_(scene), columns_(static_cast<std::size_t>(tile.x1 - tile.x0)), area_(columns_ * static_cast<std::size_t>(tile.y1 - tile.y0)) {}
+    Sorter(const Scene& scene, const TileBox& tile)
+        : scene_(scene),
+          columns_(static_cast<std::size_t>(tile.x1 - tile.x0)),
+          area_(columns_ * static_cast<std::size_t>(tile.y1 - tile.y0)) {}
 
     void next_row() {
         for (Sites& group : groups) group.make_room(columns_);
@@ -184,7 +191,8 @@ std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_
     for (int j = tile.y0; j < tile.y1; ++j) {
         sorter.next_row();
         for (int i = tile.x0; i < tile.x1; ++i) {
-            const std::size_t index = static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+            const std::size_t index =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
             const std::optional<Hit> hit = scene.primary(i, j);
             if (shape_map) shape_map[index] = static_cast<std::int16_t>(hit ? hit->shape : -1);
             if (hit) sorter.add(static_cast<std::uint32_t>(index), *hit);

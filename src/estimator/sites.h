@@ -25,18 +25,19 @@ struct DiskArrays {
     std::vector<float> d, s;        // Y of L rho_d / pi and of L rho_s: X = (cos/p) (d + s lobe)
     float radius = 0;
     bool two_sided = false;
-    float power = 0;                // Y(L) pi r^2, relative to all disks
+    float power = 0;  // Y(L) pi r^2, relative to all disks
 };
 
 /// What every site of one surface shares: what a sample is worth there, by the light it meets.
 struct Shading {
     Surface surface;
-    float fill_d = 0, fill_s = 0;             // as in Sites
-    std::vector<float> disk_d, disk_s;        // as in DiskArrays, one a disk
+    float fill_d = 0, fill_s = 0;       // as in Sites
+    std::vector<float> disk_d, disk_s;  // as in DiskArrays, one a disk
     Shading(const Scene& scene, const Surface& on);
 };
 
-/// Occluders in float, as the kernels test them: from the scene's origin, so that a scene far from (0, 0, 0) loses nothing.
+/// Occluders in float, as the kernels test them: from the scene's origin, so that a scene far from (0, 0, 0) loses
+/// nothing.
 struct OccluderF {
     Occluder::Kind kind;
     std::uint32_t shape;
@@ -49,16 +50,16 @@ OccluderF occluder_about(const Occluder& o, Vec3d origin);
 /// Sites of one BRDF kind. `lobe` is -1 where rho_s = 0.
 struct Sites {
     int lobe = -1;
-    std::size_t count = 0;                     // without padding
-    std::vector<std::uint32_t> pixel, shape;   // index in the image, index of the shape
+    std::size_t count = 0;                    // without padding
+    std::vector<std::uint32_t> pixel, shape;  // index in the image, index of the shape
     std::vector<float> wox, woy, woz;
     std::vector<float> s, alpha, diffuse, rho_s;  // diffuse: Y(rho_d)
-    std::vector<float> px, py, pz;             // the surface point from the scene's origin, along the world's axes
+    std::vector<float> px, py, pz;                // the surface point from the scene's origin, along the world's axes
     std::vector<float> tx, ty, tz, bx, by, bz, nx, ny, nz;  // the local frame, world
-    std::vector<float> fill_d, fill_s;         // as DiskArrays::d, s for the fill
+    std::vector<float> fill_d, fill_s;                      // as DiskArrays::d, s for the fill
     std::vector<DiskArrays> disks;
-    std::vector<OccluderF> occluders;          // those that may hide a disk from one of the sites
-    std::vector<Rgb> rho_d;                    // per pixel, for the colours of the film
+    std::vector<OccluderF> occluders;  // those that may hide a disk from one of the sites
+    std::vector<Rgb> rho_d;            // per pixel, for the colours of the film
     std::vector<double> rho_s_exact;
 
     /// Adds a site where room was made for it.

@@ -79,7 +79,7 @@ n = [4, 64]
 [regions.all]
 box = [0, 0, 66, 44]
 )",
-                 "test.toml", overrides);
+        "test.toml", overrides);
 }
 
 }  // namespace crescent::test

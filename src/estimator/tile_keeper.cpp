@@ -16,7 +16,8 @@ struct Head {
 template <class Work> void each_row(const TileOutputs& outputs, const TileBox& tile, Work&& work) {
     for (const std::span<std::byte> plane : outputs.planes)
         for (int y = tile.y0; y < tile.y1; ++y) {
-            const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(outputs.width) + static_cast<std::size_t>(tile.x0);
+            const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(outputs.width) +
+                static_cast<std::size_t>(tile.x0);
             work(plane.subspan(4 * first, 4 * static_cast<std::size_t>(tile.x1 - tile.x0)));
         }
 }
@@ -70,7 +71,8 @@ void TileKeeper::add(std::size_t tile, double units) {
 void TileKeeper::write(std::size_t tile) {
     const Head head = {tile, units_[tile]};
     std::vector<Journal::Bytes> parts = {std::as_bytes(std::span(&head, 1))};
-    for (const std::span<std::uint64_t> counts : outputs_.counts) parts.push_back(std::as_bytes(counts.subspan(tile, 1)));
+    for (const std::span<std::uint64_t> counts : outputs_.counts)
+        parts.push_back(std::as_bytes(counts.subspan(tile, 1)));
     each_row(outputs_, tiles_[tile], [&](std::span<std::byte> row) { parts.push_back(row); });
     journal_.append(parts);
 }

@@ -61,7 +61,7 @@ private:
     std::vector<double> units_;  // of each finished tile; -1: not finished
     double restored_ = 0;
     Clock::time_point start_;
-    Mutex lock_;                   // guards what follows and the journal
+    Mutex lock_;                        // guards what follows and the journal
     std::vector<std::size_t> waiting_;  // finished, not yet written
 };
 

@@ -1,5 +1,5 @@
-// The variance of a film against the two-pass variance of the very samples, for every arm, where samples hardly differ (small
-// lamps) and where they differ by orders of magnitude (an arm that aims badly).
+// The variance of a film against the two-pass variance of the very samples, for every arm, where samples hardly differ
+// (small lamps) and where they differ by orders of magnitude (an arm that aims badly).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,8 @@ void expect_two_pass(const Sites& sites, const std::string& arm, std::uint64_t n
     const Moments m = estimate_sites(sites, arm, n, 5, "", nullptr, x.data());
     for (std::size_t i = 0; i < sites.count; ++i) {
         const double want = test::spread_of({x.data() + i * n, n});
-        EXPECT_NEAR(m.spread[i], want, 1e-4 * want + least) << arm << ", n = " << n << ", lamps of " << radius << " m, pixel " << sites.pixel[i];
+        EXPECT_NEAR(m.spread[i], want, 1e-4 * want + least)
+            << arm << ", n = " << n << ", lamps of " << radius << " m, pixel " << sites.pixel[i];
     }
 }
 

@@ -36,8 +36,9 @@ struct PolarRule {
 };
 
 const std::vector<PolarRule>& polar_rules() {
-    static const std::vector<PolarRule> rules = {PolarRule::make<2>(5),   PolarRule::make<3>(7),   PolarRule::make<5>(12),  PolarRule::make<7>(17),
-                                                 PolarRule::make<10>(25), PolarRule::make<15>(36), PolarRule::make<25>(60), PolarRule::make<40>(96)};
+    static const std::vector<PolarRule> rules = {PolarRule::make<2>(5), PolarRule::make<3>(7), PolarRule::make<5>(12),
+        PolarRule::make<7>(17), PolarRule::make<10>(25), PolarRule::make<15>(36), PolarRule::make<25>(60),
+        PolarRule::make<40>(96)};
     return rules;
 }
 
@@ -63,7 +64,9 @@ DiskIntegral whole_disk(const DiskPoint& point, const DiskLight& disk, const Fra
     if (!(point.surface.rho_s > 0)) return out;
     const auto apply = [&](const PolarRule& rule) {
         double sum = 0;
-        for (const auto& n : rule.nodes) sum += n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
+        for (const auto& n : rule.nodes)
+            sum +=
+                n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
         return sum * sqr(disk.radius);
     };
     constexpr double good = 1e-5;  // relative, between two rules; the finer one, which is kept, is better by far

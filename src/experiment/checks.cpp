@@ -30,16 +30,18 @@ void check_camera(Draft& draft) {
     if (length(view) < 1e-9)
         return draft.complain("camera.target", "camera.target: expected a point other than camera.eye, found the same");
     if (draft.sound("camera.up") && length(cross(view, c.up)) < parallel * length(view))
-        draft.complain("camera.up", "camera.up: expected a direction that is not parallel to the view from eye to target");
+        draft.complain(
+            "camera.up", "camera.up: expected a direction that is not parallel to the view from eye to target");
 }
 
 void check_box_on_image(Draft& draft, const std::string& path, const Box& box) {
     const Image& image = draft.e.image;
-    if (!draft.sound(path) || !draft.sound("image") || !draft.sound("image.width") || !draft.sound("image.height")) return;
+    if (!draft.sound(path) || !draft.sound("image") || !draft.sound("image.width") || !draft.sound("image.height"))
+        return;
     if (box.x0 >= 0 && box.y0 >= 0 && box.x1 < image.width && box.y1 < image.height) return;
-    draft.complain(
-        path, fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
-                          image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
+    draft.complain(path,
+        fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
+            image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
 }
 
 void check_shape(Draft& draft, const Shape& shape) {
@@ -51,19 +53,19 @@ void check_shape(Draft& draft, const Shape& shape) {
         const double sizes[] = {size.x, size.y, size.z};
         for (int i = 0; i < 3; ++i)
             if (!(sizes[i] > 0))
-                return draft.complain(
-                    path + ".max", fmt::format("{}.max: expected a corner above min on every axis, found {} no higher on {}",
-                                               path, "xyz"[i], "xyz"[i]));
+                return draft.complain(path + ".max",
+                    fmt::format("{}.max: expected a corner above min on every axis, found {} no higher on {}", path,
+                        "xyz"[i], "xyz"[i]));
     }
     if ((shape.kind == ShapeKind::quad || shape.kind == ShapeKind::panel) && sound("edge_u") && sound("edge_v")) {
         const double u = length(shape.edge_u), v = length(shape.edge_v);
         if (!(u > 0) || !(v > 0))
             return draft.complain(path + (u > 0 ? ".edge_v" : ".edge_u"),
-                                  fmt::format("{}: expected an edge with a length, found the zero vector",
-                                              path + (u > 0 ? ".edge_v" : ".edge_u")));
+                fmt::format("{}: expected an edge with a length, found the zero vector",
+                    path + (u > 0 ? ".edge_v" : ".edge_u")));
         if (length(cross(shape.edge_u, shape.edge_v)) < parallel * u * v)
-            return draft.complain(path + ".edge_v",
-                                  fmt::format("{}.edge_v: expected an edge that is not parallel to edge_u", path));
+            return draft.complain(
+                path + ".edge_v", fmt::format("{}.edge_v: expected an edge that is not parallel to edge_u", path));
     }
 }
 
@@ -72,20 +74,21 @@ void check_material(Draft& draft, const Shape& shape) {
     const Material& m = shape.material;
     if (!draft.sound(path + ".brdf") || !(m.rho_s > 0)) return;
     if (m.brdf == BrdfKind::ggx && !m.alpha && draft.sound(path + ".alpha"))
-        draft.complain(
-            path + ".alpha",
+        draft.complain(path + ".alpha",
             fmt::format("missing key 'alpha' in [{}]: expected the roughness of its ggx lobe, above 0, up to 1", path));
     if (m.brdf != BrdfKind::ggx && !m.s && draft.sound(path + ".s"))
-        draft.complain(
-            path + ".s",
-            fmt::format("missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
+        draft.complain(path + ".s",
+            fmt::format(
+                "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
 }
 
 void check_light(Draft& draft) {
     if (const auto& disks = draft.e.disks; disks.size() > most_disks)
-        draft.complain("disks." + disks[most_disks].name, fmt::format("disks: expected at most {}, found {}", most_disks, disks.size()));
+        draft.complain("disks." + disks[most_disks].name,
+            fmt::format("disks: expected at most {}, found {}", most_disks, disks.size()));
     const Rgb& fill = draft.e.fill;
-    const bool dark = std::all_of(draft.e.disks.begin(), draft.e.disks.end(), [](const DiskLight& d) { return d.radiance[0] + d.radiance[1] + d.radiance[2] <= 0; });
+    const bool dark = std::all_of(draft.e.disks.begin(), draft.e.disks.end(),
+        [](const DiskLight& d) { return d.radiance[0] + d.radiance[1] + d.radiance[2] <= 0; });
     if (dark && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") &&
         fill[0] + fill[1] + fill[2] <= 0)
         draft.complain("fill.radiance", "no light: expected a disk or the fill with a radiance above 0");
@@ -97,10 +100,13 @@ void check_film_files(Draft& draft) {
     std::map<std::string, std::string, std::less<>> taken = {{std::string(reference_file), "the references"}};
     if (e.exponent)
         for (const double s : e.exponent->s)
-            if (s != e.s()) taken.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
+            if (s != e.s())
+                taken.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
     for (const ArmPlan& arm : e.arms)
         if (const auto other = taken.find(arm.name); other != taken.end())
-            draft.complain("arms." + arm.name, fmt::format("arms.{}: films/{}.exr is where those of {} go: expected another name", arm.name, arm.name, other->second));
+            draft.complain("arms." + arm.name,
+                fmt::format("arms.{}: films/{}.exr is where those of {} go: expected another name", arm.name, arm.name,
+                    other->second));
 }
 
 }  // namespace
@@ -108,7 +114,8 @@ void check_film_files(Draft& draft) {
 void check_geometry(Draft& draft) {
     check_camera(draft);
     for (const Shape& shape : draft.e.shapes) check_shape(draft, shape), check_material(draft, shape);
-    for (const Region& region : draft.e.regions) check_box_on_image(draft, "regions." + region.name + ".box", region.box);
+    for (const Region& region : draft.e.regions)
+        check_box_on_image(draft, "regions." + region.name + ".box", region.box);
     for (const PlatePlan& plate : draft.e.plates)
         if (plate.crop) check_box_on_image(draft, "plates." + plate.name + ".crop", *plate.crop);
     check_light(draft);
@@ -121,15 +128,16 @@ void check_names(Draft& draft) {
         const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
-        draft.complain(r.path, fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64),
-                                           listed(valid, ", "), hint(r.name, valid)));
+        draft.complain(r.path,
+            fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64), listed(valid, ", "),
+                hint(r.name, valid)));
     }
     check_film_files(draft);
     for (const DiskLight& disk : draft.e.disks)
         if (const Shape* shape = draft.e.find_shape(disk.name))
             draft.complain("disks." + disk.name,
-                           fmt::format("duplicate name '{}': expected a disk to be named unlike the shape at {}", disk.name,
-                                       to_string(shape->at)));
+                fmt::format("duplicate name '{}': expected a disk to be named unlike the shape at {}", disk.name,
+                    to_string(shape->at)));
 }
 
 }  // namespace crescent

@@ -12,12 +12,13 @@ bool has_own_s(const Shape& shape) { return shape.material.s && !shape.material.
 /// The shape whose s is the experiment's, as an index; -1: none has one.
 std::ptrdiff_t s_shape(const Experiment& e) {
     const auto first = [&](auto holds) {
-        const auto it = std::find_if(e.shapes.begin(), e.shapes.end(),
-                                     [&](const Shape& shape) { return has_own_s(shape) && holds(shape); });
+        const auto it = std::find_if(
+            e.shapes.begin(), e.shapes.end(), [&](const Shape& shape) { return has_own_s(shape) && holds(shape); });
         return it == e.shapes.end() ? -1 : it - e.shapes.begin();
     };
     if (e.exponent)
-        if (const auto control = first([&](const Shape& shape) { return shape.name == e.exponent->shape; }); control >= 0)
+        if (const auto control = first([&](const Shape& shape) { return shape.name == e.exponent->shape; });
+            control >= 0)
             return control;
     if (const auto lobe = first([](const Shape& shape) { return shape.material.rho_s > 0; }); lobe >= 0) return lobe;
     return first([](const Shape&) { return true; });

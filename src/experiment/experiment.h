@@ -55,15 +55,15 @@ struct Shape {
     std::string name;
     ShapeKind kind = ShapeKind::sphere;
     Material material;
-    std::optional<Rgb> reveal_rho_d;  // panel: the four sides of the recess
-    bool occludes = false;            // whether it blocks the disk lights
-    Vec3d center{};                   // sphere, disk
-    double radius = 0;                // sphere, disk
-    Vec3d min{}, max{};               // box
+    std::optional<Rgb> reveal_rho_d;     // panel: the four sides of the recess
+    bool occludes = false;               // whether it blocks the disk lights
+    Vec3d center{};                      // sphere, disk
+    double radius = 0;                   // sphere, disk
+    Vec3d min{}, max{};                  // box
     Vec3d corner{}, edge_u{}, edge_v{};  // quad, panel opening; the outward normal is edge_u x edge_v
-    Vec3d point{};                    // plane
-    Vec3d normal{};                   // plane, disk; unit
-    double depth = 0;                 // panel: how far it is set back, against the normal
+    Vec3d point{};                       // plane
+    Vec3d normal{};                      // plane, disk; unit
+    double depth = 0;                    // panel: how far it is set back, against the normal
     Place at;
 };
 
@@ -79,8 +79,8 @@ struct DiskLight {
 
 /// One sampler with its ladder: rungs are prefixes of one stream.
 struct ArmPlan {
-    std::string name;     // as it appears in films and tables
-    std::string sampler;  // a word of arms/all.h
+    std::string name;              // as it appears in films and tables
+    std::string sampler;           // a word of arms/all.h
     std::vector<std::uint64_t> n;  // ascending samples per pixel
     Place at;
 };
@@ -105,9 +105,9 @@ enum class ReferenceKind { quadrature, note };
 /// What the meters compare with. Both are computed; `kind` is the one the meters use.
 struct ReferencePlan {
     ReferenceKind kind = ReferenceKind::quadrature;
-    std::uint32_t seed = 0;        // of the note's Monte Carlo reference
-    std::uint64_t lobe_spp = 32;   // Phong-sampled lobe x fill
-    std::uint64_t disk_spp = 96;   // samples on each disk
+    std::uint32_t seed = 0;       // of the note's Monte Carlo reference
+    std::uint64_t lobe_spp = 32;  // Phong-sampled lobe x fill
+    std::uint64_t disk_spp = 96;  // samples on each disk
 };
 
 enum class FurnacePart { combined, lobe };
@@ -142,27 +142,28 @@ struct PlatePlan {
 /// A comparison that must hold. Quantities are looked up by name (see meters/quantity.h).
 struct AssertionPlan {
     std::string name;
-    std::string left;      // a quantity, e.g. "rmse.H(phong, n=64, s=32)"
-    std::string op;        // "<", "<=", ">", ">=", "=="
-    std::string right;     // a quantity or a number
-    bool median = false;   // over seeds, else at the published seed
+    std::string left;     // a quantity, e.g. "rmse.H(phong, n=64, s=32)"
+    std::string op;       // "<", "<=", ">", ">=", "=="
+    std::string right;    // a quantity or a number
+    bool median = false;  // over seeds, else at the published seed
     Place at;
 };
 
 struct Experiment {
-    std::string file;    // as given
+    std::string file;  // as given
     std::string title;
     std::vector<std::string> overrides;  // PATH=VALUE, as given
     std::uint32_t seed = 0;
-    std::uint64_t n = 0;  // samples per pixel meant where a plate, a check or the exponent control names none; 0: none given
-    int seeds = 1;       // how many seeds the bands are made of; the first is `seed`
+    std::uint64_t n =
+        0;          // samples per pixel meant where a plate, a check or the exponent control names none; 0: none given
+    int seeds = 1;  // how many seeds the bands are made of; the first is `seed`
     double exposure = 1;
     double firefly_k = 4;
     Image image;
     Camera camera;
     std::vector<Shape> shapes;
     std::vector<DiskLight> disks;
-    Rgb fill{};          // uniform over the hemisphere
+    Rgb fill{};  // uniform over the hemisphere
     std::vector<ArmPlan> arms;
     std::optional<ExponentControl> exponent;
     std::vector<Region> regions;
@@ -202,8 +203,8 @@ Experiment with_figures(Experiment experiment);
 
 /// The experiment as a file that is read as the same experiment: every key with its effective value, in one layout.
 std::string canonical_text(const Experiment& experiment);
-/// What tells experiments apart: XXH3 of every value and, in place of their path, of the published figures. Computed anew
-/// at each call, so that it is right for an experiment that was made or changed in code.
+/// What tells experiments apart: XXH3 of every value and, in place of their path, of the published figures. Computed
+/// anew at each call, so that it is right for an experiment that was made or changed in code.
 std::uint64_t hash(const Experiment& experiment);
 
 /// The keys with types, units, ranges and defaults, made from the table that parses them.

@@ -21,9 +21,7 @@ Experiment gallery(const std::vector<std::string>& overrides = {}) { return load
 std::string complaint(const std::vector<std::string>& overrides) {
     try {
         (void)gallery(overrides);
-    } catch (const InputError& error) {
-        return error.what();
-    }
+    } catch (const InputError& error) { return error.what(); }
     return "";
 }
 
@@ -84,14 +82,13 @@ TEST(WhatIfs, OfNMoveEveryRunThatNamesNone) {
     const Experiment ladder = gallery({"phong.n=[2,8]"});
     EXPECT_EQ(ladder.assertions.back().left, "fireflies(phong, n=8)");
     for (const PlatePlan& plate : ladder.plates) {
-        if (plate.name == "ladder-phong") {
-            EXPECT_EQ(plate.runs.size(), 2u);
-        }
+        if (plate.name == "ladder-phong") { EXPECT_EQ(plate.runs.size(), 2u); }
     }
 }
 
 TEST(WhatIfs, MeetTheChecksOfTheFile) {
-    EXPECT_THAT(complaint({"sphere.s=many"}), HasSubstr("--set sphere.s=many: shapes.sphere.s: expected a number above 0"));
+    EXPECT_THAT(
+        complaint({"sphere.s=many"}), HasSubstr("--set sphere.s=many: shapes.sphere.s: expected a number above 0"));
     EXPECT_THAT(complaint({"spere.s=3"}), HasSubstr("did you mean 'sphere'?"));
     EXPECT_THAT(complaint({"shapes.spere.s=3"}), HasSubstr("did you mean 'sphere'?"));
     EXPECT_THAT(complaint({"sphere.radis=3"}), HasSubstr("did you mean 'radius'?"));
@@ -104,7 +101,7 @@ TEST(WhatIfs, MeetTheChecksOfTheFile) {
     EXPECT_THAT(complaint({"published=nowhere.json"}), HasSubstr("No such file"));
     EXPECT_THAT(complaint({"seed.x=1"}), HasSubstr("no 'x' in 'seed'"));
     EXPECT_THAT(complaint({"seed=-1", "sphere.s=0"}),
-                testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
+        testing::AllOf(HasSubstr("--set seed=-1"), HasSubstr("--set sphere.s=0")));
 }
 
 TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
@@ -118,7 +115,8 @@ TEST(AnotherS, ChangesTheControlShapeAndAllThatInheritIt) {
 
 TEST(AnotherS, IsAskedForWhereAnArmNeedsOne) {
     const std::string room =
-        "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = 40\n[fill]\nradiance = "
+        "[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg = "
+        "40\n[fill]\nradiance = "
         "[1, 1, 1]\n"
         "[shapes.floor]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nrho_d = [0.5, 0.5, 0.5]\n";
     EXPECT_EQ(parse(room + "[arms.cosine]\nn = 4\n", "room").s(), 0);
@@ -154,7 +152,8 @@ std::size_t take_every_key(const Section& section, const std::string& path) {
     std::size_t count = section.keys.size();
     const std::string prefix = path.empty() ? "" : path + ".";
     for (const Key& key : section.keys) {
-        const std::string at = prefix + std::string(key.name), say = complaint({fmt::format("{}={}", at, example(key))});
+        const std::string at = prefix + std::string(key.name),
+                          say = complaint({fmt::format("{}={}", at, example(key))});
         EXPECT_THAT(say, testing::Not(HasSubstr("unknown key"))) << at;
         EXPECT_THAT(say, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
         EXPECT_FALSE(key.means.empty()) << at;
@@ -163,17 +162,17 @@ std::size_t take_every_key(const Section& section, const std::string& path) {
     }
     for (const Section& sub : section.sections) {
         const std::string name(sub.name);
-        count += take_every_key(sub, prefix + (sub.many == Many::one    ? name
-                                               : sub.many == Many::list ? name + ".0"
-                                               : name == "plates"       ? "plates.hero"
-                                                                        : name + ".probe"));
+        count += take_every_key(sub,
+            prefix +
+                (sub.many == Many::one           ? name
+                        : sub.many == Many::list ? name + ".0"
+                        : name == "plates"       ? "plates.hero"
+                                                 : name + ".probe"));
     }
     return count;
 }
 
-TEST(TheSchema, NamesTheKeysThatTheParserTakes) {
-    EXPECT_GT(take_every_key(schema(), ""), schema().keys.size());
-}
+TEST(TheSchema, NamesTheKeysThatTheParserTakes) { EXPECT_GT(take_every_key(schema(), ""), schema().keys.size()); }
 
 TEST(TheSchema, TellsEditorsOfEveryKey) {
     const std::string json = schema_json();
@@ -207,9 +206,7 @@ TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
     const auto say = [](const char* text) -> std::string {
         try {
             (void)parse_published(text, "p.json");
-        } catch (const InputError& error) {
-            return error.what();
-        }
+        } catch (const InputError& error) { return error.what(); }
         return "";
     };
     EXPECT_THAT(say("{\n  \"runs\": [}"), HasSubstr("p.json:2:12: not JSON"));
@@ -217,7 +214,7 @@ TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
     EXPECT_THAT(say("{\"runs\": [{\"arm\": 3}]}"), HasSubstr("/runs/0: expected an object with arm"));
     EXPECT_THAT(say("{\"runs\": [3]}"), HasSubstr("/runs/0: expected an object with arm"));
     EXPECT_THAT(say("{\"runs\": [{\"arm\": \"a\", \"n\": 4, \"s\": 1, \"rmse.H\": null}]}"),
-                HasSubstr("/runs/0/rmse.H: expected a number"));
+        HasSubstr("/runs/0/rmse.H: expected a number"));
     EXPECT_THAT(say("{\"furnaces\": {\"a\": \"b\"}}"), HasSubstr("/furnaces/a: expected a number"));
     EXPECT_THAT(say("{\"rums\": []}"), HasSubstr("/rums"));
     EXPECT_EQ(say("{}"), "");

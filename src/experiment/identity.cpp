@@ -103,7 +103,8 @@ private:
         if (!section.family.add) return table(section, parent, own);
         for (std::size_t i = 0; i < section.family.size(parent); ++i) {
             const void* object = section.family.at(parent, i);
-            table(section, object, section.many == Many::one ? own : fmt::format("{}.{}", own, toml_text(section.family.name(object))));
+            table(section, object,
+                section.many == Many::one ? own : fmt::format("{}.{}", own, toml_text(section.family.name(object))));
         }
     }
 
@@ -124,7 +125,8 @@ private:
 
 /// Every figure, so that another content of the same file is another experiment.
 std::string text_of(const Published& published) {
-    std::string out = fmt::format("{} {}\n", toml_text(published.source), published.seed ? std::to_string(*published.seed) : "");
+    std::string out =
+        fmt::format("{} {}\n", toml_text(published.source), published.seed ? std::to_string(*published.seed) : "");
     for (const auto& [key, value] : published.runs) {
         const auto& [arm, n, s, meter] = key;
         out += fmt::format("{} {} {} {} {}\n", toml_text(arm), n, s, toml_text(meter), value);

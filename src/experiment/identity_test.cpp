@@ -87,7 +87,7 @@ runs = [{arm = "phong"}]
 [assertions."a 'quoted' \"name\""]
 check = "rmse.H(phong) < rmse.H(cosine, n=4)"
 )toml",
-                 "everything.toml", {"title=All", "n=16", "published=none.json"});
+        "everything.toml", {"title=All", "n=16", "published=none.json"});
 }
 
 /// Another value of the same key.
@@ -106,11 +106,13 @@ std::size_t change_each(const Section& section, void* object, const Experiment& 
     std::size_t met = 0;
     Value value, kind;
     const Key* kinds = section.name == "shapes" ? section.find_key("kind") : nullptr;
-    const std::string own = kinds && kinds->slot.load(object, kind) ? kinds->words[static_cast<std::size_t>(kind.word)] : "";
+    const std::string own =
+        kinds && kinds->slot.load(object, kind) ? kinds->words[static_cast<std::size_t>(kind.word)] : "";
     for (const Key& key : section.keys) {
         if (!has_kind(key, own) || !key.slot.load(object, value)) continue;
         ++met;
-        if (key.type == Type::check) value.text = static_cast<AssertionPlan*>(object)->left;  // the slot stores one side
+        if (key.type == Type::check)
+            value.text = static_cast<AssertionPlan*>(object)->left;  // the slot stores one side
         key.slot.store(object, changed(key, value));
         EXPECT_NE(hash(e), before) << section.name << "." << key.name;
         key.slot.store(object, value);
@@ -166,7 +168,8 @@ TEST(Identity, ChangesWithWhatCodeChanges) {
 TEST(Identity, ReadsBackAsItself) {
     for (const char* name : {"gallery", "two-lamps", "empty-room", "three-glosses"}) {
         const Experiment e = load(folder + name + ".toml");
-        const std::filesystem::path copy = std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + ".toml");
+        const std::filesystem::path copy =
+            std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + ".toml");
         std::ofstream(copy) << canonical_text(e);
         EXPECT_EQ(hash(load(copy)), hash(e)) << canonical_text(e);
         std::filesystem::remove(copy);
@@ -176,13 +179,16 @@ TEST(Identity, ReadsBackAsItself) {
 }
 
 TEST(Identity, HoldsWhatWasPublishedNotWhere) {
-    const std::filesystem::path here = std::filesystem::path(testing::TempDir()) / ("identity-" + std::to_string(getpid()));
+    const std::filesystem::path here =
+        std::filesystem::path(testing::TempDir()) / ("identity-" + std::to_string(getpid()));
     std::filesystem::create_directories(here);
     std::ofstream(here / "room.toml") << room;
     std::ofstream(here / "a.json") << R"({"runs": [{"arm": "cosine", "n": 4, "s": 0, "y_mean": 0.5}]})";
     std::ofstream(here / "same.json") << R"({"runs": [ {"arm": "cosine", "n": 4, "s": 0, "y_mean": 0.50} ]})";
     std::ofstream(here / "b.json") << R"({"runs": [{"arm": "cosine", "n": 4, "s": 0, "y_mean": 0.6}]})";
-    const auto hash_with = [&](const char* file) { return hash(load(here / "room.toml", {std::string("published=") + file})); };
+    const auto hash_with = [&](const char* file) {
+        return hash(load(here / "room.toml", {std::string("published=") + file}));
+    };
     EXPECT_EQ(hash_with("a.json"), hash_with("same.json"));
     EXPECT_NE(hash_with("a.json"), hash_with("b.json"));
     EXPECT_NE(hash_with("a.json"), hash(load(here / "room.toml")));

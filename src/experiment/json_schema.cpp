@@ -87,7 +87,7 @@ Json kinds_of(const Section& section, const std::vector<std::string>& kinds) {
             else if (key.need == Need::required && !key.kinds.empty()) needed.push_back(key.name);
         }
         rules.push_back({{"if", {{"properties", {{"kind", {{"const", kind}}}}}, {"required", {"kind"}}}},
-                         {"then", {{"required", needed}, {"properties", foreign}}}});
+            {"then", {{"required", needed}, {"properties", foreign}}}});
     }
     return rules;
 }

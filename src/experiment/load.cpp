@@ -54,9 +54,7 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
     if (draft.e.published) {
         try {
             draft.e.figures = load_published(*draft.e.published);
-        } catch (const InputError& error) {
-            draft.complain("published", fmt::format("published: {}", error.what()));
-        }
+        } catch (const InputError& error) { draft.complain("published", fmt::format("published: {}", error.what())); }
     }
     throw_if_any(std::move(draft.complaints));
     return std::move(draft.e);
@@ -75,8 +73,8 @@ std::string read_text(const std::string& path, std::string_view what) {
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file)
-        throw InputError({path, 0, 0},
-                         fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
+        throw InputError(
+            {path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno ? errno : ENOENT)));
     std::string text(static_cast<std::size_t>(most), '\0');
     file.read(text.data(), most);
     if (file.bad())

@@ -101,7 +101,8 @@ const Mistake keys_and_types[] = {
     {"radius = 0.5", "radius = 0.5\nradis = 1", 15, 1, "unknown key 'radis' in [shapes.ball]"},
     {"[image]", "[images]\n[image]", 3, 2, "did you mean 'image'?"},
     {"radius = 0.5\n", "", 11, 9, "missing key 'radius' in [shapes.ball]: expected a number from 1e-06"},
-    {"[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nup = [0, 1, 0]\nvfov_deg = 40\n", "", 1, 1, "missing a table [camera]"},
+    {"[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nup = [0, 1, 0]\nvfov_deg = 40\n", "", 1, 1,
+        "missing a table [camera]"},
     {"seed = 5", "seed = 5\nseed = 6", 2, 8, "cannot redefine"},
     {"[shapes.brick]", "[shapes.ball]", 18, 1, "duplicate name"},
     {"width = 64", "width = 64.0", 4, 9, "expected an integer from 1 to 16384 (pixels), found 64.0"},
@@ -118,13 +119,15 @@ const Mistake keys_and_types[] = {
     {"min = [-1, 0, -1]", "min = [-1, 0, -1]\nradius = 1", 21, 1, "a box has no key 'radius'"},
     {"runs = [{", "runs = [3, {", 50, 9, "plates.pair.runs.0: expected a table, found 3"},
     {"n = 4 }]", "n = 4, m = 2 }]", 50, 53, "unknown key 'm' in [plates.pair.runs.1]"},
-    {"runs = [{ arm = \"cosine\" }, { arm = \"phong\", n = 4 }]", "runs = 3", 50, 8, "expected a list of tables, found 3"},
+    {"runs = [{ arm = \"cosine\" }, { arm = \"phong\", n = 4 }]", "runs = 3", 50, 8,
+        "expected a list of tables, found 3"},
     {"[regions.H]", "[regions.\"H/I\"]", 42, 10, "become file names", 2},
     {"[regions.H]", "[regions.\"../H\"]", 42, 10, "become file names", 2},
     {"", "over = 3\n", 53, 1, "expected tables [assertions.NAME], found 3"},
     {"", "[[plates.pair.extra]]\n", 53, 15, "unknown key 'extra' in [plates.pair]"},
     {"rho_s = 0.1", "rho_s =", 16, 8, "not TOML"},
-    {"", "[assertions.a]\ncheck = \"y_mean(cosine) > 0\"\nname = \"b\"\n", 55, 1, "unknown key 'name' in [assertions.a]"},
+    {"", "[assertions.a]\ncheck = \"y_mean(cosine) > 0\"\nname = \"b\"\n", 55, 1,
+        "unknown key 'name' in [assertions.a]"},
     {"", "[assertions.a]\ncheck = \"y_mean(cosine, n=4, n=16) > 0\"\n", 54, 9, "expected one n=, found two"},
 };
 
@@ -156,22 +159,27 @@ const Mistake values[] = {
     {"box = [3, 3, 9, 9]", "box = [3, 4, 9, 3]", 43, 7, "an empty box"},
     {"box = [3, 3, 9, 9]", "box = [3, 3, 64, 9]", 43, 7, "x from 0 to 63 and y from 0 to 31"},
     {"box = [3, 3, 9, 9]", "box = [-1, 3, 9, 9]", 43, 7, "found [-1, 3, 9, 9]"},
-    {"box = [3, 3, 9, 9]", "box = [0, 0, 4294967300, 4294967300]", 43, 7, "expected pixels from 0 to 16383, found [0, 0, 4294967300"},
+    {"box = [3, 3, 9, 9]", "box = [0, 0, 4294967300, 4294967300]", 43, 7,
+        "expected pixels from 0 to 16383, found [0, 0, 4294967300"},
     {"box = [3, 3, 9, 9]", "box = [3, 3, 9223372036854775807, 9]", 43, 7, "expected pixels from 0 to 16383"},
     {"box = [3, 3, 9, 9]", "box = [-9223372036854775808, 3, 9, 9]", 43, 7, "expected pixels from 0 to 16383"},
-    {"kind = \"columns\"", "kind = \"columns\"\ncrop = [40, 20, 4294967352, 34]", 50, 8, "expected pixels from 0 to 16383"},
+    {"kind = \"columns\"", "kind = \"columns\"\ncrop = [40, 20, 4294967352, 34]", 50, 8,
+        "expected pixels from 0 to 16383"},
     {"seed = 5", "seed = 4294967296", 1, 8, "expected an integer from 0 to 4294967295"},
     {"n = [4, 16]", "n = [4, 18446744073709551616]", 35, 29, "not representable in 64 bits"},
     {"kind = \"columns\"", "kind = \"columns\"\ncrop = [0, 0, 99, 9]", 50, 8, "expected a box on the image"},
     {"max = [1, 1, 1]", "max = [1, 0, 1]", 21, 7, "above min on every axis, found y no higher on y"},
     {"edge_v = [0, 1, 0]", "edge_v = [2, 0, 0]", 27, 10, "not parallel to edge_u"},
     {"edge_u = [1, 0, 0]", "edge_u = [0, 0, 0]", 26, 10, "expected an edge with a length"},
-    {"[furnaces.white]\narm = \"cosine\"", "[arms.reference]\nsampler = \"cosine\"\n[furnaces.white]\narm = \"cosine\"", 44, 7, "films/reference.exr is where those of the references go"},
-    {"[furnaces.white]\narm = \"cosine\"", "[arms.phong-s8]\nsampler = \"cosine\"\n[furnaces.white]\narm = \"cosine\"", 44, 7, "where those of phong at s = 8 go"},
+    {"[furnaces.white]\narm = \"cosine\"", "[arms.reference]\nsampler = \"cosine\"\n[furnaces.white]\narm = \"cosine\"",
+        44, 7, "films/reference.exr is where those of the references go"},
+    {"[furnaces.white]\narm = \"cosine\"", "[arms.phong-s8]\nsampler = \"cosine\"\n[furnaces.white]\narm = \"cosine\"",
+        44, 7, "where those of phong at s = 8 go"},
 };
 
 const Mistake names[] = {
-    {"arm = \"phong\"\ns", "arm = \"phnog\"\ns", 39, 7, "no arm 'phnog': expected one of cosine, phong; did you mean 'phong'?"},
+    {"arm = \"phong\"\ns", "arm = \"phnog\"\ns", 39, 7,
+        "no arm 'phnog': expected one of cosine, phong; did you mean 'phong'?"},
     {"arm = \"cosine\"\nshape", "arm = \"uniform\"\nshape", 45, 7, "no arm 'uniform'"},
     {"shape = \"ball\"\n[regions", "shape = \"bal\"\n[regions", 41, 9, "did you mean 'ball'?"},
     {"shape = \"ball\"\n[regions", "shape = \"brick\"\n[regions", 41, 9, "with an s of its own"},
@@ -204,10 +212,14 @@ const Mistake checks[] = {
     {"< rmse.H(cosine)", "< shape_pixels(bal)", 52, 12, "no shape 'bal'"},
     {"< rmse.H(cosine)", "< plate_bytes(par)", 52, 12, "did you mean 'pair'?"},
     {"< rmse.H(cosine)\"", "< tail.H(cosine)\"\nok.over = \"median\"", 52, 12, "at the experiment's seed alone"},
-    {"ok.check = \"rmse.H(phong) < rmse.H(cosine)\"", "ok.over = \"median\"", 52, 1, "missing key 'check' in [assertions.ok]"},
-    {"ok.check = \"rmse.H(phong) < rmse.H(cosine)\"", "ok.check = \"bad(phong) == 0\"\nok.over = \"medium\"", 53, 11, "did you mean 'median'?"},
+    {"ok.check = \"rmse.H(phong) < rmse.H(cosine)\"", "ok.over = \"median\"", 52, 1,
+        "missing key 'check' in [assertions.ok]"},
+    {"ok.check = \"rmse.H(phong) < rmse.H(cosine)\"", "ok.check = \"bad(phong) == 0\"\nok.over = \"medium\"", 53, 11,
+        "did you mean 'median'?"},
     {"[assertions]\nok.check", "[[assertions]]\ncheck", 51, 1, "missing key 'name' in [[assertions]]"},
-    {"[assertions]\nok.check", "[[assertions]]\nname = \"a\"\ncheck = \"bad(phong) == 0\"\n[[assertions]]\nname = \"a\"\ncheck", 55, 8, "the first stands at x.toml:52:8"},
+    {"[assertions]\nok.check",
+        "[[assertions]]\nname = \"a\"\ncheck = \"bad(phong) == 0\"\n[[assertions]]\nname = \"a\"\ncheck", 55, 8,
+        "the first stands at x.toml:52:8"},
 };
 
 INSTANTIATE_TEST_SUITE_P(KeysAndTypes, AMistake, testing::ValuesIn(keys_and_types));
@@ -228,7 +240,8 @@ TEST(Mistakes, AllAreReportedAtOnceInFileOrder) {
     } catch (const InputError& error) {
         std::vector<std::string> at;
         for (const Complaint& c : error.complaints()) at.push_back(to_string(c.at));
-        EXPECT_THAT(at, testing::ElementsAre("x.toml:4:9", "x.toml:29:8", "x.toml:31:1", "x.toml:43:7", "--set seed=-1"));
+        EXPECT_THAT(
+            at, testing::ElementsAre("x.toml:4:9", "x.toml:29:8", "x.toml:31:1", "x.toml:43:7", "--set seed=-1"));
     }
 }
 
@@ -254,7 +267,9 @@ TEST(Mistakes, AFileThatIsNotThereOrAFolderIsTheReadersMistake) {
 
 TEST(Mistakes, MoreDiskLightsThanKernelsHoldAreRefusedWhereTheFirstOfThemStands) {
     std::string text = good;
-    for (int k = 0; k < 64; ++k) text += fmt::format("\n[disks.more{}]\ncenter = [{}, 3, 0]\nnormal = [0, -1, 0]\nradius = 0.1\nradiance = [1, 1, 1]\n", k, k);
+    for (int k = 0; k < 64; ++k)
+        text += fmt::format(
+            "\n[disks.more{}]\ncenter = [{}, 3, 0]\nnormal = [0, -1, 0]\nradius = 0.1\nradiance = [1, 1, 1]\n", k, k);
     const std::size_t last = text.rfind("\n[disks.more63]");
     const auto line = 2 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(last), '\n');
     EXPECT_NO_THROW((void)parse(text.substr(0, last), "x.toml"));
@@ -272,9 +287,10 @@ TEST(Mistakes, JunkIsRefusedAndDoesNotCrash) {
         for (int i = 0; i < times; ++i) all += what;
         return all;
     };
-    for (const std::string& text : {std::string(), std::string(1, '\0'), repeated("[", 100000), "a = " + repeated("[", 100000), repeated("a.", 100000) + "a = 1",
-                                    "[" + repeated("a.", 100000) + "a]", "a = " + repeated("{a=", 1000), repeated("a", 5 << 20), repeated("\xff\xfe", 1000),
-                                    "[shapes]\n" + repeated("x", 100000) + " = 1", repeated("[[plates.a.runs]]\n", 5000)})
+    for (const std::string& text : {std::string(), std::string(1, '\0'), repeated("[", 100000),
+             "a = " + repeated("[", 100000), repeated("a.", 100000) + "a = 1", "[" + repeated("a.", 100000) + "a]",
+             "a = " + repeated("{a=", 1000), repeated("a", 5 << 20), repeated("\xff\xfe", 1000),
+             "[shapes]\n" + repeated("x", 100000) + " = 1", repeated("[[plates.a.runs]]\n", 5000)})
         EXPECT_THROW((void)parse(text, "junk"), InputError);
 }
 

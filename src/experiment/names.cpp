@@ -15,9 +15,17 @@ struct Sampler {
 };
 
 constexpr Sampler samplers[] = {
-    {"uniform", false},           {"cosine", false},     {"phong", true},  {"mixture", true},
-    {"mis-balance", true},        {"mis-power", true},   {"light-solid-angle", false},
-    {"light-area", false},        {"blinn", true},       {"ggx-d", false}, {"ggx-vndf", false},
+    {"uniform", false},
+    {"cosine", false},
+    {"phong", true},
+    {"mixture", true},
+    {"mis-balance", true},
+    {"mis-power", true},
+    {"light-solid-angle", false},
+    {"light-area", false},
+    {"blinn", true},
+    {"ggx-d", false},
+    {"ggx-vndf", false},
 };
 
 }  // namespace
@@ -29,10 +37,12 @@ std::vector<std::string> sampler_names() {
 }
 
 bool sampler_needs_s(std::string_view sampler) {
-    return std::any_of(std::begin(samplers), std::end(samplers),
-                       [&](const Sampler& s) { return s.name == sampler && s.needs_s; });
+    return std::any_of(
+        std::begin(samplers), std::end(samplers), [&](const Sampler& s) { return s.name == sampler && s.needs_s; });
 }
 
-std::string film_file(std::string_view arm, double s, double own_s) { return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s); }
+std::string film_file(std::string_view arm, double s, double own_s) {
+    return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s);
+}
 
 }  // namespace crescent

@@ -125,12 +125,12 @@ private:
         }
         if (valid.size() > 1)
             return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_,
-                                    valid[1][0], written_)),
+                       valid[1][0], written_)),
                    false;
         if (valid.empty() && !top && all.empty())
             return fail(fmt::format(
-                       "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}", path[0],
-                       hint(path[0], words))),
+                       "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}",
+                       path[0], hint(path[0], words))),
                    false;
         if (!valid.empty()) path = valid[0];
         else if (!top) path = all[0];  // the reader says what is wrong with its key
@@ -143,12 +143,11 @@ private:
             Member* next = node->is_table() || node->is_array() ? step(*node, path[i]) : nullptr;
             if (!next) {
                 if (!node->is_table())
-                    return fail(
-                        fmt::format("no '{}' in '{}': expected {}", path[i],
-                                    listed(Segments(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i)), "."),
-                                    node->is_array() && !node->members.empty()
-                                        ? fmt::format("an index from 0 to {}", node->members.size() - 1)
-                                        : "no more keys after it"));
+                    return fail(fmt::format("no '{}' in '{}': expected {}", path[i],
+                        listed(Segments(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i)), "."),
+                        node->is_array() && !node->members.empty()
+                            ? fmt::format("an index from 0 to {}", node->members.size() - 1)
+                            : "no more keys after it"));
                 node->members.push_back({path[i], place_, Node{}});
                 next = &node->members.back();
                 next->value.at = place_;

@@ -18,7 +18,7 @@ Place place_of_byte(std::string_view text, std::size_t byte, const std::string& 
     const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
     return {file, static_cast<unsigned>(std::count(before.begin(), before.end(), '\n') + 1),
-            static_cast<unsigned>(before.size() - line_start + 1)};
+        static_cast<unsigned>(before.size() - line_start + 1)};
 }
 
 class Reader {
@@ -32,7 +32,9 @@ public:
             if (key == "source")
                 all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
             else if (key == "seed")
-                all.seed = value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xffffffffu ? value.get<std::uint32_t>() : (fail("/seed", "a seed, 0 to 4294967295", value), 0u);
+                all.seed = value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xffffffffu
+                    ? value.get<std::uint32_t>()
+                    : (fail("/seed", "a seed, 0 to 4294967295", value), 0u);
             else if (key == "runs") runs(value, all);
             else if (key == "furnaces") furnaces(value, all);
             else fail("/" + key, "one of the keys source, seed, runs, furnaces", key);
@@ -42,13 +44,15 @@ public:
 
 private:
     static bool is_meter(const std::string& key) {
-        return key.starts_with("rmse.") || key.starts_with("var.") || key == "fireflies" || key == "horizon_frac" || key == "y_mean" || key == "rmse_frame";
+        return key.starts_with("rmse.") || key.starts_with("var.") || key == "fireflies" || key == "horizon_frac" ||
+            key == "y_mean" || key == "rmse_frame";
     }
 
     [[noreturn]] void fail(const std::string& at, const std::string& expected, const json& found) const {
         std::string text = found.dump(-1, ' ', false, json::error_handler_t::replace);
         if (text.size() > 40) text = text.substr(0, 37) + "...";
-        throw InputError({file_, 0, 0}, fmt::format("{}: expected {}, found {}", at.empty() ? "/" : at, expected, text));
+        throw InputError(
+            {file_, 0, 0}, fmt::format("{}: expected {}, found {}", at.empty() ? "/" : at, expected, text));
     }
 
     void runs(const json& list, Published& all) const {
@@ -63,12 +67,13 @@ private:
             fail(at, "an object with arm (text), n (integer) and s (number)", run);
         for (const auto& [key, value] : run.items()) {
             if (key == "arm" || key == "n" || key == "s") continue;
-            if (!is_meter(key)) fail(at + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
+            if (!is_meter(key))
+                fail(at + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
             if (!value.is_number()) fail(at + "/" + key, "a number", value);
             const bool fresh =
                 all.runs
                     .emplace(std::tuple(arm->get<std::string>(), n->get<std::uint64_t>(), s->get<double>(), key),
-                             value.get<double>())
+                        value.get<double>())
                     .second;
             if (!fresh) fail(at + "/" + key, "a figure that was not given before", value);
         }
@@ -87,7 +92,8 @@ private:
 
 }  // namespace
 
-std::optional<double> Published::find(const std::string& arm, std::uint64_t n, double s, const std::string& meter) const {
+std::optional<double> Published::find(
+    const std::string& arm, std::uint64_t n, double s, const std::string& meter) const {
     const auto it = runs.find({arm, n, s, meter});
     return it == runs.end() ? std::nullopt : std::optional(it->second);
 }

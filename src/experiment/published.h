@@ -1,5 +1,6 @@
 // Figures that someone published for an experiment, to stand beside the measured ones. JSON:
-//   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces": {"NAME": 0.29}}
+//   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces":
+//   {"NAME": 0.29}}
 // Meters are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
 #pragma once
 

@@ -43,7 +43,9 @@ public:
     }
 
 private:
-    static bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-'; }
+    static bool is_word(char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-';
+    }
     void blanks() {
         while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
     }
@@ -65,7 +67,8 @@ private:
     }
     std::string word() {
         blanks();
-        const auto length = static_cast<std::size_t>(std::find_if_not(rest_.begin(), rest_.end(), is_word) - rest_.begin());
+        const auto length =
+            static_cast<std::size_t>(std::find_if_not(rest_.begin(), rest_.end(), is_word) - rest_.begin());
         const std::string taken(rest_.substr(0, length));
         rest_.remove_prefix(length);
         return taken;
@@ -88,10 +91,12 @@ private:
         const std::size_t dot = name.find('.');
         q.word = name.substr(0, dot);
         if (dot != std::string::npos) q.region = name.substr(dot + 1);
-        const auto known = std::find_if(words_.begin(), words_.end(), [&](const QuantityWord& w) { return w.word == q.word; });
+        const auto known =
+            std::find_if(words_.begin(), words_.end(), [&](const QuantityWord& w) { return w.word == q.word; });
         if (known == words_.end()) {
             const std::vector<std::string> valid = all_words(words_);
-            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "), hint(q.word, valid));
+            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "),
+                hint(q.word, valid));
             return false;
         }
         if (known->of_region != !q.region.empty()) {
@@ -138,7 +143,7 @@ template <class T> std::string missing(const std::vector<T>& all, const char* wh
     for (const T& one : all) names.push_back(one.name);
     if (std::count(names.begin(), names.end(), name)) return "";
     return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64),
-                       names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
+        names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
 }
 
 std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
@@ -159,12 +164,14 @@ const std::vector<QuantityWord>& quantity_words() {
         {"var", true, QuantityOf::run, "mean over a region of the variance of the mean of Y"},
         {"tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
         {"fireflies", false, QuantityOf::run, "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"},
-        {"horizon_frac", false, QuantityOf::run, "part of the directions drawn at geometry pixels that fall under the horizon"},
+        {"horizon_frac", false, QuantityOf::run,
+            "part of the directions drawn at geometry pixels that fall under the horizon"},
         {"y_mean", false, QuantityOf::run, "mean Y of the whole frame"},
         {"rmse_frame", false, QuantityOf::run, "root mean square error of Y over the whole frame"},
-        {"largest", false, QuantityOf::run, "largest single sample of the frame; the arm's highest rung unless n is said"},
+        {"largest", false, QuantityOf::run,
+            "largest single sample of the frame; the arm's highest rung unless n is said"},
         {"bad", false, QuantityOf::run,
-         "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
+            "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
         {"furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
         {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
         {"shape_pixels", false, QuantityOf::shape, "pixels in which the camera sees a shape"},
@@ -176,15 +183,17 @@ const std::vector<QuantityWord>& quantity_words() {
 }
 
 std::string form_of(const QuantityWord& word) {
-    static constexpr std::string_view brackets[] = {"", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)"};
-    return fmt::format("{}{}{}", word.word, word.of_region ? ".REGION" : "",
-                       brackets[static_cast<std::size_t>(word.subject)]);
+    static constexpr std::string_view brackets[] = {
+        "", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)"};
+    return fmt::format(
+        "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
 }
 
 std::optional<ParsedQuantity> parse_quantity(std::string_view text, std::string& why) {
     return Parser(text, why, quantity_words()).quantity();
 }
-std::optional<Comparison> parse_comparison(std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
+std::optional<Comparison> parse_comparison(
+    std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
     return Parser(text, why, words).comparison();
 }
 
@@ -204,7 +213,8 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     if (!q.region.empty())
         if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
     const auto& words = quantity_words();
-    const auto known = std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
+    const auto known =
+        std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
     switch (known == words.end() ? QuantityOf::none : known->subject) {
         case QuantityOf::none: return "";
         case QuantityOf::run: return resolve_run(q, e);

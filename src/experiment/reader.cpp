@@ -15,12 +15,12 @@ constexpr std::size_t most_elements = 4096;  // of a family of tables; a film co
 bool file_safe(std::string_view name) {
     const auto plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
     return !name.empty() && name.size() <= 64 && plain(static_cast<unsigned char>(name[0])) &&
-           std::all_of(name.begin(), name.end(), [&](unsigned char c) { return plain(c) || c == '.' || c == '-'; });
+        std::all_of(name.begin(), name.end(), [&](unsigned char c) { return plain(c) || c == '.' || c == '-'; });
 }
 
 bool one_line(std::string_view name) {
     return !name.empty() && name.size() <= 200 &&
-           std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
 }
 
 std::string join(const std::string& path, std::string_view name) {
@@ -64,9 +64,9 @@ private:
             const std::vector<std::string> valid = words_of(section, kind);
             const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
                                           : fmt::format("unknown key '{}'", member.key.substr(0, 64));
-            draft_.complain(
-                join(path, member.key), member.at,
-                fmt::format("{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
+            draft_.complain(join(path, member.key), member.at,
+                fmt::format(
+                    "{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
         }
     }
 
@@ -75,8 +75,8 @@ private:
         const std::string name = path.substr(path.rfind('.') + 1);
         const bool made_by_override = at.line == 0 && !siblings.empty();
         draft_.complain(join(path, key.name), at,
-                        fmt::format("missing key '{}' in {}: expected {}{}", key.name, where(path), expectation(key),
-                                    made_by_override ? hint(name, siblings) : ""));
+            fmt::format("missing key '{}' in {}: expected {}{}", key.name, where(path), expectation(key),
+                made_by_override ? hint(name, siblings) : ""));
     }
 
     void value(const Key& key, const Node& node, const std::string& path, void* object) {
@@ -110,22 +110,25 @@ private:
     }
 
     /// A table, or all tables of a family.
-    void family(const Section& section, const Node& parent, const std::string& path, const Place& parent_at, void* object) {
+    void family(
+        const Section& section, const Node& parent, const std::string& path, const Place& parent_at, void* object) {
         const Member* member = parent.find(section.name);
         if (!member) return absent(section, path, parent_at, object);
         const Node& node = member->value;
         draft_.e.places[path] = member->at;
         const bool listed = section.many == Many::list || section.many == Many::titled;
         if (!node.is_table() && !(listed && node.is_array()))
-            return draft_.complain(path, node.at,
-                                   fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
+            return draft_.complain(
+                path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
         if (section.many == Many::list && node.is_table())
-            return draft_.complain(path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
+            return draft_.complain(
+                path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
         if (section.many == Many::one)
-            return table(section, node, path, member->at, section.family.add ? section.family.add(object, "", member->at) : object);
+            return table(section, node, path, member->at,
+                section.family.add ? section.family.add(object, "", member->at) : object);
         if (section.need == Need::required && node.members.empty())
-            return draft_.complain(path, member->at,
-                                   fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
+            return draft_.complain(
+                path, member->at, fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
         elements(section, node, path, object);
     }
 
@@ -138,16 +141,17 @@ private:
     void absent(const Section& section, const std::string& path, const Place& parent_at, void* object) {
         if (section.need == Need::required)
             return draft_.complain(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
-        const bool all_default =
-            std::none_of(section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
+        const bool all_default = std::none_of(
+            section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
         if (section.many == Many::one && all_default)
-            table(section, Node{}, path, parent_at, section.family.add ? section.family.add(object, "", parent_at) : object);
+            table(section, Node{}, path, parent_at,
+                section.family.add ? section.family.add(object, "", parent_at) : object);
     }
 
     void elements(const Section& section, const Node& node, const std::string& path, void* object) {
         if (node.members.size() > most_elements)
-            return draft_.complain(
-                path, node.at, fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
+            return draft_.complain(path, node.at,
+                fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
         std::vector<std::string> names;
         for (const Member& member : node.members) names.push_back(member.key);
         titles_.clear();
@@ -160,23 +164,22 @@ private:
         siblings.clear();
     }
 
-    void element(const Section& section, const Node& node, const Member& member, const std::string& path, std::size_t index,
-                 void* object) {
+    void element(const Section& section, const Node& node, const Member& member, const std::string& path,
+        std::size_t index, void* object) {
         const std::string label = node.is_array() ? fmt::format("{}.{}", path, index) : join(path, member.key);
         if (!member.value.is_table())
-            return draft_.complain(
-                label, node.is_array() ? member.value.at : member.at,
+            return draft_.complain(label, node.is_array() ? member.value.at : member.at,
                 fmt::format("{}: expected {}, found {}", label,
-                            section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
+                    section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
         std::string name = member.key;
         Place at = member.at;
         if (section.many == Many::titled && node.is_array() && !title(member, path, index, name, at)) return;
         const std::string own = section.many == Many::list ? fmt::format("{}.{}", path, index) : join(path, name);
         if (section.many == Many::named && !file_safe(name))
             draft_.complain(own, at,
-                            fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
-                                        "letter, digit or '_' first: names become file names",
-                                        name.substr(0, 64), where(path)));
+                fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
+                            "letter, digit or '_' first: names become file names",
+                    name.substr(0, 64), where(path)));
         if (section.many == Many::titled && !one_line(name))
             draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
         draft_.e.places[own] = at;
@@ -189,10 +192,9 @@ private:
         const Member* own = member.value.find("name");
         at = member.value.at;
         if (!own || own->value.kind != Node::Kind::text) {
-            draft_.complain(
-                fmt::format("{}.{}", path, index), own ? own->value.at : at,
-                fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'", path,
-                            own ? ", found " + describe(own->value) : ""));
+            draft_.complain(fmt::format("{}.{}", path, index), own ? own->value.at : at,
+                fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'",
+                    path, own ? ", found " + describe(own->value) : ""));
             return false;
         }
         name = own->value.text;
@@ -200,8 +202,8 @@ private:
         const auto [first, fresh] = titles_.emplace(name, at);
         if (!fresh)
             draft_.complain(fmt::format("{}.{}", path, index), at,
-                            fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name,
-                                        path, to_string(first->second)));
+                fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path,
+                    to_string(first->second)));
         return fresh;
     }
 

@@ -17,11 +17,16 @@ struct RunCount {
     std::size_t least, most;
 };
 constexpr RunCount run_counts[] = {
-    {PlateKind::hero, "hero", 1, 1},           {PlateKind::gallery, "gallery", 0, 1},
-    {PlateKind::columns, "columns", 1, 4},     {PlateKind::ladder, "ladder", 1, 64},
-    {PlateKind::exponent, "exponent", 1, 4},   {PlateKind::surround, "surround", 1, 4},
-    {PlateKind::reference, "reference", 0, 1}, {PlateKind::heat, "heat", 1, 4},
-    {PlateKind::rose, "rose", 1, 4},           {PlateKind::meters, "meters", 0, 64},
+    {PlateKind::hero, "hero", 1, 1},
+    {PlateKind::gallery, "gallery", 0, 1},
+    {PlateKind::columns, "columns", 1, 4},
+    {PlateKind::ladder, "ladder", 1, 64},
+    {PlateKind::exponent, "exponent", 1, 4},
+    {PlateKind::surround, "surround", 1, 4},
+    {PlateKind::reference, "reference", 0, 1},
+    {PlateKind::heat, "heat", 1, 4},
+    {PlateKind::rose, "rose", 1, 4},
+    {PlateKind::meters, "meters", 0, 64},
 };
 
 void resolve_s(Draft& draft) {
@@ -29,20 +34,21 @@ void resolve_s(Draft& draft) {
     if (e.exponent && draft.sound("exponent.shape")) {
         const Shape* shape = e.find_shape(e.exponent->shape);
         if (shape && !shape->material.s && draft.sound("shapes." + shape->name + ".s"))
-            draft.complain(
-                "exponent.shape",
-                fmt::format("exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
+            draft.complain("exponent.shape",
+                fmt::format(
+                    "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
     }
     const double s = e.s();
     for (Shape& shape : e.shapes)
         if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
-    if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(),
-                             [&](const Shape& x) { return !draft.sound("shapes." + x.name + ".s"); }))
+    if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
+            return !draft.sound("shapes." + x.name + ".s");
+        }))
         return;
     for (const ArmPlan& arm : e.arms)
         if (sampler_needs_s(arm.sampler))
             draft.complain("arms." + arm.name,
-                           fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
+                fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
 }
 
 void resolve_ladders(Draft& draft) {
@@ -51,9 +57,10 @@ void resolve_ladders(Draft& draft) {
         if (!arm.n.empty() || !draft.sound(path + ".n") || !draft.sound("n")) continue;
         if (draft.e.n > 0) arm.n = {draft.e.n};
         else
-            draft.complain(path + ".n", fmt::format("missing key 'n' in [{}]: expected ascending integers from 1 to "
-                                                    "16777216 (samples/pixel), or an n for the whole experiment",
-                                                    path));
+            draft.complain(path + ".n",
+                fmt::format("missing key 'n' in [{}]: expected ascending integers from 1 to "
+                            "16777216 (samples/pixel), or an n for the whole experiment",
+                    path));
     }
 }
 
@@ -63,8 +70,9 @@ std::uint64_t rung(Draft& draft, const std::string& path, const std::string& arm
     if (!arm || arm->n.empty()) return n;
     if (n == 0) return draft.e.n_of(*arm);
     if (!std::count(arm->n.begin(), arm->n.end(), n))
-        draft.complain(path, fmt::format("{}: the arm '{}' has no rung n = {}: expected one of {}", path, arm_name, n,
-                                         listed(arm->n, ", ")));
+        draft.complain(path,
+            fmt::format(
+                "{}: the arm '{}' has no rung n = {}: expected one of {}", path, arm_name, n, listed(arm->n, ", ")));
     return n;
 }
 
@@ -78,10 +86,11 @@ void resolve_plate(Draft& draft, PlatePlan& plate) {
     if (!draft.sound(path + ".kind") || !draft.sound(path + ".runs")) return;
     const RunCount& count = run_counts[static_cast<std::size_t>(plate.kind)];
     if (plate.runs.size() < count.least || plate.runs.size() > count.most) {
-        const std::string many =
-            count.least == count.most ? fmt::format("{}", count.least) : fmt::format("{} to {}", count.least, count.most);
-        draft.complain(path + ".runs", fmt::format("{}.runs: expected {} for a plate of kind {}, found {}", path, many,
-                                                   count.word, plate.runs.size()));
+        const std::string many = count.least == count.most ? fmt::format("{}", count.least)
+                                                           : fmt::format("{} to {}", count.least, count.most);
+        draft.complain(path + ".runs",
+            fmt::format(
+                "{}.runs: expected {} for a plate of kind {}, found {}", path, many, count.word, plate.runs.size()));
     }
     std::vector<PlateRun> runs;
     for (std::size_t i = 0; i < plate.runs.size(); ++i) {
@@ -111,13 +120,13 @@ void resolve_plate(Draft& draft, PlatePlan& plate) {
 std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s) {
     if (s == 0 || s == e.s() || n == 0 || !e.find_arm(arm)) return "";
     if (!e.exponent)
-        return fmt::format("no run at s = {}: expected the experiment's own s = {}; there is no [exponent] control", s,
-                           e.s());
+        return fmt::format(
+            "no run at s = {}: expected the experiment's own s = {}; there is no [exponent] control", s, e.s());
     const ExponentControl& control = *e.exponent;
     if (control.arm == arm && control.n == n && std::count(control.s.begin(), control.s.end(), s)) return "";
     return fmt::format(
-        "no run {} n={} s={}: expected the experiment's own s = {}, or a run of the exponent control: {} n={} s = {}", arm,
-        n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
+        "no run {} n={} s={}: expected the experiment's own s = {}, or a run of the exponent control: {} n={} s = {}",
+        arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
 void resolve_runs(Draft& draft) {

@@ -131,8 +131,9 @@ std::vector<std::string> words_of(const Section& section, std::string_view kind 
 
 /// A number that the table's range has let through, as an integer.
 template <class T> T whole(double x) {
-    ensure(x >= static_cast<double>(std::numeric_limits<T>::min()) && x <= static_cast<double>(std::numeric_limits<T>::max()),
-           "the range of a key fits the type it is stored in");
+    ensure(x >= static_cast<double>(std::numeric_limits<T>::min()) &&
+            x <= static_cast<double>(std::numeric_limits<T>::max()),
+        "the range of a key fits the type it is stored in");
     return static_cast<T>(x);
 }
 
@@ -151,10 +152,16 @@ inline void assign(Box& to, const Value& v) {
     const auto at = [&](int i) { return whole<int>(v.numbers[static_cast<std::size_t>(i)]); };
     to = {at(0), at(1), at(2), at(3)};
 }
-template <class T> requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void assign(T& to, const Value& v) {
+template <class T>
+    requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
+void assign(T& to, const Value& v) {
     to = whole<T>(v.number);
 }
-template <class T> requires std::is_enum_v<T> void assign(T& to, const Value& v) { to = static_cast<T>(v.word); }
+template <class T>
+    requires std::is_enum_v<T>
+void assign(T& to, const Value& v) {
+    to = static_cast<T>(v.word);
+}
 template <class T> void assign(std::optional<T>& to, const Value& v) { assign(to.emplace(), v); }
 
 inline bool fetch(double from, Value& v) { return v.number = from, true; }
@@ -172,10 +179,16 @@ inline bool fetch(const Box& from, Value& v) {
     for (const int x : {from.x0, from.y0, from.x1, from.y1}) v.numbers.push_back(x);
     return true;
 }
-template <class T> requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) bool fetch(T from, Value& v) {
+template <class T>
+    requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
+bool fetch(T from, Value& v) {
     return v.number = static_cast<double>(from), true;
 }
-template <class T> requires std::is_enum_v<T> bool fetch(T from, Value& v) { return v.word = static_cast<int>(from), true; }
+template <class T>
+    requires std::is_enum_v<T>
+bool fetch(T from, Value& v) {
+    return v.word = static_cast<int>(from), true;
+}
 template <class T> bool fetch(const std::optional<T>& from, Value& v) { return from && fetch(*from, v); }
 
 template <class T> struct OwnerOf;
@@ -195,7 +208,8 @@ template <auto First, auto... Rest> constexpr Slot to = {
         assign(member_of<First, Rest...>(*static_cast<typename OwnerOf<decltype(First)>::type*>(object)), value);
     },
     [](const void* object, Value& value) {
-        return fetch(member_of<First, Rest...>(*static_cast<const typename OwnerOf<decltype(First)>::type*>(object)), value);
+        return fetch(
+            member_of<First, Rest...>(*static_cast<const typename OwnerOf<decltype(First)>::type*>(object)), value);
     }};
 
 template <class T> T* make_room(T& member) { return &member; }
@@ -209,15 +223,17 @@ template <class T> std::span<const T> all_of(const std::optional<T>& member) {
 template <class T> std::span<const T> all_of(const std::vector<T>& member) { return member; }
 
 /// The objects that a section's keys are stored into: the member itself, or its elements.
-template <auto M, class Owner = typename OwnerOf<decltype(M)>::type> constexpr Family in = {
-    [](void* parent, const std::string& name, const Place& at) -> void* {
-        auto* object = make_room(static_cast<Owner*>(parent)->*M);
-        if constexpr (requires { object->name; }) object->name = name;
-        if constexpr (requires { object->at; }) object->at = at;
-        return object;
-    },
+template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
+constexpr Family in = {[](void* parent, const std::string& name, const Place& at) -> void* {
+                           auto* object = make_room(static_cast<Owner*>(parent)->*M);
+                           if constexpr (requires { object->name; }) object->name = name;
+                           if constexpr (requires { object->at; }) object->at = at;
+                           return object;
+                       },
     [](const void* parent) { return all_of(static_cast<const Owner*>(parent)->*M).size(); },
-    [](const void* parent, std::size_t index) -> const void* { return &all_of(static_cast<const Owner*>(parent)->*M)[index]; },
+    [](const void* parent, std::size_t index) -> const void* {
+        return &all_of(static_cast<const Owner*>(parent)->*M)[index];
+    },
     [](const void* object) -> std::string {
         using Object = typename decltype(all_of(std::declval<const Owner&>().*M))::value_type;
         if constexpr (requires(const Object& o) { o.name; }) return static_cast<const Object*>(object)->name;

@@ -60,7 +60,8 @@ std::string key_text(const Key& key) {
 void print(const Section& section, const std::string& parent, std::string& out) {
     const std::string path = path_of(section, parent);
     if (!path.empty()) {
-        const std::string header = section.many == Many::list ? "[[" + join(parent, section.name) + "]]" : "[" + path + "]";
+        const std::string header =
+            section.many == Many::list ? "[[" + join(parent, section.name) + "]]" : "[" + path + "]";
         out += fmt::format("\n{}{}\n", header, section.need == Need::required ? "  (required)" : "");
     }
     out += wrapped(section.means, 0);

@@ -5,13 +5,13 @@ namespace crescent {
 
 namespace {
 
-constexpr Range free_range{-1e6, 1e6};           // coordinates: float kernels keep sub-millimetre steps well inside
+constexpr Range free_range{-1e6, 1e6};  // coordinates: float kernels keep sub-millimetre steps well inside
 constexpr Range length{1e-6, 1e6};
-constexpr Range unit_range{0, 1};                // albedos
+constexpr Range unit_range{0, 1};  // albedos
 constexpr Range exponent_range{0, 1e6, true};
-constexpr Range radiance_range{0, 1e9};          // its square and a thousandfold weight still fit a float
-constexpr Range count_range{1, 16777216};        // 2^24 samples per pixel
-constexpr Range seed_range{0, 4294967295.0};     // 32 bits
+constexpr Range radiance_range{0, 1e9};       // its square and a thousandfold weight still fit a float
+constexpr Range count_range{1, 16777216};     // 2^24 samples per pixel
+constexpr Range seed_range{0, 4294967295.0};  // 32 bits
 constexpr Range pixel_range{0, 16383};
 constexpr Range none{};
 
@@ -19,202 +19,207 @@ constexpr Need required = Need::required, optional = Need::optional, defaulted =
 
 Section image() {
     return {"image", Many::one, required,
-            "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.", in<&Experiment::image>,
-            {{"width", Type::integer, {1, 16384}, "pixels", required, "", "Columns.", to<&Image::width>},
-             {"height", Type::integer, {1, 16384}, "pixels", required, "", "Rows.", to<&Image::height>}},
-            {}};
+        "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.", in<&Experiment::image>,
+        {{"width", Type::integer, {1, 16384}, "pixels", required, "", "Columns.", to<&Image::width>},
+            {"height", Type::integer, {1, 16384}, "pixels", required, "", "Rows.", to<&Image::height>}},
+        {}};
 }
 
 Section camera() {
     return {"camera", Many::one, required, "A pinhole camera.", in<&Experiment::camera>,
-            {{"eye", Type::point, free_range, "m", required, "", "Where it stands.", to<&Camera::eye>},
-             {"target", Type::point, free_range, "m", required, "",
-              "The point in the middle of the picture.", to<&Camera::target>},
-             {"up", Type::direction, none, "", defaulted, "[0, 1, 0]",
-              "What is up in the picture; not parallel to the view.", to<&Camera::up>},
-             {"vfov_deg", Type::number, {0, 180, true, true}, "degrees", required, "",
-              "Vertical field of view.", to<&Camera::vfov_deg>}},
-            {}};
+        {{"eye", Type::point, free_range, "m", required, "", "Where it stands.", to<&Camera::eye>},
+            {"target", Type::point, free_range, "m", required, "", "The point in the middle of the picture.",
+                to<&Camera::target>},
+            {"up", Type::direction, none, "", defaulted, "[0, 1, 0]",
+                "What is up in the picture; not parallel to the view.", to<&Camera::up>},
+            {"vfov_deg", Type::number, {0, 180, true, true}, "degrees", required, "", "Vertical field of view.",
+                to<&Camera::vfov_deg>}},
+        {}};
 }
 
 std::vector<Key> geometry_keys() {
     return {
         {"center", Type::point, free_range, "m", required, "", "Centre.", to<&Shape::center>, {}, "sphere disk"},
         {"radius", Type::number, length, "m", required, "", "Radius.", to<&Shape::radius>, {}, "sphere disk"},
-        {"min", Type::point, free_range, "m", required, "",
-         "Lowest corner of an axis-aligned box.", to<&Shape::min>, {}, "box"},
-        {"max", Type::point, free_range, "m", required, "",
-         "Highest corner; above min on every axis.", to<&Shape::max>, {}, "box"},
-        {"corner", Type::point, free_range, "m", required, "",
-         "A corner of the quad, or of the panel's opening.", to<&Shape::corner>, {}, "quad panel"},
-        {"edge_u", Type::point, free_range, "m", required, "",
-         "First edge from the corner.", to<&Shape::edge_u>, {}, "quad panel"},
-        {"edge_v", Type::point, free_range, "m", required, "",
-         "Second edge; the face looks along edge_u x edge_v.", to<&Shape::edge_v>, {}, "quad panel"},
-        {"depth", Type::number, length, "m", required, "",
-         "How far the panel is set back behind its opening.", to<&Shape::depth>, {}, "panel"},
-        {"point", Type::point, free_range, "m", required, "",
-         "A point of the infinite plane.", to<&Shape::point>, {}, "plane"},
-        {"normal", Type::direction, none, "", required, "",
-         "Where the face looks.", to<&Shape::normal>, {}, "plane disk"},
+        {"min", Type::point, free_range, "m", required, "", "Lowest corner of an axis-aligned box.", to<&Shape::min>,
+            {}, "box"},
+        {"max", Type::point, free_range, "m", required, "", "Highest corner; above min on every axis.", to<&Shape::max>,
+            {}, "box"},
+        {"corner", Type::point, free_range, "m", required, "", "A corner of the quad, or of the panel's opening.",
+            to<&Shape::corner>, {}, "quad panel"},
+        {"edge_u", Type::point, free_range, "m", required, "", "First edge from the corner.", to<&Shape::edge_u>, {},
+            "quad panel"},
+        {"edge_v", Type::point, free_range, "m", required, "", "Second edge; the face looks along edge_u x edge_v.",
+            to<&Shape::edge_v>, {}, "quad panel"},
+        {"depth", Type::number, length, "m", required, "", "How far the panel is set back behind its opening.",
+            to<&Shape::depth>, {}, "panel"},
+        {"point", Type::point, free_range, "m", required, "", "A point of the infinite plane.", to<&Shape::point>, {},
+            "plane"},
+        {"normal", Type::direction, none, "", required, "", "Where the face looks.", to<&Shape::normal>, {},
+            "plane disk"},
     };
 }
 
 Section shapes() {
     std::vector<Key> keys = {{"kind", Type::word, none, "", required, "", "What it is.", to<&Shape::kind>,
-                              {"sphere", "box", "quad", "disk", "plane", "panel"}}};
+        {"sphere", "box", "quad", "disk", "plane", "panel"}}};
     for (Key& key : geometry_keys()) keys.push_back(std::move(key));
     const std::vector<Key> material = {
-        {"rho_d", Type::color, unit_range, "", required, "",
-         "Diffuse albedo: f = rho_d/pi + rho_s lobe.", to<&Shape::material, &Material::rho_d>},
-        {"rho_s", Type::number, unit_range, "", defaulted, "0",
-         "Albedo of the lobe; 0: a Lambert surface.", to<&Shape::material, &Material::rho_s>},
+        {"rho_d", Type::color, unit_range, "", required, "", "Diffuse albedo: f = rho_d/pi + rho_s lobe.",
+            to<&Shape::material, &Material::rho_d>},
+        {"rho_s", Type::number, unit_range, "", defaulted, "0", "Albedo of the lobe; 0: a Lambert surface.",
+            to<&Shape::material, &Material::rho_s>},
         {"s", Type::number, exponent_range, "", optional, "the experiment's s; needed where rho_s > 0",
-         "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
-        {"brdf", Type::word, none, "", defaulted, "\"phong\"",
-         "Which lobe.", to<&Shape::material, &Material::brdf>, {"phong", "blinn-phong", "ggx"}},
-        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)), a lobe about as wide; a ggx lobe states its own",
-         "GGX roughness, not remapped.", to<&Shape::material, &Material::alpha>},
+            "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
+        {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Shape::material, &Material::brdf>,
+            {"phong", "blinn-phong", "ggx"}},
+        {"alpha", Type::number, {0, 1, true}, "", optional,
+            "sqrt(2/(s+2)), a lobe about as wide; a ggx lobe states its own", "GGX roughness, not remapped.",
+            to<&Shape::material, &Material::alpha>},
         {"reveal_rho_d", Type::color, unit_range, "", optional, "rho_d",
-         "Diffuse albedo of the four sides of the recess.", to<&Shape::reveal_rho_d>, {}, "panel"},
-        {"occludes", Type::flag, none, "", defaulted, "false",
-         "Whether it stands in the way of the disks' light.", to<&Shape::occludes>}};
+            "Diffuse albedo of the four sides of the recess.", to<&Shape::reveal_rho_d>, {}, "panel"},
+        {"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the disks' light.",
+            to<&Shape::occludes>}};
     keys.insert(keys.end(), material.begin(), material.end());
     return {"shapes", Many::named, required, "What the camera sees.", in<&Experiment::shapes>, std::move(keys), {}};
 }
 
 Section disks() {
-    return {"disks", Many::named, optional,
-            "Disks that shine; sampled rays meet them, the camera does not see them.", in<&Experiment::disks>,
-            {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
-             {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
-             {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
-             {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "",
-              "Radiance.", to<&DiskLight::radiance>},
-             {"two_sided", Type::flag, none, "", defaulted, "false",
-              "Whether both sides shine.", to<&DiskLight::two_sided>}},
-            {}};
+    return {"disks", Many::named, optional, "Disks that shine; sampled rays meet them, the camera does not see them.",
+        in<&Experiment::disks>,
+        {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
+            {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
+            {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
+            {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.",
+                to<&DiskLight::radiance>},
+            {"two_sided", Type::flag, none, "", defaulted, "false", "Whether both sides shine.",
+                to<&DiskLight::two_sided>}},
+        {}};
 }
 
 Section fill() {
     return {"fill", Many::one, optional, "Light from every direction in which no disk is met.", {},
-            {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]",
-              "Radiance.", to<&Experiment::fill>}}, {}};
+        {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
+            to<&Experiment::fill>}},
+        {}};
 }
 
 Section arms() {
     return {"arms", Many::named, required,
-            "The samplers on trial. All see the same random numbers; rungs are prefixes of one stream.",
-            in<&Experiment::arms>,
-            {{"sampler", Type::sampler, none, "", defaulted, "the arm's own name",
-              "Which sampler it is.", to<&ArmPlan::sampler>},
-             {"n", Type::integers, count_range, "samples/pixel", optional, "the experiment's n",
-              "The ladder, ascending; one integer is a ladder of one.", to<&ArmPlan::n>}},
-            {}};
+        "The samplers on trial. All see the same random numbers; rungs are prefixes of one stream.",
+        in<&Experiment::arms>,
+        {{"sampler", Type::sampler, none, "", defaulted, "the arm's own name", "Which sampler it is.",
+             to<&ArmPlan::sampler>},
+            {"n", Type::integers, count_range, "samples/pixel", optional, "the experiment's n",
+                "The ladder, ascending; one integer is a ladder of one.", to<&ArmPlan::n>}},
+        {}};
 }
 
 Section exponent() {
     return {"exponent", Many::one, optional,
-            "The exponent control: one arm again at other s, in pdf, BRDF and reference alike.", in<&Experiment::exponent>,
-            {{"arm", Type::arm, none, "", required, "", "The arm.", to<&ExponentControl::arm>},
-             {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n",
-              "A rung of that arm.", to<&ExponentControl::n>},
-             {"s", Type::numbers, exponent_range, "", required, "",
-              "The exponents, ascending.", to<&ExponentControl::s>},
-             {"shape", Type::shape, none, "", required, "",
-              "The shape whose s is the experiment's s.", to<&ExponentControl::shape>}},
-            {}};
+        "The exponent control: one arm again at other s, in pdf, BRDF and reference alike.", in<&Experiment::exponent>,
+        {{"arm", Type::arm, none, "", required, "", "The arm.", to<&ExponentControl::arm>},
+            {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n", "A rung of that arm.",
+                to<&ExponentControl::n>},
+            {"s", Type::numbers, exponent_range, "", required, "", "The exponents, ascending.",
+                to<&ExponentControl::s>},
+            {"shape", Type::shape, none, "", required, "", "The shape whose s is the experiment's s.",
+                to<&ExponentControl::shape>}},
+        {}};
 }
 
 Section regions() {
     return {"regions", Many::named, optional, "Where errors are measured.", in<&Experiment::regions>,
-            {{"box", Type::box, pixel_range, "pixels", required, "",
-              "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}}, {}};
+        {{"box", Type::box, pixel_range, "pixels", required, "",
+            "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
+        {}};
 }
 
 Section reference() {
     return {"reference", Many::one, optional, "What the meters compare with.", in<&Experiment::reference>,
-            {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
-              "Converged integration, or the note's Monte Carlo.", to<&ReferencePlan::kind>, {"quadrature", "note"}},
-             {"seed", Type::integer, seed_range, "", defaulted, "1",
-              "Of the Monte Carlo reference.", to<&ReferencePlan::seed>},
-             {"lobe_spp", Type::integer, count_range, "samples/pixel", defaulted, "32",
-              "Samples of the lobe for lobe x fill.", to<&ReferencePlan::lobe_spp>},
-             {"disk_spp", Type::integer, count_range, "samples/pixel", defaulted, "96",
-              "Samples on each disk.", to<&ReferencePlan::disk_spp>}},
-            {}};
+        {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
+             "Converged integration, or the note's Monte Carlo.", to<&ReferencePlan::kind>, {"quadrature", "note"}},
+            {"seed", Type::integer, seed_range, "", defaulted, "1", "Of the Monte Carlo reference.",
+                to<&ReferencePlan::seed>},
+            {"lobe_spp", Type::integer, count_range, "samples/pixel", defaulted, "32",
+                "Samples of the lobe for lobe x fill.", to<&ReferencePlan::lobe_spp>},
+            {"disk_spp", Type::integer, count_range, "samples/pixel", defaulted, "96", "Samples on each disk.",
+                to<&ReferencePlan::disk_spp>}},
+        {}};
 }
 
 Section furnaces() {
     return {"furnaces", Many::named, optional,
-            "White furnaces: L_i = 1 all around, R = n. Expected: rho_d + rho_s, or rho_s of the lobe alone.",
-            in<&Experiment::furnaces>,
-            {{"arm", Type::arm, none, "", required, "", "The arm.", to<&FurnacePlan::arm>},
-             {"part", Type::word, none, "", defaulted, "\"combined\"",
-              "The whole BRDF or its lobe.", to<&FurnacePlan::part>, {"combined", "lobe"}},
-             {"shape", Type::shape, none, "", required, "", "Whose material.", to<&FurnacePlan::shape>},
-             {"n", Type::integer, count_range, "samples", required, "", "Samples.", to<&FurnacePlan::n>}},
-            {}};
+        "White furnaces: L_i = 1 all around, R = n. Expected: rho_d + rho_s, or rho_s of the lobe alone.",
+        in<&Experiment::furnaces>,
+        {{"arm", Type::arm, none, "", required, "", "The arm.", to<&FurnacePlan::arm>},
+            {"part", Type::word, none, "", defaulted, "\"combined\"", "The whole BRDF or its lobe.",
+                to<&FurnacePlan::part>, {"combined", "lobe"}},
+            {"shape", Type::shape, none, "", required, "", "Whose material.", to<&FurnacePlan::shape>},
+            {"n", Type::integer, count_range, "samples", required, "", "Samples.", to<&FurnacePlan::n>}},
+        {}};
 }
 
 Section plates() {
-    const Section runs = {"runs", Many::list, optional,
-     "What the plate shows, from left to right.", in<&PlatePlan::runs>,
-            {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
-             {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n; hero: the highest rung; ladder: every rung",
-              "A rung of that arm.", to<&PlateRun::n>},
-             {"s", Type::number, exponent_range, "", optional, "the experiment's s; exponent: every s of the control",
-              "An exponent of the exponent control.", to<&PlateRun::s>}},
-            {}};
-    return {"plates", Many::named, optional,
-            "The pictures; a plate's name is its file's name.", in<&Experiment::plates>,
-            {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
-              {"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference", "heat", "rose", "meters"}},
-             {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last",
-              "The part that is enlarged.", to<&PlatePlan::crop>},
-             {"caption", Type::text, none, "", defaulted, "\"\"",
-              "Stands alone under the picture.", to<&PlatePlan::caption>}},
-            {runs}};
+    const Section runs = {"runs", Many::list, optional, "What the plate shows, from left to right.",
+        in<&PlatePlan::runs>,
+        {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
+            {"n", Type::integer, count_range, "samples/pixel", optional,
+                "the experiment's n; hero: the highest rung; ladder: every rung", "A rung of that arm.",
+                to<&PlateRun::n>},
+            {"s", Type::number, exponent_range, "", optional, "the experiment's s; exponent: every s of the control",
+                "An exponent of the exponent control.", to<&PlateRun::s>}},
+        {}};
+    return {"plates", Many::named, optional, "The pictures; a plate's name is its file's name.",
+        in<&Experiment::plates>,
+        {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
+             {"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference", "heat", "rose", "meters"}},
+            {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last",
+                "The part that is enlarged.", to<&PlatePlan::crop>},
+            {"caption", Type::text, none, "", defaulted, "\"\"", "Stands alone under the picture.",
+                to<&PlatePlan::caption>}},
+        {runs}};
 }
 
 /// Read as one text into `left`; in three parts once it is parsed.
-constexpr Slot comparison = {
-    to<&AssertionPlan::left>.store,
-    [](const void* object, Value& value) {
-        const auto& plan = *static_cast<const AssertionPlan*>(object);
-        value.text = plan.op.empty() ? plan.left : fmt::format("{} {} {}", plan.left, plan.op, plan.right);
-        return true;
-    }};
+constexpr Slot comparison = {to<&AssertionPlan::left>.store, [](const void* object, Value& value) {
+                                 const auto& plan = *static_cast<const AssertionPlan*>(object);
+                                 value.text = plan.op.empty() ? plan.left
+                                                              : fmt::format("{} {} {}", plan.left, plan.op, plan.right);
+                                 return true;
+                             }};
 
 Section assertions() {
-    return {"assertions", Many::titled, optional,
-            "What must hold; also written [[assertions]] with a key 'name'.", in<&Experiment::assertions>,
-            {{"check", Type::check, none, "", required, "",
-              "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".", comparison},
-             {"over", Type::word, none, "", defaulted, "\"seed\"",
-              "At the experiment's seed, or medians over all seeds.", to<&AssertionPlan::median>, {"seed", "median"}}},
-            {}};
+    return {"assertions", Many::titled, optional, "What must hold; also written [[assertions]] with a key 'name'.",
+        in<&Experiment::assertions>,
+        {{"check", Type::check, none, "", required, "", "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".",
+             comparison},
+            {"over", Type::word, none, "", defaulted, "\"seed\"",
+                "At the experiment's seed, or medians over all seeds.", to<&AssertionPlan::median>,
+                {"seed", "median"}}},
+        {}};
 }
 
 }  // namespace
 
 const Section& schema() {
-    static const Section root = {
-        "", Many::one, required, "The experiment.", {},
+    static const Section root = {"", Many::one, required, "The experiment.", {},
         {{"title", Type::text, none, "", defaulted, "\"untitled\"", "One line.", to<&Experiment::title>},
-         {"seed", Type::integer, seed_range, "", defaulted, "1",
-          "The published seed, of all arms.", to<&Experiment::seed>},
-         {"seeds", Type::integer, {1, 4096}, "", defaulted, "1",
-          "How many seeds the bands are made of; the first is `seed`.", to<&Experiment::seeds>},
-         {"n", Type::integer, count_range, "samples/pixel", optional, "an arm's highest rung",
-          "The experiment's n: meant where a plate, a check or the exponent control names none.", to<&Experiment::n>},
-         {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1",
-          "Radiance is multiplied by it before the tone map.", to<&Experiment::exposure>},
-         {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
-          "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&Experiment::firefly_k>},
-         {"published", Type::text, none, "", optional, "none",
-          "A JSON of published figures, relative to this file.", to<&Experiment::published>}},
-        {image(), camera(), shapes(), disks(), fill(), arms(), exponent(), regions(), reference(), furnaces(), plates(), assertions()}};
+            {"seed", Type::integer, seed_range, "", defaulted, "1", "The published seed, of all arms.",
+                to<&Experiment::seed>},
+            {"seeds", Type::integer, {1, 4096}, "", defaulted, "1",
+                "How many seeds the bands are made of; the first is `seed`.", to<&Experiment::seeds>},
+            {"n", Type::integer, count_range, "samples/pixel", optional, "an arm's highest rung",
+                "The experiment's n: meant where a plate, a check or the exponent control names none.",
+                to<&Experiment::n>},
+            {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1",
+                "Radiance is multiplied by it before the tone map.", to<&Experiment::exposure>},
+            {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
+                "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&Experiment::firefly_k>},
+            {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
+                to<&Experiment::published>}},
+        {image(), camera(), shapes(), disks(), fill(), arms(), exponent(), regions(), reference(), furnaces(), plates(),
+            assertions()}};
     return root;
 }
 

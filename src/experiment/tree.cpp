@@ -29,7 +29,8 @@ Node convert(const toml::node& from, const std::string& file, int depth);
 void convert_members(const toml::table& table, Node& to, const std::string& file, int depth) {
     for (const auto& [key, value] : table)
         if (!key.str().starts_with(dropped_key))
-            to.members.push_back({std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
+            to.members.push_back(
+                {std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
     std::sort(to.members.begin(), to.members.end(), [](const Member& a, const Member& b) {
         return std::tie(a.at.line, a.at.column, a.key) < std::tie(b.at.line, b.at.column, b.key);
     });
@@ -63,14 +64,13 @@ Node convert(const toml::node& from, const std::string& file, int depth) {
 /// Refuses what the parser could only take with an unbounded stack or unbounded time.
 void refuse_junk(std::string_view text, const std::string& file) {
     if (text.size() > most_bytes)
-        throw InputError({file, 0, 0},
-                         fmt::format("expected an experiment of at most {} MiB, found more", most_bytes >> 20));
+        throw InputError(
+            {file, 0, 0}, fmt::format("expected an experiment of at most {} MiB, found more", most_bytes >> 20));
     unsigned line = 1, column = 1;
     int dots = 0;
     for (const char c : text) {
         if (c == '.' && ++dots > most_dots)
-            throw InputError(
-                {file, line, column},
+            throw InputError({file, line, column},
                 fmt::format("expected a key of at most 5 names, found more than {} dots in one run", most_dots));
         if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) dots = 0;
         if (c == '\n') ++line, column = 0;
@@ -94,7 +94,7 @@ bool pass_over(std::string& text, unsigned line, int count) {
     const bool header = old[first] == '[';
     const auto balanced = std::count(old.begin(), old.end(), '[') == std::count(old.begin(), old.end(), ']');
     const bool plain = balanced && old.find('=') != std::string::npos && old.find('{') == std::string::npos &&
-                       old.find("\"\"\"") == std::string::npos && old.find("'''") == std::string::npos;
+        old.find("\"\"\"") == std::string::npos && old.find("'''") == std::string::npos;
     if (!header && !plain) return false;
     text.replace(begin, end - begin, header ? fmt::format("[\"{}{}\"]", dropped, count) : "#");
     return true;
@@ -136,9 +136,11 @@ Node read_toml(std::string_view text, const std::string& file, std::vector<Compl
             const Place at = place_of(error.source(), file);
             const bool twice = error.description().find("cannot redefine") != std::string_view::npos;
             std::vector<Complaint> all = duplicates ? *duplicates : std::vector<Complaint>{};
-            all.push_back({at, fmt::format("{}{}", twice ? "duplicate name; expected each to be given once: " : "not TOML: ",
-                                           error.description())});
-            if (!twice || !duplicates || tries == most_duplicates || !pass_over(left, at.line, tries)) throw InputError(all);
+            all.push_back({at,
+                fmt::format("{}{}",
+                    twice ? "duplicate name; expected each to be given once: " : "not TOML: ", error.description())});
+            if (!twice || !duplicates || tries == most_duplicates || !pass_over(left, at.line, tries))
+                throw InputError(all);
             *duplicates = std::move(all);
         }
     }

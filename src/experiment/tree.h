@@ -38,8 +38,8 @@ struct Member {
 /// "the text 'red'", "3.5", "a table": what was found, for messages.
 std::string describe(const Node& node);
 
-/// Reads TOML; throws InputError where the syntax is wrong. `file` stands in every place. Where `duplicates` is given, a
-/// name that is given twice is put there and its second use passed over, so that reading goes on.
+/// Reads TOML; throws InputError where the syntax is wrong. `file` stands in every place. Where `duplicates` is given,
+/// a name that is given twice is put there and its second use passed over, so that reading goes on.
 Node read_toml(std::string_view text, const std::string& file, std::vector<Complaint>* duplicates = nullptr);
 
 }  // namespace crescent

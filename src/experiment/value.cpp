@@ -54,8 +54,8 @@ public:
 
 private:
     bool fail(const Node& node, const std::string& more = "") {
-        draft_.complain(path_, node.at,
-                        fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
+        draft_.complain(
+            path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
         return false;
     }
     bool fail(const std::string& say) {
@@ -76,7 +76,8 @@ private:
 
     bool texts(const Node& node) {
         if (node.kind == Node::Kind::text) return text(node) && (value_.texts = {value_.text}, true);
-        if (!node.is_array() || node.members.empty() || node.members.size() > longest_list * longest_list) return fail(node);
+        if (!node.is_array() || node.members.empty() || node.members.size() > longest_list * longest_list)
+            return fail(node);
         for (const Member& member : node.members) {
             if (!text(member.value)) return false;
             value_.texts.push_back(value_.text);
@@ -130,8 +131,8 @@ private:
             const double before = value_.numbers[i - 1], now = value_.numbers[i];
             if (now > before) continue;
             draft_.complain(path_, node.members[i].value.at,
-                            fmt::format("{}: expected {}, found {} after {}", path_, expectation(key_),
-                                        now == before ? fmt::format("{} again", now) : fmt::format("{}", now), before));
+                fmt::format("{}: expected {}, found {} after {}", path_, expectation(key_),
+                    now == before ? fmt::format("{} again", now) : fmt::format("{}", now), before));
             return false;
         }
         return true;
@@ -145,7 +146,7 @@ private:
         if (std::abs(length - 1) > unit_tolerance)
             return fail(
                 fmt::format("expected a unit vector, found length {:.6g}; the unit vector is [{:.6g}, {:.6g}, {:.6g}]",
-                            length, v[0] / length, v[1] / length, v[2] / length));
+                    length, v[0] / length, v[1] / length, v[2] / length));
         for (double& x : v) x /= length;
         return true;
     }
@@ -157,9 +158,9 @@ private:
         for (int axis = 0; axis < 2; ++axis) {
             const auto low = static_cast<std::size_t>(axis), high = low + 2;
             if (v[high] < v[low])
-                return fail(fmt::format("expected [x0, y0, x1, y1] with {0}0 <= {0}1, found {0}0 = {1} and {0}1 = {2}: {3}",
-                                        axis ? 'y' : 'x', v[low], v[high],
-                                        v[high] + 1 == v[low] ? "an empty box" : "an inverted box"));
+                return fail(
+                    fmt::format("expected [x0, y0, x1, y1] with {0}0 <= {0}1, found {0}0 = {1} and {0}1 = {2}: {3}",
+                        axis ? 'y' : 'x', v[low], v[high], v[high] + 1 == v[low] ? "an empty box" : "an inverted box"));
         }
         return true;
     }

@@ -10,7 +10,6 @@
 #include <OpenEXR/ImfThreading.h>
 #include <oneapi/tbb/global_control.h>
 
-
 #include "base/errors.h"
 
 namespace crescent {
@@ -24,19 +23,19 @@ struct Channel {
 };
 
 std::vector<Channel> channels_of(const Film& f) {
-    return {{"R", Imf::FLOAT, f.r.data()},           {"G", Imf::FLOAT, f.g.data()},
-            {"B", Imf::FLOAT, f.b.data()},           {"luminance.Y", Imf::FLOAT, f.y.data()},
-            {"second_moment.Y", Imf::FLOAT, f.y2.data()}, {"variance.Y", Imf::FLOAT, f.var.data()},
-            {"largest.Y", Imf::FLOAT, f.largest.data()},  {"horizon.Y", Imf::UINT, f.horizon.data()},
-            {"hits.Y", Imf::UINT, f.hits.data()}};
+    return {{"R", Imf::FLOAT, f.r.data()}, {"G", Imf::FLOAT, f.g.data()}, {"B", Imf::FLOAT, f.b.data()},
+        {"luminance.Y", Imf::FLOAT, f.y.data()}, {"second_moment.Y", Imf::FLOAT, f.y2.data()},
+        {"variance.Y", Imf::FLOAT, f.var.data()}, {"largest.Y", Imf::FLOAT, f.largest.data()},
+        {"horizon.Y", Imf::UINT, f.horizon.data()}, {"hits.Y", Imf::UINT, f.hits.data()}};
 }
 
 std::vector<Channel> channels_of(const ReferenceFilm& f) {
     return {{"R", Imf::FLOAT, f.r.data()}, {"G", Imf::FLOAT, f.g.data()}, {"B", Imf::FLOAT, f.b.data()},
-            {"luminance.Y", Imf::FLOAT, f.y.data()}, {"error.Y", Imf::FLOAT, f.error.data()}};
+        {"luminance.Y", Imf::FLOAT, f.y.data()}, {"error.Y", Imf::FLOAT, f.error.data()}};
 }
 
-template <class AnyFilm> Imf::Header header_of(const std::string& name, const AnyFilm& film, const Attributes& attributes) {
+template <class AnyFilm>
+Imf::Header header_of(const std::string& name, const AnyFilm& film, const Attributes& attributes) {
     Imf::Header header(film.width, film.height);
     header.compression() = Imf::RLE_COMPRESSION;  // noise hardly compresses; the counts, mostly zero, do
     header.setName(name);
@@ -63,8 +62,8 @@ int threads_besides_this() {
     return all > 1 ? static_cast<int>(all) : 0;
 }
 
-template <class AnyFilm>
-void write_parts(const std::string& path, const std::vector<std::pair<std::string, const AnyFilm*>>& parts, const Attributes& attributes) {
+template <class AnyFilm> void write_parts(const std::string& path,
+    const std::vector<std::pair<std::string, const AnyFilm*>>& parts, const Attributes& attributes) {
     Imf::setGlobalThreadCount(threads_besides_this());
     std::vector<Imf::Header> headers;
     for (const auto& [name, film] : parts) headers.push_back(header_of(name, *film, attributes));
@@ -75,18 +74,18 @@ void write_parts(const std::string& path, const std::vector<std::pair<std::strin
             part.setFrameBuffer(frame_buffer(*parts[k].second));
             part.writePixels(parts[k].second->height);
         }
-    } catch (const std::exception& error) {
-        throw OutputError("cannot write " + path + ": " + error.what());
-    }
+    } catch (const std::exception& error) { throw OutputError("cannot write " + path + ": " + error.what()); }
 }
 
 }  // namespace
 
-void write_exr(const std::string& path, const std::vector<std::pair<std::string, const Film*>>& parts, const Attributes& attributes) {
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const Film*>>& parts,
+    const Attributes& attributes) {
     write_parts(path, parts, attributes);
 }
 
-void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts, const Attributes& attributes) {
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
+    const Attributes& attributes) {
     write_parts(path, parts, attributes);
 }
 

@@ -17,7 +17,9 @@ namespace crescent {
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 /// Writes films (part name, film) to one file. Throws OutputError.
-void write_exr(const std::string& path, const std::vector<std::pair<std::string, const Film*>>& parts, const Attributes& attributes);
-void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts, const Attributes& attributes);
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const Film*>>& parts,
+    const Attributes& attributes);
+void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
+    const Attributes& attributes);
 
 }  // namespace crescent

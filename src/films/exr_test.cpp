@@ -21,7 +21,8 @@ namespace {
 constexpr int width = 5, height = 3;
 
 /// Rows from the top, as the file has them.
-template <class T> std::vector<T> channel(const std::string& path, int part, const std::string& name, Imf::PixelType type) {
+template <class T>
+std::vector<T> channel(const std::string& path, int part, const std::string& name, Imf::PixelType type) {
     Imf::MultiPartInputFile file(path.c_str());
     Imf::InputPart in(file, part);
     std::vector<T> rows(width * height);
@@ -42,21 +43,26 @@ Film counting_film() {
     for (auto* plane : {&film.horizon, &film.hits})
         for (std::uint32_t& v : *plane) v = count += 1000003;
     film.r[0] = std::numeric_limits<float>::denorm_min(), film.g[1] = std::numeric_limits<float>::max();
-    film.y[2] = std::numeric_limits<float>::quiet_NaN(), film.y2[3] = std::numeric_limits<float>::infinity(), film.b[4] = -0.0f;
+    film.y[2] = std::numeric_limits<float>::quiet_NaN(), film.y2[3] = std::numeric_limits<float>::infinity(),
+    film.b[4] = -0.0f;
     return film;
 }
 
 template <class T> void expect_plane(const std::vector<T>& film, const std::vector<T>& file, const std::string& name) {
     for (int j = 0; j < height; ++j)
         for (int i = 0; i < width; ++i) {
-            const T want = film[static_cast<std::size_t>(j * width + i)], got = file[static_cast<std::size_t>((height - 1 - j) * width + i)];
-            EXPECT_EQ(std::bit_cast<std::uint32_t>(want), std::bit_cast<std::uint32_t>(got)) << name << " at " << i << ", " << j;
+            const T want = film[static_cast<std::size_t>(j * width + i)],
+                    got = file[static_cast<std::size_t>((height - 1 - j) * width + i)];
+            EXPECT_EQ(std::bit_cast<std::uint32_t>(want), std::bit_cast<std::uint32_t>(got))
+                << name << " at " << i << ", " << j;
         }
 }
 
 class Exr : public testing::Test {
 protected:
-    std::string path = (std::filesystem::temp_directory_path() / ("crescent-exr-test-" + std::to_string(::getpid()) + ".exr")).string();
+    std::string path =
+        (std::filesystem::temp_directory_path() / ("crescent-exr-test-" + std::to_string(::getpid()) + ".exr"))
+            .string();
     ~Exr() override { std::filesystem::remove(path); }
 };
 
@@ -64,11 +70,11 @@ TEST_F(Exr, AFilmReadBackIsTheFilm) {
     const Film film = counting_film();
     Film second = film;
     second.r[6] = 99;
-    write_exr(path, {{"n16", &film}, {"n64", &second}}, {{"crescent.experiment", "0123456789abcdef"}, {"crescent.seed", "7"}});
-    const std::pair<const char*, const std::vector<float>*> floats[] = {{"R", &film.r},         {"G", &film.g},
-                                                                        {"B", &film.b},         {"luminance.Y", &film.y},
-                                                                        {"second_moment.Y", &film.y2}, {"variance.Y", &film.var},
-                                                                        {"largest.Y", &film.largest}};
+    write_exr(path, {{"n16", &film}, {"n64", &second}},
+        {{"crescent.experiment", "0123456789abcdef"}, {"crescent.seed", "7"}});
+    const std::pair<const char*, const std::vector<float>*> floats[] = {{"R", &film.r}, {"G", &film.g}, {"B", &film.b},
+        {"luminance.Y", &film.y}, {"second_moment.Y", &film.y2}, {"variance.Y", &film.var},
+        {"largest.Y", &film.largest}};
     for (const auto& [name, plane] : floats) expect_plane(*plane, channel<float>(path, 0, name, Imf::FLOAT), name);
     expect_plane(film.horizon, channel<std::uint32_t>(path, 0, "horizon.Y", Imf::UINT), "horizon.Y");
     expect_plane(film.hits, channel<std::uint32_t>(path, 0, "hits.Y", Imf::UINT), "hits.Y");
@@ -84,7 +90,9 @@ TEST_F(Exr, HasTheChannelsPartsAndAttributesThatItsHeaderStates) {
     EXPECT_EQ(file.header(1).name(), "n64");
     std::set<std::string> names;
     for (auto c = file.header(0).channels().begin(); c != file.header(0).channels().end(); ++c) names.insert(c.name());
-    EXPECT_EQ(names, (std::set<std::string>{"R", "G", "B", "luminance.Y", "second_moment.Y", "variance.Y", "largest.Y", "horizon.Y", "hits.Y"}));
+    EXPECT_EQ(names,
+        (std::set<std::string>{
+            "R", "G", "B", "luminance.Y", "second_moment.Y", "variance.Y", "largest.Y", "horizon.Y", "hits.Y"}));
     EXPECT_EQ(file.header(0).typedAttribute<Imf::StringAttribute>("crescent.experiment").value(), "0123456789abcdef");
     EXPECT_EQ(file.header(0).dataWindow().max.x, width - 1);
     EXPECT_EQ(file.header(0).dataWindow().max.y, height - 1);

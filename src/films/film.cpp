@@ -14,8 +14,12 @@ std::size_t area(int w, int h) { return static_cast<std::size_t>(w) * static_cas
 template <class Byte, class... V> std::vector<std::span<Byte>> bytes_of(V&... planes) {
     return {std::span<Byte>(reinterpret_cast<Byte*>(planes.data()), sizeof(planes[0]) * planes.size())...};
 }
-template <class Byte, class F> std::vector<std::span<Byte>> film_bytes(F& f) { return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.y2, f.var, f.largest, f.horizon, f.hits); }
-template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f) { return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.error); }
+template <class Byte, class F> std::vector<std::span<Byte>> film_bytes(F& f) {
+    return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.y2, f.var, f.largest, f.horizon, f.hits);
+}
+template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f) {
+    return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.error);
+}
 
 std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
     XXH3_state_t* state = XXH3_createState();

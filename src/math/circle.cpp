@@ -77,7 +77,9 @@ constexpr auto angles = [] {
 }();
 
 /// a without its lower 27 (or more) bits.
-double upper_part(double a) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & (~std::uint64_t{0} << 27)); }
+double upper_part(double a) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & (~std::uint64_t{0} << 27));
+}
 
 /// atan(y/x) for 0 <= y <= x, x > 0. c has 4 bits: its products with either half of x are exact.
 double first_octant(double y, double x) {
@@ -111,7 +113,10 @@ double other_side(double x) { return std::sqrt((1 - x) * (1 + x)); }
 /// A power of 2 that brings v > 0 near 1, or as near as a power of 2 can.
 double scale_of(double v) {
     const std::uint64_t exponent = std::bit_cast<std::uint64_t>(v) >> 52;
-    return std::bit_cast<double>((exponent > 2040 ? std::uint64_t{6} : exponent < 6 ? std::uint64_t{2040} : 2046 - exponent) << 52);
+    return std::bit_cast<double>((exponent > 2040       ? std::uint64_t{6}
+                                         : exponent < 6 ? std::uint64_t{2040}
+                                                        : 2046 - exponent)
+        << 52);
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
 constexpr Two ln2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
-constexpr double ln2_upper = 0x1.62e42fefap-1;               // 36 bits of it: times a whole number < 2^17 it is exact
-constexpr double ln2_lower = 0x1.cf79abc9e3b3ap-40;          // and the rest
+constexpr double ln2_upper = 0x1.62e42fefap-1;       // 36 bits of it: times a whole number < 2^17 it is exact
+constexpr double ln2_lower = 0x1.cf79abc9e3b3ap-40;  // and the rest
 constexpr Two inverse_ln10 = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
-constexpr double round_magic = 0x1.8p52;                     // adding and subtracting it rounds to a whole number
+constexpr double round_magic = 0x1.8p52;  // adding and subtracting it rounds to a whole number
 constexpr int steps = 32;
 
 /// 2^(j/32): e^x = sum of x^k / k!.

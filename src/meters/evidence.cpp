@@ -37,7 +37,8 @@ constexpr std::size_t replicates = 256;
 const std::vector<std::uint64_t> furnace_rungs = {64, 256, 1024, 4096, 16384};
 
 FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, const std::vector<double>& means) {
-    return {std::move(arithmetic), bits, n, quantile(means, 0.05), quantile(means, 0.25), quantile(means, 0.5), quantile(means, 0.75), quantile(means, 0.95)};
+    return {std::move(arithmetic), bits, n, quantile(means, 0.05), quantile(means, 0.25), quantile(means, 0.5),
+        quantile(means, 0.75), quantile(means, 0.95)};
 }
 
 void float_furnace(const FurnaceSubject& subject, const std::string& isa, Watch& watch, Evidence& out) {
@@ -52,7 +53,9 @@ void float_furnace(const FurnaceSubject& subject, const std::string& isa, Watch&
 }
 
 /// u as an odd multiple of 2^-bits, from 64 random bits.
-double unit_double(std::uint64_t h, int bits) { return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits); }
+double unit_double(std::uint64_t h, int bits) {
+    return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits);
+}
 
 void double_furnace(const FurnaceSubject& subject, int bits, Watch& watch, Evidence& out) {
     std::vector<std::vector<double>> means(furnace_rungs.size(), std::vector<double>(replicates));
@@ -61,13 +64,15 @@ void double_furnace(const FurnaceSubject& subject, int bits, Watch& watch, Evide
         std::uint64_t j = 0;
         for (std::size_t rung = 0; rung < furnace_rungs.size() && !watch.stop; ++rung) {
             for (; j < furnace_rungs[rung]; ++j) {
-                const auto h = draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
+                const auto h =
+                    draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
                 sum += subject.weight(unit_double(std::uint64_t{h.x} << 32 | h.y, bits));
             }
             means[rung][r] = sum / static_cast<double>(j);
         }
     });
-    for (std::size_t rung = 0; rung < furnace_rungs.size(); ++rung) out.furnace.push_back(quantiles("float64", bits, furnace_rungs[rung], means[rung]));
+    for (std::size_t rung = 0; rung < furnace_rungs.size(); ++rung)
+        out.furnace.push_back(quantiles("float64", bits, furnace_rungs[rung], means[rung]));
 }
 
 /// Draws by the cosine arm, asks the Phong arm for its density: where it is 0, Lambert's light is lost.
@@ -90,7 +95,8 @@ LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
 }
 
 /// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
-FalseRejection false_rejection(const FurnaceSubject& subject, double s, double alpha, const std::string& isa, Watch& watch) {
+FalseRejection false_rejection(
+    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, Watch& watch) {
     constexpr std::uint64_t n = 100'000;
     constexpr int runs = 128;
     Surface lambert = subject.surface;
@@ -129,7 +135,8 @@ const Shape* subject_shape(const Experiment& experiment) {
 
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, Watch& watch) {
     Evidence out;
-    const bool phong = std::any_of(experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
+    const bool phong = std::any_of(
+        experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
     const Shape* shape = subject_shape(experiment);
     if (!phong || !shape || shape->material.brdf != BrdfKind::phong || !(shape->material.rho_s > 0)) return out;
     FurnaceSubject subject;
@@ -146,7 +153,8 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
     for (double theta = 0; theta <= 75; theta += 7.5) out.lost.push_back(lost_support(subject, theta));
-    for (double s : {2.0, 3.0, 8.0, 32.0, 128.0}) out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));
+    for (double s : {2.0, 3.0, 8.0, 32.0, 128.0})
+        out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));
     watch.check();
     return out;
 }

@@ -23,7 +23,8 @@ std::optional<Tail> tail_of(std::vector<float> x) {
 }
 
 FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa, Watch& watch) {
-    const auto arm = std::find_if(experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
+    const auto arm = std::find_if(
+        experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
     const Shape* shape = experiment.find_shape(plan.shape);
     ensure(shape != nullptr, "a furnace's shape is known");
@@ -47,7 +48,8 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
 
 }  // namespace
 
-std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch) {
+std::vector<FurnaceMeter> furnaces(
+    const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch) {
     std::vector<FurnaceMeter> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
         out.push_back(measure_one(experiment, plan, isa, watch));

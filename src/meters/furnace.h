@@ -1,4 +1,5 @@
-// White furnaces: L_i = 1 everywhere and R = n, so that the answer is known: rho_d + rho_s, or rho_s for the lobe alone.
+// White furnaces: L_i = 1 everywhere and R = n, so that the answer is known: rho_d + rho_s, or rho_s for the lobe
+// alone.
 #pragma once
 
 #include <string>
@@ -11,6 +12,7 @@
 
 namespace crescent {
 
-std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch);
+std::vector<FurnaceMeter> furnaces(
+    const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch);
 
 }  // namespace crescent

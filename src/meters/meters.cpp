@@ -27,7 +27,8 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes) {
+RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
+    const ShapeMap& shapes) {
     RunMeter run;
     run.key = key;
     run.bad = film.bad;
@@ -36,7 +37,9 @@ RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& fi
         m.region = region.name;
         m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
         m.rmse = rms_difference(film.y, reference.y, film.width, region.box);
-        m.var = film.n < 2 ? std::nan("") : box_mean(film.width, region.box, [&](std::size_t at) { return static_cast<double>(film.var[at]); });
+        m.var = film.n < 2
+            ? std::nan("")
+            : box_mean(film.width, region.box, [&](std::size_t at) { return static_cast<double>(film.var[at]); });
         run.regions.push_back(m);
     }
     double y = 0, squares = 0, horizon = 0, geometry = 0;
@@ -58,7 +61,8 @@ RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& fi
 }
 
 double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box) {
-    return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at]) - static_cast<double>(b[at])); }));
+    return std::sqrt(box_mean(
+        width, box, [&](std::size_t at) { return square(static_cast<double>(a[at]) - static_cast<double>(b[at])); }));
 }
 
 double rms(const std::vector<float>& a, int width, const Box& box) {
@@ -66,7 +70,7 @@ double rms(const std::vector<float>& a, int width, const Box& box) {
 }
 
 ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region,
-                       const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
     ReferenceMeter m;
     m.s = q.s, m.region = region.name;
     m.rms_difference = rms_difference(q.y, note.y, q.width, region.box);
@@ -74,7 +78,8 @@ ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const 
     m.quadrature_error = rms(q.error, q.width, region.box);
     for (const auto& [key, film] : films) {
         if (key.s != q.s) continue;
-        const double a = rms_difference(film.y, q.y, q.width, region.box), b = rms_difference(film.y, note.y, q.width, region.box);
+        const double a = rms_difference(film.y, q.y, q.width, region.box),
+                     b = rms_difference(film.y, note.y, q.width, region.box);
         if (a > 0) m.rmse_unlike = std::max(m.rmse_unlike, std::fabs(b - a) / a);
         const bool quadrature = used == ReferenceKind::quadrature;
         const double error = quadrature ? m.quadrature_error : m.rms_standard_error, rmse = quadrature ? a : b;
@@ -119,7 +124,8 @@ namespace {
 std::vector<double> over_seeds(const std::vector<RunMeter>& runs, const RunKey& key, const std::string& meter) {
     std::vector<double> values;
     for (const RunMeter& run : runs)
-        if (run.key.arm == key.arm && run.key.n == key.n && run.key.s == key.s) values.push_back(meter_value(run, meter));
+        if (run.key.arm == key.arm && run.key.n == key.n && run.key.s == key.s)
+            values.push_back(meter_value(run, meter));
     return values;
 }
 
@@ -133,7 +139,8 @@ bool heavy(const RunMeter& run, const std::string& meter) {
 
 }  // namespace
 
-std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published) {
+std::vector<BandMeter> bands(
+    const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published) {
     std::vector<BandMeter> out;
     for (const RunMeter& run : runs) {
         if (run.key.seed != experiment.seed) continue;
@@ -144,10 +151,12 @@ std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<Run
             b.key = run.key;
             b.meter = meter;
             b.measured = meter_value(run, meter);
-            b.band = {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95), static_cast<int>(values.size()), heavy(run, meter)};
+            b.band = {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
+                static_cast<int>(values.size()), heavy(run, meter)};
             if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, meter);
             if (b.published) {
-                const auto below = std::count_if(values.begin(), values.end(), [&](double v) { return v < *b.published; });
+                const auto below =
+                    std::count_if(values.begin(), values.end(), [&](double v) { return v < *b.published; });
                 b.published_rank = static_cast<double>(below) / static_cast<double>(values.size());
             }
             out.push_back(std::move(b));
@@ -175,16 +184,20 @@ Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y
     if (n.size() < 3) return line;
     double residual = 0;
     for (std::size_t i = 0; i < n.size(); ++i)
-        residual += square(math::log(y[i]) - sy / count - line.slope * (math::log(static_cast<double>(n[i])) - sx / count));
+        residual +=
+            square(math::log(y[i]) - sy / count - line.slope * (math::log(static_cast<double>(n[i])) - sx / count));
     line.half_width = 1.645 * std::sqrt(residual / (count - 2) / spread);  // normal 90 %
     return line;
 }
 
-Ladder ladder(const std::vector<RunMeter>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
+Ladder ladder(
+    const std::vector<RunMeter>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
     Ladder out{arm.name, region, s, arm.n, {}, 0, 0, 0, false};
     std::map<std::uint32_t, std::vector<double>> by_seed;
     for (const RunMeter& run : runs) {
-        if (run.key.arm != arm.name || run.key.s != s || std::find(arm.n.begin(), arm.n.end(), run.key.n) == arm.n.end()) continue;
+        if (run.key.arm != arm.name || run.key.s != s ||
+            std::find(arm.n.begin(), arm.n.end(), run.key.n) == arm.n.end())
+            continue;
         by_seed[run.key.seed].push_back(run.region(region)->rmse);
         if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
     }
@@ -205,7 +218,8 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     std::vector<Ladder> out;
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.n.size() < 2) continue;
-        for (const Region& region : experiment.regions) out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
+        for (const Region& region : experiment.regions)
+            out.push_back(ladder(runs, arm, region.name, experiment.s(), experiment.seed));
     }
     return out;
 }

@@ -12,7 +12,8 @@
 namespace crescent {
 
 /// All meters of one film against the reference, tails apart.
-RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes);
+RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
+    const ShapeMap& shapes);
 
 /// Root mean square of the difference of two Y planes over a box, and of one plane.
 double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
@@ -21,7 +22,7 @@ double rms(const std::vector<float>& a, int width, const Box& box);
 /// How far two references of one exponent are apart in a region, and what that does to the RMSE of any of the films;
 /// `used` is the one that the meters use.
 ReferenceMeter compare(const ReferenceFilm& quadrature, const ReferenceFilm& note, const Region& region,
-                       const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
 
 /// The value of a meter by its name: rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame.
 double meter_value(const RunMeter& run, const std::string& meter);
@@ -31,7 +32,8 @@ std::vector<std::string> meter_names(const Experiment& experiment);
 double quantile(std::vector<double> values, double q);
 
 /// Spread over seeds of every meter of every run at the published seed.
-std::vector<BandMeter> bands(const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published);
+std::vector<BandMeter> bands(
+    const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published);
 
 /// Ladders of RMSE for every arm with at least two rungs, in every region.
 std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMeter>& runs);

@@ -113,7 +113,8 @@ RunMeter measured(const Experiment& e, const std::string& arm) {
     const Scene scene(e);
     Watch watch;
     const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
-    return measure(e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", watch)[0], reference, shape_map(scene));
+    return measure(
+        e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", watch)[0], reference, shape_map(scene));
 }
 
 TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {
@@ -121,7 +122,8 @@ TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {
     std::rotate(other.shapes.begin(), other.shapes.begin() + 1, other.shapes.end());
     std::swap(other.disks[0], other.disks[1]);
     for (const std::string& arm : test::all_arms()) {
-        if (arm.starts_with("light-") || arm.starts_with("mis-")) other.disks = e.disks;  // u chooses among them in order
+        if (arm.starts_with("light-") || arm.starts_with("mis-"))
+            other.disks = e.disks;  // u chooses among them in order
         const RunMeter a = measured(e, arm), b = measured(other, arm);
         EXPECT_NEAR(a.y_mean / b.y_mean, 1, 1e-6) << arm;
         EXPECT_NEAR(a.rmse_frame / b.rmse_frame, 1, 1e-5) << arm;
@@ -144,11 +146,13 @@ TEST(Meters, OfOneSampleHaveNoVariance) {
 TEST(Meters, ANaNInTheFilmShowsInTheNumber) {
     Known k;
     k.film.y[1] = std::nanf("");
-    EXPECT_TRUE(std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
+    EXPECT_TRUE(
+        std::isnan(measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes).region("left")->rmse));
 }
 
 /// One arm with three rungs; seed k's RMSE falls as N^slopes[k].
-std::vector<Ladder> ladders_falling_as(const std::vector<double>& slopes, const std::vector<std::uint64_t>& rungs = {4, 16, 64}) {
+std::vector<Ladder> ladders_falling_as(
+    const std::vector<double>& slopes, const std::vector<std::uint64_t>& rungs = {4, 16, 64}) {
     Experiment e;
     e.seed = 1;
     e.arms = {{"a", "cosine", rungs, {}}};
@@ -183,8 +187,8 @@ TEST(Ladders, OfTwoRungsAndOneSeedHaveNoInterval) {
     EXPECT_TRUE(std::isnan(ladder.low) && std::isnan(ladder.high));
 }
 
-/// A furnace's median lacks of the expected value about the part of the diffuse tail that n samples do not reach, rho_d n^-(1-k)
-/// with k = (s-1)/(s+1): 4 times that is out of reach.
+/// A furnace's median lacks of the expected value about the part of the diffuse tail that n samples do not reach, rho_d
+/// n^-(1-k) with k = (s-1)/(s+1): 4 times that is out of reach.
 double out_of_reach(const Evidence& e, const FurnaceQuantiles& q) {
     const double k = (e.s - 1) / (e.s + 1);
     return e.expected - 4 * e.rho_d * std::pow(static_cast<double>(q.n), -(1 - k));
@@ -196,13 +200,20 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
     ASSERT_FALSE(e.lost.empty());
     for (const LostSupport& l : e.lost) EXPECT_NEAR(l.measured, l.theory, 4 * l.se + 1e-9) << l.theta_R_deg;
     for (const FalseRejection& r : e.rejections) {
-        // A finite variance (s < 3) keeps close to the level of 1 %; where it is infinite the right mean is rejected the oftener
-        // the heavier the tail is, at s = 32 more often than not.
-        const double least = r.s < 8 ? 0 : r.s == 8 ? 0.03 : 0.5, most = r.s == 2 ? 0.03 : r.s == 3 ? 0.1 : r.s == 8 ? 0.5 : 1;
+        // A finite variance (s < 3) keeps close to the level of 1 %; where it is infinite the right mean is rejected
+        // the oftener the heavier the tail is, at s = 32 more often than not.
+        const double least = r.s < 8 ? 0
+            : r.s == 8               ? 0.03
+                                     : 0.5,
+                     most = r.s == 2 ? 0.03
+            : r.s == 3               ? 0.1
+            : r.s == 8               ? 0.5
+                                     : 1;
         EXPECT_GE(r.low, least) << r.s;
         EXPECT_LE(r.low, most) << r.s;
     }
-    for (std::size_t k = 1; k < e.rejections.size(); ++k) EXPECT_GE(e.rejections[k].high, e.rejections[k - 1].low) << e.rejections[k].s;
+    for (std::size_t k = 1; k < e.rejections.size(); ++k)
+        EXPECT_GE(e.rejections[k].high, e.rejections[k - 1].low) << e.rejections[k].s;
     ASSERT_EQ(e.rejections.size(), 5u);
     for (const FurnaceQuantiles& q : e.furnace) {
         EXPECT_LT(q.median, e.expected) << q.arithmetic << " " << q.n;

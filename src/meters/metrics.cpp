@@ -5,7 +5,8 @@
 namespace crescent {
 
 const RegionMeter* RunMeter::region(const std::string& name) const {
-    const auto at = std::find_if(regions.begin(), regions.end(), [&](const RegionMeter& r) { return r.region == name; });
+    const auto at =
+        std::find_if(regions.begin(), regions.end(), [&](const RegionMeter& r) { return r.region == name; });
     return at == regions.end() ? nullptr : &*at;
 }
 

@@ -13,28 +13,28 @@ namespace crescent {
 
 /// Pareto tail of a set of samples. Zhang & Stephens 2009; k >= 0.5: the variance is infinite, k >= 1: the mean.
 struct Tail {
-    double k = 0, se = 0;        // estimate and its standard error
+    double k = 0, se = 0;           // estimate and its standard error
     std::uint64_t exceedances = 0;  // how many of the largest samples it was fitted to
     bool heavy() const { return k >= 0.5; }
 };
 
 struct RegionMeter {
     std::string region;
-    double rmse = 0;             // against the reference, of Y
-    double var = 0;              // mean over pixels of the variance of the mean; NaN where n = 1 leaves it unknown
-    std::uint64_t pixels = 0;    // geometry pixels in the box count alike with misses: |box|
-    std::optional<Tail> tail;    // of the samples X of the region; published seed only
+    double rmse = 0;           // against the reference, of Y
+    double var = 0;            // mean over pixels of the variance of the mean; NaN where n = 1 leaves it unknown
+    std::uint64_t pixels = 0;  // geometry pixels in the box count alike with misses: |box|
+    std::optional<Tail> tail;  // of the samples X of the region; published seed only
 };
 
 struct RunMeter {
     RunKey key;
     std::vector<RegionMeter> regions;
     std::uint64_t fireflies = 0;  // geometry pixels with |Y - Y_ref| > k Y_ref
-    double horizon_frac = 0;      // of the directions drawn at geometry pixels; two a sample for an arm of two techniques
-    double y_mean = 0;            // over the whole frame
-    double rmse_frame = 0;        // whole frame: a footnote, never a headline
-    double largest = 0;           // the largest single sample of the frame
-    std::uint64_t bad = 0;        // NaN, infinite or negative samples
+    double horizon_frac = 0;  // of the directions drawn at geometry pixels; two a sample for an arm of two techniques
+    double y_mean = 0;        // over the whole frame
+    double rmse_frame = 0;    // whole frame: a footnote, never a headline
+    double largest = 0;       // the largest single sample of the frame
+    std::uint64_t bad = 0;    // NaN, infinite or negative samples
     const RegionMeter* region(const std::string& name) const;
 };
 
@@ -47,8 +47,8 @@ struct Band {
 
 /// One number of one run over all seeds: "rmse.H" of "cosine n=64 s=32".
 struct BandMeter {
-    RunKey key;       // seed: the published one
-    std::string meter;  // rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame
+    RunKey key;           // seed: the published one
+    std::string meter;    // rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame
     double measured = 0;  // at the published seed
     Band band;
     std::optional<double> published;
@@ -81,25 +81,27 @@ struct AssertionResult {
     bool pass = false;
     double measured = 0, bound = 0;
     std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
-    bool reference_good = true;  // where not, an RMSE in it is no longer than a few errors of the reference: it does not pass
+    bool reference_good =
+        true;  // where not, an RMSE in it is no longer than a few errors of the reference: it does not pass
 };
 
 /// How far the note's Monte Carlo reference is from the quadrature, per region and exponent.
 struct ReferenceMeter {
     double s = 0;
     std::string region;
-    double rms_difference = 0;   // of Y
+    double rms_difference = 0;      // of Y
     double rms_standard_error = 0;  // what the note's reference says of itself
     double quadrature_error = 0;    // rms of the quadrature's own stated error
     double rmse_unlike = 0;         // largest relative change of any arm's RMSE here if the note's reference is used
     double error_share = 0;         // of the reference that the meters use: its own error over the smallest RMSE here
 };
 
-/// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares 1/16.
+/// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares
+/// 1/16.
 inline constexpr double most_error_share = 0.25;
 
 struct Metrics {
-    std::vector<RunMeter> runs;           // every arm, n, s, seed
+    std::vector<RunMeter> runs;  // every arm, n, s, seed
     std::vector<BandMeter> bands;
     std::vector<Ladder> ladders;
     std::vector<FurnaceMeter> furnaces;
@@ -108,7 +110,7 @@ struct Metrics {
     std::map<std::string, std::uint64_t> shape_pixels;
     std::map<std::string, std::string> film_hashes;  // "phong n=64 s=32" -> hash
     std::uint64_t geometry_pixels = 0;
-    std::optional<std::uint32_t> published_seed;     // of the published figures, where it is known
+    std::optional<std::uint32_t> published_seed;  // of the published figures, where it is known
 
     const RunMeter* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
     bool all_hold() const;

@@ -65,7 +65,9 @@ bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, c
     const double s = q.s > 0 ? q.s : experiment.s();
     const bool quadrature = experiment.reference.kind == ReferenceKind::quadrature;
     for (const ReferenceMeter& r : metrics.references)
-        if (r.s == s && r.region == q.region && (quadrature ? r.quadrature_error : r.rms_standard_error) > most_error_share * value) return false;
+        if (r.s == s && r.region == q.region &&
+            (quadrature ? r.quadrature_error : r.rms_standard_error) > most_error_share * value)
+            return false;
     return true;
 }
 
@@ -79,7 +81,7 @@ ParsedQuantity parsed(const std::string& text) {
 }  // namespace
 
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
-                const std::map<std::string, std::size_t>& plate_bytes) {
+    const std::map<std::string, std::size_t>& plate_bytes) {
     if (q.number) return *q.number;
     switch (subject_of(q.word)) {
         case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
@@ -101,8 +103,8 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
     return unmeasured;
 }
 
-std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& metrics,
-                                   const std::map<std::string, std::size_t>& plate_bytes) {
+std::vector<AssertionResult> judge(
+    const Experiment& experiment, const Metrics& metrics, const std::map<std::string, std::size_t>& plate_bytes) {
     const std::vector<std::uint32_t> all = seeds_of(metrics, experiment.seed);
     std::vector<AssertionResult> results;
     for (const AssertionPlan& plan : experiment.assertions) {
@@ -121,7 +123,8 @@ std::vector<AssertionResult> judge(const Experiment& experiment, const Metrics& 
         r.measured = side(plan.left), r.bound = side(plan.right);
         r.pass = r.reference_good && holds(r.measured, r.op, r.bound);
         r.text = plan.left + " " + plan.op + " " + plan.right + (plan.median ? " (medians over seeds)" : "");
-        if (!r.reference_good) r.text += " (the reference is not good enough: its own error is of the size of the RMSE)";
+        if (!r.reference_good)
+            r.text += " (the reference is not good enough: its own error is of the size of the RMSE)";
         results.push_back(std::move(r));
     }
     return results;

@@ -67,7 +67,8 @@ std::optional<Tail> fit_tail(std::span<const float> largest) { return fit(larges
 std::optional<Tail> fit_tail(std::span<const double> largest) { return fit(largest); }
 
 std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
-    const std::optional<Tail> wide = fit_tail(largest), deep = fit_tail(largest.first(largest.empty() ? 0 : 1 + (largest.size() - 1) / 8));
+    const std::optional<Tail> wide = fit_tail(largest),
+                              deep = fit_tail(largest.first(largest.empty() ? 0 : 1 + (largest.size() - 1) / 8));
     if (!wide || !deep) return wide;
     return std::fabs(wide->k - deep->k) > 2 * math::hypot(wide->se, deep->se) ? deep : wide;
 }

@@ -15,8 +15,9 @@ namespace crescent {
 /// How many of n samples count as tail: min(n/5, 3 sqrt(n)); 0 where fewer than 5 would.
 std::size_t tail_length(std::uint64_t n);
 
-/// k and its standard error, (1 + k)/sqrt(M) or for k < -1/2 -k/sqrt(M), from the M + 1 largest samples in falling order: the last of them is the
-/// threshold. Nothing where they are fewer than 6 or do not spread (every sample alike: no tail to speak of).
+/// k and its standard error, (1 + k)/sqrt(M) or for k < -1/2 -k/sqrt(M), from the M + 1 largest samples in falling
+/// order: the last of them is the threshold. Nothing where they are fewer than 6 or do not spread (every sample alike:
+/// no tail to speak of).
 std::optional<Tail> fit_tail(std::span<const float> largest);
 std::optional<Tail> fit_tail(std::span<const double> largest);
 

@@ -61,7 +61,10 @@ Rect Canvas::text(const Rect& box, const std::string& markup, const Text& how) {
     PangoRectangle r;
     pango_layout_get_extents(l, nullptr, &r);
     double h = double(r.height) / PANGO_SCALE;
-    double y = box.y + (how.vertical == Vertical::top ? 0 : how.vertical == Vertical::middle ? (box.h - h) / 2 : box.h - h);
+    double y = box.y +
+        (how.vertical == Vertical::top             ? 0
+                : how.vertical == Vertical::middle ? (box.h - h) / 2
+                                                   : box.h - h);
     surface_->ink(how.ink);
     cairo_move_to(surface_->cr, box.x, y);
     if (!text_hidden_) pango_cairo_show_layout(surface_->cr, l);

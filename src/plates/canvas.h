@@ -19,9 +19,7 @@ struct Rect {
     double right() const { return x + w; }
     double bottom() const { return y + h; }
     Rect inset(double d) const { return {x + d, y + d, w - 2 * d, h - 2 * d}; }
-    bool meets(const Rect& o) const {
-        return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom();
-    }
+    bool meets(const Rect& o) const { return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom(); }
 };
 
 struct Colour {
@@ -47,8 +45,8 @@ struct Text {
 /// What became of one piece of text: for tests, which ask that nothing is cut or runs into its neighbour.
 struct Setting {
     std::string text;
-    Rect box, extents;   // what it was given and what it took
-    double px = 0;       // the size it was set at
+    Rect box, extents;  // what it was given and what it took
+    double px = 0;      // the size it was set at
     bool ellipsized = false;
     Colour ink;
 };
@@ -92,8 +90,9 @@ public:
 
     /// Copies pixels one to one with the top-left corner at (x, y), which are whole numbers on the canvas.
     void paint(const Block& block, int x, int y);
-    /// Repeats each pixel times x times units with the top-left corner at (x, y) in units, `alpha` over what is there. Where
-    /// that is no whole number of the canvas's pixels, those take the average of what they cover. Cut at the canvas's edge.
+    /// Repeats each pixel times x times units with the top-left corner at (x, y) in units, `alpha` over what is there.
+    /// Where that is no whole number of the canvas's pixels, those take the average of what they cover. Cut at the
+    /// canvas's edge.
     void paint(const Block& block, double x, double y, int times, double alpha);
 
     /// What is drawn until unclip() shows within `r` alone; blocks are not cut.

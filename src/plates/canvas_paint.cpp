@@ -102,8 +102,8 @@ void Canvas::unclip() { cairo_restore(surface_->cr); }
 
 namespace {
 
-// Which cells of a row of `cells` cells, each `size` pixels wide from `origin`, a pixel covers, and with what weight: the
-// cells' shares add to at most 1.
+// Which cells of a row of `cells` cells, each `size` pixels wide from `origin`, a pixel covers, and with what weight:
+// the cells' shares add to at most 1.
 struct Cover {
     int first = 0, last = -1;
     double from = 0, to = 0;  // in cells
@@ -129,8 +129,10 @@ std::vector<Cover> covers(int begin, int end, double origin, double size, int ce
 void Canvas::paint(const Block& block, double x, double y, int times, double alpha) {
     if (alpha <= 0 || block.width == 0) return;
     const double s = surface_->scale, size = times * s, left = std::round(x * s), top = std::round(y * s);
-    const int x0 = std::max(0, static_cast<int>(left)), x1 = std::min(width_, static_cast<int>(std::lround(left + block.width * size)));
-    const int y0 = std::max(0, static_cast<int>(top)), y1 = std::min(height_, static_cast<int>(std::lround(top + block.height * size)));
+    const int x0 = std::max(0, static_cast<int>(left)),
+              x1 = std::min(width_, static_cast<int>(std::lround(left + block.width * size)));
+    const int y0 = std::max(0, static_cast<int>(top)),
+              y1 = std::min(height_, static_cast<int>(std::lround(top + block.height * size)));
     cairo_surface_flush(surface_->image);
     unsigned char* data = cairo_image_surface_get_data(surface_->image);
     const int stride = cairo_image_surface_get_stride(surface_->image);
@@ -143,7 +145,8 @@ void Canvas::paint(const Block& block, double x, double y, int times, double alp
             for (int v = down.first; v <= down.last; ++v) {
                 for (int u = c.first; u <= c.last; ++u) {
                     const double share = c.share(u) * down.share(v);
-                    const unsigned char* from = &block.rgb[3 * (std::size_t(v) * std::size_t(block.width) + std::size_t(u))];
+                    const unsigned char* from =
+                        &block.rgb[3 * (std::size_t(v) * std::size_t(block.width) + std::size_t(u))];
                     for (int k = 0; k < 3; ++k) sum[k] += share * from[k];
                     area += share;
                 }

@@ -39,7 +39,7 @@ void require_font(PangoFontMap* map) {
     g_free(families);
     if (!found) {
         throw OutputError(std::string("plates are set in the font ") + family +
-                          ", which this machine does not have: install the package fonts-inter");
+            ", which this machine does not have: install the package fonts-inter");
     }
 }
 
@@ -52,7 +52,9 @@ void replace_all(std::string& text, std::string_view what, const std::string& by
 // <sup> and <sub> as plain spans of a size and a rise: Pango's own forms leave their scale behind when text is
 // ellipsized within them. Tabular figures throughout.
 std::string spans(std::string markup, double px) {
-    auto open = [&](double rise) { return fmt::format("<span size='70%' rise='{}'>", std::lround(rise * px * PANGO_SCALE)); };
+    auto open = [&](double rise) {
+        return fmt::format("<span size='70%' rise='{}'>", std::lround(rise * px * PANGO_SCALE));
+    };
     replace_all(markup, "<sup>", open(0.36));
     replace_all(markup, "<sub>", open(-0.16));
     replace_all(markup, "</sup>", "</span>");
@@ -103,7 +105,7 @@ Rect Canvas::Surface::lay(const std::string& markup, const Text& how, double px,
     PangoRectangle r;
     pango_layout_get_extents(l, nullptr, &r);
     return {double(r.x) / PANGO_SCALE, double(r.y) / PANGO_SCALE, double(r.width) / PANGO_SCALE,
-            double(r.height) / PANGO_SCALE};
+        double(r.height) / PANGO_SCALE};
 }
 
 }  // namespace crescent::plates

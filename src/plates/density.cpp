@@ -27,8 +27,7 @@ Site<double> site_of(const Experiment& e, double s, double tilt) {
 }
 
 // An arm without one density (several techniques, each with its own) is left at 0.
-template <class Arm>
-constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
+template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
 
 }  // namespace
 

@@ -26,7 +26,8 @@ double integral(const Density& density) {
 
 TEST(Density, OfEveryArmThatNeedsNoLightIsThereOnASurfaceWithoutAlpha) {
     const Experiment e = test::small_scene();
-    for (const char* arm : {"uniform", "cosine", "phong", "mixture"}) EXPECT_NEAR(integral(Density(e, arm, e.s(), 0.2)), 1, 0.02) << arm;
+    for (const char* arm : {"uniform", "cosine", "phong", "mixture"})
+        EXPECT_NEAR(integral(Density(e, arm, e.s(), 0.2)), 1, 0.02) << arm;
     for (const char* arm : {"blinn", "ggx-d", "ggx-vndf"}) {  // some of what they draw falls under the horizon
         EXPECT_GT(integral(Density(e, arm, e.s(), 0.2)), 0.8) << arm;
         EXPECT_LT(integral(Density(e, arm, e.s(), 0.2)), 1.001) << arm;

@@ -1,5 +1,5 @@
-// heat: |Y_N - Y_ref| of the float films, linear Rec.709 luminance in W/(sr m^2), through turbo on one shared scale that
-// ends at the 98th percentile of all pixels shown.
+// heat: |Y_N - Y_ref| of the float films, linear Rec.709 luminance in W/(sr m^2), through turbo on one shared scale
+// that ends at the 98th percentile of all pixels shown.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,8 @@ std::string reading(const Residual& r, const Box& box, double top, const Experim
     std::vector<std::string> parts;
     for (const Region& region : e.regions) {
         if (!within(region.box, box)) continue;
-        parts.push_back(fmt::format("RMSE<sub>{}</sub> {}", escaped(region.name), figure(rms_difference(r.film->y, r.reference->y, r.film->width, region.box))));
+        parts.push_back(fmt::format("RMSE<sub>{}</sub> {}", escaped(region.name),
+            figure(rms_difference(r.film->y, r.reference->y, r.film->width, region.box))));
     }
     std::vector<double> v = values(r, box);
     auto above = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
@@ -89,7 +90,7 @@ void draw_run(Sheet& sheet, const Residual& r, const Box& box, const Fit& f, dou
     sheet.canvas.text({col.x, y, col.w, 28}, runs_label({r.key}, e), with(with_px(title_text, 22), Align::centre));
     if (r.there()) {
         sheet.canvas.text({col.x, y + 29, col.w, 23}, reading(r, box, top, e),
-                          with(with(with_px(body_text, 17), muted), Align::centre));
+            with(with(with_px(body_text, 17), muted), Align::centre));
     }
 }
 
@@ -130,12 +131,11 @@ void draw_heat(Sheet& sheet) {
 
     double bar_top = band.y + 52, bar_h = std::max(120.0, f.out_h - 52.0);
     sheet.canvas.text({band.right() + gap, band.y, bar_room - gap, 48},
-                      "|Y<sub>N</sub> − Y<sub>ref</sub>|\n" + std::string(radiance_unit),
-                      with_lines(with_px(small_text, 16), 2));
+        "|Y<sub>N</sub> − Y<sub>ref</sub>|\n" + std::string(radiance_unit), with_lines(with_px(small_text, 16), 2));
     colour_bar(sheet, {band.right() + gap, bar_top, bar_width, bar_h}, top, true);
     sheet.notes.insert(sheet.notes.begin(),
-                       {"one scale, 0 to p98 = " + number(p98) + " " + radiance_unit + ", all pixels shown",
-                        fmt::format("crop x {}–{}, y {}–{}, {}", box.x0, box.x1, box.y0, box.y1, to_string(f))});
+        {"one scale, 0 to p98 = " + number(p98) + " " + radiance_unit + ", all pixels shown",
+            fmt::format("crop x {}–{}, y {}–{}, {}", box.x0, box.x1, box.y0, box.y1, to_string(f))});
 }
 
 }  // namespace crescent::plates

@@ -25,7 +25,8 @@ std::vector<const Ladder*> ladders_of(const Sheet& sheet, const std::string& reg
     const std::vector<RunKey> shown = keys_of(sheet.plan, sheet.experiment());
     std::vector<const Ladder*> list;
     for (const Ladder& l : sheet.in.metrics.ladders) {
-        const bool here = shown.empty() || std::any_of(shown.begin(), shown.end(), [&](const RunKey& k) { return k.arm == l.arm; });
+        const bool here =
+            shown.empty() || std::any_of(shown.begin(), shown.end(), [&](const RunKey& k) { return k.arm == l.arm; });
         if (here && l.region == region && l.s == sheet.experiment().s() && l.n.size() > 1) list.push_back(&l);
     }
     return list;
@@ -66,7 +67,7 @@ void draw_axes(Sheet& sheet, const Axes& a, const std::vector<const Ladder*>& la
             if ((m != 1 && decades > 2) || math::log(v) < a.y0 || math::log(v) > a.y1) continue;
             c.line(a.plot.x, a.y(v), a.plot.right(), a.y(v), rule, 1);
             c.text({a.plot.x - 66, a.y(v) - 11, 58, 22}, number(v, 3),
-                   with(with(with_px(small_text, 16), Align::right), Vertical::middle));
+                with(with(with_px(small_text, 16), Align::right), Vertical::middle));
         }
     }
     c.line(a.plot.x, a.plot.bottom(), a.plot.right(), a.plot.bottom(), muted, 1.5);
@@ -122,7 +123,7 @@ void draw_ladder_chart(Sheet& sheet, const Rect& slot, const std::string& region
     if (ladders.empty()) return;
     Axes a = scale(ladders, {slot.x + 70, slot.y + 34, slot.w - 70 - 188, slot.h - 34 - 28});
     sheet.canvas.text({slot.x, slot.y, slot.w - 188, 26}, "RMSE<sub>" + escaped(region) + "</sub> against N",
-                      with(body_text, Weight::semibold));
+        with(body_text, Weight::semibold));
     draw_axes(sheet, a, ladders);
     for (const Ladder* l : ladders) {
         std::vector<Canvas::Point> path;

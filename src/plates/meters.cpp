@@ -154,9 +154,8 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
     const Experiment& e = sheet.experiment();
     std::vector<std::string> regions;
     for (const Region& r : e.regions) {
-        bool any = std::any_of(sheet.in.metrics.ladders.begin(), sheet.in.metrics.ladders.end(), [&](const Ladder& l) {
-            return l.region == r.name && l.n.size() > 1 && l.s == e.s();
-        });
+        bool any = std::any_of(sheet.in.metrics.ladders.begin(), sheet.in.metrics.ladders.end(),
+            [&](const Ladder& l) { return l.region == r.name && l.n.size() > 1 && l.s == e.s(); });
         if (any && regions.size() < 2) regions.push_back(r.name);
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -169,7 +168,7 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
 void draw_meters(Sheet& sheet) {
     Table t = plan_table(sheet);
     instrument_header(sheet, "METERS", "linear Rec.709 Y of the float films, not PNG",
-                      fmt::format("measured at seed {}", sheet.experiment().seed));
+        fmt::format("measured at seed {}", sheet.experiment().seed));
     if (t.rows.empty()) {
         paint_missing(sheet, content_band, "no run of this plate was measured");
         return;
@@ -185,10 +184,12 @@ void draw_meters(Sheet& sheet) {
     if (rest.h >= 170) draw_charts(sheet, rest);
     note_what_is_left_out(sheet, t);
     if (seeds < 2) sheet.notes.push_back("one seed: no band");
-    if (rest.h >= 170) sheet.notes.push_back(seeds > 1 ? "slopes: fit, and 5–95 % over seeds" : "slopes: fit and its interval");
-    sheet.notes.push_back(fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "
-                                      "Y<sub>ref</sub>",
-                                      radiance_unit, number(sheet.experiment().firefly_k)));
+    if (rest.h >= 170)
+        sheet.notes.push_back(seeds > 1 ? "slopes: fit, and 5–95 % over seeds" : "slopes: fit and its interval");
+    sheet.notes.push_back(
+        fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "
+                    "Y<sub>ref</sub>",
+            radiance_unit, number(sheet.experiment().firefly_k)));
 }
 
 }  // namespace crescent::plates

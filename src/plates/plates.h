@@ -17,9 +17,9 @@ struct PlateInputs {
     const Experiment& experiment;
     const Metrics& metrics;
     const ShapeMap& shapes;
-    std::function<const Film*(const RunKey&)> film;                   // nullptr: not run
-    std::function<const ReferenceFilm*(double s)> reference;          // the one the meters use
-    std::string instrument;  // "CPU" or the GL strings, for the instrument plates
+    std::function<const Film*(const RunKey&)> film;           // nullptr: not run
+    std::function<const ReferenceFilm*(double s)> reference;  // the one the meters use
+    std::string instrument;                                   // "CPU" or the GL strings, for the instrument plates
 };
 
 /// A finished picture: 8-bit sRGB, 3 bytes a pixel, rows top-down.
@@ -32,6 +32,7 @@ struct Picture {
 Picture draw_plate(const PlatePlan& plan, const PlateInputs& in);
 
 /// PNG bytes with the provenance as text chunks.
-std::vector<unsigned char> encode_png(const Picture& picture, const std::vector<std::pair<std::string, std::string>>& text);
+std::vector<unsigned char> encode_png(
+    const Picture& picture, const std::vector<std::pair<std::string, std::string>>& text);
 
 }  // namespace crescent

@@ -19,11 +19,11 @@ using plates::Rect;
 using plates::Setting;
 using plates::World;
 
-constexpr PlateKind all_kinds[] = {PlateKind::hero,     PlateKind::gallery,   PlateKind::columns, PlateKind::ladder,
-                                   PlateKind::exponent, PlateKind::surround,  PlateKind::reference,
-                                   PlateKind::heat,     PlateKind::rose,      PlateKind::meters};
-constexpr PlateKind photographs[] = {PlateKind::hero,   PlateKind::gallery,  PlateKind::columns,
-                                     PlateKind::ladder, PlateKind::exponent, PlateKind::surround};
+constexpr PlateKind all_kinds[] = {PlateKind::hero, PlateKind::gallery, PlateKind::columns, PlateKind::ladder,
+    PlateKind::exponent, PlateKind::surround, PlateKind::reference, PlateKind::heat, PlateKind::rose,
+    PlateKind::meters};
+constexpr PlateKind photographs[] = {PlateKind::hero, PlateKind::gallery, PlateKind::columns, PlateKind::ladder,
+    PlateKind::exponent, PlateKind::surround};
 
 bool has(const std::vector<Setting>& settings, const std::string& words) {
     for (const Setting& s : settings) {
@@ -87,7 +87,8 @@ TEST(Plates, LongNamesStayInTheirBoxes) {
         world.add_arm(name, "phong");
         std::swap(world.e.arms[i], world.e.arms.back());
     }
-    world.instrument = "OpenGL 4.5 (Core Profile) of some driver with a long name, on a renderer with a longer one (256 bits)";
+    world.instrument =
+        "OpenGL 4.5 (Core Profile) of some driver with a long name, on a renderer with a longer one (256 bits)";
     world.e.regions[0].name = "the highlight crescent as the key light draws it on the sphere";
     for (RunMeter& run : world.metrics.runs) run.regions[0].region = world.e.regions[0].name;
     for (PlateKind kind : all_kinds) {
@@ -105,7 +106,9 @@ TEST(Plates, EveryInstrumentSaysWhatComputedItsFilms) {
     world.instrument = "GL 4.5, llvmpipe, OSMesa";
     for (PlateKind kind : {PlateKind::reference, PlateKind::heat, PlateKind::rose, PlateKind::meters}) {
         const std::vector<Setting> settings = world.settings(world.plan(kind, 2));
-        EXPECT_TRUE(std::any_of(settings.begin(), settings.end(), [&](const Setting& s) { return s.text.find(world.instrument) != std::string::npos; })) << int(kind);
+        EXPECT_TRUE(std::any_of(settings.begin(), settings.end(), [&](const Setting& s) {
+            return s.text.find(world.instrument) != std::string::npos;
+        })) << int(kind);
     }
 }
 
@@ -176,7 +179,8 @@ TEST(Heat, PrintsThe98thPercentileOfAllPixelsShown) {
     for (const PlateRun& run : plan.runs) {
         const Film& film = world.films.at(to_string(RunKey{run.arm, run.n, 32, 7}));
         for (int y = 10; y <= 29; ++y) {
-            for (int x = 10; x <= 49; ++x) all.push_back(std::abs(double(film.y[std::size_t(y * 96 + x)]) - double(0.2f)));
+            for (int x = 10; x <= 49; ++x)
+                all.push_back(std::abs(double(film.y[std::size_t(y * 96 + x)]) - double(0.2f)));
         }
     }
     EXPECT_TRUE(has(world.settings(plan), "p98 = " + plates::number(quantile(all, 0.98)) + " "));
@@ -188,8 +192,8 @@ TEST(Rose, StatesThePeaksOfTheDensities) {
     plan.kind = PlateKind::rose;
     plan.runs = {{"cosine", 0, 0}, {"phong", 0, 0}};
     std::vector<Setting> settings = world.settings(plan);
-    EXPECT_TRUE(has(settings, "peak 0.318 sr"));   // 1/pi
-    EXPECT_TRUE(has(settings, "peak 5.25 sr"));    // 33/(2 pi)
+    EXPECT_TRUE(has(settings, "peak 0.318 sr"));  // 1/pi
+    EXPECT_TRUE(has(settings, "peak 5.25 sr"));   // 33/(2 pi)
     EXPECT_TRUE(has(settings, "= 16.5 × Cosine"));
     EXPECT_TRUE(has(settings, "not Blinn, not GGX VNDF"));
 }
@@ -203,9 +207,7 @@ TEST(Font, ItsAbsenceNamesThePackage) {
         try {
             World world(8, 8);
             draw_plate(world.plan(PlateKind::hero, 1), world.inputs());
-        } catch (const OutputError& e) {
-            std::_Exit(std::strstr(e.what(), "fonts-inter") ? 3 : 1);
-        }
+        } catch (const OutputError& e) { std::_Exit(std::strstr(e.what(), "fonts-inter") ? 3 : 1); }
         std::_Exit(0);
     };
     EXPECT_EXIT(without_fonts(), testing::ExitedWithCode(3), "");

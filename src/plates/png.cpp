@@ -36,7 +36,7 @@ bool ascii(const std::string& s) {
 bool write(png_structp png, png_infop info, const Picture& p, std::vector<png_text>& text) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_IHDR(png, info, png_uint_32(p.width), png_uint_32(p.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_level(png, deflate_level);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -51,11 +51,11 @@ bool write(png_structp png, png_infop info, const Picture& p, std::vector<png_te
 
 }  // namespace
 
-std::vector<unsigned char> encode_png(const Picture& picture,
-                                      const std::vector<std::pair<std::string, std::string>>& text) {
+std::vector<unsigned char> encode_png(
+    const Picture& picture, const std::vector<std::pair<std::string, std::string>>& text) {
     ensure(picture.width > 0 && picture.height > 0 &&
-               picture.rgb.size() == 3 * std::size_t(picture.width) * std::size_t(picture.height),
-           "a picture has three bytes a pixel");
+            picture.rgb.size() == 3 * std::size_t(picture.width) * std::size_t(picture.height),
+        "a picture has three bytes a pixel");
     std::vector<png_text> chunks;
     for (const auto& [key, value] : text) {
         ensure(!key.empty() && key.size() < 80 && ascii(key), "a PNG keyword has 1 to 79 ASCII characters");

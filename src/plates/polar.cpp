@@ -48,7 +48,9 @@ void draw_rays(Canvas& c, const Frame& f, double tilt) {
         if (std::abs(a) == 90) continue;
         Canvas::Point p = f.at(a * degree, 1 + 8 / f.radius);
         Text how = with(with(with_px(small_text, 16), Vertical::middle),
-                        a < 0 ? Align::right : a > 0 ? Align::left : Align::centre);
+            a < 0       ? Align::right
+                : a > 0 ? Align::left
+                        : Align::centre);
         double x = a < 0 ? p.x - 80 : a > 0 ? p.x : p.x - 40;
         std::string name = angle_name(a, int(std::lround(tilt / degree)), f.radius >= 110);
         c.text({x, p.y - 11 - 6 * math::cos(a * degree), 80, 22}, name, how);

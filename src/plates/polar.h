@@ -1,4 +1,5 @@
-// A half-circle polar plot: an angle from -90 to 90 deg from n, a radius from 0 to the round number above `peak`, in 1/sr.
+// A half-circle polar plot: an angle from -90 to 90 deg from n, a radius from 0 to the round number above `peak`, in
+// 1/sr.
 #pragma once
 
 #include <functional>

@@ -112,7 +112,8 @@ Fit fit(int w, int h, double slot_w, double slot_h) {
 
 std::string to_string(const Fit& f) {
     const double across = double(f.out_w) / f.in_w, down = double(f.out_h) / f.in_h;
-    if (f.reduced && std::max(across, down) > 1.15 * std::min(across, down)) return fmt::format("×{:.2g} across, ×{:.2g} up", across, down);
+    if (f.reduced && std::max(across, down) > 1.15 * std::min(across, down))
+        return fmt::format("×{:.2g} across, ×{:.2g} up", across, down);
     if (f.reduced) return fmt::format("×{:.{}g}", std::max(across, down), std::max(across, down) < 0.95 ? 2 : 3);
     return f.times == 1 ? "1:1" : fmt::format("×{}", f.times);
 }
@@ -139,8 +140,9 @@ Block turbo_block(const Box& box, const Fit& f, const std::function<double(int, 
     if (!f.reduced) return enlarge(box, f, [&](int x, int y) { return turbo(value(x, y)); });
     Block out(f.out_w, f.out_h);
     using One = std::array<double, 1>;
-    reduce<1>(box, f, [&](int x, int y) { return One{value(x, y)}; },
-              [&](int i, int j, const One& c) { out.set(i, j, turbo(c[0])); });
+    reduce<1>(
+        box, f, [&](int x, int y) { return One{value(x, y)}; },
+        [&](int i, int j, const One& c) { out.set(i, j, turbo(c[0])); });
     return out;
 }
 

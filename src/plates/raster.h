@@ -19,7 +19,7 @@ View view(const ReferenceFilm* film);
 
 /// How w x h pixels are brought into a slot: whole-number enlargement (`times`), or reduction to out_w x out_h.
 struct Fit {
-    int times = 1;       // >= 1; 1 with out == in: one to one
+    int times = 1;  // >= 1; 1 with out == in: one to one
     int out_w = 0, out_h = 0;
     bool reduced = false;
     double ratio() const;  // out_w / in_w

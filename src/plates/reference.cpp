@@ -35,14 +35,14 @@ void region_facts(Sheet& sheet, const View& v, double y) {
         const Box& b = regions[i].box;
         sheet.canvas.fill({line.x, line.y + 3, 18, 18}, region_colour(i));
         sheet.canvas.text({line.x + 28, line.y, line.w - 28, 24}, "region " + escaped(regions[i].name),
-                          with(body_text, Weight::semibold));
-        sheet.canvas.text({line.x, line.y + 27, line.w, 20},
-                          fmt::format("x {}–{}, y {}–{}", b.x0, b.x1, b.y0, b.y1), small_text);
+            with(body_text, Weight::semibold));
+        sheet.canvas.text(
+            {line.x, line.y + 27, line.w, 20}, fmt::format("x {}–{}, y {}–{}", b.x0, b.x1, b.y0, b.y1), small_text);
         sheet.canvas.text({line.x, line.y + 47, line.w, 20},
-                          count(std::uint64_t(b.width()) * std::uint64_t(b.height())) + " pixels", small_text);
+            count(std::uint64_t(b.width()) * std::uint64_t(b.height())) + " pixels", small_text);
         if (v.width > 0) {
             sheet.canvas.text({line.x, line.y + 67, line.w, 20},
-                              "mean Y " + figure(mean(v, inside(b, v))) + " " + radiance_unit, small_text);
+                "mean Y " + figure(mean(v, inside(b, v))) + " " + radiance_unit, small_text);
         }
         line.y += 104;
     }
@@ -63,13 +63,14 @@ void draw_reference(Sheet& sheet) {
         for (std::size_t i = 0; i < e.regions.size(); ++i) {
             outline_region(sheet, picture, v, e.regions[i], region_colour(i));
         }
-        sheet.notes.push_back("drawn through Khronos PBR Neutral, exposure " + number(e.exposure) + ", " + to_string(f));
+        sheet.notes.push_back(
+            "drawn through Khronos PBR Neutral, exposure " + number(e.exposure) + ", " + to_string(f));
         sheet.notes.push_back("means off the float film");
     } else {
         paint_missing(sheet, picture_slot, "no reference for s=" + number(s));
     }
     double y = facts(sheet, "Reference", reference_words(e),
-                     {{"s", number(s)}, {"image", fmt::format("{} × {}", e.image.width, e.image.height)}});
+        {{"s", number(s)}, {"image", fmt::format("{} × {}", e.image.width, e.image.height)}});
     region_facts(sheet, v, y);
 }
 

@@ -30,7 +30,9 @@ struct Dome {
     Canvas::Point at(const Direction& d, double reach = 1) const {
         return {x + reach * radius * d.x, y - reach * radius * (d.z * away + d.y * up)};
     }
-    static bool visible(const Direction& d) { return d.z * up - d.y * away >= -1e-9; }  // the rim's two ends lie on the edge
+    static bool visible(const Direction& d) {
+        return d.z * up - d.y * away >= -1e-9;
+    }  // the rim's two ends lie on the edge
 };
 
 Direction from_angles(double theta, double phi) {
@@ -169,7 +171,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
         bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
         if (k != i && (narrow || !lower)) continue;
         plot.curves.push_back({k == i, arm_colour(parts[k].key.arm, e), arm_name(parts[k].key.arm, e),
-                               [&p = parts[k].p](double a) { return p.in_plane(a); }});
+            [&p = parts[k].p](double a) { return p.in_plane(a); }});
     }
     draw_polar(sheet.canvas, plot);
 }
@@ -179,21 +181,20 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
 void draw_rose(Sheet& sheet) {
     double tilt = tilt_deg * degree;
     std::vector<Part> parts = parts_of(sheet, tilt);
-    bool elementary = std::all_of(parts.begin(), parts.end(), [&](const Part& p) {
-        return !axis_of(p.key.arm, sheet.experiment()).empty();
-    });
+    bool elementary = std::all_of(
+        parts.begin(), parts.end(), [&](const Part& p) { return !axis_of(p.key.arm, sheet.experiment()).empty(); });
     std::vector<RunKey> keys;
     for (const Part& p : parts) keys.push_back(p.key);
     instrument_header(sheet, "PDF ROSE",
-                      "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)) +
-                          (elementary ? " / not Blinn, not GGX VNDF" : ""),
-                      "nothing sampled", false);
+        "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)) +
+            (elementary ? " / not Blinn, not GGX VNDF" : ""),
+        "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i, tilt);
     if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured
-    for (const std::string& note :
-         {fmt::format("R stands {}° from n", number(tilt_deg)),
-          std::string("domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
-          std::string("polar: plane of incidence")})
+    for (const std::string& note : {fmt::format("R stands {}° from n", number(tilt_deg)),
+             std::string(
+                 "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
+             std::string("polar: plane of incidence")})
         sheet.notes.push_back(note);
 }
 

@@ -22,8 +22,8 @@ void header(Sheet& sheet, const Colour& accent, const std::string& label, const 
 
 std::string tinted(const std::string& text, const Colour& c) {
     auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
-    return fmt::format("<span foreground='#{:02x}{:02x}{:02x}' weight='600'>{}</span>", byte(c.r), byte(c.g), byte(c.b),
-                       text);
+    return fmt::format(
+        "<span foreground='#{:02x}{:02x}{:02x}' weight='600'>{}</span>", byte(c.r), byte(c.g), byte(c.b), text);
 }
 
 }  // namespace
@@ -39,13 +39,16 @@ std::string reference_stream(const Experiment& e) {
 
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream) {
     header(sheet, photograph_accent, "Khronos PBR Neutral / " + tinted("PHOTO-ONLY", photograph_accent) + " / " + what,
-           stream);
+        stream);
 }
 
-void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
+void instrument_header(
+    Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
     header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what, stream);
     const std::string& on = sheet.in.instrument;
-    if (!on.empty()) sheet.notes.push_back((of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
+    if (!on.empty())
+        sheet.notes.push_back(
+            (of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
 }
 
 void finish(Sheet& sheet) {
@@ -59,8 +62,8 @@ void finish(Sheet& sheet) {
 
     Rect foot = footer_band;
     if (sheet.not_finite > 0) {
-        std::string say = fmt::format("{} pixel{} not a number, shown in magenta", count(sheet.not_finite),
-                                      sheet.not_finite == 1 ? "" : "s");
+        std::string say = fmt::format(
+            "{} pixel{} not a number, shown in magenta", count(sheet.not_finite), sheet.not_finite == 1 ? "" : "s");
         Text how = with(with(with(small_text, alert), Align::right), Weight::semibold);
         double w = sheet.canvas.measure(say, how).w + 2;
         sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, say, how);
@@ -105,7 +108,7 @@ Colour arm_colour(const std::string& arm, const Experiment& e) {
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box) {
     double sx = picture.w / shown.width(), sy = picture.h / shown.height();
     return {picture.x + (box.x0 - shown.x0) * sx, picture.y + (shown.y1 - box.y1) * sy, box.width() * sx,
-            box.height() * sy};
+        box.height() * sy};
 }
 
 void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c) {
@@ -113,7 +116,8 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
     Text how = with(with(with(with(body_text, ground), Weight::semibold), Align::centre), Vertical::middle);
     std::string text = escaped(name);
     double w = std::min(sheet.canvas.measure(text, how).w + 16, picture.w);
-    double left = outline.x - 1.25, right = outline.right() + 1.25 - w, above = outline.y - h - 1, below = outline.bottom() + 1;
+    double left = outline.x - 1.25, right = outline.right() + 1.25 - w, above = outline.y - h - 1,
+           below = outline.bottom() + 1;
     for (auto [x, y] : {std::pair{left, above}, {right, above}, {left, below}, {right, below}, {left, outline.y}}) {
         Rect tag{std::clamp(x, picture.x, picture.right() - w), y, w, h};
         bool clear = std::none_of(sheet.tags.begin(), sheet.tags.end(), [&](const Rect& t) { return t.meets(tag); });

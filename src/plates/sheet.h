@@ -15,9 +15,9 @@ struct Sheet {
     Canvas canvas{sheet_width, sheet_height, ground};
     const PlatePlan& plan;
     const PlateInputs& in;
-    std::uint64_t not_finite = 0;         // pixels shown that are not numbers
-    std::vector<std::string> notes;       // for the footer, markup
-    std::vector<Rect> tags;               // name tags of regions so far
+    std::uint64_t not_finite = 0;    // pixels shown that are not numbers
+    std::vector<std::string> notes;  // for the footer, markup
+    std::vector<Rect> tags;          // name tags of regions so far
 
     Sheet(const PlatePlan& p, const PlateInputs& i) : plan(p), in(i) {}
     const Experiment& experiment() const { return in.experiment; }
@@ -26,9 +26,10 @@ struct Sheet {
 /// "Khronos PBR Neutral / PHOTO-ONLY / `what`", and `stream` ("seed 7") at the right: no measured number stands on a
 /// photograph.
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream);
-/// "INSTRUMENT `name` / `what`"; names the instrument in the footer. `of_films`: what it shows was read off films, which any
-/// instrument may have computed; else it is the CPU's, and the films of the run are named beside it.
-void instrument_header(Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films = true);
+/// "INSTRUMENT `name` / `what`"; names the instrument in the footer. `of_films`: what it shows was read off films,
+/// which any instrument may have computed; else it is the CPU's, and the films of the run are named beside it.
+void instrument_header(
+    Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films = true);
 /// "seed 7", "one stream, seed 7" for several runs.
 std::string stream_words(const std::vector<RunKey>& runs);
 /// The reference's own seed, "" where it is not sampled.
@@ -60,8 +61,8 @@ void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);
 double round_step(double top, int about);
 
 // The plates by kind; the table stands in plates.cpp.
-void draw_still(Sheet& sheet);      // hero, gallery
-void draw_strip(Sheet& sheet);      // columns, ladder, exponent, surround
+void draw_still(Sheet& sheet);  // hero, gallery
+void draw_strip(Sheet& sheet);  // columns, ladder, exponent, surround
 void draw_reference(Sheet& sheet);
 void draw_heat(Sheet& sheet);
 void draw_rose(Sheet& sheet);

@@ -18,8 +18,8 @@ double facts(Sheet& sheet, const std::string& title, const std::string& under_ti
         Rect row{line.x, line.y + 7, line.w, 24};
         double name_w = sheet.canvas.measure(f.name, with(body_text, muted)).w + 1;
         sheet.canvas.text({row.x, row.y, name_w, row.h}, f.name, with(body_text, muted));
-        sheet.canvas.text({row.x + name_w + 10, row.y, row.w - name_w - 10, row.h}, f.value,
-                          with(body_text, Align::right));
+        sheet.canvas.text(
+            {row.x + name_w + 10, row.y, row.w - name_w - 10, row.h}, f.value, with(body_text, Align::right));
         line.y += 38;
     }
     sheet.canvas.line(line.x, line.y + 0.5, line.right(), line.y + 0.5, rule, 1);
@@ -34,9 +34,8 @@ std::string shown_as(const View& v) {
 
 std::vector<Fact> common_facts(const Sheet& sheet, const View& v) {
     const Experiment& e = sheet.experiment();
-    return {{"exposure", number(e.exposure)},
-            {"image", fmt::format("{} × {}", e.image.width, e.image.height)},
-            {"shown", shown_as(v)}};
+    return {{"exposure", number(e.exposure)}, {"image", fmt::format("{} × {}", e.image.width, e.image.height)},
+        {"shown", shown_as(v)}};
 }
 
 void picture(Sheet& sheet, const View& v, const std::string& missing) {

@@ -109,8 +109,8 @@ void add_notes(Sheet& sheet, const Layout& l, const std::optional<Box>& crop) {
     }
     if (l.crops) {
         std::string how = l.crop.reduced ? " (area average in linear light)" : ", pixels as they are";
-        sheet.notes.push_back(fmt::format("crop x {}–{}, y {}–{}, {}{}", crop->x0, crop->x1, crop->y0, crop->y1,
-                                          to_string(l.crop), how));
+        sheet.notes.push_back(
+            fmt::format("crop x {}–{}, y {}–{}, {}{}", crop->x0, crop->x1, crop->y0, crop->y1, to_string(l.crop), how));
     }
     sheet.notes.push_back(fmt::format("exposure {}", number(sheet.experiment().exposure)));
 }
@@ -138,7 +138,8 @@ void draw_strip(Sheet& sheet) {
         if (v.width > 0) {
             draw_pictures(sheet, v, col, l, crop);
         } else {
-            paint_missing(sheet, {col.x, col.y + l.top, col.w, col.h - 2 * l.top - l.words_h}, escaped(to_string(runs[i])) + " was not run");
+            paint_missing(sheet, {col.x, col.y + l.top, col.w, col.h - 2 * l.top - l.words_h},
+                escaped(to_string(runs[i])) + " was not run");
         }
         draw_words(sheet, runs[i], varies, l, col);
     }

@@ -17,9 +17,10 @@ inline constexpr Colour muted{0.682, 0.702, 0.729};
 inline constexpr Colour photograph_accent{0.957, 0.733, 0.373};
 inline constexpr Colour instrument_accent{0.431, 0.792, 0.867};
 inline constexpr Colour alert{1.0, 0.43, 1.0};
-/// For arms in the order of the experiment, told apart by lightness as well as by hue; the first, the baseline, is grey.
-inline constexpr Colour series[] = {{0.80, 0.80, 0.80},    {0.431, 0.792, 0.867}, {0.957, 0.733, 0.373},
-                                    {0.929, 0.502, 0.494}, {0.616, 0.827, 0.506}, {0.769, 0.651, 0.925}};
+/// For arms in the order of the experiment, told apart by lightness as well as by hue; the first, the baseline, is
+/// grey.
+inline constexpr Colour series[] = {{0.80, 0.80, 0.80}, {0.431, 0.792, 0.867}, {0.957, 0.733, 0.373},
+    {0.929, 0.502, 0.494}, {0.616, 0.827, 0.506}, {0.769, 0.651, 0.925}};
 inline constexpr std::size_t series_count = sizeof series / sizeof series[0];
 /// For regions, in the order of the experiment.
 constexpr Colour region_colour(std::size_t i) { return series[1 + i % (series_count - 1)]; }

@@ -30,7 +30,8 @@ struct World {
         reference.y.assign(reference.size(), 0.2f);
         for (const char* arm : {"uniform", "cosine", "phong"}) add_arm(arm, arm);
         for (const ArmPlan& a : e.arms) {
-            for (const Region& r : e.regions) metrics.ladders.push_back({a.name, r.name, 32, a.n, {2, 1}, -0.5, -0.6, -0.4, false});
+            for (const Region& r : e.regions)
+                metrics.ladders.push_back({a.name, r.name, 32, a.n, {2, 1}, -0.5, -0.6, -0.4, false});
         }
     }
 
@@ -59,19 +60,20 @@ struct World {
     PlatePlan plan(PlateKind kind, std::size_t runs) const {
         PlatePlan p;
         p.name = "plate", p.kind = kind;
-        p.caption = "A caption that stands alone under the picture, long enough to need a second line of the sheet, so "
-                    "that wrapping is seen to work and nothing runs off.";
+        p.caption =
+            "A caption that stands alone under the picture, long enough to need a second line of the sheet, so "
+            "that wrapping is seen to work and nothing runs off.";
         for (std::size_t i = 0; i < runs; ++i) p.runs.push_back({e.arms[i % e.arms.size()].name, i % 2 ? 4u : 64u, 0});
         return p;
     }
 
     PlateInputs inputs() const {
         return {e, metrics, shapes,
-                [this](const RunKey& k) -> const Film* {
-                    auto at = films.find(to_string(k));
-                    return at == films.end() ? nullptr : &at->second;
-                },
-                [this](double s) { return s == 32 ? &reference : nullptr; }, instrument};
+            [this](const RunKey& k) -> const Film* {
+                auto at = films.find(to_string(k));
+                return at == films.end() ? nullptr : &at->second;
+            },
+            [this](double s) { return s == 32 ? &reference : nullptr; }, instrument};
     }
 
     std::vector<Setting> settings(const PlatePlan& p) const {

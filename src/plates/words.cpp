@@ -23,7 +23,7 @@ constexpr Sampler samplers[] = {
     {"mixture", "Mixture", "", "p = q p<sub>phong</sub> + (1−q) p<sub>cosine</sub>"},
     {"mis-balance", "MIS, balance", "", "w<sub>i</sub> = p<sub>i</sub> / (p<sub>1</sub> + p<sub>2</sub>)"},
     {"mis-power", "MIS, power", "",
-     "w<sub>i</sub> = p<sub>i</sub><sup>2</sup> / (p<sub>1</sub><sup>2</sup> + p<sub>2</sub><sup>2</sup>)"},
+        "w<sub>i</sub> = p<sub>i</sub><sup>2</sup> / (p<sub>1</sub><sup>2</sup> + p<sub>2</sub><sup>2</sup>)"},
     {"light-solid-angle", "NEE, by angle", "", "p(ω) = 1/(2π (1 − cos β))"},
     {"light-area", "NEE, by area", "", "p(ω) = |y − x|<sup>2</sup>/(π r<sup>2</sup> cos θ<sub>l</sub>)"},
     {"blinn", "Blinn", "", "p(ω) = {s1}/(2π) (n·m)<sup>{s}</sup>/(4 ω<sub>o</sub>·m)"},

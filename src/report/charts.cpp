@@ -45,7 +45,8 @@ Axis linear_axis(std::string label, const std::vector<double>& values) {
     for (const double v : values)
         if (std::isfinite(v)) finite.push_back(v);
     if (finite.empty()) finite = {0, 1};
-    double low = *std::min_element(finite.begin(), finite.end()), high = *std::max_element(finite.begin(), finite.end());
+    double low = *std::min_element(finite.begin(), finite.end()),
+           high = *std::max_element(finite.begin(), finite.end());
     if (high <= low) high = low + std::max(1e-12, std::fabs(low));
     const double step = round_step(high - low);
     axis.low = step * std::floor(low / step + 1e-9);
@@ -69,9 +70,9 @@ Axis log_axis(std::string label, const std::vector<double>& values) {
     axis.low = *std::min_element(positive.begin(), positive.end()) / 1.25;
     axis.high = *std::max_element(positive.begin(), positive.end()) * 1.25;
     const double decades = math::log10(axis.high / axis.low);
-    const std::vector<double> parts = decades > 4     ? std::vector<double>{1}
-                                      : decades > 1.5 ? std::vector<double>{1, 3}
-                                                      : std::vector<double>{1, 2, 3, 5};
+    const std::vector<double> parts = decades > 4 ? std::vector<double>{1}
+        : decades > 1.5                           ? std::vector<double>{1, 3}
+                                                  : std::vector<double>{1, 2, 3, 5};
     for (int power = static_cast<int>(std::floor(math::log10(axis.low))); math::pow(10.0, power) <= axis.high; ++power)
         for (const double part : parts) {
             const double tick = part * math::pow(10.0, power);
@@ -84,7 +85,9 @@ Chart::Chart(int w, int h, Axis x, Axis y, std::string title)
     : width_(w), height_(h), x_(std::move(x)), y_(std::move(y)), title_(std::move(title)) {}
 
 double Chart::px(double x) const { return left_margin + x_.share(x) * (width_ - left_margin - right_margin); }
-double Chart::py(double y) const { return height_ - bottom_margin - y_.share(y) * (height_ - top_margin - bottom_margin); }
+double Chart::py(double y) const {
+    return height_ - bottom_margin - y_.share(y) * (height_ - top_margin - bottom_margin);
+}
 
 bool Chart::drawable(double x, double y) const {
     return std::isfinite(x) && std::isfinite(y) && (!x_.log || x > 0) && (!y_.log || y > 0);
@@ -100,18 +103,19 @@ void Chart::line(const std::vector<Point>& points, std::string_view css) {
 void Chart::dots(const std::vector<Point>& points, std::string_view css) {
     for (const Point& p : points)
         if (drawable(p.x, p.y))
-            body_ += fmt::format("<circle class=\"dot {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.6\" />\n", css, px(p.x), py(p.y));
+            body_ += fmt::format(
+                "<circle class=\"dot {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.6\" />\n", css, px(p.x), py(p.y));
 }
 
 void Chart::diamonds(const std::vector<Point>& points, std::string_view css) {
     for (const Point& p : points)
         if (drawable(p.x, p.y))
-            body_ += fmt::format("<path class=\"diamond {}\" d=\"M{:.1f} {:.1f} l5 5 l-5 5 l-5 -5 z\" />\n", css, px(p.x),
-                                 py(p.y) - 5);
+            body_ += fmt::format(
+                "<path class=\"diamond {}\" d=\"M{:.1f} {:.1f} l5 5 l-5 5 l-5 -5 z\" />\n", css, px(p.x), py(p.y) - 5);
 }
 
 void Chart::band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
-                 std::string_view css) {
+    std::string_view css) {
     std::string there, back;
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (!drawable(x[i], low[i]) || !drawable(x[i], high[i])) continue;
@@ -124,16 +128,17 @@ void Chart::band(const std::vector<double>& x, const std::vector<double>& low, c
 void Chart::bar(double x, double low, double high, std::string_view css) {
     if (!drawable(x, low) || !drawable(x, high)) return;
     const double at = px(x), from = py(low), to = py(high);
-    body_ += fmt::format("<path class=\"line {}\" d=\"M{:.1f} {:.1f} h8 m-4 0 V{:.1f} m-4 0 h8\" />\n", css, at - 4, from, to);
+    body_ += fmt::format(
+        "<path class=\"line {}\" d=\"M{:.1f} {:.1f} h8 m-4 0 V{:.1f} m-4 0 h8\" />\n", css, at - 4, from, to);
 }
 
 void Chart::rule(double y, std::string_view css, std::string_view name) {
     if (!drawable(x_.low, y)) return;
-    body_ += fmt::format("<path class=\"rule {}\" d=\"M{:.1f} {:.1f} H{:.1f}\" />\n", css, left_margin, py(y),
-                         width_ - right_margin);
+    body_ += fmt::format(
+        "<path class=\"rule {}\" d=\"M{:.1f} {:.1f} H{:.1f}\" />\n", css, left_margin, py(y), width_ - right_margin);
     if (!name.empty())
         body_ += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", css,
-                             width_ - right_margin - 3, py(y) - 5, escape(name));
+            width_ - right_margin - 3, py(y) - 5, escape(name));
 }
 
 void Chart::name(Point at, std::string_view text, std::string_view css) {
@@ -151,7 +156,8 @@ std::string Chart::names() const {
     for (auto it = all.rbegin(); it != all.rend(); ++it) {
         it->y = std::min(it->y, limit);
         limit = it->y - apart;
-        out += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", it->css, it->x, it->y, it->text);
+        out += fmt::format(
+            "<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", it->css, it->x, it->y, it->text);
     }
     return out;
 }
@@ -169,26 +175,28 @@ std::string Chart::axes() const {
             "<path class=\"grid\" d=\"M{0:.1f} {1:.1f} H{2:.1f}\" /><text class=\"tick\" x=\"{3:.1f}\" "
             "y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
             left_margin, py(t), right, left_margin - 7, py(t) + 4, tick_text(t, y_.log));
-    out +=
-        fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f} V{:.1f} H{:.1f}\" />\n", left_margin, top_margin, bottom, right);
+    out += fmt::format(
+        "<path class=\"axis\" d=\"M{:.1f} {:.1f} V{:.1f} H{:.1f}\" />\n", left_margin, top_margin, bottom, right);
     out += fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                       (left_margin + right) / 2, height_ - 8, escape(x_.label));
+        (left_margin + right) / 2, height_ - 8, escape(x_.label));
     const double middle = (top_margin + bottom) / 2;
-    return out + fmt::format(
-                     "<text class=\"label\" transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                     middle, escape(y_.label));
+    return out +
+        fmt::format(
+            "<text class=\"label\" transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+            middle, escape(y_.label));
 }
 
 std::string Chart::framed() const {  // an inner svg hides what leaves it
     const double w = width_ - left_margin - right_margin, h = height_ - top_margin - bottom_margin;
-    return fmt::format("<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n",
-                       left_margin, top_margin, w, h, inside_);
+    return fmt::format(
+        "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left_margin,
+        top_margin, w, h, inside_);
 }
 
 std::string Chart::str() const {
     return fmt::format(
-        "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n", width_,
-        height_, escape(title_), escape(title_), axes(), framed() + body_ + names());
+        "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<title>{}</title>\n{}{}</svg>\n",
+        width_, height_, escape(title_), escape(title_), axes(), framed() + body_ + names());
 }
 
 std::string strip_svg(const Strip& s) {
@@ -203,7 +211,7 @@ std::string strip_svg(const Strip& s) {
     std::string marks = fmt::format("<path class=\"grid\" d=\"M0 {} H{}\" />", middle, w);
     if (s.bar)
         marks += fmt::format("<rect class=\"reach\" x=\"{:.1f}\" y=\"4.5\" width=\"{:.1f}\" height=\"9\" />", at(s.q05),
-                             std::max(1.0, at(s.q95) - at(s.q05)));
+            std::max(1.0, at(s.q95) - at(s.q05)));
     marks += fmt::format("<path class=\"median\" d=\"M{:.1f} 2 V16\" />", at(s.median));
     if (s.has_published)
         marks += fmt::format("<path class=\"diamond pub\" d=\"M{:.1f} 4 l5 5 l-5 5 l-5 -5 z\" />", at(s.published));
@@ -212,8 +220,8 @@ std::string strip_svg(const Strip& s) {
     if (s.bar) words += fmt::format(", 5 to 95 % from {} to {}", figures(s.q05), figures(s.q95));
     if (s.has_published) words += fmt::format(", published {}", figures(s.published));
     return fmt::format(
-        "<svg class=\"strip\" viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>", w, h,
-        w, h, words, marks);
+        "<svg class=\"strip\" viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>",
+        w, h, w, h, words, marks);
 }
 
 }  // namespace crescent

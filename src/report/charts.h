@@ -1,6 +1,6 @@
 // Charts as inline SVG: axes (linear or log), lines, dots, bands, bars. Sizes in CSS pixels of an unscaled chart; the
-// chart scales with the page. Colours are classes of the page's style sheet (c0, c1, ...), so that they follow light and
-// dark. Points that are not finite, or not positive on a log axis, are not drawn.
+// chart scales with the page. Colours are classes of the page's style sheet (c0, c1, ...), so that they follow light
+// and dark. Points that are not finite, or not positive on a log axis, are not drawn.
 #pragma once
 
 #include <string>
@@ -38,12 +38,13 @@ public:
     void diamonds(const std::vector<Point>& points, std::string_view css);
     /// The area between two curves over the same x.
     void band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
-              std::string_view css);
+        std::string_view css);
     /// A vertical bar with caps, as for an interval.
     void bar(double x, double low, double high, std::string_view css);
     /// A horizontal line at y, named at its right end inside the frame.
     void rule(double y, std::string_view css, std::string_view name);
-    /// Words at a data point, shifted right by a few pixels; for the end of a line. Names that would overlap move apart.
+    /// Words at a data point, shifted right by a few pixels; for the end of a line. Names that would overlap move
+    /// apart.
     void name(Point at, std::string_view text, std::string_view css);
     std::string str() const;
 

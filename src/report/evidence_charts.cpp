@@ -24,11 +24,12 @@ std::vector<Series> series_of(const Evidence& evidence) {
     std::vector<Series> all;
     for (const FurnaceQuantiles& q : evidence.furnace) {
         auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
+            [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
         if (found == all.end()) found = all.insert(all.end(), {q.arithmetic, q.u_bits, {}});
         found->rungs.push_back(&q);
     }
-    for (Series& s : all) std::sort(s.rungs.begin(), s.rungs.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
+    for (Series& s : all)
+        std::sort(s.rungs.begin(), s.rungs.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
     return all;
 }
 
@@ -75,16 +76,19 @@ std::string panel(const Page& page, const Series& s) {
     chart.line(medians, "c1");
     chart.dots(medians, "c1");
     chart.rule(evidence.expected, "strong", "expected");
-    if (const auto cap = cap_of(evidence, s.u_bits)) chart.rule(*cap, "dashed c0", fmt::format("limit of {} bits", s.u_bits));
+    if (const auto cap = cap_of(evidence, s.u_bits))
+        chart.rule(*cap, "dashed c0", fmt::format("limit of {} bits", s.u_bits));
     if (const FurnaceMeter* f = combined_furnace(page); f && f->published)
         chart.diamonds({{static_cast<double>(f->n), *f->published}}, "pub");
-    return "<div class=\"panel\">" + html::element("p", "class=\"panel-title\"", escape(s.name())) + chart.str() + "</div>";
+    return "<div class=\"panel\">" + html::element("p", "class=\"panel-title\"", escape(s.name())) + chart.str() +
+        "</div>";
 }
 
 /// The rung of the series nearest to n, on a log scale.
 const FurnaceQuantiles* nearest_rung(const Series& s, double n) {
     const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(math::log(static_cast<double>(q->n) / n)); };
-    return *std::min_element(s.rungs.begin(), s.rungs.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
+    return *std::min_element(
+        s.rungs.begin(), s.rungs.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
 }
 
 std::string share_text(const FalseRejection& r) {
@@ -107,8 +111,8 @@ std::string furnace_table(const Evidence& evidence) {
         head.push_back({escape(s.name()), true});
         for (const FurnaceQuantiles* q : s.rungs) rungs.insert(q->n);
     }
-    html::Table table(fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)),
-                      head);
+    html::Table table(
+        fmt::format("Median over replicates of the combined furnace; expected {}", figures(evidence.expected)), head);
     for (const std::uint64_t n : rungs) {
         std::vector<html::Cell> row{{std::to_string(n), true, true}};
         for (const Series& s : all) {
@@ -140,8 +144,8 @@ std::string furnace_sentence(const Page& page) {
         low->n, html::value(figures(low->median)), escape(coarse->name()), html::value(figures(high->median)),
         escape(fine->name()), html::value(figures(evidence.expected)), percent(short_low, 2), percent(short_high, 2));
     out += short_high > 0.5 * short_low
-               ? " Nearly the same undershoot stands in the finer arithmetic, so precision is not what is missing."
-               : " The finer arithmetic recovers most of it, so in this run precision does explain the undershoot.";
+        ? " Nearly the same undershoot stands in the finer arithmetic, so precision is not what is missing."
+        : " The finer arithmetic recovers most of it, so in this run precision does explain the undershoot.";
     return html::p(out);
 }
 
@@ -160,7 +164,7 @@ std::string lost_chart(const Evidence& evidence) {
         shares.push_back(theory.back().y);
     }
     Chart chart(600, 320, x, linear_axis("share of the fill that is lost", shares),
-                "Lost share of Lambert under the fill against the tilt of R");
+        "Lost share of Lambert under the fill against the tilt of R");
     chart.line(theory, "c0");
     for (const LostSupport& l : evidence.lost)
         chart.bar(l.theta_R_deg, std::max(0.0, l.measured - 2 * l.se), l.measured + 2 * l.se, "c1");
@@ -179,7 +183,7 @@ std::string lost_sentence(const Evidence& evidence) {
     std::string values;
     for (std::size_t i = stride - 1; i < tilted.size(); i += stride)
         values += fmt::format("{}{} at {}°", values.empty() ? "" : ", ", html::value(percent(tilted[i]->measured)),
-                              shortest(tilted[i]->theta_R_deg));
+            shortest(tilted[i]->theta_R_deg));
     return html::p(fmt::format(
         "Measured by drawing from the cosine and asking the Phong density whether it could have drawn the same: {}. "
         "The largest departure from theory is {:.1f} standard errors{}.",
@@ -198,7 +202,7 @@ std::string rejection_chart(const Evidence& evidence) {
     Axis x = log_axis("exponent s", exponents);
     x.ticks = exponents;
     Chart chart(600, 320, x, linear_axis("share of runs rejected", rates),
-                "Share of correct runs that a t-test rejects, against s");
+        "Share of correct runs that a t-test rejects, against s");
     chart.rule(evidence.alpha, "dashed strong", fmt::format("what the test promises: {}", percent(evidence.alpha)));
     for (const FalseRejection& r : evidence.rejections) chart.bar(r.s, r.low, r.high, "c1");
     chart.dots(points, "c1");
@@ -206,16 +210,13 @@ std::string rejection_chart(const Evidence& evidence) {
 }
 
 std::string rejection_table(const Evidence& evidence) {
-    html::Table table(
-        "Rejections of the correct arm, with Clopper–Pearson 95 % intervals",
-        {{"<i>s</i>", true}, {"<i>k</i>", true}, {"Runs", true}, {"Rejected", true}, {"Rate", true}, {"95 % interval", true}});
+    html::Table table("Rejections of the correct arm, with Clopper–Pearson 95 % intervals",
+        {{"<i>s</i>", true}, {"<i>k</i>", true}, {"Runs", true}, {"Rejected", true}, {"Rate", true},
+            {"95 % interval", true}});
     for (const FalseRejection& r : evidence.rejections)
-        table.row({{shortest(r.s), true, true},
-                   html::figure(fmt::format("{:.3f}", r.k)),
-                   html::figure(std::to_string(r.runs)),
-                   html::figure(std::to_string(r.rejected)),
-                   html::figure(share_text(r)),
-                   html::figure(percent(r.low) + " … " + percent(r.high))});
+        table.row({{shortest(r.s), true, true}, html::figure(fmt::format("{:.3f}", r.k)),
+            html::figure(std::to_string(r.runs)), html::figure(std::to_string(r.rejected)), html::figure(share_text(r)),
+            html::figure(percent(r.low) + " … " + percent(r.high))});
     return table.str();
 }
 
@@ -236,7 +237,7 @@ std::string rejection_sentence(const Evidence& evidence) {
             exponents(heavy), heavy_above);
     if (worst)
         out += fmt::format(" The worst is <i>s</i> = {}, where {} of the runs are rejected.", shortest(worst->s),
-                           html::value(share_text(*worst)));
+            html::value(share_text(*worst)));
     if (light > 0) out += fmt::format(" Of {} with <i>k</i> up to 1/2, at {}.", exponents(light), light_above);
     return html::p(out);
 }

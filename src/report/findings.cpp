@@ -30,7 +30,8 @@ std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const 
     };
     std::uint64_t best = 0;
     for (const std::uint64_t n : arms.front()->n)
-        if (std::all_of(arms.begin(), arms.end(), [&](const ArmPlan* arm) { return has(arm, n); })) best = std::max(best, n);
+        if (std::all_of(arms.begin(), arms.end(), [&](const ArmPlan* arm) { return has(arm, n); }))
+            best = std::max(best, n);
     return best;
 }
 
@@ -51,8 +52,8 @@ const RunMeter* Findings::run(const std::string& arm, std::uint64_t n, std::opti
     return nullptr;
 }
 
-const BandMeter* Findings::band(const std::string& arm, std::uint64_t n, const std::string& meter,
-                                std::optional<double> s) const {
+const BandMeter* Findings::band(
+    const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s) const {
     const double exponent = s.value_or(this->s());
     for (const BandMeter& b : in_.metrics.bands)
         if (b.meter == meter && b.key.arm == arm && b.key.n == n && b.key.s == exponent) return &b;
@@ -72,8 +73,8 @@ std::optional<Tail> Findings::tail(const BandMeter& band) const {
     return meter ? meter->tail : std::nullopt;
 }
 
-SeedCount Findings::seeds_above(const std::string& arm_a, const std::string& arm_b, std::uint64_t n,
-                                const std::string& region) const {
+SeedCount Findings::seeds_above(
+    const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const {
     SeedCount count;
     for (const RunMeter& a : in_.metrics.runs) {
         if (a.key.arm != arm_a || a.key.n != n || a.key.s != s()) continue;

@@ -40,13 +40,14 @@ public:
 
     /// At the published seed and the experiment's own s unless given.
     const RunMeter* run(const std::string& arm, std::uint64_t n, std::optional<double> s = {}) const;
-    const BandMeter* band(const std::string& arm, std::uint64_t n, const std::string& meter,
-                          std::optional<double> s = {}) const;
+    const BandMeter* band(
+        const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s = {}) const;
     /// RMSE in a region at the published seed.
     std::optional<double> rmse(const std::string& arm, std::uint64_t n, const std::string& region) const;
     /// Tail of the region that a meter such as "rmse.H" names; empty for whole-frame meters.
     std::optional<Tail> tail(const BandMeter& band) const;
-    SeedCount seeds_above(const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const;
+    SeedCount seeds_above(
+        const std::string& arm_a, const std::string& arm_b, std::uint64_t n, const std::string& region) const;
 
     /// Region in which rmse(a)/rmse(b) at n is largest, "" where there is none.
     std::string region_where_worst(const std::string& a, const std::string& b, std::uint64_t n) const;

@@ -59,8 +59,8 @@ void Table::row(const std::vector<Cell>& cells) {
 
 void Table::group(std::string_view html) {
     if (grouped_ || rows_ > 0) body_ += "</tbody>\n";
-    body_ +=
-        fmt::format("<tbody>\n<tr class=\"group\"><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n", head_.size(), html);
+    body_ += fmt::format(
+        "<tbody>\n<tr class=\"group\"><th scope=\"rowgroup\" colspan=\"{}\">{}</th></tr>\n", head_.size(), html);
     grouped_ = true;
 }
 

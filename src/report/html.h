@@ -48,7 +48,8 @@ Cell heading(std::string html, int rows = 1);
 /// A table that scrolls by itself on a narrow screen and is never cut across pages inside a row.
 class Table {
 public:
-    Table(std::string caption_html, std::vector<Cell> head) : caption_(std::move(caption_html)), head_(std::move(head)) {}
+    Table(std::string caption_html, std::vector<Cell> head)
+        : caption_(std::move(caption_html)), head_(std::move(head)) {}
     void row(const std::vector<Cell>& cells);
     /// A heading across the table; the rows that follow belong to it.
     void group(std::string_view html);

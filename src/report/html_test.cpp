@@ -24,11 +24,14 @@ TEST(ReportHtml, IsWellFormed) { EXPECT_EQ(xml_complaint(Sample().html()), ""); 
 TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     Sample s;
     const std::string bad = "<script>&\"'\x02\xff";
-    s.experiment.title = s.experiment.shapes[0].name = s.experiment.disks[0].name = s.experiment.plates[0].caption = bad;
+    s.experiment.title = s.experiment.shapes[0].name = s.experiment.disks[0].name = s.experiment.plates[0].caption =
+        bad;
     s.experiment.arms[0].name = s.experiment.regions[0].name = s.experiment.exponent->shape = bad;
-    s.metrics.assertions[0].name = s.metrics.assertions[0].text = s.provenance.command = s.provenance.experiment_file = bad;
+    s.metrics.assertions[0].name = s.metrics.assertions[0].text = s.provenance.command = s.provenance.experiment_file =
+        bad;
     s.metrics.furnaces[0].name = s.metrics.references[0].region = s.evidence.furnace[0].arithmetic = bad;
-    for (RunMeter& run : s.metrics.runs) run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
+    for (RunMeter& run : s.metrics.runs)
+        run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
     for (BandMeter& b : s.metrics.bands)
         b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
@@ -45,9 +48,9 @@ TEST(ReportHtml, LoadsNothingFromElsewhere) {
 
 TEST(ReportHtml, SectionsStandWhereTheirDataIs) {
     const std::string html = Sample().html();
-    for (const char* id :
-         {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b", "ladders", "exponent", "furnaces",
-          "published", "reference", "wrong", "disagreements", "what-ifs", "limits", "assertions", "provenance"})
+    for (const char* id : {"question", "estimator", "scene", "densities", "results", "failure-a", "failure-b",
+             "ladders", "exponent", "furnaces", "published", "reference", "wrong", "disagreements", "what-ifs",
+             "limits", "assertions", "provenance"})
         EXPECT_TRUE(has_section(html, id)) << id;
 }
 
@@ -65,8 +68,8 @@ TEST(ReportHtml, SectionsVanishWithoutTheirData) {
     for (RunMeter& r : s.metrics.runs) r.regions.clear();
     const std::string html = s.html();
     EXPECT_EQ(xml_complaint(html), "");
-    for (const char* id :
-         {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong", "disagreements", "assertions"}) {
+    for (const char* id : {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong",
+             "disagreements", "assertions"}) {
         EXPECT_FALSE(has_section(html, id)) << id;
         EXPECT_THAT(html, Not(HasSubstr("href=\"#" + std::string(id) + "\""))) << id;
     }
@@ -148,13 +151,14 @@ TEST(ReportHtml, KeepsUnderItsWeightByLinkingTheLargestPlates) {
 }
 
 TEST(ReportHtml, SaysOfEveryFigureWhichCommandMakesIt) {
-    EXPECT_THAT(Sample().html(), HasSubstr("<code>crescent run a.toml --seeds 3</code> → <code>plates/hero.png</code>"));
+    EXPECT_THAT(
+        Sample().html(), HasSubstr("<code>crescent run a.toml --seeds 3</code> → <code>plates/hero.png</code>"));
 }
 
 TEST(Charts, AxesHoldTheirValuesAndTicksLieOnThem) {
     for (const Axis& axis :
-         {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}), log_axis("x", {4, 256}),
-          log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
+        {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}), log_axis("x", {4, 256}),
+            log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
         ASSERT_LT(axis.low, axis.high);
         ASSERT_FALSE(axis.ticks.empty());
         for (const double tick : axis.ticks) {

@@ -11,10 +11,10 @@ namespace crescent {
 namespace {
 
 std::string failure(const AssertionResult& a) {
-    const std::string message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op, shortest(a.bound),
-                                            a.reference_good ? "" : "; the reference is not good enough");
+    const std::string message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op,
+        shortest(a.bound), a.reference_good ? "" : "; the reference is not good enough");
     return fmt::format("      <failure type=\"assertion\" message=\"{}\">{}</failure>\n", escape(message),
-                       escape(a.text + ": " + message));
+        escape(a.text + ": " + message));
 }
 
 std::string test_case(const AssertionResult& a, const std::string& group) {
@@ -38,8 +38,8 @@ std::string junit_xml(const ReportInputs& in) {
     out += fmt::format("<testsuites name=\"crescent\" {}>\n", counts);
     out += fmt::format("  <testsuite name=\"{}\" {} skipped=\"0\">\n", escape(in.experiment.title), counts);
     out += "    <properties>\n" + property("version", p.version) + property("commit", p.commit) +
-           property("experiment", p.experiment_file) + property("hash", p.experiment_hash) + property("command", p.command) +
-           "    </properties>\n";
+        property("experiment", p.experiment_file) + property("hash", p.experiment_hash) +
+        property("command", p.command) + "    </properties>\n";
     for (const AssertionResult& a : all) out += test_case(a, p.experiment_file);
     return out + "  </testsuite>\n</testsuites>\n";
 }

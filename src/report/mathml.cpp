@@ -23,7 +23,8 @@ M in_line(const M& inside) { return "<math>" + inside + "</math>"; }
 M in_cell(const M& inside) { return "<math displaystyle=\"true\">" + inside + "</math>"; }
 
 M display(const M& inside, std::string_view alt) {
-    return fmt::format("<div class=\"equation\"><math display=\"block\" alttext=\"{}\">{}</math></div>\n", alt, row({inside}));
+    return fmt::format(
+        "<div class=\"equation\"><math display=\"block\" alttext=\"{}\">{}</math></div>\n", alt, row({inside}));
 }
 
 M omega(std::string_view index) { return index.empty() ? mi("ω") : sub(mi("ω"), mi(index)); }
@@ -34,38 +35,41 @@ M rmse(std::string_view region) {
 }
 
 M integral() {
-    return row({sub(mi("L"), mi("o")), paren({omega("o")}), mo("="), sub(mo("∫"), hemisphere()), f_r(""), space(), L_i(""),
-                space(), n_dot_omega(), space(), upright("d"), omega()});
+    return row({sub(mi("L"), mi("o")), paren({omega("o")}), mo("="), sub(mo("∫"), hemisphere()), f_r(""), space(),
+        L_i(""), space(), n_dot_omega(), space(), upright("d"), omega()});
 }
 
 M estimator() {
     return row({sub(hat(mi("L")), mi("o")), mo("="), frac(mn("1"), mi("N")), under(mo("∑"), index_from_one(), mi("N")),
-                frac(row({f_r("k"), space(), L_i("k"), space(), n_dot_omega("k")}), row({mi("p"), paren({omega("k")})}))});
+        frac(row({f_r("k"), space(), L_i("k"), space(), n_dot_omega("k")}), row({mi("p"), paren({omega("k")})}))});
 }
 
 M brdf_phong() {
-    return row({sub(mi("f"), mi("r")), mo("="), frac(sub(mi("ρ"), mi("d")), mi("π")), mo("+"), sub(mi("ρ"), mi("s")), space(),
-                frac(row({mi("s"), mo("+"), mn("2")}), two_pi()), space(), subsup(omega_dot_R(), mo("+"), mi("s"))});
+    return row({sub(mi("f"), mi("r")), mo("="), frac(sub(mi("ρ"), mi("d")), mi("π")), mo("+"), sub(mi("ρ"), mi("s")),
+        space(), frac(row({mi("s"), mo("+"), mn("2")}), two_pi()), space(), subsup(omega_dot_R(), mo("+"), mi("s"))});
 }
 
 M mirror() {
-    return row({mi("R"), mo("="), mn("2"), paren({mi("n"), mo("⋅"), omega("o")}), space(), mi("n"), mo("−"), omega("o")});
+    return row(
+        {mi("R"), mo("="), mn("2"), paren({mi("n"), mo("⋅"), omega("o")}), space(), mi("n"), mo("−"), omega("o")});
 }
 
 M rmse_region() {
     const M square = sup(paren({Y(mi("N")), paren({mi("x")}), mo("−"), Y(upright("ref")), paren({mi("x")})}), mn("2"));
     return row({rmse("A"), mo("="),
-                root(row({frac(mn("1"), abs({mi("A")})), "<munder>" + mo("∑") + row({mi("x"), mo("∈"), mi("A")}) + "</munder>",
-                          square}))});
+        root(row({frac(mn("1"), abs({mi("A")})), "<munder>" + mo("∑") + row({mi("x"), mo("∈"), mi("A")}) + "</munder>",
+            square}))});
 }
 
 M variance() {
-    return row({upright("var"), paren({mi("x")}), mo("="), frac(mn("1"), row({mi("N"), paren({mi("N"), mo("−"), mn("1")})})),
-                under(mo("∑"), index_from_one(), mi("N")),
-                sup(paren({sub(mi("X"), mi("k")), mo("−"), bar(mi("X"))}), mn("2"))});
+    return row({upright("var"), paren({mi("x")}), mo("="),
+        frac(mn("1"), row({mi("N"), paren({mi("N"), mo("−"), mn("1")})})), under(mo("∑"), index_from_one(), mi("N")),
+        sup(paren({sub(mi("X"), mi("k")), mo("−"), bar(mi("X"))}), mn("2"))});
 }
 
-M firefly() { return row({abs({Y(mi("N")), mo("−"), Y(upright("ref"))}), mo(">"), mi("k"), space(), Y(upright("ref"))}); }
+M firefly() {
+    return row({abs({Y(mi("N")), mo("−"), Y(upright("ref"))}), mo(">"), mi("k"), space(), Y(upright("ref"))});
+}
 
 M density_uniform() { return frac(mn("1"), two_pi()); }
 M density_cosine() { return frac(n_dot_omega(), mi("π")); }
@@ -78,36 +82,37 @@ M inverse_phong() {
 }
 
 M density_mixture() {
-    return row(
-        {mi("q"), sub(mi("p"), upright("lobe")), mo("+"), paren({mn("1"), mo("−"), mi("q")}), sub(mi("p"), upright("cos"))});
+    return row({mi("q"), sub(mi("p"), upright("lobe")), mo("+"), paren({mn("1"), mo("−"), mi("q")}),
+        sub(mi("p"), upright("cos"))});
 }
 M density_mis() { return row({sub(mi("p"), mn("1")), mo(","), sub(mi("p"), mn("2"))}); }
 M density_light_area() {
     return frac(sup(abs({mi("y"), mo("−"), mi("x")}), mn("2")),
-                row({mi("π"), sup(mi("r"), mn("2")), space(), mi("cos"), sub(mi("θ"), mi("y"))}));
+        row({mi("π"), sup(mi("r"), mn("2")), space(), mi("cos"), sub(mi("θ"), mi("y"))}));
 }
 M density_light_cap() { return frac(mn("1"), row({two_pi(), paren({mn("1"), mo("−"), mi("cos"), mi("b")})})); }
 M density_blinn() {
-    return row({frac(plus_s(), two_pi()), space(), frac(sup(paren({mi("n"), mo("⋅"), mi("m")}), mi("s")), four_o_dot_m())});
+    return row(
+        {frac(plus_s(), two_pi()), space(), frac(sup(paren({mi("n"), mo("⋅"), mi("m")}), mi("s")), four_o_dot_m())});
 }
 M density_ggx_d() {
     return frac(row({mi("D"), paren({mi("m")}), space(), paren({mi("n"), mo("⋅"), mi("m")})}), four_o_dot_m());
 }
 M density_ggx_vndf() {
     return frac(row({sub(mi("G"), mn("1")), paren({omega("o")}), space(), mi("D"), paren({mi("m")})}),
-                row({mn("4"), paren({mi("n"), mo("⋅"), omega("o")})}));
+        row({mn("4"), paren({mi("n"), mo("⋅"), omega("o")})}));
 }
 M inverse_cap() {
-    return row(
-        {mi("cos"), mi("θ"), mo("="), mn("1"), mo("−"), sub(mi("u"), mn("1")), paren({mn("1"), mo("−"), mi("cos"), mi("b")})});
+    return row({mi("cos"), mi("θ"), mo("="), mn("1"), mo("−"), sub(mi("u"), mn("1")),
+        paren({mn("1"), mo("−"), mi("cos"), mi("b")})});
 }
 M inverse_blinn() {
-    return row(
-        {mi("cos"), sub(mi("θ"), mi("m")), mo("="), subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
+    return row({mi("cos"), sub(mi("θ"), mi("m")), mo("="),
+        subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
 }
 M inverse_ggx() {
     return row({sup(mi("tan"), mn("2")), sub(mi("θ"), mi("m")), mo("="),
-                frac(row({sup(mi("α"), mn("2")), sub(mi("u"), mn("1"))}), row({mn("1"), mo("−"), sub(mi("u"), mn("1"))}))});
+        frac(row({sup(mi("α"), mn("2")), sub(mi("u"), mn("1"))}), row({mn("1"), mo("−"), sub(mi("u"), mn("1"))}))});
 }
 
 M pareto_index() { return row({mi("k"), mo("="), frac(row({mi("s"), mo("−"), mn("1")}), plus_s())}); }
@@ -116,7 +121,7 @@ M lost_share() { return frac(row({mn("1"), mo("−"), mi("cos"), sub(mi("θ"), m
 
 M capped_mean() {
     return row({sub(mi("ρ"), mi("s")), mo("+"), sub(mi("ρ"), mi("d")),
-                paren({mn("1"), mo("−"), sup(mn("2"), row({mo("−"), mi("b"), paren({mn("1"), mo("−"), mi("k")})}))})});
+        paren({mn("1"), mo("−"), sup(mn("2"), row({mo("−"), mi("b"), paren({mn("1"), mo("−"), mi("k")})}))})});
 }
 
 M power_law() { return row({rmse(), mo("∝"), sup(mi("N"), mi("m"))}); }

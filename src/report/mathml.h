@@ -13,7 +13,7 @@ using M = std::string;
 inline M wrap(std::string_view tag, const M& inside) {
     M out;
     for (const std::string_view part : {std::string_view("<"), tag, std::string_view(">"), std::string_view(inside),
-                                        std::string_view("</"), tag, std::string_view(">")})
+             std::string_view("</"), tag, std::string_view(">")})
         out += part;
     return out;
 }
@@ -36,7 +36,8 @@ inline M root(const M& inside) { return wrap("msqrt", inside); }
 inline M hat(const M& base) { return "<mover accent=\"true\">" + base + mo("^") + "</mover>"; }
 inline M bar(const M& base) { return "<mover accent=\"true\">" + base + mo("¯") + "</mover>"; }
 inline M abs(std::initializer_list<M> parts) {
-    return row({"<mo form=\"prefix\" stretchy=\"false\">|</mo>", row(parts), "<mo form=\"postfix\" stretchy=\"false\">|</mo>"});
+    return row({"<mo form=\"prefix\" stretchy=\"false\">|</mo>", row(parts),
+        "<mo form=\"postfix\" stretchy=\"false\">|</mo>"});
 }
 inline M paren(std::initializer_list<M> parts) { return row({mo("("), row(parts), mo(")")}); }
 

@@ -36,7 +36,7 @@ std::string metrics_csv(const ReportInputs& in) {
     rows.out = "arm,n,s,seed,meter,region,value\r\n";
     for (const RunMeter& run : in.metrics.runs) {
         rows.run = csv_field(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
-                   std::to_string(run.key.seed) + ",";
+            std::to_string(run.key.seed) + ",";
         for (const RegionMeter& r : run.regions) add_region(rows, r);
         rows.add("fireflies", "", std::to_string(run.fireflies));
         rows.add("horizon_frac", "", run.horizon_frac);

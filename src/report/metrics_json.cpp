@@ -10,7 +10,9 @@ namespace {
 
 Json optional_number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
 
-Json tail_json(const Tail& tail) { return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}}; }
+Json tail_json(const Tail& tail) {
+    return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}};
+}
 
 Json run_json(const RunMeter& run) {
     Json regions = Json::object();
@@ -18,17 +20,10 @@ Json run_json(const RunMeter& run) {
         Json& at = regions[r.region] = {{"rmse", number(r.rmse)}, {"var", number(r.var)}, {"pixels", r.pixels}};
         if (r.tail) at["tail"] = tail_json(*r.tail);
     }
-    return {{"arm", run.key.arm},
-            {"n", run.key.n},
-            {"s", number(run.key.s)},
-            {"seed", run.key.seed},
-            {"regions", std::move(regions)},
-            {"fireflies", run.fireflies},
-            {"horizon_frac", number(run.horizon_frac)},
-            {"y_mean", number(run.y_mean)},
-            {"rmse_frame", number(run.rmse_frame)},
-            {"largest", number(run.largest)},
-            {"bad", run.bad}};
+    return {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
+        {"regions", std::move(regions)}, {"fireflies", run.fireflies}, {"horizon_frac", number(run.horizon_frac)},
+        {"y_mean", number(run.y_mean)}, {"rmse_frame", number(run.rmse_frame)}, {"largest", number(run.largest)},
+        {"bad", run.bad}};
 }
 
 Json interval_json(const Band& band) {
@@ -38,128 +33,90 @@ Json interval_json(const Band& band) {
 }
 
 Json band_json(const BandMeter& b) {
-    return {{"arm", b.key.arm},
-            {"n", b.key.n},
-            {"s", number(b.key.s)},
-            {"meter", b.meter},
-            {"published", optional_number(b.published)},
-            {"measured", number(b.measured)},
-            {"median", number(b.band.median)},
-            {"q05", number(b.band.q05)},
-            {"q95", number(b.band.q95)},
-            {"seeds", b.band.seeds},
-            {"interval", interval_json(b.band)},
-            {"published_rank", optional_number(b.published_rank)}};
+    return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"meter", b.meter},
+        {"published", optional_number(b.published)}, {"measured", number(b.measured)},
+        {"median", number(b.band.median)}, {"q05", number(b.band.q05)}, {"q95", number(b.band.q95)},
+        {"seeds", b.band.seeds}, {"interval", interval_json(b.band)},
+        {"published_rank", optional_number(b.published_rank)}};
 }
 
 Json ladder_json(const Ladder& l) {
     Json interval = heavy_tail;
-    if (!l.heavy) interval = std::isfinite(l.low) && std::isfinite(l.high) ? Json::array({number(l.low), number(l.high)}) : Json(nullptr);
-    return {{"arm", l.arm},
-            {"region", l.region},
-            {"s", number(l.s)},
-            {"n", l.n},
-            {"rmse", numbers(l.rmse)},
-            {"slope", number(l.slope)},
-            {"low", number(l.low)},
-            {"high", number(l.high)},
-            {"interval", std::move(interval)}};
+    if (!l.heavy)
+        interval = std::isfinite(l.low) && std::isfinite(l.high) ? Json::array({number(l.low), number(l.high)})
+                                                                 : Json(nullptr);
+    return {{"arm", l.arm}, {"region", l.region}, {"s", number(l.s)}, {"n", l.n}, {"rmse", numbers(l.rmse)},
+        {"slope", number(l.slope)}, {"low", number(l.low)}, {"high", number(l.high)},
+        {"interval", std::move(interval)}};
 }
 
 Json furnace_json(const FurnaceMeter& f) {
-    Json out = {{"name", f.name},
-                {"arm", f.arm},
-                {"part", f.part},
-                {"n", f.n},
-                {"measured", number(f.measured)},
-                {"expected", number(f.expected)},
-                {"se", f.tail && f.tail->heavy() ? Json(heavy_tail) : number(f.se)},
-                {"bad", f.bad},
-                {"published", optional_number(f.published)}};
+    Json out = {{"name", f.name}, {"arm", f.arm}, {"part", f.part}, {"n", f.n}, {"measured", number(f.measured)},
+        {"expected", number(f.expected)}, {"se", f.tail && f.tail->heavy() ? Json(heavy_tail) : number(f.se)},
+        {"bad", f.bad}, {"published", optional_number(f.published)}};
     if (f.tail) out["tail"] = tail_json(*f.tail);
     return out;
 }
 
 Json reference_json(const ReferenceMeter& r) {
-    return {{"s", number(r.s)},
-            {"region", r.region},
-            {"rms_difference", number(r.rms_difference)},
-            {"rms_standard_error", number(r.rms_standard_error)},
-            {"quadrature_error", number(r.quadrature_error)},
-            {"rmse_unlike", number(r.rmse_unlike)},
-            {"error_share", number(r.error_share)}};
+    return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", number(r.rms_difference)},
+        {"rms_standard_error", number(r.rms_standard_error)}, {"quadrature_error", number(r.quadrature_error)},
+        {"rmse_unlike", number(r.rmse_unlike)}, {"error_share", number(r.error_share)}};
 }
 
 Json assertion_json(const AssertionResult& a) {
-    return {{"name", a.name},           {"pass", a.pass}, {"measured", number(a.measured)},
-            {"bound", number(a.bound)}, {"op", a.op},     {"text", a.text}};
+    return {{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)}, {"bound", number(a.bound)},
+        {"op", a.op}, {"text", a.text}};
 }
 
 Json quantiles_json(const FurnaceQuantiles& q) {
-    return {{"arithmetic", q.arithmetic}, {"u_bits", q.u_bits},   {"n", q.n},
-            {"q05", number(q.q05)},       {"q25", number(q.q25)}, {"median", number(q.median)},
-            {"q75", number(q.q75)},       {"q95", number(q.q95)}};
+    return {{"arithmetic", q.arithmetic}, {"u_bits", q.u_bits}, {"n", q.n}, {"q05", number(q.q05)},
+        {"q25", number(q.q25)}, {"median", number(q.median)}, {"q75", number(q.q75)}, {"q95", number(q.q95)}};
 }
 
 Json cap_json(const FurnaceCap& c) { return {{"u_bits", c.u_bits}, {"y", number(c.y)}}; }
 
 Json lost_json(const LostSupport& l) {
-    return {{"theta_R_deg", number(l.theta_R_deg)},
-            {"measured", number(l.measured)},
-            {"se", number(l.se)},
-            {"theory", number(l.theory)}};
+    return {{"theta_R_deg", number(l.theta_R_deg)}, {"measured", number(l.measured)}, {"se", number(l.se)},
+        {"theory", number(l.theory)}};
 }
 
 Json rejection_json(const FalseRejection& r) {
-    return {{"s", number(r.s)},     {"k", number(r.k)},      {"n", r.n}, {"runs", r.runs}, {"rejected", r.rejected},
-            {"low", number(r.low)}, {"high", number(r.high)}};
+    return {{"s", number(r.s)}, {"k", number(r.k)}, {"n", r.n}, {"runs", r.runs}, {"rejected", r.rejected},
+        {"low", number(r.low)}, {"high", number(r.high)}};
 }
 
-template <class T, class F>
-Json list(const std::vector<T>& all, F one) {
+template <class T, class F> Json list(const std::vector<T>& all, F one) {
     Json out = Json::array();
     for (const T& x : all) out.push_back(one(x));
     return out;
 }
 
 Json evidence_json(const Evidence& e) {
-    return {{"s", number(e.s)},
-            {"rho_d", number(e.rho_d)},
-            {"rho_s", number(e.rho_s)},
-            {"expected", number(e.expected)},
-            {"alpha", number(e.alpha)},
-            {"furnace", list(e.furnace, quantiles_json)},
-            {"caps", list(e.caps, cap_json)},
-            {"lost", list(e.lost, lost_json)},
-            {"rejections", list(e.rejections, rejection_json)}};
+    return {{"s", number(e.s)}, {"rho_d", number(e.rho_d)}, {"rho_s", number(e.rho_s)},
+        {"expected", number(e.expected)}, {"alpha", number(e.alpha)}, {"furnace", list(e.furnace, quantiles_json)},
+        {"caps", list(e.caps, cap_json)}, {"lost", list(e.lost, lost_json)},
+        {"rejections", list(e.rejections, rejection_json)}};
 }
 
 }  // namespace
 
 Json provenance_json(const Provenance& p) {
-    Json out = {{"version", p.version},   {"commit", p.commit},
-                {"compiler", p.compiler}, {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}},
-                {"seeds", p.seeds},       {"instrument", p.instrument},
-                {"command", p.command}};
+    Json out = {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
+        {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}}, {"seeds", p.seeds},
+        {"instrument", p.instrument}, {"command", p.command}};
     for (const auto& [what, said] : p.instrument_details) out["instrument_details"][what] = said;
     return out;
 }
 
 std::string metrics_json(const ReportInputs& in) {
     const Metrics& m = in.metrics;
-    const Json out = {{"format", "crescent metrics 1"},
-                      {"title", in.experiment.title},
-                      {"geometry_pixels", m.geometry_pixels},
-                      {"shape_pixels", m.shape_pixels},
-                      {"runs", list(m.runs, run_json)},
-                      {"bands", list(m.bands, band_json)},
-                      {"ladders", list(m.ladders, ladder_json)},
-                      {"furnace", list(m.furnaces, furnace_json)},
-                      {"references", list(m.references, reference_json)},
-                      {"assertions", list(m.assertions, assertion_json)},
-                      {"films", m.film_hashes},
-                      {"evidence", evidence_json(in.evidence)},
-                      {"provenance", provenance_json(in.provenance)}};
+    const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
+        {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, run_json)},
+        {"bands", list(m.bands, band_json)}, {"ladders", list(m.ladders, ladder_json)},
+        {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
+        {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
+        {"evidence", evidence_json(in.evidence)}, {"provenance", provenance_json(in.provenance)}};
     return text(out);
 }
 

@@ -62,7 +62,8 @@ std::string clip(std::string_view utf8, std::size_t columns) {
     if (wide <= columns) return std::string(utf8);
     if (columns == 0) return {};
     const std::size_t head = (columns - 1) / 2, tail = columns - 1 - head;
-    return std::string(utf8.substr(0, offset_of(utf8, head))) + "…" + std::string(utf8.substr(offset_of(utf8, wide - tail)));
+    return std::string(utf8.substr(0, offset_of(utf8, head))) + "…" +
+        std::string(utf8.substr(offset_of(utf8, wide - tail)));
 }
 
 std::string left(std::string_view utf8, std::size_t columns) {

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t page_limit = 14'000'000;  // bytes of base64 that may go into the page
 
 bool photograph(PlateKind kind) {
-    return kind != PlateKind::reference && kind != PlateKind::heat && kind != PlateKind::rose && kind != PlateKind::meters;
+    return kind != PlateKind::reference && kind != PlateKind::heat && kind != PlateKind::rose &&
+        kind != PlateKind::meters;
 }
 
 /// Letters, digits and hyphens of a name: what an id may hold.
@@ -65,16 +66,18 @@ std::string Figures::plate(const std::string& name, const PlatePlan* plan) {
     shown_.insert(name);
     const std::vector<unsigned char>& png = in_.plates.at(name);
     const std::string caption = plan && !plan->caption.empty() ? plan->caption : name;
-    const std::string source = outside_.count(name) ? "plates/" + name + ".png" : "data:image/png;base64," + base64(png);
+    const std::string source =
+        outside_.count(name) ? "plates/" + name + ".png" : "data:image/png;base64," + base64(png);
     const std::string picture = fmt::format("<img src=\"{}\" alt=\"{}\" width=\"1280\" height=\"720\" />",
-                                            outside_.count(name) ? escape(source) : source, escape(caption));
+        outside_.count(name) ? escape(source) : source, escape(caption));
     std::string kind;
-    if (plan) kind = fmt::format("<span class=\"kind\">{}</span> ", photograph(plan->kind) ? "Photograph" : "Instrument");
+    if (plan)
+        kind = fmt::format("<span class=\"kind\">{}</span> ", photograph(plan->kind) ? "Photograph" : "Instrument");
     return figure("plate-" + slug(name), picture, kind + escape(caption), "plates/" + name + ".png");
 }
 
-std::string Figures::figure(const std::string& id, const std::string& picture, const std::string& caption,
-                            const std::string& made) {
+std::string Figures::figure(
+    const std::string& id, const std::string& picture, const std::string& caption, const std::string& made) {
     ++count_;
     const char* narrow = picture.starts_with("<svg") ? " class=\"narrow\"" : "";  // one chart alone fits the column
     return fmt::format(

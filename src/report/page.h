@@ -32,7 +32,8 @@ public:
 
 private:
     std::string plate(const std::string& name, const PlatePlan* plan);
-    std::string figure(const std::string& id, const std::string& picture, const std::string& caption, const std::string& made);
+    std::string figure(
+        const std::string& id, const std::string& picture, const std::string& caption, const std::string& made);
 
     const ReportInputs& in_;
     std::set<std::string> shown_, outside_;
@@ -96,8 +97,8 @@ struct Column {
 };
 std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
 /// Which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
-std::string ordering_sentence(const Page& page, const std::string& a, const std::string& b, std::uint64_t n,
-                              const std::string& region);
+std::string ordering_sentence(
+    const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region);
 /// "3.1", "12": how many times.
 std::string times(double ratio);
 

@@ -43,10 +43,10 @@ constexpr const char* page_frame = R"(<!DOCTYPE html>
 )";
 
 std::vector<PageSection> all_sections(Page& page) {
-    std::vector<PageSection> all{question(page),  estimator(page),   scene(page),       densities(page),     results(page),
-                                 failure_a(page), failure_b(page),   ladders(page),     exponent(page),      furnaces(page),
-                                 published(page), reference(page),   where_wrong(page), disagreements(page), what_ifs(page),
-                                 limits(page),    more_plates(page), assertions(page),  provenance(page)};
+    std::vector<PageSection> all{question(page), estimator(page), scene(page), densities(page), results(page),
+        failure_a(page), failure_b(page), ladders(page), exponent(page), furnaces(page), published(page),
+        reference(page), where_wrong(page), disagreements(page), what_ifs(page), limits(page), more_plates(page),
+        assertions(page), provenance(page)};
     std::erase_if(all, [](const PageSection& s) { return s.html.empty(); });
     return all;
 }
@@ -54,9 +54,10 @@ std::vector<PageSection> all_sections(Page& page) {
 std::string verdict(const std::vector<AssertionResult>& all) {
     if (all.empty()) return {};
     const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return !a.pass; });
-    if (failed == 0) return fmt::format("<p class=\"verdict good\">All {} assertions of this run hold.</p>\n", all.size());
-    return fmt::format("<p class=\"verdict bad\">{} of {} assertions of this run FAIL. See {}.</p>\n", failed, all.size(),
-                       html::link("assertions", "which"));
+    if (failed == 0)
+        return fmt::format("<p class=\"verdict good\">All {} assertions of this run hold.</p>\n", all.size());
+    return fmt::format("<p class=\"verdict bad\">{} of {} assertions of this run FAIL. See {}.</p>\n", failed,
+        all.size(), html::link("assertions", "which"));
 }
 
 /// What the arms with a cosine and a Phong density read in each region, in one sentence.
@@ -72,16 +73,18 @@ std::string story(const Page& page) {
         out += out.empty() ? fmt::format(" At <i>N</i> = {} and the {} seed", n, page.seed_name()) : ";";
         const std::string where = " in region " + escape(region.name);
         out += c.equal
-                   ? where + " the two err alike"
-                   : fmt::format("{} {}’s error is {} times {}’s", where, escape(c.larger), times(c.ratio), escape(c.smaller));
+            ? where + " the two err alike"
+            : fmt::format("{} {}’s error is {} times {}’s", where, escape(c.larger), times(c.ratio), escape(c.smaller));
     }
-    return out.empty() ? out
-                       : "One integral, one number of samples, one stream of random numbers: only the aim differs." + out + ".";
+    return out.empty()
+        ? out
+        : "One integral, one number of samples, one stream of random numbers: only the aim differs." + out + ".";
 }
 
 std::string lead(const Page& page) {
     const std::string words = story(page);
-    return (words.empty() ? "" : html::element("p", "class=\"lead\"", words) + "\n") + verdict(page.in.metrics.assertions);
+    return (words.empty() ? "" : html::element("p", "class=\"lead\"", words) + "\n") +
+        verdict(page.in.metrics.assertions);
 }
 
 }  // namespace
@@ -100,10 +103,10 @@ std::string report_html(const ReportInputs& in) {
             s.id, number, s.title, s.html);
     }
     return fmt::format(page_frame, fmt::arg("version", escape(in.provenance.version)),
-                       fmt::arg("title", escape(in.experiment.title)), fmt::arg("style", style_sheet),
-                       fmt::arg("lead", lead(page)), fmt::arg("hero", hero), fmt::arg("contents", contents),
-                       fmt::arg("sections", sections), fmt::arg("file", escape(in.provenance.experiment_file)),
-                       fmt::arg("hash", escape(in.provenance.experiment_hash)));
+        fmt::arg("title", escape(in.experiment.title)), fmt::arg("style", style_sheet), fmt::arg("lead", lead(page)),
+        fmt::arg("hero", hero), fmt::arg("contents", contents), fmt::arg("sections", sections),
+        fmt::arg("file", escape(in.provenance.experiment_file)),
+        fmt::arg("hash", escape(in.provenance.experiment_hash)));
 }
 
 }  // namespace crescent

@@ -88,7 +88,8 @@ inline Evidence sample_evidence() {
     e.rho_d = 0.2;
     e.rho_s = 0.1;
     e.expected = 0.3;
-    e.furnace = {{"float32", 24, 1024, 0.18, 0.19, 0.2, 0.21, 0.28}, {"float64", 53, 1024, 0.18, 0.19, 0.201, 0.21, 0.28}};
+    e.furnace = {
+        {"float32", 24, 1024, 0.18, 0.19, 0.2, 0.21, 0.28}, {"float64", 53, 1024, 0.18, 0.19, 0.201, 0.21, 0.28}};
     e.caps = {{24, 0.23}, {53, 0.28}};
     e.lost = {{0, 0, 0.001, 0}, {60, 0.2505, 0.001, 0.25}};
     e.rejections = {{2, 1.0 / 3, 100000, 1000, 11, 0.006, 0.02}, {32, 0.939, 100000, 1000, 780, 0.75, 0.81}};
@@ -100,13 +101,14 @@ inline Sample::Sample() : experiment(sample_experiment()), evidence(sample_evide
     add_run(*this, "cosine", 6, 0.25);
     add_run(*this, "phong", 2, 1);
     metrics.furnaces = {{"cosine combined", "cosine", "combined", 1024, 0.301, 0.3, 0.001, Tail{-0.2, 0.1, 20}, 0, 0.3},
-                        {"phong combined", "phong", "combined", 1024, 0.2, 0.3, 0.05, Tail{0.94, 0.05, 20}, 0, {}}};
+        {"phong combined", "phong", "combined", 1024, 0.2, 0.3, 0.05, Tail{0.94, 0.05, 20}, 0, {}}};
     metrics.references = {{32, "H", 0.01, 0.01, 1e-9, 0.002}};
     metrics.assertions = {{"phong is better in H", true, 2, 6, "<", "rmse.H(phong) < rmse.H(cosine)"},
-                          {"no bad samples", true, 0, 0, "==", "bad == 0"}};
+        {"no bad samples", true, 0, 0, "==", "bad == 0"}};
     metrics.shape_pixels = {{"ball", 500}};
     metrics.geometry_pixels = 500;
-    provenance = {"1.2.3", "abc", "GNU 12.2.0", "a.toml", "00ff", "CPU", "crescent run a.toml --seeds 3", {7, 8, 9}, {}};
+    provenance = {
+        "1.2.3", "abc", "GNU 12.2.0", "a.toml", "00ff", "CPU", "crescent run a.toml --seeds 3", {7, 8, 9}, {}};
     timing.estimating_s = 1.5;
     timing.total_s = 2.5;
     timing.threads = 2;

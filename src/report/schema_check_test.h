@@ -33,14 +33,15 @@ private:
         return {};
     }
 
-    std::string keyword(const Json& schema, const std::string& key, const Json& rule, const Json& v,
-                        const std::string& at) const {
+    std::string keyword(
+        const Json& schema, const std::string& key, const Json& rule, const Json& v, const std::string& at) const {
         static const std::set<std::string> words{"$schema", "title", "description", "$defs"};
         if (words.count(key)) return {};
         if (key == "$ref") return check(root_.at(Json::json_pointer(rule.get<std::string>().substr(1))), v, at);
         if (key == "type") return is(rule, v) ? "" : at + ": not a " + rule.get<std::string>();
         if (key == "const") return v == rule ? "" : at + ": not " + rule.dump();
-        if (key == "enum") return std::find(rule.begin(), rule.end(), v) != rule.end() ? "" : at + ": none of " + rule.dump();
+        if (key == "enum")
+            return std::find(rule.begin(), rule.end(), v) != rule.end() ? "" : at + ": none of " + rule.dump();
         if (key == "minimum") return !v.is_number() || v >= rule ? "" : at + ": below " + rule.dump();
         if (key == "minItems") return v.size() >= rule.get<std::size_t>() ? "" : at + ": too short";
         if (key == "maxItems") return v.size() <= rule.get<std::size_t>() ? "" : at + ": too long";

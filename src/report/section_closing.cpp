@@ -50,43 +50,45 @@ void light_rows(const Page& page, std::vector<Row>& rows) {
     if (e.disks.empty()) return;
     const DiskLight& d = e.disks.front();
     rows.push_back({"A larger light?", with(page, {fmt::format("disks.{}.radius={}", d.name, shortest(4 * d.radius))}),
-                    "Broad densities meet it more often; the fireflies thin out."});
+        "Broad densities meet it more often; the fireflies thin out."});
     rows.push_back({"A smaller one?", with(page, {fmt::format("disks.{}.radius={}", d.name, shortest(d.radius / 4))}),
-                    "Every arm that does not aim at lights misses it; in the limit none can find it."});
+        "Every arm that does not aim at lights misses it; in the limit none can find it."});
     std::vector<std::string> furnace{"fill.radiance=[1, 1, 1]"};
     for (const DiskLight& disk : e.disks) furnace.push_back(fmt::format("disks.{}.radiance=[1, 1, 1]", disk.name));
     rows.push_back({"The whole scene as a white furnace?", with(page, furnace),
-                    "Each surface shows its albedo; what departs is the arm’s."});
+        "Each surface shows its albedo; what departs is the arm’s."});
 }
 
 void material_rows(const Page& page, std::vector<Row>& rows) {
     const Shape* shape = glossy(page.in.experiment);
     if (!shape) return;
     rows.push_back({"A metal instead?", with(page, {fmt::format("shapes.{}.rho_d=[0, 0, 0]", shape->name)}),
-                    "Without its Lambert part the surface has no Failure B of its own; what is matt around it keeps its part."});
+        "Without its Lambert part the surface has no Failure B of its own; what is matt around it keeps its part."});
     if (!shape->material.s) return;
     const double s = *shape->material.s;
-    rows.push_back({"More samples under the horizon?",
-                    with(page, {fmt::format("shapes.{}.s={}", shape->name, shortest(s / 4))}),
-                    "A wider lobe reaches under the surface more often; those samples weigh nothing and count."});
+    rows.push_back(
+        {"More samples under the horizon?", with(page, {fmt::format("shapes.{}.s={}", shape->name, shortest(s / 4))}),
+            "A wider lobe reaches under the surface more often; those samples weigh nothing and count."});
     rows.push_back({"A sharper lobe?", with(page, {fmt::format("shapes.{}.s={}", shape->name, shortest(2 * s))}),
-                    "Better where the lobe is, worse everywhere else."});
+        "Better where the lobe is, worse everywhere else."});
 }
 
 void sampling_rows(const Page& page, std::vector<Row>& rows) {
     const Experiment& e = page.in.experiment;
     rows.push_back({"Another seed?", with(page, {fmt::format("seed={}", e.seed + 1)}), "What turns round was noise."});
-    rows.push_back({"A stricter or laxer firefly?", with(page, {fmt::format("firefly_k={}", shortest(2 * e.firefly_k))}),
-                    "Counts fall as k rises; the order of the arms should not."});
+    rows.push_back(
+        {"A stricter or laxer firefly?", with(page, {fmt::format("firefly_k={}", shortest(2 * e.firefly_k))}),
+            "Counts fall as k rises; the order of the arms should not."});
     if (!e.arms.empty() && !e.arms.back().n.empty())
-        rows.push_back({"More samples?",
-                        with(page, {fmt::format("arms.{}.n={}", e.arms.back().name, ladder_text(e.arms.back()))}),
-                        "One more rung; the lower ones keep their bits."});
+        rows.push_back(
+            {"More samples?", with(page, {fmt::format("arms.{}.n={}", e.arms.back().name, ladder_text(e.arms.back()))}),
+                "One more rung; the lower ones keep their bits."});
     if (!e.regions.empty())
         rows.push_back({"Another region?",
-                        with(page, {fmt::format("regions.{}.box={}", e.regions.front().name,
-                                                box_text(shifted(e, e.regions.front().box)))}),
-                        "Films stay as they are; only what is read off them changes."});
+            with(page,
+                {fmt::format(
+                    "regions.{}.box={}", e.regions.front().name, box_text(shifted(e, e.regions.front().box)))}),
+            "Films stay as they are; only what is read off them changes."});
 }
 
 /// Whether an arm samples lights or joins several densities.
@@ -99,7 +101,8 @@ bool remedies(const Experiment& e) {
 std::string claims(const Page& page) {
     const Experiment& e = page.in.experiment;
     std::vector<std::string> can{
-        "For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. The films "
+        "For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. "
+        "The films "
         "can be made again, bit for "
         "bit: their hashes stand at the end.",
         "Arms differ in their density alone: same directions of view, same light, same random numbers."};
@@ -107,27 +110,28 @@ std::string claims(const Page& page) {
         can.push_back(fmt::format(
             "Bands span {} seeds. An order of arms whose bands do not overlap is no accident of the seed.", e.seeds));
     std::vector<std::string> cannot{
-        "One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a renderer.",
+        "One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a "
+        "renderer.",
         "Arms are compared at equal <i>N</i>. Nothing here says which is faster, or which belongs in production.",
         "Photographs are tone-mapped and cut off at white. Read no error off them."};
     if (!remedies(e))
         cannot.push_back(
             "No arm aims at the lights and none is combined with another; how well either remedy works is not asked.");
-    if (e.seeds < 2)
-        cannot.push_back("A single seed ran. There are no bands, so no arm is ranked above another.");
+    if (e.seeds < 2) cannot.push_back("A single seed ran. There are no bands, so no arm is ranked above another.");
     else if (e.seeds < 20)
         cannot.push_back(
             fmt::format("With {} seeds the ends of a 5–95 % band rest on the outermost one or two draws.", e.seeds));
     const auto& bands = page.in.metrics.bands;
     const auto heavy = std::count_if(bands.begin(), bands.end(), [](const BandMeter& b) { return b.band.heavy; });
     if (heavy > 0)
-        cannot.push_back(
-            fmt::format("{} of {} meters have no interval, because the tail of their samples is too heavy for one. More seeds "
-                        "would not mend it.",
-                        heavy, bands.size()));
+        cannot.push_back(fmt::format(
+            "{} of {} meters have no interval, because the tail of their samples is too heavy for one. More seeds "
+            "would not mend it.",
+            heavy, bands.size()));
     if (page.find.anything_published())
         cannot.push_back(
-            "The geometry was fitted to published figures, which do not fix it. It is a scene that fits them, not the one they "
+            "The geometry was fitted to published figures, which do not fix it. It is a scene that fits them, not the "
+            "one they "
             "were made with.");
     return "<h3>It can claim</h3>\n" + html::list(can) + "<h3>It cannot claim</h3>\n" + html::list(cannot);
 }
@@ -152,13 +156,14 @@ PageSection what_ifs(Page& page) {
     light_rows(page, rows);
     std::string items;
     for (const Row& row : rows)
-        items +=
-            html::element("dt", row.question) + html::element("dd", html::command(row.command) + html::p(row.expect)) + "\n";
+        items += html::element("dt", row.question) +
+            html::element("dd", html::command(row.command) + html::p(row.expect)) + "\n";
     return {"what-ifs", "What if",
-            html::p("Each question is one line. An override is checked like the file itself, and the experiment’s hash changes "
-                    "with it. Assertions were "
-                    "written for the experiment as it stands and may well fail here.") +
-                "<dl class=\"what-if\">\n" + items + "</dl>\n"};
+        html::p(
+            "Each question is one line. An override is checked like the file itself, and the experiment’s hash changes "
+            "with it. Assertions were "
+            "written for the experiment as it stands and may well fail here.") +
+            "<dl class=\"what-if\">\n" + items + "</dl>\n"};
 }
 
 PageSection limits(Page& page) { return {"limits", "Limits", claims(page)}; }
@@ -171,18 +176,22 @@ PageSection assertions(Page& page) {
         fmt::format("{} assertions, {}", all.size(), failed == 0 ? "all hold" : std::to_string(failed) + " failed"),
         {words("Assertion"), {"Measured", true}, words(""), {"Bound", true}, words("Result")});
     for (const AssertionResult& a : all)
-        table.row({html::heading(escape(a.name) + (a.text.empty() ? "" : "<small><code>" + escape(a.text) + "</code></small>")),
-                   html::figure(compact(a.measured)), words(escape(a.op)), html::figure(compact(a.bound)),
-                   words(a.pass ? "holds" : "<b class=\"bad\">FAILED</b>")});
+        table.row({html::heading(
+                       escape(a.name) + (a.text.empty() ? "" : "<small><code>" + escape(a.text) + "</code></small>")),
+            html::figure(compact(a.measured)), words(escape(a.op)), html::figure(compact(a.bound)),
+            words(a.pass ? "holds" : "<b class=\"bad\">FAILED</b>")});
     return {"assertions", "Assertions", table.str()};
 }
 
 PageSection provenance(Page& page) {
     const Provenance& p = page.in.provenance;
     html::Table table(
-        "Where this run came from. What varies between equal runs (date, seconds, threads, instruction set) is in timing.json",
+        "Where this run came from. What varies between equal runs (date, seconds, threads, instruction set) is in "
+        "timing.json",
         {words("What"), words("Value")});
-    const auto add = [&](const char* what, const std::string& value) { table.row({html::heading(what), words(value)}); };
+    const auto add = [&](const char* what, const std::string& value) {
+        table.row({html::heading(what), words(value)});
+    };
     add("Experiment", html::code(p.experiment_file) + ", hash " + html::code(p.experiment_hash));
     add("Command", html::code(p.command));
     add("crescent", escape(p.version) + ", commit " + html::code(p.commit));
@@ -191,7 +200,7 @@ PageSection provenance(Page& page) {
     for (const auto& [what, said] : p.instrument_details) table.row({html::heading(escape(what)), words(escape(said))});
     add("Seeds", seeds_text(p.seeds));
     html::Table films("Hashes (XXH3-64) of the float films at the first seed; equal films have equal hashes",
-                      {words("Film"), words("Hash")});
+        {words("Film"), words("Hash")});
     for (const auto& [name, hash] : page.in.metrics.film_hashes)
         films.row({html::heading(escape(name)), words(html::code(hash))});
     return {"provenance", "Provenance", table.str() + (films.empty() ? "" : films.str())};

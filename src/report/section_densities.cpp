@@ -34,7 +34,7 @@ const std::vector<Known>& all_known() {
         {"cosine", in_cell(density_cosine()), in_cell(inverse_cosine()), "the normal <i>n</i>"},
         {"phong", in_cell(density_phong()), in_cell(inverse_phong()), "the mirror direction <i>R</i>"},
         {"mixture", in_cell(density_mixture()), "lobe where <i>u</i><sub>1</sub> &lt; <i>q</i>, else cosine",
-         "<i>R</i> or <i>n</i>"},
+            "<i>R</i> or <i>n</i>"},
         {"mis-balance", in_cell(density_mis()), "a mixture and a disk sample, balance heuristic", "both"},
         {"mis-power", in_cell(density_mis()), "a mixture and a disk sample, power heuristic", "both"},
         {"light-area", in_cell(density_light_area()), "even over the area of a disk", "the disk"},
@@ -62,19 +62,18 @@ bool plain(const ArmPlan& arm) { return arm.sampler == "uniform" || arm.sampler 
 }  // namespace
 
 PageSection densities(Page& page) {
-    html::Table table(
-        "The densities, the maps that draw from them and the rungs of <i>N</i> each arm ran",
+    html::Table table("The densities, the maps that draw from them and the rungs of <i>N</i> each arm ran",
         {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
     const auto& arms = page.in.experiment.arms;
     for (const ArmPlan& arm : arms) {
         const Known* it = known(arm.sampler);
         table.row({html::heading(escape(arm.name)), words(it ? it->density : "sampler " + html::code(arm.sampler)),
-                   words(it ? it->inverse : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
+            words(it ? it->inverse : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
     }
     if (table.empty()) return {};
     const char* prose = std::all_of(arms.begin(), arms.end(), plain) ? plain_prose : other_prose;
     return {"densities", arms.size() == 3 ? "Three densities" : "The densities",
-            prose + table.str() + page.figures.plates(PlateKind::rose)};
+        prose + table.str() + page.figures.plates(PlateKind::rose)};
 }
 
 }  // namespace crescent

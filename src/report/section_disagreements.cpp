@@ -32,9 +32,10 @@ std::string spread(const std::vector<double>& all) {
     if (all.empty()) return {};
     const auto [low, high] = std::minmax_element(all.begin(), all.end());
     if (*low < 0 && *high > 0) return {};
-    const double least = std::min(std::fabs(*low), std::fabs(*high)), most = std::max(std::fabs(*low), std::fabs(*high));
-    const std::string range =
-        most - least < 0.005 ? fmt::format("{:.0f}", 100 * most) : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * most);
+    const double least = std::min(std::fabs(*low), std::fabs(*high)),
+                 most = std::max(std::fabs(*low), std::fabs(*high));
+    const std::string range = most - least < 0.005 ? fmt::format("{:.0f}", 100 * most)
+                                                   : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * most);
     return range + " % " + (*low < 0 ? "below" : "above");
 }
 
@@ -61,7 +62,8 @@ std::string highlight_remark(const Page& page, const ArmPlan& broad, const std::
     const auto mean = relative(page.find.band(control->arm, control->n, "y_mean", s));
     if (mean && *mean > 0)
         out += fmt::format(
-            " Raising them takes a highlight of more pixels, hence a larger {}. That raises {} at <i>s</i> = {} as well, and "
+            " Raising them takes a highlight of more pixels, hence a larger {}. That raises {} at <i>s</i> = {} as "
+            "well, and "
             "it "
             "stands at {} already. One geometry does not meet both.",
             escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
@@ -118,7 +120,8 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
     }
     if (of < 2) return {};
     return fmt::format(
-        "The published ladder of {} in {} strays from the −1/2 law by no more than {}. Of {} seeds here, {} keep as close: "
+        "The published ladder of {} in {} strays from the −1/2 law by no more than {}. Of {} seeds here, {} keep as "
+        "close: "
         "the others meet a rare bright sample on some rung.",
         escape(narrow.name), escape(region), percent(limit, 2), of, close);
 }
@@ -140,7 +143,8 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
         }
         if (of < 2) return {};
         return fmt::format(
-            "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it rises, in "
+            "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it "
+            "rises, in "
             "{} by that "
             "much. With an infinite variance behind it, it need not fall.",
             narrow.n[i - 1], narrow.n[i], meter_html("rmse." + region), escape(narrow.name), factor, rose, of, so_much);
@@ -157,8 +161,8 @@ std::string remarks(const Page& page) {
         if (!hot.empty()) all.push_back(highlight_remark(page, *broad, hot));
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
-                all.push_back(
-                    fmt::format("For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
+                all.push_back(fmt::format(
+                    "For {}, {}: {}.", escape(broad->name), meter_html("rmse." + cold), signed_percent(*r)));
         for (const char* meter : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, meter));
         if (!hot.empty()) all.push_back(smooth_ladder_remark(page, *narrow, hot));
         if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));
@@ -166,9 +170,10 @@ std::string remarks(const Page& page) {
     std::erase_if(all, [](const std::string& remark) { return remark.empty(); });
     if (all.empty()) return {};
     return html::p("What can be said about them, medians over seeds against published values:") + html::list(all) +
-           html::p(
-               "None of this is tuned away. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was found "
-               "that meets every published figure.");
+        html::p(
+            "None of this is tuned away. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was "
+            "found "
+            "that meets every published figure.");
 }
 
 }  // namespace
@@ -176,12 +181,8 @@ std::string remarks(const Page& page) {
 PageSection disagreements(Page& page) {
     if (!page.find.anything_published()) return {};
     html::Table table("Published values outside the 5–95 % band of this run (meters with a heavy tail have no band)",
-                      {words("Meter"),
-                       words("Run"),
-                       {"Published", true},
-                       {"Median", true},
-                       {"5–95 %", true},
-                       {"Median against published", true}});
+        {words("Meter"), words("Run"), {"Published", true}, {"Median", true}, {"5–95 %", true},
+            {"Median against published", true}});
     std::size_t judged = 0, outside = 0;
     for (const BandMeter& b : page.in.metrics.bands) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
@@ -189,16 +190,13 @@ PageSection disagreements(Page& page) {
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
         ++outside;
         const auto off = relative(&b);
-        table.row({html::heading(meter_html(b.meter)),
-                   words(run_html(b.key)),
-                   html::figure(figures_of(b.meter, *b.published)),
-                   html::figure(figures_of(b.meter, b.band.median)),
-                   {interval_html(b.meter, b.band), true},
-                   {off ? signed_percent(*off) : "–", true}});
+        table.row({html::heading(meter_html(b.meter)), words(run_html(b.key)),
+            html::figure(figures_of(b.meter, *b.published)), html::figure(figures_of(b.meter, b.band.median)),
+            {interval_html(b.meter, b.band), true}, {off ? signed_percent(*off) : "–", true}});
     }
     if (judged == 0) return {};
     std::string out = html::p(fmt::format("{} can be held against a band; {} of them fall{} outside it.",
-                                          plural(judged, "published value"), outside, outside == 1 ? "s" : ""));
+        plural(judged, "published value"), outside, outside == 1 ? "s" : ""));
     if (outside > 0) out += table.str() + remarks(page);
     return {"disagreements", "Where note and scene disagree", out};
 }

@@ -72,7 +72,8 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     for (const Ladder* l : all) {
         const auto points = points_of(*l);
         const std::string colour = page.colour(l->arm);
-        if (points.front().y > 0) chart.line(guide(points.front(), {x.low, x.high / 2.2, true, "", {}}), "dashed " + colour);
+        if (points.front().y > 0)
+            chart.line(guide(points.front(), {x.low, x.high / 2.2, true, "", {}}), "dashed " + colour);
         chart.line(points, colour);
         chart.dots(points, colour);
         chart.diamonds(published_of(page, *l), colour);
@@ -83,14 +84,12 @@ std::string ladder_chart(const Page& page, const std::string& region) {
 
 std::string slope_table(const Page& page) {
     html::Table table("Fitted slopes of log RMSE on log <i>N</i>; −0.5 where the variance is finite",
-                      {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
+        {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
     for (const Ladder& l : page.in.metrics.ladders)
         if (l.n.size() > 1)
-            table.row({html::heading(escape(l.region)),
-                       words(escape(l.arm)),
-                       html::figure(shortest(l.s)),
-                       html::figure(std::isfinite(l.slope) ? fmt::format("{:.3f}", l.slope) : "–"),
-                       {slope_interval(l), true}});
+            table.row({html::heading(escape(l.region)), words(escape(l.arm)), html::figure(shortest(l.s)),
+                html::figure(std::isfinite(l.slope) ? fmt::format("{:.3f}", l.slope) : "–"),
+                {slope_interval(l), true}});
     return table.str();
 }
 
@@ -102,14 +101,15 @@ PageSection ladders(Page& page) {
         if (!ladders_in(page, region.name).empty()) charts += ladder_chart(page, region.name);
     if (charts.empty()) return {};
     const std::string published = page.find.anything_published() ? " Diamonds: published values." : "";
-    std::string out =
-        fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())), fmt::arg("seed", page.seed_name()),
-                    fmt::arg("interval", page.in.experiment.seeds > 1 ? "the <span class=\"v\">5–95 %</span> band of the same fit over seeds"
-                                                                      : "the fit’s own, from its residuals; two rungs leave none"));
+    std::string out = fmt::format(ladder_prose, fmt::arg("law", mathml::in_line(mathml::power_law())),
+        fmt::arg("seed", page.seed_name()),
+        fmt::arg("interval",
+            page.in.experiment.seeds > 1 ? "the <span class=\"v\">5–95 %</span> band of the same fit over seeds"
+                                         : "the fit’s own, from its residuals; two rungs leave none"));
     out += page.figures.chart("<div class=\"pair\">" + charts + "</div>",
-                              "RMSE against <i>N</i> at the " + page.seed_name() +
-                                  " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
-                              "metrics.json, ladders");
+        "RMSE against <i>N</i> at the " + page.seed_name() +
+            " seed, by region. Dashed: the −1/2 law through each arm’s first rung." + published,
+        "metrics.json, ladders");
     return {"ladders", "Ladders in N", out + slope_table(page) + page.figures.plates(PlateKind::ladder)};
 }
 
@@ -118,16 +118,15 @@ PageSection exponent(Page& page) {
     if (!control) return {};
     std::vector<Column> columns;
     for (const double s : control->s) columns.push_back({"<i>s</i> = " + shortest(s), control->arm, control->n, s});
-    const std::string table = meters_table(
-        page,
+    const std::string table = meters_table(page,
         fmt::format("{} at <i>N</i> = {} by exponent. Large: at the {} seed. Small: median, 5–95 % band and tail index",
-                    escape(control->arm), control->n, page.seed_name()),
+            escape(control->arm), control->n, page.seed_name()),
         columns);
     if (table.empty()) return {};
     return {"exponent", "Exponent control",
-            fmt::format(exponent_prose, fmt::arg("arm", escape(control->arm)), fmt::arg("n", control->n),
-                        fmt::arg("shape", "<b>" + escape(control->shape) + "</b>")) +
-                table + page.figures.plates(PlateKind::exponent)};
+        fmt::format(exponent_prose, fmt::arg("arm", escape(control->arm)), fmt::arg("n", control->n),
+            fmt::arg("shape", "<b>" + escape(control->shape) + "</b>")) +
+            table + page.figures.plates(PlateKind::exponent)};
 }
 
 }  // namespace crescent

@@ -32,13 +32,8 @@ std::string fallen(const BandMeter& b) {
 }
 
 std::vector<html::Cell> band_row(const Page& page, const BandMeter& b, bool published) {
-    Strip strip{b.band.q05,
-                b.band.median,
-                b.band.q95,
-                b.measured,
-                !b.band.heavy && b.band.seeds > 1,
-                b.published.has_value(),
-                b.published.value_or(0)};
+    Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
+        b.published.has_value(), b.published.value_or(0)};
     std::vector<html::Cell> row{
         html::heading(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s)))};
     if (published) row.push_back(html::figure(b.published ? figures_of(b.meter, *b.published) : ""));
@@ -73,10 +68,11 @@ std::vector<std::string> meters_in_order(const Page& page) {
 std::string changes(const Experiment& e) {
     std::string list;
     for (const std::string& change : e.overrides)
-        if (!change.starts_with("seed=") && !change.starts_with("seeds=")) list += (list.empty() ? "" : ", ") + ("<code>" + escape(change) + "</code>");
+        if (!change.starts_with("seed=") && !change.starts_with("seeds="))
+            list += (list.empty() ? "" : ", ") + ("<code>" + escape(change) + "</code>");
     if (list.empty()) return {};
     return "<p><strong>This run differs from the published one</strong> in " + list +
-           ": the published figures stand beside it to show what the change does, not to be met.</p>";
+        ": the published figures stand beside it to show what the change does, not to be met.</p>";
 }
 
 }  // namespace
@@ -96,10 +92,12 @@ PageSection published(Page& page) {
     }
     if (table.empty()) return {};
     const std::string prose = published ? published_prose : measured_prose;
-    const std::string intro = fmt::format(
-        fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")), fmt::arg("seed", e.seed), fmt::arg("which", page.seed_name()));
+    const std::string intro =
+        fmt::format(fmt::runtime(prose), fmt::arg("seeds", plural(static_cast<std::uint64_t>(e.seeds), "seed")),
+            fmt::arg("seed", e.seed), fmt::arg("which", page.seed_name()));
     return {"published", published ? "Published and measured" : "All meters",
-            (published ? changes(e) : "") + intro + "<div class=\"wide\">" + table.str() + "</div>" + page.figures.plates(PlateKind::meters)};
+        (published ? changes(e) : "") + intro + "<div class=\"wide\">" + table.str() + "</div>" +
+            page.figures.plates(PlateKind::meters)};
 }
 
 }  // namespace crescent

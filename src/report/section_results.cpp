@@ -17,7 +17,9 @@ Pair pair_of(const Page& page) {
     Pair pair{page.find.arm_with("cosine"), page.find.arm_with("phong"), 0};
     if (!pair.broad || !pair.narrow) return {};
     const std::uint64_t shared = page.find.headline_n();
-    const auto ran = [&](std::uint64_t n) { return page.find.run(pair.broad->name, n) && page.find.run(pair.narrow->name, n); };
+    const auto ran = [&](std::uint64_t n) {
+        return page.find.run(pair.broad->name, n) && page.find.run(pair.narrow->name, n);
+    };
     pair.n = ran(shared) ? shared : page.find.common_n({pair.broad, pair.narrow});
     return ran(pair.n) ? pair : Pair{};
 }
@@ -27,11 +29,10 @@ std::string headline_table(const Page& page, std::uint64_t n) {
     std::vector<Column> columns;
     for (const ArmPlan& arm : e.arms)
         if (page.find.run(arm.name, n)) columns.push_back({escape(arm.name), arm.name, n, page.find.s()});
-    return meters_table(
-        page,
+    return meters_table(page,
         fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: at the {} seed, {}. Small: median over {}, "
                     "its 5–95 % band, and the tail index of the region’s samples",
-                    n, shortest(page.find.s()), page.seed_name(), e.seed, plural(static_cast<std::uint64_t>(e.seeds), "seed")),
+            n, shortest(page.find.s()), page.seed_name(), e.seed, plural(static_cast<std::uint64_t>(e.seeds), "seed")),
         columns);
 }
 
@@ -39,12 +40,12 @@ std::string frame_footnote(const Page& page, std::uint64_t n) {
     std::string values;
     for (const ArmPlan& arm : page.in.experiment.arms)
         if (const RunMeter* run = page.find.run(arm.name, n))
-            values +=
-                fmt::format("{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
+            values += fmt::format(
+                "{}{} {}", values.empty() ? "" : ", ", escape(arm.name), html::value(figures(run->rmse_frame)));
     if (values.empty()) return {};
     return html::element("p", "class=\"footnote\"",
-                         "Footnote: the RMSE of the whole frame, which lumps the regions together, reads " + values + ".") +
-           "\n";
+               "Footnote: the RMSE of the whole frame, which lumps the regions together, reads " + values + ".") +
+        "\n";
 }
 
 std::string broad_arms_sentence(const Page& page, const Pair& pair, const std::string& region) {
@@ -58,10 +59,11 @@ std::string not_seen(const Pair& pair, const std::string& loser, const std::stri
     return html::p(
         fmt::format("In this run the failure does not show: at <i>N</i> = {} there is no region in which {}’s RMSE is "
                     "larger than {}’s.",
-                    pair.n, escape(loser), escape(winner)));
+            pair.n, escape(loser), escape(winner)));
 }
 
-bool larger_in(const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
+bool larger_in(
+    const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
     const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
     return of_a && of_b && *of_a > *of_b;
 }
@@ -101,10 +103,10 @@ PageSection results(Page& page) {
         if (pair) items.push_back(ordering_sentence(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
     if (!items.empty()) out += html::p("Region by region:") + html::list(items);
     if (const std::uint64_t bad = page.find.bad_samples())
-        out +=
-            html::p(fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
-                                "trusted until that is understood.",
-                                plural(bad, "sample")));
+        out += html::p(
+            fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
+                        "trusted until that is understood.",
+                plural(bad, "sample")));
     return {"results", "Results", out + page.figures.plates(PlateKind::heat) + frame_footnote(page, n)};
 }
 
@@ -117,14 +119,13 @@ PageSection failure_a(Page& page) {
     std::string out;
     if (larger_in(page, broad, narrow, pair.n, region))
         out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
-                      ordering_sentence(page, broad, narrow, pair.n, region)) +
-              broad_arms_sentence(page, pair, region);
-    else
-        out = not_seen(pair, broad, narrow);
-    out += fmt::format(a_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
-                       fmt::arg("largest", html::value(figures(of_broad->largest))),
-                       fmt::arg("mean", html::value(figures(of_broad->y_mean))),
-                       fmt::arg("fireflies_broad", of_broad->fireflies), fmt::arg("fireflies_narrow", of_narrow->fireflies));
+                  ordering_sentence(page, broad, narrow, pair.n, region)) +
+            broad_arms_sentence(page, pair, region);
+    else out = not_seen(pair, broad, narrow);
+    out += fmt::format(a_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)),
+        fmt::arg("n", pair.n), fmt::arg("largest", html::value(figures(of_broad->largest))),
+        fmt::arg("mean", html::value(figures(of_broad->y_mean))), fmt::arg("fireflies_broad", of_broad->fireflies),
+        fmt::arg("fireflies_narrow", of_narrow->fireflies));
     const auto shows = [](const std::string& arm) {
         return [arm](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; };
     };
@@ -141,15 +142,14 @@ PageSection failure_b(Page& page) {
     std::string out;
     if (larger_in(page, narrow, broad, pair.n, region))
         out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
-                      ordering_sentence(page, narrow, broad, pair.n, region));
-    else
-        out = not_seen(pair, narrow, broad);
-    out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)), fmt::arg("n", pair.n),
-                       fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
-                       fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))),
-                       fmt::arg("largest", html::value(figures(of_narrow->largest))), fmt::arg("lost", lost_words(page)));
+            ordering_sentence(page, narrow, broad, pair.n, region));
+    else out = not_seen(pair, narrow, broad);
+    out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)),
+        fmt::arg("n", pair.n), fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
+        fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))),
+        fmt::arg("largest", html::value(figures(of_narrow->largest))), fmt::arg("lost", lost_words(page)));
     return {"failure-b", "Failure B: " + escape(narrow) + " starves the surround",
-            out + page.figures.plates(PlateKind::surround)};
+        out + page.figures.plates(PlateKind::surround)};
 }
 
 }  // namespace crescent

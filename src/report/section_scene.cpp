@@ -8,7 +8,9 @@ namespace {
 
 using html::words;
 
-std::string vec(const Vec3d& v) { return html::value(fmt::format("({}, {}, {})", compact(v.x), compact(v.y), compact(v.z))); }
+std::string vec(const Vec3d& v) {
+    return html::value(fmt::format("({}, {}, {})", compact(v.x), compact(v.y), compact(v.z)));
+}
 std::string rgb(const Rgb& c) {
     if (c[0] == c[1] && c[1] == c[2]) return shortest(c[0]);
     return html::value(fmt::format("({}, {}, {})", compact(c[0]), compact(c[1]), compact(c[2])));
@@ -31,13 +33,14 @@ std::string where(const Shape& shape) {
         case ShapeKind::sphere: return fmt::format("centre {}, radius {}", vec(shape.center), shortest(shape.radius));
         case ShapeKind::box: return fmt::format("{} to {}", vec(shape.min), vec(shape.max));
         case ShapeKind::disk:
-            return fmt::format("centre {}, facing {}, radius {}", vec(shape.center), vec(shape.normal), shortest(shape.radius));
+            return fmt::format(
+                "centre {}, facing {}, radius {}", vec(shape.center), vec(shape.normal), shortest(shape.radius));
         case ShapeKind::plane: return fmt::format("through {}, facing {}", vec(shape.point), vec(shape.normal));
         case ShapeKind::quad:
             return fmt::format("corner {}, edges {} and {}", vec(shape.corner), vec(shape.edge_u), vec(shape.edge_v));
         case ShapeKind::panel:
             return fmt::format("corner {}, edges {} and {}, set back {}", vec(shape.corner), vec(shape.edge_u),
-                               vec(shape.edge_v), shortest(shape.depth));
+                vec(shape.edge_v), shortest(shape.depth));
     }
     return {};
 }
@@ -51,31 +54,27 @@ std::string lobe(const Material& m) {
 }
 
 std::string shapes_table(const Page& page) {
-    html::Table table("Shapes. Pixels: how many primary rays meet the shape first", {words("Shape"),
-                                                                                     words("Kind"),
-                                                                                     words("Where"),
-                                                                                     words("<i>ρ</i><sub>d</sub>"),
-                                                                                     words("Lobe"),
-                                                                                     words("Blocks the disks"),
-                                                                                     {"Pixels", true}});
+    html::Table table("Shapes. Pixels: how many primary rays meet the shape first",
+        {words("Shape"), words("Kind"), words("Where"), words("<i>ρ</i><sub>d</sub>"), words("Lobe"),
+            words("Blocks the disks"), {"Pixels", true}});
     for (const Shape& shape : page.in.experiment.shapes) {
         const auto found = page.in.metrics.shape_pixels.find(shape.name);
         const bool known = found != page.in.metrics.shape_pixels.end();
         table.row({html::heading(escape(shape.name)), words(kind_name(shape.kind)), words(where(shape)),
-                   words(rgb(shape.material.rho_d)), words(lobe(shape.material)), words(shape.occludes ? "yes" : "no"),
-                   html::figure(known ? std::to_string(found->second) : "")});
+            words(rgb(shape.material.rho_d)), words(lobe(shape.material)), words(shape.occludes ? "yes" : "no"),
+            html::figure(known ? std::to_string(found->second) : "")});
     }
     return table.empty() ? "" : table.str();
 }
 
 std::string lights_table(const Experiment& e) {
     html::Table table("Lights. Disks are seen by sampled rays only; the fill comes from everywhere a disk is not seen",
-                      {words("Light"), words("Where"), words("Radiance, W/(sr m²)")});
+        {words("Light"), words("Where"), words("Radiance, W/(sr m²)")});
     for (const DiskLight& d : e.disks)
         table.row({html::heading(escape(d.name)),
-                   words(fmt::format("disk at {}, facing {}, radius {}{}", vec(d.center), vec(d.normal), shortest(d.radius),
-                                     d.two_sided ? ", both sides" : "")),
-                   words(rgb(d.radiance))});
+            words(fmt::format("disk at {}, facing {}, radius {}{}", vec(d.center), vec(d.normal), shortest(d.radius),
+                d.two_sided ? ", both sides" : "")),
+            words(rgb(d.radiance))});
     table.row({html::heading("fill"), words("the whole hemisphere"), words(rgb(e.fill))});
     return table.str();
 }
@@ -85,7 +84,8 @@ std::string lights_table(const Experiment& e) {
 PageSection scene(Page& page) {
     const Experiment& e = page.in.experiment;
     std::string out = html::p(fmt::format(
-        "The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one primary ray through the "
+        "The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one primary ray through "
+        "the "
         "centre of each; {} of them meet a surface. Directions are drawn once, at that surface: one bounce, no more.",
         vec(e.camera.eye), vec(e.camera.target), shortest(e.camera.vfov_deg), e.image.width, e.image.height,
         page.in.metrics.geometry_pixels));

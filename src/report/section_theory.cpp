@@ -60,8 +60,8 @@ std::string regions_sentence(const Experiment& e) {
     std::vector<std::string> names;
     for (const Region& r : e.regions)
         names.push_back(fmt::format("<b>{}</b> ({} × {} pixels)", escape(r.name), r.box.width(), r.box.height()));
-    return fmt::format(" Errors are read in {}, {}.", e.regions.size() == 1 ? "one region" : "regions that behave differently",
-                       html::join(names));
+    return fmt::format(" Errors are read in {}, {}.",
+        e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
 }
 
 bool any_phong_lobe(const Experiment& e) {
@@ -76,27 +76,29 @@ PageSection question(Page& page) {
     std::vector<std::string> names;
     for (const ArmPlan& arm : page.in.experiment.arms) names.push_back("<b>" + escape(arm.name) + "</b>");
     return {"question", "The question",
-            fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", html::join(names)),
-                        fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()),
-                        fmt::arg("seed", page.seed_name()))};
+        fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", html::join(names)),
+            fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()),
+            fmt::arg("seed", page.seed_name()))};
 }
 
 PageSection estimator(Page& page) {
     const Experiment& e = page.in.experiment;
-    std::string out = fmt::format(
-        estimator_prose, fmt::arg("integral", display(integral(), "the reflection integral over the upper hemisphere")),
-        fmt::arg("estimator", display(mathml::estimator(), "one over N times the sum of f times L times cosine over p")),
+    std::string out = fmt::format(estimator_prose,
+        fmt::arg("integral", display(integral(), "the reflection integral over the upper hemisphere")),
+        fmt::arg(
+            "estimator", display(mathml::estimator(), "one over N times the sum of f times L times cosine over p")),
         fmt::arg("p", in_line(mi("p"))), fmt::arg("cosine", in_line(row({mi("n"), mo("⋅"), omega()}))));
     if (any_phong_lobe(e)) {
         const double s = page.find.s();
         out += fmt::format(lobe_prose, fmt::arg("brdf", display(brdf_phong(), "Lambert plus normalised Phong lobe")),
-                           fmt::arg("mirror", display(mirror(), "R is the outgoing direction mirrored at the normal")),
-                           fmt::arg("rho_s", in_line(sub(mi("ρ"), mi("s")))), fmt::arg("slip", percent(1 / (s + 1), 2)),
-                           fmt::arg("s", shortest(s)));
+            fmt::arg("mirror", display(mirror(), "R is the outgoing direction mirrored at the normal")),
+            fmt::arg("rho_s", in_line(sub(mi("ρ"), mi("s")))), fmt::arg("slip", percent(1 / (s + 1), 2)),
+            fmt::arg("s", shortest(s)));
     }
-    out += fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
-                       fmt::arg("variance", display(variance(), "sample variance over N")),
-                       fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
+    out +=
+        fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
+            fmt::arg("variance", display(variance(), "sample variance over N")),
+            fmt::arg("firefly", in_line(firefly())), fmt::arg("k", shortest(e.firefly_k)));
     return {"estimator", "The estimator", out};
 }
 

@@ -40,12 +40,12 @@ variance, and a heavy tail has none to estimate. What it rejects is the tail.</p
 )";
 
 std::string intro(const Page& page) {
-    const char* whose =
-        page.find.anything_published()
-            ? "The note explains some of its figures."
-            : "This bench began with a note on a gallery lit by a spotlight, which explains some of its figures.";
+    const char* whose = page.find.anything_published()
+        ? "The note explains some of its figures."
+        : "This bench began with a note on a gallery lit by a spotlight, which explains some of its figures.";
     return fmt::format(
-        "{} Three of the explanations can be put to a measurement of their own, and below they are, with <i>ρ</i><sub>d</sub> "
+        "{} Three of the explanations can be put to a measurement of their own, and below they are, with "
+        "<i>ρ</i><sub>d</sub> "
         "= {}, "
         "<i>ρ</i><sub>s</sub> = {} and <i>s</i> = {}.",
         whose, html::value(figures(page.in.evidence.rho_d)), html::value(figures(page.in.evidence.rho_s)),
@@ -56,21 +56,20 @@ std::string furnace_point(Page& page) {
     const Evidence& e = page.in.evidence;
     if (e.furnace.empty() || !(e.rho_d > 0)) return {};  // without Lambert nothing falls short
     const double k = (e.s - 1) / (e.s + 1);
-    const M weight = row(
-        {frac(row({mn("2"), sub(mi("ρ"), mi("d"))}), row({mi("s"), mo("+"), mn("1")})), sup(mi("u"), row({mo("−"), mi("k")}))});
+    const M weight = row({frac(row({mn("2"), sub(mi("ρ"), mi("d"))}), row({mi("s"), mo("+"), mn("1")})),
+        sup(mi("u"), row({mo("−"), mi("k")}))});
     std::string caps;
     for (const FurnaceCap& cap : e.caps)
         caps += fmt::format("{}{} with {} bits", caps.empty() ? "" : ", ", html::value(figures(cap.y)), cap.u_bits);
-    std::string out = fmt::format(
-        furnace_prose, fmt::arg("weight", in_line(weight)),
-        fmt::arg("index", display(pareto_index(), "k is s minus 1 over s plus 1")), fmt::arg("k", html::value(figures(k, 3))),
-        fmt::arg("s", shortest(e.s)),
+    std::string out = fmt::format(furnace_prose, fmt::arg("weight", in_line(weight)),
+        fmt::arg("index", display(pareto_index(), "k is s minus 1 over s plus 1")),
+        fmt::arg("k", html::value(figures(k, 3))), fmt::arg("s", shortest(e.s)),
         fmt::arg("cap", display(capped_mean(), "rho s plus rho d times one minus 2 to the minus b times one minus k")),
         fmt::arg("caps", caps.empty() ? "less than is due" : caps));
     out += furnace_sentence(page);
-    out += page.figures.chart(
-        furnace_charts(page),
-        "The combined furnace of the Phong arm at <i>R</i> = <i>n</i>, over replicates: median (line), middle half (dark) and "
+    out += page.figures.chart(furnace_charts(page),
+        "The combined furnace of the Phong arm at <i>R</i> = <i>n</i>, over replicates: median (line), middle half "
+        "(dark) and "
         "middle 90 % (light). Solid rule: what is due. Dashed: what infinitely many samples read at that resolution of "
         "<i>u</i>.",
         "metrics.json, evidence.furnace");
@@ -81,21 +80,21 @@ std::string lost_point(Page& page) {
     const Evidence& e = page.in.evidence;
     if (e.lost.empty()) return {};
     return fmt::format(lost_prose, fmt::arg("share", display(lost_share(), "one minus cosine theta R over two"))) +
-           lost_sentence(e) +
-           page.figures.chart(lost_chart(e),
-                              "Lost share of Lambert × fill. Line: theory. Dots: measured, with two standard errors.",
-                              "metrics.json, evidence.lost");
+        lost_sentence(e) +
+        page.figures.chart(lost_chart(e),
+            "Lost share of Lambert × fill. Line: theory. Dots: measured, with two standard errors.",
+            "metrics.json, evidence.lost");
 }
 
 std::string rejection_point(Page& page) {
     const Evidence& e = page.in.evidence;
     if (e.rejections.empty()) return {};
-    return fmt::format(rejection_prose, fmt::arg("alpha", shortest(e.alpha)), fmt::arg("alpha_percent", percent(e.alpha)),
-                       fmt::arg("n", e.rejections.front().n)) +
-           rejection_sentence(e) + rejection_table(e) +
-           page.figures.chart(rejection_chart(e),
-                              "Correct runs of the Phong arm that a plain t-test rejects, with Clopper–Pearson 95 % intervals.",
-                              "metrics.json, evidence.rejections");
+    return fmt::format(rejection_prose, fmt::arg("alpha", shortest(e.alpha)),
+               fmt::arg("alpha_percent", percent(e.alpha)), fmt::arg("n", e.rejections.front().n)) +
+        rejection_sentence(e) + rejection_table(e) +
+        page.figures.chart(rejection_chart(e),
+            "Correct runs of the Phong arm that a plain t-test rejects, with Clopper–Pearson 95 % intervals.",
+            "metrics.json, evidence.rejections");
 }
 
 }  // namespace

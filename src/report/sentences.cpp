@@ -10,10 +10,10 @@ namespace {
 std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& meter, const std::string& seed) {
     const std::string larger = escape(c.larger), smaller = escape(c.smaller);
     if (c.equal)
-        return fmt::format("At <i>N</i> = {} and the {} seed, {} and {} read the same {}, {}.", n, seed, larger, smaller, meter,
-                           html::value(figures(c.high)));
-    return fmt::format("At <i>N</i> = {} and the {} seed, {}’s {} is <b>{} times</b> {}’s ({} against {}).", n, seed, larger,
-                       meter, times(c.ratio), smaller, html::value(figures(c.high)), html::value(figures(c.low)));
+        return fmt::format("At <i>N</i> = {} and the {} seed, {} and {} read the same {}, {}.", n, seed, larger,
+            smaller, meter, html::value(figures(c.high)));
+    return fmt::format("At <i>N</i> = {} and the {} seed, {}’s {} is <b>{} times</b> {}’s ({} against {}).", n, seed,
+        larger, meter, times(c.ratio), smaller, html::value(figures(c.high)), html::value(figures(c.low)));
 }
 
 std::string heavy_words(const Page& page, const BandMeter& a, const BandMeter& b) {
@@ -43,7 +43,7 @@ html::Cell meter_cell(const Page& page, const BandMeter* band) {
     std::string out = html::number(figures_of(band->meter, band->measured));
     if (band->band.seeds > 1)
         out += fmt::format("<small>{} [{}]</small>", html::value(figures_of(band->meter, band->band.median)),
-                           interval_html(band->meter, band->band));
+            interval_html(band->meter, band->band));
     if (const auto tail = page.find.tail(*band); tail && band->meter.starts_with("rmse."))
         out += fmt::format("<small>tail index {}</small>", html::value(tail_html(tail)));
     return {out, true};
@@ -68,8 +68,8 @@ std::string meters_table(const Page& page, const std::string& caption_html, cons
     return table.empty() ? "" : table.str();
 }
 
-std::string ordering_sentence(const Page& page, const std::string& a, const std::string& b, std::uint64_t n,
-                              const std::string& region) {
+std::string ordering_sentence(
+    const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
     const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
     if (!of_a || !of_b) return {};
     const RatioOfErrors c = compare(a, *of_a, b, *of_b);

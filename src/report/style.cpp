@@ -2,7 +2,8 @@
 
 namespace crescent {
 
-// Colours of c0..c5: Okabe and Ito's palette for colour-blind readers, darkened for light ground and lightened for dark.
+// Colours of c0..c5: Okabe and Ito's palette for colour-blind readers, darkened for light ground and lightened for
+// dark.
 const char* const style_sheet = R"css(
 :root { color-scheme: light dark;
   --ground: #fdfdfb; --ink: #1d2125; --soft: #575f68; --line: #d9dbd7; --tint: #f2f2ee; --accent: #7a4a00; --bad: #b3261e; --good: #14683a;

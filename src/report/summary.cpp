@@ -39,8 +39,9 @@ std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint)
     if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", all.size())) + "\n";
     std::string out = paint(red, failures_line(failed, all.size())) + "\n";
     for (const AssertionResult* a : failed) {
-        const std::string values = a->reference_good ? fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound))
-                                                     : ": the reference is not good enough";
+        const std::string values = a->reference_good
+            ? fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound))
+            : ": the reference is not good enough";
         out += fmt::format("  {}{}\n", clip(a->name, columns - 2 - width(values)), values);
     }
     return out;
@@ -70,7 +71,8 @@ std::string table(const ReportInputs& in, const Paint& paint) {
                 seeds = std::max(seeds, band->band.seeds);
             }
     if (rows.empty()) return {};
-    std::string head = fmt::format("  {}", left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 23 : 34));
+    std::string head =
+        fmt::format("  {}", left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 23 : 34));
     if (published) head += "  published";
     head += "   measured";
     if (seeds > 1) head += fmt::format("     median  5-95 % of {} seeds", seeds);
@@ -102,7 +104,9 @@ std::string speed(const Timing& t) {
     }
     std::string out = fmt::format("  {:.2f} s estimating, {:.2f} s in all", t.estimating_s, t.total_s);
     if (seconds > 0) out += fmt::format(", {:.0f} Msamples/s", static_cast<double>(samples) / seconds * 1e-6);
-    return clip(out + fmt::format(", {}, {}", plural(static_cast<std::uint64_t>(t.threads), "thread"), t.isa), columns) + "\n";
+    return clip(
+               out + fmt::format(", {}, {}", plural(static_cast<std::uint64_t>(t.threads), "thread"), t.isa), columns) +
+        "\n";
 }
 
 std::string where(const ReportInputs& in, const std::string& out_dir) {
@@ -121,7 +125,8 @@ std::string terminal_summary(const ReportInputs& in, const Timing& timing, const
     const Paint paint{colour};
     std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(in.metrics.film_hashes, paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
-        out += fmt::format("\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));
+        out += fmt::format(
+            "\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));
     return out + "\n" + speed(timing) + where(in, out_dir);
 }
 

@@ -14,7 +14,7 @@ inline std::string xml_complaint(const std::string& text) {
     if (XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), 1) == XML_STATUS_OK) return "";
     const auto at = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser.get()));
     return std::string(XML_ErrorString(XML_GetErrorCode(parser.get()))) + " at byte " + std::to_string(at) + ": " +
-           text.substr(at < 60 ? 0 : at - 60, 120);
+        text.substr(at < 60 ? 0 : at - 60, 120);
 }
 
 }  // namespace crescent::testing

@@ -2,8 +2,8 @@
 // frame (n = +z). Each reads like its paper.
 //
 //   PhongLobe       (s+2)/(2 pi) (wi.R)_+^s                 Lafortune & Willems 1994, "Using the modified Phong BRDF"
-//   BlinnPhongLobe  (s+2)(s+4)/(8 pi (2^(-s/2) + s)) (n.h)^s  Giesen 2009, "Phong and Blinn-Phong normalization factors"
-//   GgxLobe         D G1 G1 / (4 cos cos), separable G       Walter et al. 2007, eqs (20), (33), (34)
+//   BlinnPhongLobe  (s+2)(s+4)/(8 pi (2^(-s/2) + s)) (n.h)^s  Giesen 2009, "Phong and Blinn-Phong normalization
+//   factors" GgxLobe         D G1 G1 / (4 cos cos), separable G       Walter et al. 2007, eqs (20), (33), (34)
 #pragma once
 
 #include <string_view>
@@ -25,7 +25,9 @@ template <class F> struct PhongLobe {
     static constexpr bool present = true;
     F s, scale;
     PhongLobe(F s_, F) : s(s_), scale((s_ + number<F>(2)) * number<F>(0.5 / pi)) {}
-    [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const { return scale * cosine_power(wi, mirror(wo), s); }
+    [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {
+        return scale * cosine_power(wi, mirror(wo), s);
+    }
 };
 
 template <class F> struct BlinnPhongLobe {
@@ -33,8 +35,8 @@ template <class F> struct BlinnPhongLobe {
     static constexpr bool present = true;
     F s, scale;
     BlinnPhongLobe(F s_, F)
-        : s(s_), scale((s_ + number<F>(2)) * (s_ + number<F>(4)) /
-                       (number<F>(8 * pi) * (exp2(number<F>(-0.5) * s_) + s_))) {}
+        : s(s_),
+          scale((s_ + number<F>(2)) * (s_ + number<F>(4)) / (number<F>(8 * pi) * (exp2(number<F>(-0.5) * s_) + s_))) {}
     [[gnu::always_inline]] F operator()(Vec3<F> wo, Vec3<F> wi) const {
         const F f = scale * cosine_power(normalize(wo + wi), Vec3<F>{number<F>(0), number<F>(0), number<F>(1)}, s);
         return select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), f, number<F>(0));

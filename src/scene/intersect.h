@@ -9,9 +9,10 @@
 namespace crescent {
 
 struct Crossing {
-    double t = std::numeric_limits<double>::infinity();      // where the surface is
-    double order = std::numeric_limits<double>::infinity();  // where it takes its turn among the shapes (a panel: at its opening)
-    Vec3d n{};            // geometric normal, not yet turned to the viewer
+    double t = std::numeric_limits<double>::infinity();  // where the surface is
+    double order =
+        std::numeric_limits<double>::infinity();  // where it takes its turn among the shapes (a panel: at its opening)
+    Vec3d n{};                                    // geometric normal, not yet turned to the viewer
     bool reveal = false;
 };
 

@@ -1,5 +1,5 @@
-// Where a ray first meets a shape, against what that means: the point lies on the surface, the normal is unit and turned out of
-// it, and nothing of the shape stands before it. Random rays at random shapes of every kind.
+// Where a ray first meets a shape, against what that means: the point lies on the surface, the normal is unit and
+// turned out of it, and nothing of the shape stands before it. Random rays at random shapes of every kind.
 #include "scene/intersect.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ private:
     std::uint64_t k_ = 0;
 };
 
-constexpr std::array kinds = {ShapeKind::sphere, ShapeKind::box, ShapeKind::quad, ShapeKind::disk, ShapeKind::plane, ShapeKind::panel};
+constexpr std::array kinds = {
+    ShapeKind::sphere, ShapeKind::box, ShapeKind::quad, ShapeKind::disk, ShapeKind::plane, ShapeKind::panel};
 
 Shape some_shape(ShapeKind kind, Numbers& next) {
     Shape q;
@@ -51,8 +52,10 @@ bool on_parallelogram(Vec3d p, Vec3d corner, Vec3d u, Vec3d v, double slack) {
 bool on_panel(const Shape& q, Vec3d p, bool reveal, double slack) {
     const Vec3d down = -q.depth * quad_normal(q);
     if (!reveal) return on_parallelogram(p, q.corner + down, q.edge_u, q.edge_v, slack);
-    return on_parallelogram(p, q.corner, q.edge_u, down, slack) || on_parallelogram(p, q.corner, q.edge_v, down, slack) ||
-           on_parallelogram(p, q.corner + q.edge_v, q.edge_u, down, slack) || on_parallelogram(p, q.corner + q.edge_u, q.edge_v, down, slack);
+    return on_parallelogram(p, q.corner, q.edge_u, down, slack) ||
+        on_parallelogram(p, q.corner, q.edge_v, down, slack) ||
+        on_parallelogram(p, q.corner + q.edge_v, q.edge_u, down, slack) ||
+        on_parallelogram(p, q.corner + q.edge_u, q.edge_v, down, slack);
 }
 
 /// The point lies on the shape's surface.
@@ -61,11 +64,13 @@ bool on_surface(const Shape& q, Vec3d p, bool reveal) {
     switch (q.kind) {
         case ShapeKind::sphere: return std::fabs(length(p - q.center) - q.radius) <= slack;
         case ShapeKind::box: {
-            const double out = std::max({q.min.x - p.x, p.x - q.max.x, q.min.y - p.y, p.y - q.max.y, q.min.z - p.z, p.z - q.max.z});
+            const double out =
+                std::max({q.min.x - p.x, p.x - q.max.x, q.min.y - p.y, p.y - q.max.y, q.min.z - p.z, p.z - q.max.z});
             return std::fabs(out) <= slack;
         }
         case ShapeKind::quad: return on_parallelogram(p, q.corner, q.edge_u, q.edge_v, slack);
-        case ShapeKind::disk: return std::fabs(dot(p - q.center, q.normal)) <= slack && length(p - q.center) <= q.radius + slack;
+        case ShapeKind::disk:
+            return std::fabs(dot(p - q.center, q.normal)) <= slack && length(p - q.center) <= q.radius + slack;
         case ShapeKind::plane: return std::fabs(dot(p - q.point, q.normal)) <= slack;
         case ShapeKind::panel: return on_panel(q, p, reveal, slack);
     }
@@ -78,9 +83,11 @@ bool normal_fits(const Shape& q, Vec3d p, const Crossing& c) {
     switch (q.kind) {
         case ShapeKind::sphere: return along(normalize(p - q.center)) && dot(c.n, p - q.center) > 0;
         case ShapeKind::box: {
-            const Vec3d nearest = {std::min(std::fabs(p.x - q.min.x), std::fabs(p.x - q.max.x)), std::min(std::fabs(p.y - q.min.y), std::fabs(p.y - q.max.y)),
-                                   std::min(std::fabs(p.z - q.min.z), std::fabs(p.z - q.max.z))};
-            return (nearest.x < 1e-9 && along({1, 0, 0})) || (nearest.y < 1e-9 && along({0, 1, 0})) || (nearest.z < 1e-9 && along({0, 0, 1}));
+            const Vec3d nearest = {std::min(std::fabs(p.x - q.min.x), std::fabs(p.x - q.max.x)),
+                std::min(std::fabs(p.y - q.min.y), std::fabs(p.y - q.max.y)),
+                std::min(std::fabs(p.z - q.min.z), std::fabs(p.z - q.max.z))};
+            return (nearest.x < 1e-9 && along({1, 0, 0})) || (nearest.y < 1e-9 && along({0, 1, 0})) ||
+                (nearest.z < 1e-9 && along({0, 0, 1}));
         }
         case ShapeKind::quad: return along(quad_normal(q));
         case ShapeKind::panel: return c.reveal ? std::fabs(dot(c.n, quad_normal(q))) < 1e-9 : along(quad_normal(q));
@@ -155,7 +162,8 @@ TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
     int reveals = 0;
     for (int k = 0; k < 20'000; ++k) {
         const Shape q = some_shape(ShapeKind::panel, next);
-        const Vec3d n = quad_normal(q), in_it = q.corner + (0.5 + 0.5 * next()) * q.edge_u + (0.5 + 0.5 * next()) * q.edge_v;
+        const Vec3d n = quad_normal(q),
+                    in_it = q.corner + (0.5 + 0.5 * next()) * q.edge_u + (0.5 + 0.5 * next()) * q.edge_v;
         const Vec3d x = in_it + (0.2 + std::fabs(next())) * n + next.vec(0.5) - 0.0 * n;
         if (dot(x - q.corner, n) <= 0) continue;
         const Vec3d d = normalize(in_it - x);

@@ -69,7 +69,8 @@ Vec3d Scene::nearest_seen() const {
 }
 
 void Scene::remember_primaries() {
-    const std::size_t width = static_cast<std::size_t>(experiment_.image.width), height = static_cast<std::size_t>(experiment_.image.height);
+    const std::size_t width = static_cast<std::size_t>(experiment_.image.width),
+                      height = static_cast<std::size_t>(experiment_.image.height);
     if (width * height > std::size_t{1} << 20) return;
     auto all = std::make_shared<std::vector<Hit>>(width * height);
     parallel_for(std::size_t{0}, height, [&](std::size_t j) {
@@ -87,7 +88,8 @@ Scene Scene::with_s(double s) const {
 
 std::optional<Hit> Scene::primary(int i, int j) const {
     if (!primaries_) return trace(i, j);
-    const Hit& hit = (*primaries_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment_.image.width) + static_cast<std::size_t>(i)];
+    const Hit& hit = (*primaries_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment_.image.width) +
+        static_cast<std::size_t>(i)];
     return hit.shape < 0 ? std::nullopt : std::optional<Hit>(hit);
 }
 

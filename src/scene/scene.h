@@ -16,7 +16,7 @@ struct Hit {
     int shape = -1;       // index into Experiment::shapes
     bool reveal = false;  // the side of a recessed panel
     Vec3d x{}, n{};
-    Vec3d wo{};           // towards the camera, unit
+    Vec3d wo{};  // towards the camera, unit
 };
 
 /// A surface's BRDF with every default filled in.
@@ -34,7 +34,7 @@ Surface surface_of(const Material& material, double common_s);
 /// A convex body that can stand between a surface and a light. Shapes that are not convex are made of several.
 struct Occluder {
     enum class Kind { sphere, box, quad, disk, plane } kind = Kind::sphere;
-    int shape = -1;   // its own surface is never shadowed by it
+    int shape = -1;       // its own surface is never shadowed by it
     Vec3d a{}, b{}, c{};  // sphere: centre; box: min, max; quad: corner, edges; disk, plane: centre, normal
     double radius = 0;
 };
@@ -52,8 +52,8 @@ public:
     Scene with_s(double s) const;
     Surface surface(const Hit& hit) const;
 
-    /// Near what the camera sees: points are given from here where single precision has to hold them, so that a scene may
-    /// stand anywhere. The nearest of some primary hits; the eye where these see nothing.
+    /// Near what the camera sees: points are given from here where single precision has to hold them, so that a scene
+    /// may stand anywhere. The nearest of some primary hits; the eye where these see nothing.
     Vec3d origin() const { return origin_; }
     const std::vector<Occluder>& occluders() const { return occluders_; }
     const std::vector<DiskLight>& disks() const { return experiment_.disks; }
@@ -63,7 +63,7 @@ public:
 private:
     std::optional<Hit> trace(int i, int j) const;
     Vec3d nearest_seen() const;
-    Experiment experiment_;  // a copy: a scene outlives the experiment it was made from
+    Experiment experiment_;             // a copy: a scene outlives the experiment it was made from
     Vec3d forward_{}, right_{}, up_{};  // right and up scaled to one pixel
     double s_ = 0;
     Vec3d origin_{};

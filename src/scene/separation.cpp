@@ -20,7 +20,9 @@ Vec3d middle(const Occluder& o) {
 /// How far a disk of unit normal n reaches along `axis` from its centre, for radius 1.
 double reach(Vec3d axis, Vec3d n) { return std::sqrt(std::max(0.0, dot(axis, axis) - sqr(dot(axis, n)))); }
 
-double half_extent(Vec3d half, Vec3d axis) { return std::fabs(axis.x) * half.x + std::fabs(axis.y) * half.y + std::fabs(axis.z) * half.z; }
+double half_extent(Vec3d half, Vec3d axis) {
+    return std::fabs(axis.x) * half.x + std::fabs(axis.y) * half.y + std::fabs(axis.z) * half.z;
+}
 
 /// Half of the body's extent along `axis`.
 double half_extent(const Occluder& o, Vec3d axis) {
@@ -29,7 +31,8 @@ double half_extent(const Occluder& o, Vec3d axis) {
         case Occluder::Kind::box: return half_extent(0.5 * (o.b - o.a), axis);
         case Occluder::Kind::quad: return 0.5 * (std::fabs(dot(axis, o.b)) + std::fabs(dot(axis, o.c)));
         case Occluder::Kind::disk: return o.radius * reach(axis, o.b);
-        case Occluder::Kind::plane: return reach(axis, o.b) > 1e-6 * std::sqrt(dot(axis, axis)) ? std::numeric_limits<double>::infinity() : 0;
+        case Occluder::Kind::plane:
+            return reach(axis, o.b) > 1e-6 * std::sqrt(dot(axis, axis)) ? std::numeric_limits<double>::infinity() : 0;
     }
     return std::numeric_limits<double>::infinity();
 }
@@ -37,14 +40,17 @@ double half_extent(const Occluder& o, Vec3d axis) {
 /// The hull of the points and the disk, relative to the middle of the points.
 class Hull {
 public:
-    Hull(const Extent& from, const DiskLight& disk) : from_(from), d_(disk.center - from.middle), n_(disk.normal), radius_(disk.radius) {}
+    Hull(const Extent& from, const DiskLight& disk)
+        : from_(from), d_(disk.center - from.middle), n_(disk.normal), radius_(disk.radius) {}
 
     /// The body lies beyond all of the hull along `axis`.
     bool is_short_of(const Occluder& body, Vec3d axis) const {
         const double hull = std::max(half_extent(from_.half, axis), dot(axis, d_) + radius_ * reach(axis, n_));
         return dot(axis, middle(body) - from_.middle) - half_extent(body, axis) >= hull;
     }
-    bool is_parted_across(const Occluder& body, Vec3d axis) const { return is_short_of(body, axis) || is_short_of(body, -axis); }
+    bool is_parted_across(const Occluder& body, Vec3d axis) const {
+        return is_short_of(body, axis) || is_short_of(body, -axis);
+    }
 
     /// The plane that grazes the points and the disk on the side towards which `aside` points.
     bool is_parted_by_graze(const Occluder& body, Vec3d aside) const {
@@ -70,7 +76,8 @@ bool stands_clear(const Occluder& body, const Extent& from, const DiskLight& dis
     if (hull.is_parted_by_graze(body, middle(body) - from.middle)) return true;
     if (body.kind == Occluder::Kind::sphere) return hull.is_parted_across(body, disk.center - from.middle);
     const auto parted = [&](Vec3d axis) {
-        return hull.is_parted_across(body, axis) || hull.is_parted_by_graze(body, axis) || hull.is_parted_by_graze(body, -axis);
+        return hull.is_parted_across(body, axis) || hull.is_parted_by_graze(body, axis) ||
+            hull.is_parted_by_graze(body, -axis);
     };
     switch (body.kind) {
         case Occluder::Kind::quad: return parted(cross(body.b, body.c)) || parted(body.b) || parted(body.c);

@@ -80,8 +80,8 @@ Met sphere(const Occluder& o, const Sight& s) {
     const auto past = [&](double f, double sign) {
         return where_positive(sign * (f * dc - q), sign * (f * (dc + ec) - q));
     };
-    const Interval cone = where_negative(q * ee - ec * ec, q * de - dc * ec, q * dd - dc * dc,
-                                         both(past(s.between.to, 1), past(s.between.from, -1)));
+    const Interval cone = where_negative(
+        q * ee - ec * ec, q * de - dc * ec, q * dd - dc * dc, both(past(s.between.to, 1), past(s.between.from, -1)));
     return {hull(cone, hull(start, end)), start, end};
 }
 
@@ -101,7 +101,7 @@ OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
         return where_positive(side * sign * (hx + f * h0), side * sign * (hx + f * h1));
     };
     return {g0, g1 - g0, -sign * h0, sign * (h0 - h1),
-            hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
+        hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
 }
 
 Interval quad(const Occluder& o, const Sight& s) {
@@ -119,7 +119,7 @@ Interval disk(const Occluder& o, const Sight& s) {
     const OnPlane m = project(o.a, o.b, s);
     const double r2 = o.radius * o.radius;
     return where_negative(dot(m.step, m.step) - r2 * m.w1 * m.w1, dot(m.at0, m.step) - r2 * m.w0 * m.w1,
-                          dot(m.at0, m.at0) - r2 * m.w0 * m.w0, m.sides);
+        dot(m.at0, m.at0) - r2 * m.w0 * m.w0, m.sides);
 }
 
 /// The strip between the ways' starts and ends, cut by the box: its points x + a d(0) + b d(1), a + b in `between`,

@@ -19,7 +19,8 @@ template <class F> struct SinCos {
     F sin, cos;
 };
 
-/// Adding and subtracting 1.5 * 2^23 rounds |x| < 2^22 to the nearest integer, ties to even; its low bits are that integer.
+/// Adding and subtracting 1.5 * 2^23 rounds |x| < 2^22 to the nearest integer, ties to even; its low bits are that
+/// integer.
 inline constexpr double round_magic = 12582912.0;
 
 /// sin and cos of 2 pi u. Quarter turns are split off exactly; minimax polynomials on an eighth of a turn either way.
@@ -31,10 +32,15 @@ template <class F> CRESCENT_INLINE SinCos<F> sincos_turns(F u) {
     const U quarter = bits(shifted);
     const F r = a - (shifted - magic);  // in quarter turns, [-1/2, 1/2]
     const F z = r * r;
-    const F s = r * (number<F>(1.5707963220e+00) +
-                     z * (number<F>(-6.4596347991e-01) + z * (number<F>(7.9680238338e-02) + z * number<F>(-4.6022006005e-03))));
-    const F c = number<F>(1) + z * (number<F>(-1.2337005494e+00) +
-                                    z * (number<F>(2.5366941067e-01) + z * (number<F>(-2.0861531193e-02) + z * number<F>(9.0674695455e-04))));
+    const F s = r *
+        (number<F>(1.5707963220e+00) +
+            z * (number<F>(-6.4596347991e-01) + z * (number<F>(7.9680238338e-02) + z * number<F>(-4.6022006005e-03))));
+    const F c = number<F>(1) +
+        z *
+            (number<F>(-1.2337005494e+00) +
+                z *
+                    (number<F>(2.5366941067e-01) +
+                        z * (number<F>(-2.0861531193e-02) + z * number<F>(9.0674695455e-04))));
     const auto swap = (quarter & U(1u)) == U(1u);
     const U sin_sign = shift_left<30>(quarter & U(2u));
     const U cos_sign = shift_left<30>((quarter + U(1u)) & U(2u));
@@ -69,7 +75,8 @@ template <class F> CRESCENT_INLINE F exp2(F x) {
 /// (log((1+s)/(1-s)) - 2s)/s for z = s^2 <= 0.03, from FreeBSD's e_logf.c (Remez, 2^-34).
 template <class F> CRESCENT_INLINE F atanh_series(F z) {
     const F w = z * z;
-    return z * (number<F>(0.66666662693) + w * number<F>(0.28498786688)) + w * (number<F>(0.40000972152) + w * number<F>(0.24279078841));
+    return z * (number<F>(0.66666662693) + w * number<F>(0.28498786688)) +
+        w * (number<F>(0.40000972152) + w * number<F>(0.24279078841));
 }
 
 /// A number kept in two floats, hi with at most 12 significant bits.
@@ -78,9 +85,9 @@ template <class F> struct Split {
 };
 template <class F> CRESCENT_INLINE F upper_half(F x) { return from_bits<F>(bits(x) & UintOf<F>(0xfffff000u)); }
 
-/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute; `near` is x - 1, used where x is close to 1, so that
-/// who knows it better than x says it can pass it. After FreeBSD's e_log2f.c (log(1+f) by
-/// atanh-like series in f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
+/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute; `near` is x - 1, used where x is close to 1, so
+/// that who knows it better than x says it can pass it. After FreeBSD's e_log2f.c (log(1+f) by atanh-like series in
+/// f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
 template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F near) {
     using U = UintOf<F>;
     const U t = bits(x) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))

@@ -1,6 +1,6 @@
 // The functions of simd/math.h over arrays, in the packs of one instruction set: math_<isa>_test.cpp makes the table,
-// math_isa_test.cpp asks each. Plain arrays and no library calls, because these files are compiled for processors that the
-// machine may not have.
+// math_isa_test.cpp asks each. Plain arrays and no library calls, because these files are compiled for processors that
+// the machine may not have.
 #pragma once
 
 #include <cstddef>
@@ -36,9 +36,15 @@ template <class F> Vec3<F> load_three(const float* a, std::size_t k, std::size_t
 
 template <class F> MathTable math_table() {
     MathTable t;
-    t.sin = [](const float* x, float* out, std::size_t n) { each_pack<F>(n, [=](std::size_t k) { store(sincos_turns(load_as<F>(x + k)).sin, out + k); }); };
-    t.cos = [](const float* x, float* out, std::size_t n) { each_pack<F>(n, [=](std::size_t k) { store(sincos_turns(load_as<F>(x + k)).cos, out + k); }); };
-    t.exp2 = [](const float* x, float* out, std::size_t n) { each_pack<F>(n, [=](std::size_t k) { store(exp2(load_as<F>(x + k)), out + k); }); };
+    t.sin = [](const float* x, float* out, std::size_t n) {
+        each_pack<F>(n, [=](std::size_t k) { store(sincos_turns(load_as<F>(x + k)).sin, out + k); });
+    };
+    t.cos = [](const float* x, float* out, std::size_t n) {
+        each_pack<F>(n, [=](std::size_t k) { store(sincos_turns(load_as<F>(x + k)).cos, out + k); });
+    };
+    t.exp2 = [](const float* x, float* out, std::size_t n) {
+        each_pack<F>(n, [=](std::size_t k) { store(exp2(load_as<F>(x + k)), out + k); });
+    };
     t.pow = [](const float* x, const float* y, float* out, std::size_t n) {
         each_pack<F>(n, [=](std::size_t k) { store(pow(load_as<F>(x + k), load_as<F>(y + k)), out + k); });
     };
@@ -52,7 +58,9 @@ template <class F> MathTable math_table() {
         each_pack<F>(n, [=](std::size_t k) { store(root(load_as<F>(x + k), load_as<F>(y + k)).one_minus, out + k); });
     };
     t.cosine_power = [](const float* a, const float* b, const float* s, float* out, std::size_t n) {
-        each_pack<F>(n, [=](std::size_t k) { store(cosine_power(load_three<F>(a, k, n), load_three<F>(b, k, n), load_as<F>(s + k)), out + k); });
+        each_pack<F>(n, [=](std::size_t k) {
+            store(cosine_power(load_three<F>(a, k, n), load_three<F>(b, k, n), load_as<F>(s + k)), out + k);
+        });
     };
     t.normalize = [](const float* a, float* unit, std::size_t n) {
         each_pack<F>(n, [=](std::size_t k) {

@@ -27,14 +27,16 @@ TEST(ElementaryFunctions, SincosTurnsKeepsItsStatedError) {
 
 TEST(ElementaryFunctions, Exp2KeepsItsStatedError) {
     double worst = 0;
-    for (float x = -126; x <= 127; x += 0.000731f) worst = std::max(worst, ulps(exp2(x), exp2l(static_cast<long double>(x))));
+    for (float x = -126; x <= 127; x += 0.000731f)
+        worst = std::max(worst, ulps(exp2(x), exp2l(static_cast<long double>(x))));
     EXPECT_LE(worst, 1.5);
     EXPECT_EQ(exp2(-127.0f), 0.0f);
 }
 
 TEST(ElementaryFunctions, PowKeepsItsStatedErrorForEveryExponentUsed) {
     double near_one = 0, far = 0;
-    for (float y : {1.0f / 100001, 1.0f / 129, 1.0f / 33, 1.0f / 9, 0.5f, 1.0f, 1.5f, 8.0f, 32.0f, 33.7f, 128.0f, 1000.5f, 1e5f}) {
+    for (float y :
+        {1.0f / 100001, 1.0f / 129, 1.0f / 33, 1.0f / 9, 0.5f, 1.0f, 1.5f, 8.0f, 32.0f, 33.7f, 128.0f, 1000.5f, 1e5f}) {
         for (std::uint32_t k = 1; k < (1u << 24); k += 101) {
             const float x = static_cast<float>(k) * 0x1p-24f;
             const long double want = powl(static_cast<long double>(x), static_cast<long double>(y));

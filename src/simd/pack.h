@@ -1,6 +1,6 @@
 // Packs of floats over Highway's static target: the only intrinsics of crescent. The file that includes this one is
-// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of estimator/isas.h), which becomes the
-// namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
+// compiled with one instruction set's flags and names it in CRESCENT_ISA (a name of estimator/isas.h), which becomes
+// the namespace, so that no two instruction sets share a symbol. No operation here contracts or reassociates.
 //
 // A pack is two vectors side by side: a sample is one long chain of dependent operations, and a second chain beside it
 // fills the time that each step of the first one waits.
@@ -75,13 +75,17 @@ CRESCENT_INLINE Mask operator<=(Pack x, Pack y) { return {hn::Le(x.a, y.a), hn::
 CRESCENT_INLINE Mask operator>=(Pack x, Pack y) { return {hn::Ge(x.a, y.a), hn::Ge(x.b, y.b)}; }
 CRESCENT_INLINE Mask operator==(Pack x, Pack y) { return {hn::Eq(x.a, y.a), hn::Eq(x.b, y.b)}; }
 
-CRESCENT_INLINE Pack select(Mask m, Pack x, Pack y) { return {hn::IfThenElse(m.a, x.a, y.a), hn::IfThenElse(m.b, x.b, y.b)}; }
+CRESCENT_INLINE Pack select(Mask m, Pack x, Pack y) {
+    return {hn::IfThenElse(m.a, x.a, y.a), hn::IfThenElse(m.b, x.b, y.b)};
+}
 CRESCENT_INLINE Uint select(Mask m, Uint x, Uint y) {
-    return {hn::IfThenElse(hn::RebindMask(UintTag{}, m.a), x.a, y.a), hn::IfThenElse(hn::RebindMask(UintTag{}, m.b), x.b, y.b)};
+    return {hn::IfThenElse(hn::RebindMask(UintTag{}, m.a), x.a, y.a),
+        hn::IfThenElse(hn::RebindMask(UintTag{}, m.b), x.b, y.b)};
 }
 /// A true lane's mask is -1.
 CRESCENT_INLINE Uint plus_one_where(Mask m, Uint u) {
-    return {hn::Sub(u.a, hn::VecFromMask(UintTag{}, hn::RebindMask(UintTag{}, m.a))), hn::Sub(u.b, hn::VecFromMask(UintTag{}, hn::RebindMask(UintTag{}, m.b)))};
+    return {hn::Sub(u.a, hn::VecFromMask(UintTag{}, hn::RebindMask(UintTag{}, m.a))),
+        hn::Sub(u.b, hn::VecFromMask(UintTag{}, hn::RebindMask(UintTag{}, m.b)))};
 }
 CRESCENT_INLINE Pack sqrt(Pack x) { return {hn::Sqrt(x.a), hn::Sqrt(x.b)}; }
 CRESCENT_INLINE Pack abs(Pack x) { return {hn::Abs(x.a), hn::Abs(x.b)}; }

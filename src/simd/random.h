@@ -21,7 +21,8 @@ template <class U> CRESCENT_INLINE Vec4u<U> pcg4d(Vec4u<U> v) {
     v.y = v.y + v.z * v.x;
     v.z = v.z + v.x * v.y;
     v.w = v.w + v.y * v.z;
-    v = {v.x ^ shift_right<16>(v.x), v.y ^ shift_right<16>(v.y), v.z ^ shift_right<16>(v.z), v.w ^ shift_right<16>(v.w)};
+    v = {
+        v.x ^ shift_right<16>(v.x), v.y ^ shift_right<16>(v.y), v.z ^ shift_right<16>(v.z), v.w ^ shift_right<16>(v.w)};
     v.x = v.x + v.y * v.w;
     v.y = v.y + v.z * v.x;
     v.z = v.z + v.x * v.y;
@@ -30,11 +31,14 @@ template <class U> CRESCENT_INLINE Vec4u<U> pcg4d(Vec4u<U> v) {
 }
 
 /// u = (2k + 1) / 2^24 from the upper 23 bits: centred, so that neither 0 nor 1 is ever drawn. Smallest u: 2^-24.
-template <class F> CRESCENT_INLINE F unit_float(UintOf<F> h) { return to_float<F>(shift_right<8>(h) | UintOf<F>(1u)) * number<F>(0x1p-24); }
+template <class F> CRESCENT_INLINE F unit_float(UintOf<F> h) {
+    return to_float<F>(shift_right<8>(h) | UintOf<F>(1u)) * number<F>(0x1p-24);
+}
 
 /// The four integers behind samples 2 `pair` and 2 `pair` + 1: (x, y) for the even one, (z, w) for the odd one.
 /// `block` counts pairs of dimensions: dimensions 0 and 1 are block 0, 2 and 3 block 1.
-template <class U> CRESCENT_INLINE Vec4u<U> draws(U pixel, std::uint32_t pair, std::uint32_t block, std::uint32_t seed) {
+template <class U>
+CRESCENT_INLINE Vec4u<U> draws(U pixel, std::uint32_t pair, std::uint32_t block, std::uint32_t seed) {
     return pcg4d(Vec4u<U>{pixel, U(pair), U(block), U(seed)});
 }
 

@@ -37,7 +37,8 @@ double chi_square_of_pairs(std::uint32_t pixel_step, std::uint32_t sample_step) 
 }
 
 TEST(RandomStreams, PairsFillTheSquareAlongSamplesAndAlongPixels) {
-    for (const double chi : {chi_square_of_pairs(0, 1), chi_square_of_pairs(1, 0), chi_square_of_pairs(1, 1), chi_square_of_pairs(960, 0)}) {
+    for (const double chi : {chi_square_of_pairs(0, 1), chi_square_of_pairs(1, 0), chi_square_of_pairs(1, 1),
+             chi_square_of_pairs(960, 0)}) {
         EXPECT_GT(chi, 255 - 5 * 22.6);
         EXPECT_LT(chi, 255 + 5 * 22.6);
     }

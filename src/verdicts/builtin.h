@@ -22,12 +22,14 @@ struct SurfaceSetup {
 double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 
 template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
-template <class F> Vec3d widen(Vec3<F> v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
+template <class F> Vec3d widen(Vec3<F> v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
 
 /// The site of an arm in number type F; `disks` must outlive it.
 template <class F> Site<F> site_of(const SurfaceSetup& surface, Vec3d wo, const std::vector<LocalDisk<F>>& disks) {
-    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d), static_cast<F>(surface.rho_s),
-            disks.data(), static_cast<int>(disks.size())};
+    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d),
+        static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size())};
 }
 /// One-sided disks, each with its share of L r^2.
 template <class F> std::vector<LocalDisk<F>> disks_of(const TrialLight& light) {
@@ -35,7 +37,8 @@ template <class F> std::vector<LocalDisk<F>> disks_of(const TrialLight& light) {
     for (const TrialDisk& d : light.disks) total += d.radiance * sqr(d.radius);
     std::vector<LocalDisk<F>> out;
     for (const TrialDisk& d : light.disks)
-        out.push_back({as<F>(d.center), as<F>(d.normal), static_cast<F>(d.radius), F(0), static_cast<F>(d.radiance * sqr(d.radius) / total)});
+        out.push_back({as<F>(d.center), as<F>(d.normal), static_cast<F>(d.radius), F(0),
+            static_cast<F>(d.radiance * sqr(d.radius) / total)});
     return out;
 }
 
@@ -43,8 +46,11 @@ template <class F> std::vector<LocalDisk<F>> disks_of(const TrialLight& light) {
 template <template <class> class A> class BuiltIn : public JudgedSampler {
 public:
     BuiltIn(const SurfaceSetup& surface, Vec3d wo, const TrialLight& light)
-        : surface_(surface), disks_single_(disks_of<float>(light)), disks_double_(disks_of<double>(light)),
-          single_(site_of<float>(surface, wo, disks_single_)), double_(site_of<double>(surface, wo, disks_double_)) {}
+        : surface_(surface),
+          disks_single_(disks_of<float>(light)),
+          disks_double_(disks_of<double>(light)),
+          single_(site_of<float>(surface, wo, disks_single_)),
+          double_(site_of<double>(surface, wo, disks_double_)) {}
     BuiltIn(const BuiltIn&) = delete;
     BuiltIn& operator=(const BuiltIn&) = delete;
 
@@ -61,7 +67,8 @@ public:
         }
     }
     void pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = static_cast<double>(density(single_, technique, as<float>(at[i].wo), as<float>(at[i].wi)));
+        for (std::size_t i = 0; i < at.size(); ++i)
+            out[i] = static_cast<double>(density(single_, technique, as<float>(at[i].wo), as<float>(at[i].wi)));
     }
     void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = density(double_, technique, at[i].wo, at[i].wi);
@@ -73,7 +80,8 @@ public:
                 const Vec3<float> o = as<float>(at[i].wo), w = as<float>(at[i].wi);
                 const float own = density(single_, technique, o, w);
                 const Drawn<float> d{w, {own}};
-                out[i] = static_cast<double>(technique == 0 ? single_.template weight<0>(o, d) : single_.template weight<1>(o, d));
+                out[i] = static_cast<double>(
+                    technique == 0 ? single_.template weight<0>(o, d) : single_.template weight<1>(o, d));
             }
         }
     }
@@ -86,11 +94,14 @@ protected:
     static constexpr bool paired = requires { A<float>::techniques; };
 
     Drawn<float> draw(int technique, Vec3<float> wo, Vec2<float> u) const {
-        if constexpr (paired) return technique == 0 ? single_.template sample_technique<0>(wo, u) : single_.template sample_technique<1>(wo, u);
+        if constexpr (paired)
+            return technique == 0 ? single_.template sample_technique<0>(wo, u)
+                                  : single_.template sample_technique<1>(wo, u);
         else return single_.sample(wo, u);
     }
     template <class F> static F density(const A<F>& arm, int technique, Vec3<F> wo, Vec3<F> wi) {
-        if constexpr (paired) return technique == 0 ? arm.template pdf_technique<0>(wo, wi).v : arm.template pdf_technique<1>(wo, wi).v;
+        if constexpr (paired)
+            return technique == 0 ? arm.template pdf_technique<0>(wo, wi).v : arm.template pdf_technique<1>(wo, wi).v;
         else return arm.pdf(wo, wi).v;
     }
 

@@ -35,15 +35,15 @@ struct Ends {
 
 int taken(int& fd) { return std::exchange(fd, -1); }
 
-// From here to hold(): after fork() in a process of many threads, so async-signal-safe calls alone (POSIX.1-2017, 2.4.3).
+// From here to hold(): after fork() in a process of many threads, so async-signal-safe calls alone
+// (POSIX.1-2017, 2.4.3).
 
 extern "C" void wake(int) {}
 
 /// Kills every child, which hands its own children over to this process, until none is left; two seconds at most.
 void kill_all() {
     for (int round = 0; round < 200; ++round) {
-        while (waitpid(-1, nullptr, WNOHANG) > 0) {
-        }
+        while (waitpid(-1, nullptr, WNOHANG) > 0) {}
         if (waitpid(-1, nullptr, WNOHANG) < 0) return;  // ECHILD
         const int list = open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
         char text[4096];
@@ -68,7 +68,7 @@ void kill_all() {
     sigemptyset(&child_ended);
     sigaddset(&child_ended, SIGCHLD);
     sigprocmask(SIG_BLOCK, &child_ended, &before);
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = wake;
     sigaction(SIGCHLD, &action, nullptr);
     for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, SIG_IGN);
@@ -133,8 +133,7 @@ void Child::end(int milliseconds) {
     for (int* fd : {&to_, &from_}) close(taken(*fd));
     if (milliseconds > 0) status(milliseconds);
     for (int* fd : {&life_, &told_}) close(taken(*fd));
-    while (waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) {}
     guard_ = -1;
 }
 

@@ -1,6 +1,6 @@
-// A program started by the shell, with its stdin and stdout at hand. A guard process stands between: it ends the program and
-// everything that the program started, sessions of their own included, as soon as this object or this process is gone,
-// by whatever signal.
+// A program started by the shell, with its stdin and stdout at hand. A guard process stands between: it ends the
+// program and everything that the program started, sessions of their own included, as soon as this object or this
+// process is gone, by whatever signal.
 #pragma once
 
 #include <optional>

@@ -40,7 +40,8 @@ void apply_rule(Cell& cell, std::span<const double> g) {
     const double s2 = sum(g, 1, 4), s3 = sum(g, 5, 4), s4 = sum(g, 9, 4), s5 = sum(g, 13, 4);
     const double w1 = (12824 - 9120 * 2 + 400 * 4) / 19683.0, w3 = (1820 - 400 * 2) / 19683.0;
     const double seven = w1 * g[0] + 980.0 / 6561 * s2 + w3 * s3 + 200.0 / 19683 * s4 + 6859.0 / 19683 / 4 * s5;
-    const double five = (729 - 950 * 2 + 50 * 4) / 729.0 * g[0] + 245.0 / 486 * s2 + (265 - 100 * 2) / 1458.0 * s3 + 25.0 / 729 * s4;
+    const double five =
+        (729 - 950 * 2 + 50 * 4) / 729.0 * g[0] + 245.0 / 486 * s2 + (265 - 100 * 2) / 1458.0 * s3 + 25.0 / 729 * s4;
     cell.value = area * seven;
     cell.error = area * std::fabs(seven - five);
     const auto [low, high] = std::minmax_element(g.begin(), g.end());
@@ -61,14 +62,15 @@ void evaluate(std::span<Cell> cells, const Batch& g) {
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const Rect& r = cells[c].rect;
         for (int i = 0; i < points; ++i)
-            at[c * points + i] = {0.5 * (r.a0 + r.a1) + 0.5 * (r.a1 - r.a0) * rule[i].x, 0.5 * (r.b0 + r.b1) + 0.5 * (r.b1 - r.b0) * rule[i].y};
+            at[c * points + i] = {0.5 * (r.a0 + r.a1) + 0.5 * (r.a1 - r.a0) * rule[i].x,
+                0.5 * (r.b0 + r.b1) + 0.5 * (r.b1 - r.b0) * rule[i].y};
     }
     g(at, values);
     for (std::size_t c = 0; c < cells.size(); ++c) apply_rule(cells[c], std::span(values).subspan(c * points, points));
 }
 
-/// What the draws say of a cell, where it differs from its integral by more than chance allows: six standard deviations; or where they
-/// fell higher than the rule has seen.
+/// What the draws say of a cell, where it differs from its integral by more than chance allows: six standard
+/// deviations; or where they fell higher than the rule has seen.
 double disagreement(const Cell& cell, double total) {
     constexpr int patience = 14;  // halvings; a density that is wrong never comes to agree
     if (total <= 0 || cell.suspected > patience) return 0;
@@ -85,7 +87,8 @@ std::array<Cell, 2> halve(Cell& cell, double total) {
     else lower.b1 = upper.b0 = 0.5 * (cell.rect.b0 + cell.rect.b1);
     const int suspected = cell.suspected + (disagreement(cell, total) > 0);
     std::array<Cell, 2> out = {Cell(lower, suspected), Cell(upper, suspected)};
-    for (const Witness& w : cell.inside) out[(cell.split_a ? w.at.x < lower.a1 : w.at.y < lower.b1) ? 0 : 1].inside.push_back(w);
+    for (const Witness& w : cell.inside)
+        out[(cell.split_a ? w.at.x < lower.a1 : w.at.y < lower.b1) ? 0 : 1].inside.push_back(w);
     return out;
 }
 
@@ -140,7 +143,8 @@ bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, doub
         out.evaluations += fresh.size() * points;
         for (std::size_t k = 0; k < count; ++k) {
             Cell& parent = cells[order[k].second];
-            // Both halves answer for what they differ by from the whole: a rule may be blind to a spike, two seldom are.
+            // Both halves answer for what they differ by from the whole: a rule may be blind to a spike, two seldom
+            // are.
             const double surprise = std::fabs(parent.value - fresh[2 * k].value - fresh[2 * k + 1].value) / 16;
             for (Cell* half : {&fresh[2 * k], &fresh[2 * k + 1]}) half->error = std::max(half->error, surprise);
             parent = std::move(fresh[2 * k]);
@@ -153,8 +157,8 @@ bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, doub
 
 namespace {
 
-/// The sum, and what it is known to: where the integrand is smooth by the rule's own estimate; along jumps, where errors have either
-/// sign, by the audit's differences; and never less than the audit's difference from the whole.
+/// The sum, and what it is known to: where the integrand is smooth by the rule's own estimate; along jumps, where
+/// errors have either sign, by the audit's differences; and never less than the audit's difference from the whole.
 void add_up(const std::vector<Cell>& cells, int bins, const Audit& look, Integral& out) {
     const std::size_t n = static_cast<std::size_t>(bins);
     out.evaluations += look.evaluations;
@@ -176,7 +180,8 @@ void add_up(const std::vector<Cell>& cells, int bins, const Audit& look, Integra
 
 }  // namespace
 
-Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
+Integral integrate(
+    std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
     const double total = witnesses ? witnesses->total : 0;
     std::vector<Cell> cells = start_cells(start, bins, witnesses);
     evaluate(cells, g);
@@ -188,7 +193,8 @@ Integral integrate(std::vector<Rect> start, int bins, const Batch& g, const Effo
         if (edges) out.evaluations += try_rims(cells, g, effort.edge_mass, found);
         const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, 0);
         out.evaluations += look.evaluations;
-        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);  // those that have none are halved on
+        if (edges)
+            out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);  // those that have none are halved on
         if (!edges && !look.found) break;
         edges = refine(cells, g, effort, total, out);
     }
@@ -232,7 +238,8 @@ void split(const Node& n, std::vector<Node>& stack) {
     Node lower{r, {}, n.depth + 1}, upper{r, {}, n.depth + 1};
     if (along_a) lower.rect.a1 = upper.rect.a0 = mid;
     else lower.rect.b1 = upper.rect.b0 = 0.5 * (r.b0 + r.b1);
-    for (Vec2d at : n.inside) ((along_a ? at.x < lower.rect.a1 : at.y < lower.rect.b1) ? lower : upper).inside.push_back(at);
+    for (Vec2d at : n.inside)
+        ((along_a ? at.x < lower.rect.a1 : at.y < lower.rect.b1) ? lower : upper).inside.push_back(at);
     stack.push_back(std::move(lower));
     stack.push_back(std::move(upper));
 }

@@ -1,6 +1,6 @@
-// Integrals over the sphere and over disks by adaptive cubature: Genz & Malik 1980, "Remarks on algorithm 006: An adaptive
-// algorithm for numerical integration over an N-dimensional rectangular region", degree 7 with an embedded degree 5,
-// 17 points a cell. Cells are halved in waves, so that a wave is one batch of questions.
+// Integrals over the sphere and over disks by adaptive cubature: Genz & Malik 1980, "Remarks on algorithm 006: An
+// adaptive algorithm for numerical integration over an N-dimensional rectangular region", degree 7 with an embedded
+// degree 5, 17 points a cell. Cells are halved in waves, so that a wave is one batch of questions.
 #pragma once
 
 #include <functional>
@@ -22,32 +22,33 @@ struct Rect {
 using Batch = std::function<void(std::span<const Vec2d> at, std::span<double> out)>;
 
 struct Integral {
-    std::vector<double> bins;   // one a bin
-    double value = 0, error = 0;  // sum over bins and its estimated error, no less than `second` differs from it
+    std::vector<double> bins;          // one a bin
+    double value = 0, error = 0;       // sum over bins and its estimated error, no less than `second` differs from it
     double second = 0, second_se = 0;  // by points at random in the same cells: unbiased, with its standard error
     std::vector<double> bin_errors;    // what each bin is known to
     std::size_t evaluations = 0;
-    bool settled = true;          // the tolerance was reached
+    bool settled = true;  // the tolerance was reached
 };
 
 struct Effort {
-    double tolerance = 5e-6;           // absolute, of the sum
+    double tolerance = 5e-6;  // absolute, of the sum
     std::size_t most_evaluations = 400000;
-    double edge_mass = 1e-4;           // cells cut by a jump of the integrand are halved down to this, then cut along it
+    double edge_mass = 1e-4;  // cells cut by a jump of the integrand are halved down to this, then cut along it
 };
 
-/// Where draws of a density fell, and the integrand there: a cell that 17 points find empty, or lower than draws do, is halved until
-/// both agree.
+/// Where draws of a density fell, and the integrand there: a cell that 17 points find empty, or lower than draws do, is
+/// halved until both agree.
 struct Witness {
     Vec2d at;
     double g = 0;
 };
 struct Witnesses {
     std::vector<std::vector<Witness>> bins;  // by bin
-    double total = 0;                      // draws, those in no bin included
+    double total = 0;                        // draws, those in no bin included
 };
 
-Integral integrate(std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses = nullptr);
+Integral integrate(
+    std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses = nullptr);
 
 /// Sphere coordinates about an axis: a = 1 - cos of the angle to it, b = turns about it. dw = 2 pi da db.
 struct SphereMap {

@@ -1,6 +1,6 @@
-// The audit of a cubature: points at random in every cell. Against the biquadratic polynomial through nine of the rule's points
-// where the integrand is smooth, which leaves next to no variance; jittered over up to 8 x 8 parts where a jump is. Either
-// way its mean is the integral, whatever the integrand does between the rule's points.
+// The audit of a cubature: points at random in every cell. Against the biquadratic polynomial through nine of the
+// rule's points where the integrand is smooth, which leaves next to no variance; jittered over up to 8 x 8 parts where
+// a jump is. Either way its mean is the integral, whatever the integrand does between the rule's points.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,7 +51,8 @@ int parts_for(const std::vector<Cell>& cells, std::size_t room) {
     std::size_t jumpy = 0;
     for (const Cell& c : cells) jumpy += c.jumpy();
     if (room == 0 || jumpy == 0) return 1;
-    return std::clamp(static_cast<int>(std::sqrt(static_cast<double>(room) / static_cast<double>(jumpy))), 2, most_parts);
+    return std::clamp(
+        static_cast<int>(std::sqrt(static_cast<double>(room) / static_cast<double>(jumpy))), 2, most_parts);
 }
 
 }  // namespace
@@ -78,7 +79,8 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
         const int count = plain ? parts * parts : looks;
         double sum = 0, most = 0;
         for (int k = 0; k < count; ++k, ++next) {
-            const double of = plain ? 0 : polynomial(c, quadratics(2 * points[next].x - 1), quadratics(2 * points[next].y - 1));
+            const double of =
+                plain ? 0 : polynomial(c, quadratics(2 * points[next].x - 1), quadratics(2 * points[next].y - 1));
             sum += v[next] - of;
             most = std::max(most, std::fabs(v[next] - of));
         }

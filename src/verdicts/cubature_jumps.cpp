@@ -1,5 +1,6 @@
-// Jumps: the edge of a cone, a disk light's rim, the horizon. Inside a small cell the jump is a smooth curve a(b) or b(a), so five
-// Gauss lines across it, each integrated up to the jump and beyond it, leave an error of about a hundredth of the cell.
+// Jumps: the edge of a cone, a disk light's rim, the horizon. Inside a small cell the jump is a smooth curve a(b) or
+// b(a), so five Gauss lines across it, each integrated up to the jump and beyond it, leave an error of about a
+// hundredth of the cell.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,14 +13,15 @@ namespace {
 
 constexpr int lines = 5, sides = 2, bisections = 13;
 constexpr double gauss5[lines] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683, 0.906179845938664};
-constexpr double weight5[lines] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189};
+constexpr double weight5[lines] = {
+    0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189};
 constexpr double gauss2 = 0.577350269189626;
 
 /// A line through a cell, along a or along b; t runs over the cell's width in [0, 1].
 struct Line {
     std::size_t cell;
     bool along_a;
-    double across;  // the other coordinate
+    double across;                          // the other coordinate
     double t0 = 0, t1 = 1, g0 = 0, g1 = 0;  // the bracket of the jump
 };
 
@@ -31,9 +33,10 @@ constexpr double inset = 1e-7;
 
 /// Four sides and four corners, in the order of the rule's outermost points.
 std::array<Vec2d, 8> rim(const Rect& r) {
-    const double da = inset * (r.a1 - r.a0), db = inset * (r.b1 - r.b0), a = 0.5 * (r.a0 + r.a1), b = 0.5 * (r.b0 + r.b1);
-    return {{{r.a0 + da, b}, {r.a1 - da, b}, {a, r.b0 + db}, {a, r.b1 - db},
-             {r.a0 + da, r.b0 + db}, {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b0 + db}, {r.a1 - da, r.b1 - db}}};
+    const double da = inset * (r.a1 - r.a0), db = inset * (r.b1 - r.b0), a = 0.5 * (r.a0 + r.a1),
+                 b = 0.5 * (r.b0 + r.b1);
+    return {{{r.a0 + da, b}, {r.a1 - da, b}, {a, r.b0 + db}, {a, r.b1 - db}, {r.a0 + da, r.b0 + db},
+        {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b0 + db}, {r.a1 - da, r.b1 - db}}};
 }
 
 /// Lines through every cell that a jump seems to cross, along the side that sees more of the change.
@@ -49,7 +52,8 @@ std::vector<Line> lines_through(const std::vector<Cell>& cells, double edge_mass
             Line l;
             l.cell = c;
             l.along_a = along_a >= along_b;
-            l.across = l.along_a ? 0.5 * (r.b0 + r.b1) + 0.5 * x * (r.b1 - r.b0) : 0.5 * (r.a0 + r.a1) + 0.5 * x * (r.a1 - r.a0);
+            l.across = l.along_a ? 0.5 * (r.b0 + r.b1) + 0.5 * x * (r.b1 - r.b0)
+                                 : 0.5 * (r.a0 + r.a1) + 0.5 * x * (r.a1 - r.a0);
             out.push_back(l);
         }
     }
@@ -133,7 +137,8 @@ std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edg
         bool jumps = false;
         for (std::size_t k = 0; k < lines; ++k) {
             const Line& l = all[i + k];
-            jumps = jumps || std::fabs(l.g1 - l.g0) > 0.01 * (cell.high - cell.low);  // smooth: 2^-13 of the cell's width
+            jumps =
+                jumps || std::fabs(l.g1 - l.g0) > 0.01 * (cell.high - cell.low);  // smooth: 2^-13 of the cell's width
             const double jump = 0.5 * (l.t0 + l.t1);
             const double* p = &v[(i + k) * 2 * sides];
             sum += 0.5 * weight5[k] * 0.5 * (jump * (p[0] + p[1]) + (1 - jump) * (p[2] + p[3]));

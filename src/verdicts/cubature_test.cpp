@@ -1,4 +1,5 @@
-// Cubature against integrals that are known in closed form: the stated error holds, and the audit is another estimate of the same.
+// Cubature against integrals that are known in closed form: the stated error holds, and the audit is another estimate
+// of the same.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -23,17 +24,23 @@ std::vector<Known> known_integrals() {
     };
     return {
         {"a constant", [](double, double) { return 3.0; }, 3, 1e-12},
-        {"a polynomial of degree 7", [](double a, double b) { return std::pow(a, 3) * std::pow(b, 4) + std::pow(a, 7); }, 1 / 20.0 + 1 / 8.0, 1e-6},
+        {"a polynomial of degree 7",
+            [](double a, double b) { return std::pow(a, 3) * std::pow(b, 4) + std::pow(a, 7); }, 1 / 20.0 + 1 / 8.0,
+            1e-6},
         {"a wide Gaussian", [=](double a, double b) { return gauss(a, b, 0.5, 0.5, 0.1); }, sqr(std::erf(5.0)), 1e-5},
         {"a narrow Gaussian off centre", [=](double a, double b) { return gauss(a, b, 0.371, 0.642, 0.01); }, 1, 1e-5},
-        {"a ridge", [](double a, double b) { return std::exp(-sqr((a - b) / 0.01)) / (0.01 * std::sqrt(pi)); }, 1 - 0.01 / std::sqrt(pi), 1e-5},
+        {"a ridge", [](double a, double b) { return std::exp(-sqr((a - b) / 0.01)) / (0.01 * std::sqrt(pi)); },
+            1 - 0.01 / std::sqrt(pi), 1e-5},
         {"a disc", [](double a, double b) { return in_disc(a, b, 0.47, 0.53, 0.31); }, pi * sqr(0.31)},
-        {"a faint disc on a floor", [](double a, double b) { return 1 + 0.1 * in_disc(a, b, 0.61, 0.33, 0.2); }, 1 + 0.1 * pi * 0.04},
+        {"a faint disc on a floor", [](double a, double b) { return 1 + 0.1 * in_disc(a, b, 0.61, 0.33, 0.2); },
+            1 + 0.1 * pi * 0.04},
         {"a half plane", [](double a, double b) { return a + 0.3 * b < 0.6 ? 1.0 : 0.0; }, 0.45},
-        {"a smooth slope up to a jump", [](double a, double b) { return a < 0.7 - 0.2 * b ? a : 0.0; }, (std::pow(0.7, 3) - std::pow(0.5, 3)) / 1.2},
+        {"a smooth slope up to a jump", [](double a, double b) { return a < 0.7 - 0.2 * b ? a : 0.0; },
+            (std::pow(0.7, 3) - std::pow(0.5, 3)) / 1.2},
         {"a corner cut off", [](double a, double b) { return a + b < 0.04 ? 100.0 : 1.0; }, 1 + 99 * 0.5 * sqr(0.04)},
         {"a chequer of steps", [](double a, double b) { return 1 + (int(a * 7) + int(b * 5)) % 3; }, 69 / 35.0},
-        {"a pole at a corner", [](double a, double b) { return 1 / std::sqrt(a * a + b * b + 1e-300); }, 2 * std::log(1 + std::sqrt(2.0)), 1e-4},
+        {"a pole at a corner", [](double a, double b) { return 1 / std::sqrt(a * a + b * b + 1e-300); },
+            2 * std::log(1 + std::sqrt(2.0)), 1e-4},
     };
 }
 
@@ -46,17 +53,20 @@ Batch batch_of(const std::function<double(double, double)>& g) {
 std::vector<Rect> grid(int n) {
     std::vector<Rect> out;
     for (int i = 0; i < n; ++i)
-        for (int k = 0; k < n; ++k) out.push_back({double(i) / n, double(i + 1) / n, double(k) / n, double(k + 1) / n, 0});
+        for (int k = 0; k < n; ++k)
+            out.push_back({double(i) / n, double(i + 1) / n, double(k) / n, double(k + 1) / n, 0});
     return out;
 }
 
 TEST(Cubature, MeetsKnownIntegralsWithinItsStatedError) {
     for (const Known& k : known_integrals()) {
         const Integral found = integrate(grid(4), 1, batch_of(k.g), {5e-6, 400000, 1e-4});
-        EXPECT_LE(std::fabs(found.value - k.integral), found.error + 1e-12 * k.integral) << k.name << ": " << found.value << ", not " << k.integral;
+        EXPECT_LE(std::fabs(found.value - k.integral), found.error + 1e-12 * k.integral)
+            << k.name << ": " << found.value << ", not " << k.integral;
         EXPECT_LE(std::fabs(found.value - k.integral), k.within) << k.name;
         EXPECT_LE(found.error, 20 * k.within) << k.name << ": a stated error says something";
-        EXPECT_LE(std::fabs(found.second - k.integral), 5 * found.second_se + 1e-12 * k.integral) << k.name << ": the audit";
+        EXPECT_LE(std::fabs(found.second - k.integral), 5 * found.second_se + 1e-12 * k.integral)
+            << k.name << ": the audit";
     }
 }
 
@@ -64,7 +74,8 @@ TEST(Cubature, StatesAnErrorThatHoldsWhereItsEffortEnds) {
     for (const Known& k : known_integrals())
         for (std::size_t most : {1000, 4000, 16000}) {
             const Integral found = integrate(grid(4), 1, batch_of(k.g), {5e-6, most, 1e-4});
-            EXPECT_LE(std::fabs(found.value - k.integral), std::max(2 * found.error, 5 * found.second_se) + 1e-12 * k.integral)
+            EXPECT_LE(std::fabs(found.value - k.integral),
+                std::max(2 * found.error, 5 * found.second_se) + 1e-12 * k.integral)
                 << k.name << " after " << found.evaluations << ": " << found.value << ", not " << k.integral;
         }
 }
@@ -78,7 +89,8 @@ TEST(Cubature, KnowsEveryBinAndAddsThemUp) {
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const double low = 0.25 * double(i), high = low + 0.25;  // b < (0.6 - a) / 0.3, at most 1
-        const double whole = std::max(std::min(high, 0.3) - low, 0.0), from = std::max(low, 0.3), to = std::min(high, 0.6);
+        const double whole = std::max(std::min(high, 0.3) - low, 0.0), from = std::max(low, 0.3),
+                     to = std::min(high, 0.6);
         const double slope = to > from ? (sqr(0.6 - from) - sqr(0.6 - to)) / 0.6 : 0;
         EXPECT_NEAR(found.bins[i], whole + slope, 3 * found.bin_errors[i] + 1e-9) << i;
         EXPECT_LT(found.bin_errors[i], 1e-4) << i;
@@ -100,7 +112,9 @@ TEST(Cubature, CutsACellOnBothSidesOfAJump) {
 }
 
 TEST(Cubature, SeesASpikeThatDrawsFell) {
-    const auto g = [](double a, double b) { return std::exp(-(sqr(a - 0.3371) + sqr(b - 0.7113)) / sqr(2e-3)) / (pi * sqr(2e-3)); };
+    const auto g = [](double a, double b) {
+        return std::exp(-(sqr(a - 0.3371) + sqr(b - 0.7113)) / sqr(2e-3)) / (pi * sqr(2e-3));
+    };
     Witnesses fell{{std::vector<Witness>(1000, Witness{{0.33712, 0.71127}, 0})}, 1000};
     EXPECT_NEAR(integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell).value, 1, 1e-4);
 }
@@ -109,7 +123,8 @@ TEST(Cubature, SeesASpikeThatDrawsFell) {
 TEST(Cubature, BelievesADrawThatFellHigherThanItSaw) {
     const auto g = [](double a, double b) { return in_disc(a, b, 0.52, 0.55, 0.004) * 2000 + 0.9; };
     Witnesses fell{{{}}, 1000};
-    for (int i = 0; i < 100; ++i) fell.bins[0].push_back({{0.52 + 0.0003 * (i % 10 - 5), 0.55 + 0.0003 * (i / 10 - 5)}, 2000.9});
+    for (int i = 0; i < 100; ++i)
+        fell.bins[0].push_back({{0.52 + 0.0003 * (i % 10 - 5), 0.55 + 0.0003 * (i / 10 - 5)}, 2000.9});
     const Integral found = integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell);
     EXPECT_NEAR(found.value, 0.9 + 2000 * pi * sqr(0.004), 2e-4);
 }

@@ -14,13 +14,14 @@ namespace {
 struct Pearson {
     double statistic = 0, degrees = -1;  // one degree goes to the total
     double p = 1;
-    std::size_t pools = 0, empty = 0;    // pools tested; bins with an expectation below 1e-6
+    std::size_t pools = 0, empty = 0;  // pools tested; bins with an expectation below 1e-6
     double empty_observed = 0, empty_expected = 0;
 };
 
 /// Pools neighbours until 5 are expected. What cannot reach 5 in the end joins the last pool.
 /// `slack`: what each expectation is known to, by cubature and where p was tabulated; it is taken off the difference.
-Pearson pearson(const std::vector<double>& observed, const std::vector<double>& expected, const std::vector<double>& slack) {
+Pearson pearson(
+    const std::vector<double>& observed, const std::vector<double>& expected, const std::vector<double>& slack) {
     struct Pool {
         double seen, due, slack;
     };
@@ -78,9 +79,11 @@ Fit fit(const Density& d, const Batchful& b) {
     const double n = static_cast<double>(b.draws.size());
     const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = d.rings.size() - 1;
     // Left by p: what draws nothing. Scaled to the share that was drawn, so that the normalisation is not judged twice.
-    const bool table = d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;  // its sum says less than its bins
+    const bool table =
+        d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;  // its sum says less than its bins
     const double scale = table ? n : n * (1 - d.nothing) / d.mass.value;
-    std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors), slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
+    std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors),
+        slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
     for (std::size_t i = 0; i < slack.size(); ++i) {
         slack[i] = scale * ((d.doubt.empty() ? 0 : d.doubt[i]) + 3 * d.mass.bin_errors[i]);
         slack_ring[i / sectors] += slack[i];
@@ -103,7 +106,8 @@ Fit fit(const Density& d, const Batchful& b) {
     out.joint = pearson(observed, expected, slack);
     out.rings = pearson(by_ring, due_ring, slack_ring);
     out.sectors = pearson(by_sector, due_sector, slack_sector);
-    double seen = 0, due = 0;  // rings that expect less than one draw: the Poisson law; the quadrature's own error is granted
+    double seen = 0,
+           due = 0;  // rings that expect less than one draw: the Poisson law; the quadrature's own error is granted
     for (std::size_t i = 0; i < rings; ++i)
         if (due_ring[i] < 1) {
             seen += by_ring[i];
@@ -124,10 +128,12 @@ Verdict judge_normalised(const Work& work) {
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
         constexpr double allowed = 1e-4;
-        const auto excess_of = [&](const Integral& m) {  // what is left of the difference by the cubature and by its audit
-            const double off = std::min(std::fabs(m.value + d.nothing - 1), std::fabs(m.second + d.nothing - 1));
-            return std::max(off - allowed - d.doubts - std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se), 0.0);
-        };
+        const auto excess_of =
+            [&](const Integral& m) {  // what is left of the difference by the cubature and by its audit
+                const double off = std::min(std::fabs(m.value + d.nothing - 1), std::fabs(m.second + d.nothing - 1));
+                return std::max(
+                    off - allowed - d.doubts - std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se), 0.0);
+            };
         const bool second = d.second && excess_of(*d.second) < excess_of(d.mass);
         const Integral& mass = second ? *d.second : d.mass;  // the one that speaks for the sampler
         const double sum = mass.value + d.nothing;
@@ -141,13 +147,18 @@ Verdict judge_normalised(const Work& work) {
         if (d.second) v.evidence["second_quadrature" + tag] = second ? d.mass.value : d.second->value;
         v.evidence["drawn_nothing" + tag] = d.nothing;
         v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
-        const std::string told = d.nothing > 0 ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}", mass.value, d.nothing, sum)
-                                               : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
+        const std::string told = d.nothing > 0
+            ? fmt::format(
+                  "p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}",
+                  mass.value, d.nothing, sum)
+            : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
         const double excess = excess_of(mass);
-        bool wrong = !std::isfinite(sum) || (excess > 0 && d.nothing_se == 0 && work.subject.draws_at_will() && d.nothing == 0);
+        bool wrong =
+            !std::isfinite(sum) || (excess > 0 && d.nothing_se == 0 && work.subject.draws_at_will() && d.nothing == 0);
         if (!wrong && excess > 0 && d.nothing > 0) {  // the share that draws nothing is itself an estimate
             const double n = static_cast<double>(work.first(t).draws.size());
-            const double se = work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7) : std::sqrt(d.nothing * (1 - d.nothing) / n);
+            const double se = work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7)
+                                                           : std::sqrt(d.nothing * (1 - d.nothing) / n);
             wrong = student_p(excess / se, 15) < work.rigour.screen * work.rigour.confirm;
         } else if (!wrong && excess > 0) {
             wrong = true;
@@ -176,7 +187,9 @@ Verdict judge_density(Work& work) {
     Verdict v = work.verdict("density", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
-        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value)) return work.verdict("density", State::skipped, fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
+        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value))
+            return work.verdict("density", State::skipped,
+                fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
         const Fit f = fit(d, work.first(t));
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         v.evidence["coordinates" + tag] = coordinates(d);
@@ -191,7 +204,8 @@ Verdict judge_density(Work& work) {
         v.evidence["empty_bins" + tag] = f.joint.empty;
         v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
         if (work.rigour.pictures && t == 0)
-            work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d), static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected});
+            work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d),
+                static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected});
         std::optional<Fit> fresh;
         const auto of = [&](auto which) {
             return work.fails(which(f), [&](int round) {
@@ -206,12 +220,14 @@ Verdict judge_density(Work& work) {
         if (of([](const Fit& x) { return x.outside_p; })) fault = "where p integrates to next to nothing";
         if (!fault.empty()) {
             v.state = State::wrong;
-            v.say = fmt::format("The draws do not follow p {}: chi-square {:.4g} on {:g} degrees ({}), and again on a fresh seed with more draws.", fault, f.joint.statistic,
-                                f.joint.degrees, coordinates(d));
+            v.say = fmt::format(
+                "The draws do not follow p {}: chi-square {:.4g} on {:g} degrees ({}), and again on a fresh seed with "
+                "more draws.",
+                fault, f.joint.statistic, f.joint.degrees, coordinates(d));
             return v;
         }
-        v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).", work.first(t).draws.size(), f.joint.statistic, f.joint.degrees, f.joint.p,
-                            coordinates(d));
+        v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).",
+            work.first(t).draws.size(), f.joint.statistic, f.joint.degrees, f.joint.p, coordinates(d));
         if (f.joint.pools < 2) {
             v.state = State::inconclusive;
             v.say = "Fewer than two bins expect 5 draws: too few draws for a chi-square test.";

@@ -1,5 +1,5 @@
-// efficiency: variance of X times the time of one sample, beside every other arm on the same surface, light and w_o. Two arms
-// whose intervals (two standard errors, in the logarithm) overlap are not ranked.
+// efficiency: variance of X times the time of one sample, beside every other arm on the same surface, light and w_o.
+// Two arms whose intervals (two standard errors, in the logarithm) overlap are not ranked.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -46,11 +46,10 @@ std::optional<double> time_once(const Trial& trial, std::span<const Vec2d> u, st
     try {
         const auto start = std::chrono::steady_clock::now();
         for (int t = 0; t < trial.subject->techniques(); ++t) trial.subject->sample(t, trial.wo, u, draws);
-        return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(u.size());
+        return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() /
+            static_cast<double>(u.size());
     } catch (const SubjectTooSlow&) {
-    } catch (const SubjectFault& fault) {
-        e.fault = fault.what();
-    }
+    } catch (const SubjectFault& fault) { e.fault = fault.what(); }
     return {};
 }
 
@@ -99,7 +98,8 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
             v.say = "The sampler broke off: " + e.fault + ".";
             continue;
         }
-        v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
+        v.timing = {
+            {"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
         if (e.heavy) {
             v.state = State::inconclusive;
             v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
@@ -107,7 +107,9 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         }
         std::vector<std::string> better, worse, level;
         for (const Efficiency& o : all) {
-            if (o.trial == e.trial || !(o.nanoseconds > 0) || o.whole != e.whole || company_of(trials[o.trial]) != company_of(trials[e.trial])) continue;
+            if (o.trial == e.trial || !(o.nanoseconds > 0) || o.whole != e.whole ||
+                company_of(trials[o.trial]) != company_of(trials[e.trial]))
+                continue;
             const std::string& name = trials[o.trial].arm;
             if (o.heavy || (o.low() <= e.high() && e.low() <= o.high())) level.push_back(name);
             else (e.high() < o.low() ? better : worse).push_back(name);
@@ -116,9 +118,12 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
         if (!(e.nanoseconds > 0)) continue;
         v.say_timed = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
-        if (!better.empty()) v.say_timed += fmt::format("; variance x time is better than that of {}", fmt::join(better, ", "));
+        if (!better.empty())
+            v.say_timed += fmt::format("; variance x time is better than that of {}", fmt::join(better, ", "));
         if (!worse.empty()) v.say_timed += fmt::format("; worse than that of {}", fmt::join(worse, ", "));
-        if (!level.empty()) v.say_timed += fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(level, ", "));
+        if (!level.empty())
+            v.say_timed +=
+                fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(level, ", "));
         v.say_timed += ".";
     }
     return out;

@@ -14,12 +14,15 @@ namespace crescent {
 
 namespace {
 
-bool is_right(const Trial& t) { return !t.theory.wrong && (t.theta_deg == 0 || t.theta_deg == 45 || t.theta_deg == 85); }
+bool is_right(const Trial& t) {
+    return !t.theory.wrong && (t.theta_deg == 0 || t.theta_deg == 45 || t.theta_deg == 85);
+}
 
 /// The first verdict that is wrong of those that depend on the draws at hand.
 std::optional<Verdict> accusation(Work& work) {
-    for (auto* verdict : {+[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); }, +[](Work& w) { return judge_identity(w); },
-                          +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_mean(w); }})
+    for (auto* verdict : {+[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); },
+             +[](Work& w) { return judge_identity(w); }, +[](Work& w) { return judge_physics(w); },
+             +[](Work& w) { return judge_mean(w); }})
         if (Verdict v = verdict(work); v.state == State::wrong) return v;
     return {};
 }
@@ -34,7 +37,8 @@ std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of) {
 
 std::string rate_text(std::uint64_t hits, std::uint64_t of) {
     const auto [low, high] = rate_interval(hits, of);
-    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of, of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
+    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of,
+        of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
 }
 
 FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch& watch) {
@@ -72,25 +76,37 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch
     return out;
 }
 
-std::string error_rates_text(const FalseAlarms& a, const std::string& law, std::span<const Caught> caught, const std::string& command, const std::string& version) {
+std::string error_rates_text(const FalseAlarms& a, const std::string& law, std::span<const Caught> caught,
+    const std::string& command, const std::string& version) {
     std::string out = "# The bench's own error rates\n\n";
-    out += fmt::format("Written by the program on {:%Y-%m-%d} ({}); made again with\n\n    {}\n\n", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())), version, command);
-    out += fmt::format("## How often a right arm is accused\n\nEvery right arm of the list on every surface and light, w_o at 0, 45 and 85 deg: {} cases of {} draws, {} seeds. Bins and integrals are made once;\n"
-                       "draws, tests and confirmations anew on each seed: normalised, density, identity, physics and mean, as `crescent check` asks them. The statistical tests share a family-wise error of {:g} over one call.\n\n", a.trials, a.draws, a.seeds, a.alpha);
+    out += fmt::format("Written by the program on {:%Y-%m-%d} ({}); made again with\n\n    {}\n\n",
+        fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())), version, command);
+    out += fmt::format(
+        "## How often a right arm is accused\n\nEvery right arm of the list on every surface and light, w_o at 0, 45 "
+        "and 85 deg: {} cases of {} draws, {} seeds. Bins and integrals are made once;\n"
+        "draws, tests and confirmations anew on each seed: normalised, density, identity, physics and mean, as "
+        "`crescent check` asks them. The statistical tests share a family-wise error of {:g} over one call.\n\n",
+        a.trials, a.draws, a.seeds, a.alpha);
     out += "| what | rate |\n|---|---|\n";
-    out += fmt::format("| a test fails on its first seed (level {:.3g}) | {} |\n", a.screen, rate_text(a.screened, a.tests));
+    out += fmt::format(
+        "| a test fails on its first seed (level {:.3g}) | {} |\n", a.screen, rate_text(a.screened, a.tests));
     out += fmt::format("| and again on a fresh one: an accusation | {} |\n", rate_text(a.confirmed, a.tests));
-    out += fmt::format("| a whole call accuses some right arm (promised: at most {:g}) | {} |\n", a.alpha, rate_text(a.calls, a.seeds));
+    out += fmt::format("| a whole call accuses some right arm (promised: at most {:g}) | {} |\n", a.alpha,
+        rate_text(a.calls, a.seeds));
     if (!law.empty()) out += "\n## How often a right sampler at random parameters is accused\n\n" + law;
-    out += "\n## Which verdict catches which planted fault\n\nEach at w_o 0, 45 and 75 deg (`crescent check --planted`, and with `--full`).\n\n| fault | in | quick | full |\n|---|---|---|---|\n";
+    out +=
+        "\n## Which verdict catches which planted fault\n\nEach at w_o 0, 45 and 75 deg (`crescent check --planted`, "
+        "and with `--full`).\n\n| fault | in | quick | full |\n|---|---|---|---|\n";
     std::uint64_t quick = 0, full = 0, asked = 0;
     for (const Caught& c : caught) {
-        out += fmt::format("| {} | {} | {} | {} |\n", c.fault, c.breaks, c.quick.empty() ? "**not caught**" : c.quick, c.full.empty() ? "**not caught**" : c.full);
+        out += fmt::format("| {} | {} | {} | {} |\n", c.fault, c.breaks, c.quick.empty() ? "**not caught**" : c.quick,
+            c.full.empty() ? "**not caught**" : c.full);
         quick += !c.quick.empty();
         full += !c.full.empty();
         ++asked;
     }
-    return out + fmt::format("\nCaught in quick mode: {}. In full mode: {}.\n", rate_text(quick, asked), rate_text(full, asked));
+    return out +
+        fmt::format("\nCaught in quick mode: {}. In full mode: {}.\n", rate_text(quick, asked), rate_text(full, asked));
 }
 
 }  // namespace crescent

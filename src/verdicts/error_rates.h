@@ -1,15 +1,17 @@
-// The bench's own error rates: how often it accuses right arms, over many seeds, and which verdict catches which planted fault.
+// The bench's own error rates: how often it accuses right arms, over many seeds, and which verdict catches which
+// planted fault.
 #pragma once
 
 #include "verdicts/judge.h"
 
 namespace crescent {
 
-/// Right arms of the list at three w_o each, their statistical tests alone, on `seeds` seeds; bins and integrals are made once.
+/// Right arms of the list at three w_o each, their statistical tests alone, on `seeds` seeds; bins and integrals are
+/// made once.
 struct FalseAlarms {
     std::uint64_t seeds = 0, trials = 0, draws = 0;  // draws: a trial and seed
     std::uint64_t tests = 0, screened = 0, confirmed = 0;
-    std::uint64_t calls = 0;                          // seeds on which some right arm was called wrong
+    std::uint64_t calls = 0;  // seeds on which some right arm was called wrong
     double alpha = 0, screen = 0;
 };
 FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& rigour, Watch& watch);
@@ -24,6 +26,7 @@ struct Caught {
     std::string fault, breaks, quick, full;
 };
 /// docs/error-rates.md; law: what came of right samplers at random parameters, "" where they were not asked for.
-std::string error_rates_text(const FalseAlarms& alarms, const std::string& law, std::span<const Caught> caught, const std::string& command, const std::string& version);
+std::string error_rates_text(const FalseAlarms& alarms, const std::string& law, std::span<const Caught> caught,
+    const std::string& command, const std::string& version);
 
 }  // namespace crescent

@@ -10,7 +10,8 @@
 
 /// In place of the bytes of a struct that has no operator<<.
 template <class S>
-    requires(std::is_class_v<S> && crescent::user::Callable<S> && !crescent::user::TakesThree<S> && !requires(std::ostream& out, const S s) { out << s; })
+    requires(std::is_class_v<S> && crescent::user::Callable<S> && !crescent::user::TakesThree<S> &&
+        !requires(std::ostream& out, const S s) { out << s; })
 class testing::internal::UniversalPrinter<S> {
 public:
     static void Print(const S&, std::ostream* out) { *out << "a sampler"; }
@@ -30,7 +31,8 @@ MATCHER(IsNotAWrongSampler, negation ? "is a wrong sampler" : "is not a wrong sa
     return j.state != State::wrong;
 }
 
-/// With levels, draws and seed of one's own: EXPECT_THAT(MySampler{}, crescent::IsARightSamplerBy(crescent::Rigour::thorough())).
+/// With levels, draws and seed of one's own: EXPECT_THAT(MySampler{},
+/// crescent::IsARightSamplerBy(crescent::Rigour::thorough())).
 MATCHER_P(IsARightSamplerBy, rigour, negation ? "is not a right sampler" : "is a right sampler") {
     const Judgement j = judge_sampler("sampler", arg, rigour);
     if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);

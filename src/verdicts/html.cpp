@@ -13,11 +13,17 @@ namespace {
 
 /// Three maps, painted by the script at the head of the page from the counts themselves.
 std::string maps(const BinMap& m) {
-    const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()), *std::max_element(m.expected.begin(), m.expected.end()));
-    std::string out = fmt::format("<p>Counts, {}: rings downwards from the axis, turns to the right; full scale is {:.0f} draws. Difference: (observed - expected) / sqrt(expected), red more, blue fewer, full at 4.</p><div class=row>", m.coordinates, top);
+    const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()),
+        *std::max_element(m.expected.begin(), m.expected.end()));
+    std::string out = fmt::format(
+        "<p>Counts, {}: rings downwards from the axis, turns to the right; full scale is {:.0f} draws. Difference: "
+        "(observed - expected) / sqrt(expected), red more, blue fewer, full at 4.</p><div class=row>",
+        m.coordinates, top);
     for (const char* title : {"observed", "expected", "standardised difference"})
-        out += fmt::format("<figure><canvas width={} height={}></canvas><figcaption>{}</figcaption></figure>", m.sectors, m.rings, title);
-    out += fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}])</script>", m.sectors, top, fmt::join(m.observed, ","), fmt::join(m.expected, ","));
+        out += fmt::format("<figure><canvas width={} height={}></canvas><figcaption>{}</figcaption></figure>",
+            m.sectors, m.rings, title);
+    out += fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}])</script>", m.sectors, top,
+        fmt::join(m.observed, ","), fmt::join(m.expected, ","));
     return out;
 }
 
@@ -29,21 +35,34 @@ std::string histogram(const WeightPicture& w) {
     const double width = 480.0 / static_cast<double>(w.counts.size());
     for (std::size_t i = 0; i < w.counts.size(); ++i) {
         const double h = 180 * math::log10(1 + w.counts[i]) / top;
-        out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class=bar />", static_cast<double>(i) * width, 190 - h, width - 0.5, h);
+        out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class=bar />",
+            static_cast<double>(i) * width, 190 - h, width - 0.5, h);
     }
-    if (w.exceedances > 0 && w.sigma > 0) {  // what the fitted generalised Pareto law expects in each bin above its threshold
-        const auto survival = [&](double x) { return x <= w.threshold ? 1.0 : std::fabs(w.k) < 1e-6 ? math::exp(-(x - w.threshold) / w.sigma) : math::pow(std::max(1 + w.k * (x - w.threshold) / w.sigma, 0.0), -1 / w.k); };
+    if (w.exceedances > 0 &&
+        w.sigma > 0) {  // what the fitted generalised Pareto law expects in each bin above its threshold
+        const auto survival = [&](double x) {
+            return x <= w.threshold     ? 1.0
+                : std::fabs(w.k) < 1e-6 ? math::exp(-(x - w.threshold) / w.sigma)
+                                        : math::pow(std::max(1 + w.k * (x - w.threshold) / w.sigma, 0.0), -1 / w.k);
+        };
         out += "<polyline fill='none' stroke='#d33' stroke-width='2' points='";
         for (std::size_t i = 0; i < w.counts.size(); ++i) {
             const double low = math::pow(10.0, w.log10_edges[i]), high = math::pow(10.0, w.log10_edges[i + 1]);
             if (low < w.threshold) continue;
             const double c = w.exceedances * (survival(low) - survival(high));
-            out += fmt::format("{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * math::log10(1 + c) / top);
+            out += fmt::format(
+                "{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * math::log10(1 + c) / top);
         }
         out += "'/>";
     }
-    return out + fmt::format("</svg><figcaption>X = f L cos / p, log10 from {:.2f} to {:.2f}, counts logarithmic; {:.0f} zeros; {}</figcaption></figure>", w.log10_edges.front(),
-                             w.log10_edges.back(), w.zeros, w.exceedances > 0 ? fmt::format("the tail fitted to the {:.0f} largest in red, k = {:.3f}", w.exceedances, w.k) : std::string("no tail: the largest are all alike"));
+    return out +
+        fmt::format(
+            "</svg><figcaption>X = f L cos / p, log10 from {:.2f} to {:.2f}, counts logarithmic; {:.0f} zeros; "
+            "{}</figcaption></figure>",
+            w.log10_edges.front(), w.log10_edges.back(), w.zeros,
+            w.exceedances > 0
+                ? fmt::format("the tail fitted to the {:.0f} largest in red, k = {:.3f}", w.exceedances, w.k)
+                : std::string("no tail: the largest are all alike"));
 }
 
 std::string curve(const std::vector<double>& v, std::string_view colour) {
@@ -58,23 +77,40 @@ std::string curve(const std::vector<double>& v, std::string_view colour) {
 
 std::string rose(const WeightPicture& w) {
     if (w.rose_p.empty()) return "";
-    return "<figure><svg viewBox='0 0 400 200' width='360' height='180'><line x1='0' y1='190' x2='400' y2='190' stroke='#999'/>" + curve(w.rose_f, "#888") + curve(w.rose_p, "#27d") +
-           "</svg><figcaption>Plane of incidence: p (blue) over f L cos (grey), each to its own largest value</figcaption></figure>";
+    return "<figure><svg viewBox='0 0 400 200' width='360' height='180'><line x1='0' y1='190' x2='400' y2='190' "
+           "stroke='#999'/>" +
+        curve(w.rose_f, "#888") + curve(w.rose_p, "#27d") +
+        "</svg><figcaption>Plane of incidence: p (blue) over f L cos (grey), each to its own largest "
+        "value</figcaption></figure>";
 }
 
 constexpr const char* head =
-    "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\"><title>{}</title>";
+    "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport "
+    "content=\"width=device-width\"><title>{}</title>";
 
 constexpr const char* style =
     "<style>body{font:15px/1.5 Inter,system-ui,sans-serif;margin:2em auto;max-width:64em;padding:0 1em}"
-    "table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #ddd;padding:.2em .5em;text-align:left;vertical-align:top}.wrong{color:#b00020;font-weight:600}"
-    ".inconclusive{color:#8a5a00}.right{color:#1a6b2a}.skipped{color:#666}.row{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figcaption{font-size:12px;max-width:30em}"
-    "summary{cursor:pointer}.error{color:#b00020}.matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .6em}.row,figure,tr{break-inside:avoid}@media print{body{margin:0;max-width:none}}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid #ddd}:root{color-scheme:light dark}.bar{fill:#446}@media(prefers-color-scheme:dark){body{background:#15171a;color:#ddd}td,th{border-color:#333}.wrong,.error{color:#ff6b7d}.inconclusive{color:#e0b050}.right{color:#6fcf8a}"
+    "table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #ddd;padding:.2em "
+    ".5em;text-align:left;vertical-align:top}.wrong{color:#b00020;font-weight:600}"
+    ".inconclusive{color:#8a5a00}.right{color:#1a6b2a}.skipped{color:#666}.row{display:flex;flex-wrap:wrap;gap:1em}"
+    "figure{margin:0}figcaption{font-size:12px;max-width:30em}"
+    "summary{cursor:pointer}.error{color:#b00020}.matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em "
+    ".6em}.row,figure,tr{break-inside:avoid}@media "
+    "print{body{margin:0;max-width:none}}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid "
+    "#ddd}:root{color-scheme:light "
+    "dark}.bar{fill:#446}@media(prefers-color-scheme:dark){body{background:#15171a;color:#ddd}td,th{border-color:#333}."
+    "wrong,.error{color:#ff6b7d}.inconclusive{color:#e0b050}.right{color:#6fcf8a}"
     ".skipped{color:#999}.bar{fill:#9ab}canvas{border-color:#444}}</style><script>"
-    "function paint(w,top,seen,due){const c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const night=matchMedia('(prefers-color-scheme:dark)').matches;"
+    "function paint(w,top,seen,due){const "
+    "c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const "
+    "night=matchMedia('(prefers-color-scheme:dark)').matches;"
     "const grey=v=>{const m=Math.min(v/top,1),g=night?25+225*m:255-225*m;return[g,g,g]};"
-    "const tint=(o,e)=>{const d=(o-e)/Math.sqrt(Math.max(e,1))/4,a=Math.min(Math.abs(d),1),f=night?25:255*(1-a),g=25+230*a;if(night)return d<0?[f,g/2,g]:[g,f,g/3];return d<0?[f,f,255]:[255,f,f]};"
-    "const draw=(k,colour)=>{const x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"
+    "const tint=(o,e)=>{const "
+    "d=(o-e)/Math.sqrt(Math.max(e,1))/4,a=Math.min(Math.abs(d),1),f=night?25:255*(1-a),g=25+230*a;if(night)return "
+    "d<0?[f,g/2,g]:[g,f,g/3];return d<0?[f,f,255]:[255,f,f]};"
+    "const draw=(k,colour)=>{const "
+    "x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/"
+    "w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"
     "draw(0,i=>grey(seen[i]));draw(1,i=>grey(due[i]));draw(2,i=>tint(seen[i],due[i]))}"
     "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>d.open=true))</script>";
 
@@ -89,7 +125,8 @@ std::string names_of(const Judgement& j) {
 std::string overview(const Judgement& j) {
     std::string out;
     for (const Finding& f : findings_of(j))
-        out += fmt::format("<li><b class={}>{}</b> {}{}", word(f.state), escape(f.arm), escape(told(f)), f.expected ? " <em>As the list expects: " + escape(f.worst->why_expected) + ".</em>" : "");
+        out += fmt::format("<li><b class={}>{}</b> {}{}", word(f.state), escape(f.arm), escape(told(f)),
+            f.expected ? " <em>As the list expects: " + escape(f.worst->why_expected) + ".</em>" : "");
     if (const std::string left = left_out_told(j); !left.empty()) out += "<li class=inconclusive>" + escape(left);
     out = out.empty() ? "<p>Nothing is wrong, nothing was left open.</p>" : "<ul>" + out + "</ul>";
     std::vector<std::string_view> names;
@@ -99,7 +136,8 @@ std::string overview(const Judgement& j) {
     for (std::string_view name : names) out += fmt::format("<th>{}", name);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         const Verdict& v = j.verdicts[i];
-        if (i == 0 || v.trial != j.verdicts[i - 1].trial || v.arm != j.verdicts[i - 1].arm) out += fmt::format("<tr><th>{} {}", escape(v.arm), escape(v.trial));
+        if (i == 0 || v.trial != j.verdicts[i - 1].trial || v.arm != j.verdicts[i - 1].arm)
+            out += fmt::format("<tr><th>{} {}", escape(v.arm), escape(v.trial));
         out += fmt::format("<td class={}>{}", word(v.state), word(v.state));
     }
     return out + "</table>";
@@ -109,9 +147,14 @@ std::string overview(const Judgement& j) {
 
 std::string verdict_html(const Judgement& j, const JudgementSource& source) {
     const std::string title = fmt::format("{}: {} - crescent check", names_of(j), word(j.state));
-    std::string out = fmt::format(fmt::runtime(head), title) + style + fmt::format("<h1>{}: <span class={}>{}</span></h1>", names_of(j), word(j.state), word(j.state)) + overview(j);
-    out += fmt::format("<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed.</p>", j.tests, j.alpha, j.screened, j.confirmed);
-    if (!source.version.empty()) out += fmt::format("<p>crescent {}, commit {}: <code>{}</code></p>", escape(source.version), escape(source.commit), escape(source.command));
+    std::string out = fmt::format(fmt::runtime(head), title) + style +
+        fmt::format("<h1>{}: <span class={}>{}</span></h1>", names_of(j), word(j.state), word(j.state)) + overview(j);
+    out += fmt::format(
+        "<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed.</p>",
+        j.tests, j.alpha, j.screened, j.confirmed);
+    if (!source.version.empty())
+        out += fmt::format("<p>crescent {}, commit {}: <code>{}</code></p>", escape(source.version),
+            escape(source.commit), escape(source.command));
     std::size_t map = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
         const std::string arm = j.verdicts[i].arm, trial = j.verdicts[i].trial;
@@ -120,9 +163,12 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
         for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
             const Verdict& v = j.verdicts[i];
             open = open || v.state == State::wrong;
-            rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state), escape(told(v)), v.why_expected.empty() ? "" : " <em>As the list expects: " + escape(v.why_expected) + ".</em>");
+            rows +=
+                fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state), escape(told(v)),
+                    v.why_expected.empty() ? "" : " <em>As the list expects: " + escape(v.why_expected) + ".</em>");
         }
-        out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "", escape(arm), escape(trial), rows);
+        out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
+            escape(arm), escape(trial), rows);
         while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial) out += maps(j.maps[map++]);
         out += "<div class=row>";
         while (weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].trial == trial) {

@@ -1,8 +1,9 @@
-// identity: what the sampler says twice, it says alike: pdf with the draw and pdf(w); weight and f cos / p; f and what f ought to
-// be; MIS weights that sum to one; and p |Jacobian| of the warp (jacobian.cpp).
+// identity: what the sampler says twice, it says alike: pdf with the draw and pdf(w); weight and f cos / p; f and what
+// f ought to be; MIS weights that sum to one; and p |Jacobian| of the warp (jacobian.cpp).
 //
-// Tolerance: 1e-4, and what p itself moves by when the components of wi and wo move by four roundings ("conditioning"): (w.R)^s moves
-// by s eps when w.R does by eps, so a float sampler at s = 1e5 may differ from itself by per cents and be right.
+// Tolerance: 1e-4, and what p itself moves by when the components of wi and wo move by four roundings ("conditioning"):
+// (w.R)^s moves by s eps when w.R does by eps, so a float sampler at s = 1e5 may differ from itself by per cents and be
+// right.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +18,8 @@ namespace {
 constexpr double tolerance = 1e-4;  // relative
 
 std::array<Vec3d, 6> nudges(Vec3d w, double by) {
-    return {{{w.x + by, w.y, w.z}, {w.x - by, w.y, w.z}, {w.x, w.y + by, w.z}, {w.x, w.y - by, w.z}, {w.x, w.y, w.z + by}, {w.x, w.y, w.z - by}}};
+    return {{{w.x + by, w.y, w.z}, {w.x - by, w.y, w.z}, {w.x, w.y + by, w.z}, {w.x, w.y - by, w.z},
+        {w.x, w.y, w.z + by}, {w.x, w.y, w.z - by}}};
 }
 
 std::vector<Pair> nudged(Vec3d wo, Vec3d wi, double grain) {
@@ -52,11 +54,15 @@ struct Mismatch {
     }
     bool matters() const { return count >= 3 && static_cast<double>(count) > 1e-4 * static_cast<double>(tried); }
     std::string told(std::string_view a, std::string_view b) const {
-        return fmt::format("{} and {} differ for {} of {} draws, most at w = ({:.6g}, {:.6g}, {:.6g}): {:.6g} against {:.6g}", a, b, count, tried, at.x, at.y, at.z, said, asked);
+        return fmt::format(
+            "{} and {} differ for {} of {} draws, most at w = ({:.6g}, {:.6g}, {:.6g}): {:.6g} against {:.6g}", a, b,
+            count, tried, at.x, at.y, at.z, said, asked);
     }
 };
 
-bool close(double a, double b, double extra = 0) { return std::fabs(a - b) <= tolerance * std::max(std::fabs(a), std::fabs(b)) + extra; }
+bool close(double a, double b, double extra = 0) {
+    return std::fabs(a - b) <= tolerance * std::max(std::fabs(a), std::fabs(b)) + extra;
+}
 
 Mismatch pdf_twice(const Work& work, int t) {
     Mismatch m;
@@ -93,7 +99,8 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
         const double said = truth ? f[i] : draws[i]->weight.value_or(f[i] * g), asked = truth ? ought[i] : f[i] * g;
         if (close(said, asked)) continue;
         const double loose = f_conditioning(work, work.trial.wo, wi[i], f[i]);
-        if (m.count < 4096 && close(said, asked, truth ? loose : g * loose + 4 * work.grain() * std::fabs(asked) / cos)) continue;
+        if (m.count < 4096 && close(said, asked, truth ? loose : g * loose + 4 * work.grain() * std::fabs(asked) / cos))
+            continue;
         m.add(said, asked, wi[i]);
     }
     return m;
@@ -179,18 +186,24 @@ Verdict judge_identity(const Work& work) {
             v.state = State::wrong;
             v.evidence["asked_again"] = r.tried;
             v.evidence["answered_otherwise"] = r.other;
-            v.say = fmt::format("The same u gives another answer when it is asked again, {} of {} times; at u = ({:.9g}, {:.9g}) first ({:.6g}, {:.6g}, {:.6g}), then ({:.6g}, {:.6g}, {:.6g}). "
-                                "The sampler is no function of w_o and u: it keeps a state, or answers out of turn.",
-                                r.other, r.tried, r.u.x, r.u.y, r.first.x, r.first.y, r.first.z, r.again.x, r.again.y, r.again.z);
+            v.say = fmt::format(
+                "The same u gives another answer when it is asked again, {} of {} times; at u = ({:.9g}, {:.9g}) first "
+                "({:.6g}, {:.6g}, {:.6g}), then ({:.6g}, {:.6g}, {:.6g}). "
+                "The sampler is no function of w_o and u: it keeps a state, or answers out of turn.",
+                r.other, r.tried, r.u.x, r.u.y, r.first.x, r.first.y, r.first.z, r.again.x, r.again.y, r.again.z);
             return v;
         }
-        if (const Mismatch m = pdf_twice(work, t); m.matters()) return wrong(work, v, m, "The pdf that came with the draw", "pdf(w)");
+        if (const Mismatch m = pdf_twice(work, t); m.matters())
+            return wrong(work, v, m, "The pdf that came with the draw", "pdf(w)");
         if (work.subject.has_f()) {
-            if (const Mismatch m = weight_twice(work, b, false); m.matters()) return wrong(work, v, m, "The weight", "f cos / p");
-            if (const Mismatch m = work.subject.has_true_f() ? weight_twice(work, b, true) : Mismatch{}; m.matters()) return wrong(work, v, m, "f", "the BRDF it claims to be");
+            if (const Mismatch m = weight_twice(work, b, false); m.matters())
+                return wrong(work, v, m, "The weight", "f cos / p");
+            if (const Mismatch m = work.subject.has_true_f() ? weight_twice(work, b, true) : Mismatch{}; m.matters())
+                return wrong(work, v, m, "f", "the BRDF it claims to be");
         }
         if (work.subject.techniques() > 1)
-            if (const Mismatch m = mis_sum(work, b); m.matters()) return wrong(work, v, m, "The sum of the MIS weights", "1");
+            if (const Mismatch m = mis_sum(work, b); m.matters())
+                return wrong(work, v, m, "The sum of the MIS weights", "1");
         const WarpFinding warp = study_warp(work, t);
         v.evidence["warp_points" + tag] = warp.usable;
         v.evidence["p_jacobian_is_1" + tag] = warp.one_to_one;
@@ -198,15 +211,20 @@ Verdict judge_identity(const Work& work) {
         if (warp.below >= 3 && static_cast<double>(warp.below) > 5e-3 * static_cast<double>(warp.usable)) {
             v.state = State::wrong;
             v.evidence["smallest_p_jacobian"] = warp.smallest;
-            v.say = fmt::format("p |Jacobian of the warp| is below 1 at {} of {} points, least at u = ({:.4g}, {:.4g}): {:.6g}. The sampler is denser there than p says.", warp.below,
-                                warp.usable, warp.at.x, warp.at.y, warp.smallest);
+            v.say = fmt::format(
+                "p |Jacobian of the warp| is below 1 at {} of {} points, least at u = ({:.4g}, {:.4g}): {:.6g}. The "
+                "sampler is denser there than p says.",
+                warp.below, warp.usable, warp.at.x, warp.at.y, warp.smallest);
             return v;
         }
         v.evidence["steps_of_u" + tag] = warp.steps_tried;
         v.evidence["steps_without_a_move" + tag] = warp.stuck;
         if (warp.steps_tried >= 40 && static_cast<double>(warp.stuck) > 0.4 * static_cast<double>(warp.steps_tried)) {
             v.state = State::wrong;
-            v.say = fmt::format("The direction stands still for {} of {} moves of u by 2^-19: u is used with too few bits, and only a grid of directions is ever drawn.", warp.stuck, warp.steps_tried);
+            v.say = fmt::format(
+                "The direction stands still for {} of {} moves of u by 2^-19: u is used with too few bits, and only a "
+                "grid of directions is ever drawn.",
+                warp.stuck, warp.steps_tried);
             return v;
         }
     }

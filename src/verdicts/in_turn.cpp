@@ -1,5 +1,5 @@
-// A program is asked by one thread and has a limited time. Every w_o keeps at least `valid`; what else there was no time for
-// is inconclusive and says so, whatever the load of the machine.
+// A program is asked by one thread and has a limited time. Every w_o keeps at least `valid`; what else there was no
+// time for is inconclusive and says so, whatever the load of the machine.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -18,9 +18,12 @@ constexpr std::uint64_t few_draws = 256;
 std::vector<std::size_t> order_of(std::span<const Trial> trials) {
     std::vector<std::size_t> order(trials.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto rank = [&](std::size_t i) { return std::tuple(trials[i].yardstick, std::fabs(trials[i].theta_deg - 45), i); };
+    const auto rank = [&](std::size_t i) {
+        return std::tuple(trials[i].yardstick, std::fabs(trials[i].theta_deg - 45), i);
+    };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
-    const auto grazing = std::find_if(order.begin(), order.end(), [&](std::size_t i) { return trials[i].theta_deg == 85 && !trials[i].yardstick; });
+    const auto grazing = std::find_if(
+        order.begin(), order.end(), [&](std::size_t i) { return trials[i].theta_deg == 85 && !trials[i].yardstick; });
     if (grazing != order.end() && grazing > order.begin()) std::rotate(order.begin() + 1, grazing, grazing + 1);
     return order;
 }
@@ -31,16 +34,17 @@ Outcome look(const Trial& trial, std::size_t index, const Rigour& rigour, Tally&
     try {
         const Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
         out.verdicts.push_back(judge_valid(work));
-    } catch (const SubjectFault& fault) {
-        out.cut = cut_by(fault);
-    }
+    } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
 }
 
 Cut left_out(const Trial& trial, const Rigour& rigour) {
     const double seconds = trial.subject->spending().allowed;
-    const std::string say = fmt::format("Not looked at: {:g} s are too short for this program to be asked everything at every w_o. {} --accept-few judges by what was looked at.", seconds,
-                                        rigour.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you say;");
+    const std::string say = fmt::format(
+        "Not looked at: {:g} s are too short for this program to be asked everything at every w_o. {} --accept-few "
+        "judges by what was looked at.",
+        seconds,
+        rigour.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you say;");
     return {rigour.accept_few ? State::skipped : State::inconclusive, say, say, {}};
 }
 
@@ -77,7 +81,8 @@ std::vector<Outcome> judge_in_turn(std::span<const Trial> trials, const Rigour& 
             const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
             if (cut_short) outcomes[i].cut = left_out(trials[i], rigour);
             std::vector<Verdict>& verdicts = outcomes[i].verdicts;
-            const bool met = !looks[i].verdicts.empty() && (verdicts.empty() || looks[i].verdicts[0].state == State::wrong);
+            const bool met =
+                !looks[i].verdicts.empty() && (verdicts.empty() || looks[i].verdicts[0].state == State::wrong);
             if (met && verdicts.empty()) verdicts = std::move(looks[i].verdicts);
             else if (met) verdicts[0] = std::move(looks[i].verdicts[0]);
         }

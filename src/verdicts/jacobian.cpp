@@ -1,7 +1,8 @@
-// |Jacobian| x p without knowing the warp: central differences of sample(wo, u). Where a warp is one to one, p |J| = 1; where
-// several u reach one direction p is the sum of 1/|J| over them, so p |J| >= 1 everywhere. p |J| < 1 is a wrong density
-// in any case, whatever the sampler. Seams and kinks of a warp (a tabulated density has one at every cell) are told from smooth
-// ground by comparing step sizes, and by one-sided differences: beside a kink the side away from it is clean.
+// |Jacobian| x p without knowing the warp: central differences of sample(wo, u). Where a warp is one to one, p |J| = 1;
+// where several u reach one direction p is the sum of 1/|J| over them, so p |J| >= 1 everywhere. p |J| < 1 is a wrong
+// density in any case, whatever the sampler. Seams and kinks of a warp (a tabulated density has one at every cell) are
+// told from smooth ground by comparing step sizes, and by one-sided differences: beside a kink the side away from it is
+// clean.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,13 +20,13 @@ constexpr int stencil = 11;  // centre, +-h, +-h/2 along each side, and a tiny m
 
 std::array<Vec2d, stencil> stencil_at(Vec2d u, double h = step) {
     const double k = h / 2;
-    return {{u, {u.x + h, u.y}, {u.x - h, u.y}, {u.x, u.y + h}, {u.x, u.y - h}, {u.x + k, u.y}, {u.x - k, u.y}, {u.x, u.y + k}, {u.x, u.y - k},
-             {u.x + tiny_step, u.y}, {u.x, u.y + tiny_step}}};
+    return {{u, {u.x + h, u.y}, {u.x - h, u.y}, {u.x, u.y + h}, {u.x, u.y - h}, {u.x + k, u.y}, {u.x - k, u.y},
+        {u.x, u.y + k}, {u.x, u.y - k}, {u.x + tiny_step, u.y}, {u.x, u.y + tiny_step}}};
 }
 
 struct Derivative {
-    double j = 0;        // |d w / d u1 x d w / d u2|
-    double error = 0;    // relative
+    double j = 0;      // |d w / d u1 x d w / d u2|
+    double error = 0;  // relative
     bool usable = false;
     double along[2] = {};  // |d w / d u|
 };
@@ -45,10 +46,13 @@ Derivative derivative(std::span<const Draw> w, double grain) {
     out.j = (4 * j2 - j1) / 3;  // Richardson
     const double lx = length(x2), ly = length(y2);
     const double noise = grain * (1 / lx + 1 / ly) * (lx * ly / j2) / k;
-    const auto sided = [&](int px, int py, double s) { return area((w[px].wi - c) * (1 / s), (w[py].wi - c) * (1 / s)); };
+    const auto sided = [&](int px, int py, double s) {
+        return area((w[px].wi - c) * (1 / s), (w[py].wi - c) * (1 / s));
+    };
     const double wide = std::fabs(sided(1, 3, h) - sided(2, 4, h)), narrow = std::fabs(sided(5, 7, k) - sided(6, 8, k));
     out.error = std::fabs(j2 - j1) / j2 / 3 + noise;
-    out.usable = out.error < 0.05 && narrow < 0.7 * wide + 4 * noise * j2 + 1e-3 * j2;  // a kink does not halve with the step
+    out.usable =
+        out.error < 0.05 && narrow < 0.7 * wide + 4 * noise * j2 + 1e-3 * j2;  // a kink does not halve with the step
     out.along[0] = lx;
     out.along[1] = ly;
     return out;
@@ -81,7 +85,8 @@ struct Suspect {
     bool stands = true;
 };
 
-/// Looks at every suspect again with steps down to 2^-18, as far as rounding allows; one that reaches 1 in any quadrant is let go.
+/// Looks at every suspect again with steps down to 2^-18, as far as rounding allows; one that reaches 1 in any quadrant
+/// is let go.
 void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects) {
     for (double h = step; h >= 0x1p-18; h /= 4) {
         std::vector<Vec2d> u;

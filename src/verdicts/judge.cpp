@@ -23,7 +23,8 @@ Verdict skipped(const Trial& trial, std::string_view name, std::string say) {
 }
 
 void skip_rest(const Trial& trial, Outcome& out, const std::string& why) {
-    while (out.verdicts.size() + 1 < verdict_names.size()) out.verdicts.push_back(skipped(trial, verdict_names[out.verdicts.size()], why));
+    while (out.verdicts.size() + 1 < verdict_names.size())
+        out.verdicts.push_back(skipped(trial, verdict_names[out.verdicts.size()], why));
 }
 
 void expect(const Trial& trial, Verdict& v) {
@@ -37,7 +38,8 @@ void expect(const Trial& trial, Verdict& v) {
         v.expected = v.state == State::inconclusive;
         v.why_expected = trial.theory.why;
     } else {
-        v.expected = v.state == State::right || v.state == State::skipped || (may_doubt && v.state == State::inconclusive);
+        v.expected =
+            v.state == State::right || v.state == State::skipped || (may_doubt && v.state == State::inconclusive);
     }
 }
 
@@ -49,7 +51,8 @@ Rigour for_yardstick(const Trial& trial, Rigour rigour) {
 
 /// f goes on under the surface and was not followed there.
 void own_up_to_one_half(const Work& work, Verdict& v) {
-    if (!work.below().transmits || work.whole() || v.state != State::right || (v.name != "physics" && v.name != "mean")) return;
+    if (!work.below().transmits || work.whole() || v.state != State::right || (v.name != "physics" && v.name != "mean"))
+        return;
     v.state = State::inconclusive;
     v.say = "f transmits, or does not return 0 under the surface; this is of the upper half only. " + v.say;
 }
@@ -66,11 +69,13 @@ template <class Judge> void judge_next(Work& work, Outcome& out, const Watch& wa
 
 void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& watch) {
     judge_next(work, out, watch, judge_valid);
-    if (out.verdicts[0].state == State::wrong && !out.verdicts[0].evidence.contains("usable")) return skip_rest(work.trial, out, "The sampler is not valid here.");
+    if (out.verdicts[0].state == State::wrong && !out.verdicts[0].evidence.contains("usable"))
+        return skip_rest(work.trial, out, "The sampler is not valid here.");
     work.measure_density();
-    for (auto* verdict : {+[](Work& w) { return judge_support(w); }, +[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); },
-                          +[](Work& w) { return judge_identity(w); }, +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_tail(w); },
-                          +[](Work& w) { return judge_mean(w); }})
+    for (auto* verdict : {+[](Work& w) { return judge_support(w); }, +[](Work& w) { return judge_normalised(w); },
+             +[](Work& w) { return judge_density(w); }, +[](Work& w) { return judge_identity(w); },
+             +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_tail(w); },
+             +[](Work& w) { return judge_mean(w); }})
         judge_next(work, out, watch, verdict);
     if (work.subject.has_f()) out.efficiency = measure_efficiency(work, index);
 }
@@ -92,7 +97,8 @@ void blame_yardsticks(std::span<const Trial> trials, std::span<const Outcome> ou
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const std::optional<Cut>& cut = outcomes[i].cut;
         if (!trials[i].yardstick) judged = i;
-        else if (cut && cut->state == State::error && !cut->evidence.empty()) ranks[judged].state = State::error, ranks[judged].say = cut->first;
+        else if (cut && cut->state == State::error && !cut->evidence.empty())
+            ranks[judged].state = State::error, ranks[judged].say = cut->first;
     }
 }
 
@@ -100,7 +106,8 @@ void blame_yardsticks(std::span<const Trial> trials, std::span<const Outcome> ou
 void note_left_out(const Trial& trial, const Outcome& out, Judgement& j) {
     if (!out.cut || out.cut->state == State::error) return;
     LeftOut left{trial.arm, trial.text(), {}, out.cut->first};
-    for (std::size_t k = out.verdicts.size(); k < verdict_names.size(); ++k) left.verdicts.emplace_back(verdict_names[k]);
+    for (std::size_t k = out.verdicts.size(); k < verdict_names.size(); ++k)
+        left.verdicts.emplace_back(verdict_names[k]);
     j.left_out.push_back(std::move(left));
 }
 
@@ -110,7 +117,8 @@ Cut cut_by(const SubjectFault& fault) {
     if (dynamic_cast<const SubjectTooSlow*>(&fault)) return {State::inconclusive, fault.what(), fault.what(), {}};
     const std::string rest = "It could not be asked: the sampler broke off before.";
     if (dynamic_cast<const SubjectGone*>(&fault)) return {State::error, rest, rest, {}};
-    return {State::error, fmt::format("The sampler broke off: {}.", fault.what()), rest, {{"first_fault", fault.what()}}};
+    return {
+        State::error, fmt::format("The sampler broke off: {}.", fault.what()), rest, {{"first_fault", fault.what()}}};
 }
 
 void fill_up(const Trial& trial, Outcome& out) {
@@ -127,16 +135,15 @@ Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, T
     Outcome out;
     try {
         if (trial.yardstick) {
-            out.efficiency = measure_efficiency(Work(trial, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
+            out.efficiency = measure_efficiency(
+                Work(trial, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
             return out;
         }
         Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
         judge_in_order(work, index, out, watch);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
-    } catch (const SubjectFault& fault) {
-        out.cut = cut_by(fault);
-    }
+    } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
 }
 
@@ -155,7 +162,8 @@ std::string_view word(State state) {
 std::uint64_t count_tests(std::span<const Trial> trials) {
     std::uint64_t tests = 0;
     for (const Trial& t : trials)
-        if (!t.yardstick) tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0);
+        if (!t.yardstick)
+            tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0);
     return tests;
 }
 

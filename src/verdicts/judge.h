@@ -36,7 +36,7 @@ struct Efficiency {
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error
     bool heavy = false, whole = false;     // whole: over the sphere, not its upper half
     double value() const { return variance * nanoseconds; }
-    std::string fault;                     // how the sampler broke off meanwhile
+    std::string fault;  // how the sampler broke off meanwhile
     double low() const;
     double high() const;
 };

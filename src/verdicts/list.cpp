@@ -11,8 +11,8 @@ namespace crescent {
 
 namespace {
 
-/// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so that distance
-/// decides and not order; one straight above facing down (its frame's axis is -z). Radiances, m.
+/// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so
+/// that distance decides and not order; one straight above facing down (its frame's axis is -z). Radiances, m.
 TrialLight light_named(const std::string& name) {
     const TrialDisk oblique{20, 2.0 * tilt(35, 20), -1.0 * tilt(20, 60), 0.5};
     const TrialDisk behind{12, 3.2 * tilt(48, 35), -1.0 * tilt(60, 40), 0.9};
@@ -28,7 +28,8 @@ TrialLight light_named(const std::string& name) {
 
 using Stages = std::vector<Stage>;
 
-void add_lobe(Stages& to, LobeKind lobe, std::initializer_list<double> sharpness, bool lambert = false, const std::string& light = "fill") {
+void add_lobe(Stages& to, LobeKind lobe, std::initializer_list<double> sharpness, bool lambert = false,
+    const std::string& light = "fill") {
     for (double v : sharpness) to.push_back(stage(lobe, lambert, light, v));
 }
 
@@ -76,8 +77,9 @@ Theory theory_of(const std::string& arm, const Stage& stage, double theta_deg) {
         t.lost_of = f.rho_d;
         t.tail_k = theta_deg == 0 ? (f.s - 1) / (f.s + 1) : f.s / (f.s + 1);
         if (theta_deg > 0) t.wrong = "support";
-        t.why = theta_deg > 0 ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the note's second error"
-                              : "p falls off as (w.R)^s while Lambert only falls off as cos: the weight is Pareto, k = (s-1)/(s+1)";
+        t.why = theta_deg > 0
+            ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the note's second error"
+            : "p falls off as (w.R)^s while Lambert only falls off as cos: the weight is Pareto, k = (s-1)/(s+1)";
         return t;
     }
     if ((arm == "light-area" || arm == "light-solid-angle") && stage.light.fill > 0) {
@@ -85,8 +87,9 @@ Theory theory_of(const std::string& arm, const Stage& stage, double theta_deg) {
         t.why = "an arm that aims at the disk alone cannot find the fill";
         return t;
     }
-    t.bounded = arm == "uniform" || arm == "cosine" || arm == "mixture" || arm == "mis-balance" || arm == "mis-power" || arm == "ggx-vndf" ||
-                (arm == "phong" && f.rho_d == 0) || (arm == "blinn" && f.rho_d == 0) || (arm == "ggx-d" && f.rho_d == 0);
+    t.bounded = arm == "uniform" || arm == "cosine" || arm == "mixture" || arm == "mis-balance" || arm == "mis-power" ||
+        arm == "ggx-vndf" || (arm == "phong" && f.rho_d == 0) || (arm == "blinn" && f.rho_d == 0) ||
+        (arm == "ggx-d" && f.rho_d == 0);
     return t;
 }
 
@@ -103,7 +106,9 @@ void apply(const Settings& settings, Stage& stage, Settings& unread) {
     set("alpha", stage.tells_alpha, f.alpha);
     set("rho_d", f.rho_d > 0, f.rho_d);
     set("rho_s", f.rho_s > 0, f.rho_s);
-    if (f.rho_d + f.rho_s > 1) throw InputError({"--set", 0, 0}, fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));
+    if (f.rho_d + f.rho_s > 1)
+        throw InputError({"--set", 0, 0},
+            fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));
 }
 
 std::shared_ptr<const JudgedSampler> subject_of(const std::string& arm, const Stage& stage, Vec3d wo) {
@@ -116,7 +121,8 @@ std::shared_ptr<const JudgedSampler> subject_of(const std::string& arm, const St
 
 /// Two stages that --set made alike count once.
 bool alike(const Stage& a, const Stage& b) {
-    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.tells_s || a.surface.s == b.surface.s) && (!a.tells_alpha || a.surface.alpha == b.surface.alpha);
+    return a.brdf == b.brdf && a.lighting == b.lighting && (!a.tells_s || a.surface.s == b.surface.s) &&
+        (!a.tells_alpha || a.surface.alpha == b.surface.alpha);
 }
 
 }  // namespace
@@ -140,9 +146,11 @@ std::vector<std::string> arm_names() {
 }
 
 std::vector<std::pair<double, double>> wo_grid(bool full) {
-    std::vector<std::pair<double, double>> grid = {{0, 0}, {1, 200}, {30, 0}, {45, 130}, {60, 250}, {75, 310}, {85, 75}, {89, 180}};
+    std::vector<std::pair<double, double>> grid = {
+        {0, 0}, {1, 200}, {30, 0}, {45, 130}, {60, 250}, {75, 310}, {85, 75}, {89, 180}};
     if (full)
-        for (std::pair<double, double> extra : {std::pair{0.1, 10.0}, {5.0, 100.0}, {15.0, 20.0}, {40.0, 90.0}, {55.0, 300.0}, {70.0, 45.0}, {80.0, 165.0}, {87.0, 270.0}})
+        for (std::pair<double, double> extra : {std::pair{0.1, 10.0}, {5.0, 100.0}, {15.0, 20.0}, {40.0, 90.0},
+                 {55.0, 300.0}, {70.0, 45.0}, {80.0, 165.0}, {87.0, 270.0}})
             grid.push_back(extra);
     return grid;
 }
@@ -163,7 +171,8 @@ Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double sha
     return out;
 }
 
-Trial trial_on(const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject) {
+Trial trial_on(
+    const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject) {
     Trial t;
     t.arm = std::move(arm);
     t.brdf = stage.brdf;
@@ -209,8 +218,9 @@ std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>&
         trials.push_back(trial_of_subject(subject, theta, azimuth));
         if (!subject->has_f()) continue;
         const Vec3d wo = tilt(theta, azimuth);
-        for (const std::shared_ptr<const JudgedSampler>& peer : {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
-                                                           std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
+        for (const std::shared_ptr<const JudgedSampler>& peer :
+            {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
+                std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
             trials.push_back(trial_of_subject(peer, theta, azimuth));
             trials.back().yardstick = true;
         }
@@ -223,7 +233,10 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
     const std::vector<std::string> names = arm_names();
     if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
         const std::string near = nearest(arm, names);
-        throw InputError({"crescent check", 0, 0}, "no sampler '" + arm + "'" + (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", ")) : "; did you mean '" + near + "'?"));
+        throw InputError({"crescent check", 0, 0},
+            "no sampler '" + arm + "'" +
+                (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", "))
+                              : "; did you mean '" + near + "'?"));
     }
     Settings unread = settings;
     for (const std::string& name : names) {
@@ -242,7 +255,8 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
                 trials.push_back(std::move(t));
             }
     }
-    if (!unread.empty()) throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
+    if (!unread.empty())
+        throw InputError({"--set " + unread.begin()->first, 0, 0}, "no surface that '" + arm + "' is judged on has it");
     return trials;
 }
 

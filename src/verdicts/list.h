@@ -17,7 +17,8 @@ std::vector<std::pair<double, double>> wo_grid(bool full);
 /// Every trial of one arm, or of all where the name is empty. Throws InputError for an unknown name.
 std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full);
 
-/// Somebody's own sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a BRDF.
+/// Somebody's own sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a
+/// BRDF.
 std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full);
 /// The same at one w_o.
 Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, double theta, double azimuth);
@@ -31,6 +32,7 @@ struct Stage {
 };
 Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);
 /// The trial of `subject` on a stage at one w_o, theory not yet filled in.
-Trial trial_on(const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject);
+Trial trial_on(
+    const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject);
 
 }  // namespace crescent

@@ -74,7 +74,8 @@ int spacing(const std::vector<double>& positions) {
     if (positions.size() < 2) return positions.empty() ? 1 : 0;
     for (int n = 1; n <= most_lines; ++n) {
         bool fits = true;
-        for (std::size_t i = 0; i < positions.size() && fits; ++i) fits = std::fabs(positions[i] * n - std::round(positions[i] * n)) < 2e-5;
+        for (std::size_t i = 0; i < positions.size() && fits; ++i)
+            fits = std::fabs(positions[i] * n - std::round(positions[i] * n)) < 2e-5;
         if (fits) return n;
     }
     return 0;
@@ -117,8 +118,8 @@ std::optional<Mesh> find_mesh(const Batch& g) {
     return mesh;
 }
 
-std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g, const Effort& effort,
-                                       const Prepare& prepare, const Witnesses* witnesses) {
+std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
+    const Effort& effort, const Prepare& prepare, const Witnesses* witnesses) {
     std::vector<double> sides;
     for (int k = 1; k < sectors; ++k) sides.push_back(static_cast<double>(k) / sectors);
     const std::vector<double> a = merged(mesh.a, rings), b = merged(mesh.b, sides);
@@ -129,9 +130,13 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
     std::vector<Vec2d> where(2 * (b.size() - 1));
     std::vector<double> v(where.size());
     for (std::size_t i = 0; i + 1 < a.size(); ++i) {
-        const std::size_t ring = static_cast<std::size_t>(std::upper_bound(rings.begin(), rings.end() - 1, 0.5 * (a[i] + a[i + 1])) - rings.begin()) - 1;
+        const std::size_t ring =
+            static_cast<std::size_t>(
+                std::upper_bound(rings.begin(), rings.end() - 1, 0.5 * (a[i] + a[i + 1])) - rings.begin()) -
+            1;
         for (std::size_t k = 0; k + 1 < b.size(); ++k) {
-            const auto h = pcg4d<std::uint32_t>({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 0x3e58u, 1});
+            const auto h =
+                pcg4d<std::uint32_t>({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 0x3e58u, 1});
             const double x = (h.x + 0.5) * 0x1p-32, y = (h.y + 0.5) * 0x1p-32;
             where[2 * k] = {0.5 * (a[i] + a[i + 1]), 0.5 * (b[k] + b[k + 1])};
             where[2 * k + 1] = {a[i] + x * (a[i + 1] - a[i]), b[k] + y * (b[k + 1] - b[k])};
@@ -141,7 +146,8 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
         for (std::size_t k = 0; k + 1 < b.size(); ++k) {
             const int sector = std::min(static_cast<int>(0.5 * (b[k] + b[k + 1]) * sectors), sectors - 1);
             const int bin = static_cast<int>(ring) * sectors + sector;
-            if (std::fabs(v[2 * k] - v[2 * k + 1]) <= 1e-9 * std::fabs(v[2 * k])) out.bins[static_cast<std::size_t>(bin)] += (a[i + 1] - a[i]) * (b[k + 1] - b[k]) * v[2 * k];
+            if (std::fabs(v[2 * k] - v[2 * k + 1]) <= 1e-9 * std::fabs(v[2 * k]))
+                out.bins[static_cast<std::size_t>(bin)] += (a[i + 1] - a[i]) * (b[k + 1] - b[k]) * v[2 * k];
             else rest.push_back({a[i], a[i + 1], b[k], b[k + 1], bin});
         }
         if (17 * rest.size() > effort.most_evaluations) return {};
@@ -151,7 +157,8 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
     if (rest.empty()) return out;
     if (prepare) rest = prepare(std::move(rest));
     const Integral other = integrate(std::move(rest), static_cast<int>(out.bins.size()), g, effort, witnesses);
-    for (std::size_t i = 0; i < out.bins.size(); ++i) out.bins[i] += other.bins[i], out.bin_errors[i] += other.bin_errors[i];
+    for (std::size_t i = 0; i < out.bins.size(); ++i)
+        out.bins[i] += other.bins[i], out.bin_errors[i] += other.bin_errors[i];
     out.value += other.value;
     out.error = other.error;
     out.second += other.second;

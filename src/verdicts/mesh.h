@@ -1,5 +1,6 @@
-// Tables: densities that jump along lines of constant height and of constant azimuth. Where such lines are found, evenly spaced in
-// cos theta or in theta, and in phi, the cells between them are integrated one by one: a cell in which p is constant by its value.
+// Tables: densities that jump along lines of constant height and of constant azimuth. Where such lines are found,
+// evenly spaced in cos theta or in theta, and in phi, the cells between them are integrated one by one: a cell in which
+// p is constant by its value.
 #pragma once
 
 #include <optional>
@@ -14,13 +15,15 @@ struct Mesh {
     std::size_t cells() const { return (a.size() - 1) * (b.size() - 1); }
 };
 
-/// Looks for jumps of g(a, b) along parallels and meridians; none where it has none, or where they lie on no common lines.
+/// Looks for jumps of g(a, b) along parallels and meridians; none where it has none, or where they lie on no common
+/// lines.
 std::optional<Mesh> find_mesh(const Batch& g);
 
-/// The integral over the mesh, cut at the bins' edges too: rings (ascending a) x sectors. Cells with two unequal values are left to
-/// the adaptive cubature, which starts from what `prepare` makes of them; none where they are too many for it.
+/// The integral over the mesh, cut at the bins' edges too: rings (ascending a) x sectors. Cells with two unequal values
+/// are left to the adaptive cubature, which starts from what `prepare` makes of them; none where they are too many for
+/// it.
 using Prepare = std::function<std::vector<Rect>(std::vector<Rect>)>;
-std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g, const Effort& effort,
-                                       const Prepare& prepare = {}, const Witnesses* witnesses = nullptr);
+std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
+    const Effort& effort, const Prepare& prepare = {}, const Witnesses* witnesses = nullptr);
 
 }  // namespace crescent

@@ -19,15 +19,17 @@ struct Spread {
     double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
 };
 Spread spread(std::span<const double> x);
-/// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken out.
+/// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken
+/// out.
 double johnson_t(const Spread& s, double expected);
 /// X of the screening draws; even: L = 1.
 std::vector<double> first_weights(const Work& work, bool even);
 std::optional<Tail> tail_of(std::span<const double> x);
 /// k-hat surely below 1/2 and theory does not say otherwise.
 bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory);
-/// Two-sided p-value of the mean, the quadrature's own error granted, and the two-stage test. Where |skew| / sqrt(n) > 0.1 the normal
-/// law is too far off: Bernstein's inequality between 0 and the largest weight, which never accuses too often.
+/// Two-sided p-value of the mean, the quadrature's own error granted, and the two-stage test. Where |skew| / sqrt(n) >
+/// 0.1 the normal law is too far off: Bernstein's inequality between 0 and the largest weight, which never accuses too
+/// often.
 double mean_p(const Spread& s, const Integral& expected);
 bool mean_fails(const Work& work, double p, const Integral& expected, bool even);
 
@@ -35,17 +37,18 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
 double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
 double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f);
 
-/// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See transmission.cpp.
+/// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See
+/// transmission.cpp.
 Integral from_below(const Work& work, Vec3d b);
 /// Up to three directions under the surface that the sampler draws, the one of the highest pdf first.
 std::vector<Vec3d> drawn_below(const Work& work);
 
 /// What the warp's derivatives say; see jacobian.cpp.
 struct WarpFinding {
-    std::size_t usable = 0, below = 0;   // points with a trusted |J|, and those with p |J| < 1
-    double smallest = 1;                 // p |J|
+    std::size_t usable = 0, below = 0;  // points with a trusted |J|, and those with p |J| < 1
+    double smallest = 1;                // p |J|
     Vec2d at{};
-    double one_to_one = 0;               // share of usable points with p |J| = 1
+    double one_to_one = 0;                   // share of usable points with p |J| = 1
     std::size_t steps_tried = 0, stuck = 0;  // moves of u by 2^-19 that ought to show, and those that do not
 };
 WarpFinding study_warp(const Work& work, int technique);

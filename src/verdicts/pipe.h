@@ -15,8 +15,8 @@
 namespace crescent {
 
 struct PipeLimits {
-    double hello_seconds = 10;  // until the first answer
-    double quiet_seconds = 10;  // without a byte while an answer is due
+    double hello_seconds = 10;   // until the first answer
+    double quiet_seconds = 10;   // without a byte while an answer is due
     double total_seconds = 120;  // for everything; beyond it the program is too slow to judge
     std::size_t longest_line = 4096;
     const std::atomic<bool>* stop = nullptr;  // somebody wants to go home: the program is ended and Interrupted thrown

@@ -20,8 +20,8 @@ inline std::string shown(std::string_view s) {
     return out + (s.size() > 80 ? "...'" : "'");
 }
 
-/// What a double makes of a number that it cannot hold: infinite where it is too large, 0 where it is too small. Decided by the
-/// place of its first digit, in powers of ten (of two for hexadecimal digits).
+/// What a double makes of a number that it cannot hold: infinite where it is too large, 0 where it is too small.
+/// Decided by the place of its first digit, in powers of ten (of two for hexadecimal digits).
 inline double out_of_range(std::string_view word, bool hex) {
     const std::size_t mark = std::min(word.find_first_of(hex ? "pP" : "eE"), word.size());
     const std::string_view digits = word.substr(0, mark);
@@ -47,7 +47,8 @@ inline bool take_float(std::string_view& s, double& out) {
     if (negative || (!word.empty() && word.front() == '+')) word.remove_prefix(1);
     const bool hex = word.size() > 2 && word[0] == '0' && (word[1] == 'x' || word[1] == 'X');
     if (hex) word.remove_prefix(2);
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), out, hex ? std::chars_format::hex : std::chars_format::general);
+    const auto [stop, error] = std::from_chars(
+        word.data(), word.data() + word.size(), out, hex ? std::chars_format::hex : std::chars_format::general);
     if (error == std::errc::result_out_of_range) out = out_of_range(word, hex);
     else if (error != std::errc{}) return false;
     if (stop != word.data() + word.size() || word.empty() || word.front() == '-' || word.front() == '+') return false;

@@ -11,7 +11,9 @@ namespace crescent {
 namespace {
 
 State worst(State a, State b) {
-    const auto rank = [](State s) { return s == State::wrong ? 4 : s == State::error ? 3 : s == State::inconclusive ? 2 : s == State::right ? 1 : 0; };
+    const auto rank = [](State s) {
+        return s == State::wrong ? 4 : s == State::error ? 3 : s == State::inconclusive ? 2 : s == State::right ? 1 : 0;
+    };
     return rank(b) > rank(a) ? b : a;
 }
 
@@ -53,17 +55,21 @@ std::string expected_ones(const Judgement& judgement) {
 nlohmann::ordered_json head_of(const char* format, const JudgementSource& source) {
     nlohmann::ordered_json root;
     root["format"] = format;
-    for (const auto& [key, value] : {std::pair("version", &source.version), {"commit", &source.commit}, {"command", &source.command}})
+    for (const auto& [key, value] :
+        {std::pair("version", &source.version), {"commit", &source.commit}, {"command", &source.command}})
         if (!value->empty()) root[key] = *value;
     return root;
 }
 
-std::string text_of(const nlohmann::ordered_json& root) { return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; }
+std::string text_of(const nlohmann::ordered_json& root) {
+    return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
 
 nlohmann::ordered_json cases_of(const Judgement& judgement) {
     nlohmann::ordered_json out = nlohmann::ordered_json::array();
     for (const Verdict& v : judgement.verdicts)
-        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}}; out.empty() || out.back() != one) out.push_back(std::move(one));
+        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.trial}}; out.empty() || out.back() != one)
+            out.push_back(std::move(one));
     return out;
 }
 
@@ -72,13 +78,16 @@ nlohmann::ordered_json cases_of(const Judgement& judgement) {
 std::string verdict_table(const Judgement& judgement, bool all) {
     const std::string summary = summary_of(judgement);
     const std::size_t details = std::min(summary.find("\n\n"), summary.size());
-    std::string out = summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(judgement) + expected_ones(judgement);
+    std::string out =
+        summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(judgement) + expected_ones(judgement);
     if (details < summary.size()) out += summary.substr(details + 1);
     for (const Verdict& v : judgement.verdicts)
         if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
-    const std::string asked = judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
-    out += fmt::format("\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n", word(judgement.state), judgement.tests, judgement.alpha,
-                       judgement.screened, judgement.confirmed, asked);
+    const std::string asked =
+        judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
+    out += fmt::format(
+        "\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n",
+        word(judgement.state), judgement.tests, judgement.alpha, judgement.screened, judgement.confirmed, asked);
     return out;
 }
 
@@ -93,7 +102,8 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
     if (judgement.questions > 0) root["questions"] = judgement.questions;
     root["asked_for"] = cases_of(judgement);
     root["left_out"] = nlohmann::ordered_json::array();
-    for (const LeftOut& l : judgement.left_out) root["left_out"].push_back({{"arm", l.arm}, {"case", l.trial}, {"verdicts", l.verdicts}, {"why", l.why}});
+    for (const LeftOut& l : judgement.left_out)
+        root["left_out"].push_back({{"arm", l.arm}, {"case", l.trial}, {"verdicts", l.verdicts}, {"why", l.why}});
     root["verdicts"] = nlohmann::ordered_json::array();
     for (const Verdict& v : judgement.verdicts) {
         nlohmann::ordered_json one;
@@ -128,7 +138,8 @@ std::string verdict_junit(const Judgement& judgement) {
     std::string cases;
     for (const Verdict& v : judgement.verdicts) {
         seconds += v.seconds;
-        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\" time=\"{:.3f}\">", escape(v.arm), v.name, escape(v.trial), v.seconds);
+        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\" time=\"{:.3f}\">", escape(v.arm), v.name,
+            escape(v.trial), v.seconds);
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         const std::string message = escape(fmt::format("{}: {}", word(v.state), first_sentence(v.say)));
         if (v.state == State::error) {
@@ -143,8 +154,12 @@ std::string verdict_junit(const Judgement& judgement) {
         }
         cases += "</testcase>\n";
     }
-    const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", judgement.verdicts.size(), failures, errors, skipped, seconds);
-    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent check\" {}>\n <testsuite name=\"crescent check\" {}>\n{} </testsuite>\n</testsuites>\n", counts, counts, cases);
+    const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
+        judgement.verdicts.size(), failures, errors, skipped, seconds);
+    return fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent check\" {}>\n <testsuite "
+        "name=\"crescent check\" {}>\n{} </testsuite>\n</testsuites>\n",
+        counts, counts, cases);
 }
 
 }  // namespace crescent

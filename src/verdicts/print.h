@@ -1,4 +1,5 @@
-// Verdicts for the reader: a summary and a table for the terminal, JSON, JUnit for build servers, one HTML file with its pictures.
+// Verdicts for the reader: a summary and a table for the terminal, JSON, JUnit for build servers, one HTML file with
+// its pictures.
 #pragma once
 
 #include <string>
@@ -19,8 +20,8 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
 /// Seconds of each verdict, nanoseconds of a sample, variance x time and the ranks that follow from them.
 std::string verdict_timing(const Judgement& judgement, const JudgementSource& source = {});
 std::string verdict_junit(const Judgement& judgement);
-/// The summary, a matrix of w_o and verdicts, then case by case: maps of observed, expected and standardised difference, weight
-/// histograms with their tail, and roses of p over f L cos.
+/// The summary, a matrix of w_o and verdicts, then case by case: maps of observed, expected and standardised
+/// difference, weight histograms with their tail, and roses of p over f L cos.
 std::string verdict_html(const Judgement& judgement, const JudgementSource& source = {});
 /// Throws OutputError where write_whole would.
 void can_write(const std::string& path);

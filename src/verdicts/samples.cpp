@@ -36,7 +36,8 @@ std::size_t cell_of(const std::vector<double>& edges, double v) {
 
 std::size_t nearest_of(const std::vector<double>& sorted, double v) {
     const auto at = std::lower_bound(sorted.begin(), sorted.end(), v);
-    if (at == sorted.end() || (at != sorted.begin() && v - at[-1] < *at - v)) return static_cast<std::size_t>(at - sorted.begin()) - 1;
+    if (at == sorted.end() || (at != sorted.begin() && v - at[-1] < *at - v))
+        return static_cast<std::size_t>(at - sorted.begin()) - 1;
     return static_cast<std::size_t>(at - sorted.begin());
 }
 
@@ -58,7 +59,8 @@ void SampleFile::read_samples(const std::string& path) {
     std::vector<std::string> with = without;
     with.emplace_back("f");
     const NumberTable t = read_table_file(in, {without, with});
-    if (t.rows() < 1000) in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())), in.settle();
+    if (t.rows() < 1000)
+        in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())), in.settle();
     const int f = t.column("f");
     has_drawn_f_ = f >= 0;
     lines_ = t.lines;
@@ -66,7 +68,9 @@ void SampleFile::read_samples(const std::string& path) {
         const auto at = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
         u_.push_back({at("u1"), at("u2")});
         for (const char* name : {"u1", "u2"})
-            if (!(at(name) >= 0 && at(name) <= 1)) in.add(t.lines.empty() ? 0 : t.lines[r], static_cast<unsigned>(t.column(name)) + 1, fmt::format("{} is {:g}; expected a number from 0 to 1", name, at(name)));
+            if (!(at(name) >= 0 && at(name) <= 1))
+                in.add(t.lines.empty() ? 0 : t.lines[r], static_cast<unsigned>(t.column(name)) + 1,
+                    fmt::format("{} is {:g}; expected a number from 0 to 1", name, at(name)));
         Draw d{{at("wix"), at("wiy"), at("wiz")}, at("pdf"), {}, {}};
         if (f >= 0) d.f = t.at(r, static_cast<std::size_t>(f));
         draws_.push_back(d);
@@ -84,7 +88,8 @@ void SampleFile::read_table(const std::string& path) {
         cos.push_back(polar ? at("cos_theta") : at("wiz"));
         phi.push_back(polar ? turned(at("phi")) : turned(Vec3d{at("wix"), at("wiy"), 0}));
         p.push_back(at("pdf"));
-        if (!(std::fabs(cos.back()) <= 1 + 1e-6) || !(phi.back() >= 0 && phi.back() <= 2 * pi + 1e-6) || !std::isfinite(p.back()))
+        if (!(std::fabs(cos.back()) <= 1 + 1e-6) || !(phi.back() >= 0 && phi.back() <= 2 * pi + 1e-6) ||
+            !std::isfinite(p.back()))
             in.add(t.lines.empty() ? 0 : t.lines[r], 1, "no direction of the sphere with a finite pdf");
     }
     in.settle();
@@ -93,13 +98,18 @@ void SampleFile::read_table(const std::string& path) {
         columns_ = distinct(phi, tolerance);
     }
     if (rows_.size() < 2 || columns_.size() < 2 || rows_.size() * columns_.size() != p.size())
-        in.add(0, 0, fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries", rows_.size(), columns_.size(), p.size())), in.settle();
+        in.add(0, 0,
+            fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries",
+                rows_.size(), columns_.size(), p.size())),
+            in.settle();
     row_edges_ = edges_of(rows_, rows_.front() < -1e-6 ? -1 : 0, 1);
     column_edges_ = edges_of(columns_, 0, 2 * pi);
     values_.assign(p.size(), std::nan(""));
-    for (std::size_t i = 0; i < p.size(); ++i) values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
+    for (std::size_t i = 0; i < p.size(); ++i)
+        values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
     for (double v : values_)
-        if (std::isnan(v)) in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.settle();
+        if (std::isnan(v))
+            in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.settle();
 }
 
 /// Nine of ten samples carry the very value of their cell.
@@ -113,8 +123,8 @@ bool SampleFile::agrees_as_cells() const {
     return 10 * alike >= 9 * drawn;
 }
 
-/// A straight line from point to point is off by a quarter of what p bends by where p is smooth, and by all of it at a kink. At the
-/// first and the last row the line is prolonged: twice what it bends by next to it.
+/// A straight line from point to point is off by a quarter of what p bends by where p is smooth, and by all of it at a
+/// kink. At the first and the last row the line is prolonged: twice what it bends by next to it.
 void SampleFile::find_bends() {
     const std::size_t m = rows_.size(), n = columns_.size();
     bent_.assign(values_.size(), 0);
@@ -122,31 +132,38 @@ void SampleFile::find_bends() {
     const auto p = [&](std::size_t i, std::size_t j) { return values_[i * n + j]; };
     for (std::size_t i = 0; i < m; ++i)
         for (std::size_t j = 0; j < n; ++j) {
-            const std::size_t c = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(m, 3) - 2), west = (j + n - 1) % n, east = (j + 1) % n;
+            const std::size_t c = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(m, 3) - 2),
+                              west = (j + n - 1) % n, east = (j + 1) % n;
             double along = 0;
             if (m > 2) {
                 const double t = (rows_[c] - rows_[c - 1]) / (rows_[c + 1] - rows_[c - 1]);
                 along = std::fabs(p(c, j) - (1 - t) * p(c - 1, j) - t * p(c + 1, j));
             }
-            bent_[i * n + j] = along * (i == 0 || i + 1 == m ? 2 : 1) + std::fabs(p(i, j) - 0.5 * (p(i, west) + p(i, east)));
+            bent_[i * n + j] =
+                along * (i == 0 || i + 1 == m ? 2 : 1) + std::fabs(p(i, j) - 0.5 * (p(i, west) + p(i, east)));
         }
 }
 
 double SampleFile::of_cell(Vec3d w) const {
-    return w.z < row_edges_.front() ? 0 : values_[cell_of(row_edges_, w.z) * columns_.size() + cell_of(column_edges_, turned(w))];
+    return w.z < row_edges_.front()
+        ? 0
+        : values_[cell_of(row_edges_, w.z) * columns_.size() + cell_of(column_edges_, turned(w))];
 }
 
 SampleFile::Spot SampleFile::spot(Vec3d w) const {
     const auto row = std::upper_bound(rows_.begin(), rows_.end(), w.z) - rows_.begin();
     Spot at{};
-    at.i0 = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row - 1, 0, static_cast<std::ptrdiff_t>(rows_.size()) - 2));
+    at.i0 =
+        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row - 1, 0, static_cast<std::ptrdiff_t>(rows_.size()) - 2));
     at.i1 = at.i0 + 1;
     at.s = (w.z - rows_[at.i0]) / (rows_[at.i1] - rows_[at.i0]);
     const double phi = turned(w);
-    const auto column = static_cast<std::size_t>(std::upper_bound(columns_.begin(), columns_.end(), phi) - columns_.begin());
+    const auto column =
+        static_cast<std::size_t>(std::upper_bound(columns_.begin(), columns_.end(), phi) - columns_.begin());
     at.j1 = column % columns_.size();
     at.j0 = (column + columns_.size() - 1) % columns_.size();
-    const double from = columns_[at.j0] - (column == 0 ? 2 * pi : 0), to = columns_[at.j1] + (column == columns_.size() ? 2 * pi : 0);
+    const double from = columns_[at.j0] - (column == 0 ? 2 * pi : 0),
+                 to = columns_[at.j1] + (column == columns_.size() ? 2 * pi : 0);
     at.t = to > from ? (phi - from) / (to - from) : 0;
     return at;
 }
@@ -169,7 +186,8 @@ double SampleFile::doubt(Vec3d w) const {
     if (cells_ || w.z < row_edges_.front()) return 0;
     const Spot at = spot(w);
     const std::size_t n = columns_.size();
-    return std::max({bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
+    return std::max(
+        {bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
 }
 
 /// In pieces that are small beside any bin.
@@ -180,8 +198,10 @@ std::vector<Doubt> SampleFile::doubts() const {
     for (std::size_t i = 0; i < rows_.size() * rows; ++i)
         for (std::size_t j = 0; j < columns_.size() * columns; ++j) {
             const std::size_t r = i / rows, c = j / columns;
-            const double dz = (row_edges_[r + 1] - row_edges_[r]) / static_cast<double>(rows), dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
-            const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)), phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
+            const double dz = (row_edges_[r + 1] - row_edges_[r]) / static_cast<double>(rows),
+                         dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
+            const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)),
+                         phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
             const double sin = std::sqrt(std::max(1 - z * z, 0.0));
             const Vec3d w{sin * math::cos(phi), sin * math::sin(phi), z};
             const double mass = doubt(w) * dz * dphi;

@@ -1,9 +1,10 @@
-// Samples of somebody's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array, columns in this order).
+// Samples of somebody's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array, columns
+// in this order).
 //   u1,u2,wix,wiy,wiz,pdf[,f]         f without the cosine, 1/sr
-// The density comes from a table, wix,wiy,wiz,pdf or cos_theta,phi,pdf (phi in radians): a full grid in cos theta and phi, over
-// the sphere or over the hemisphere. It is read as cells, p constant in each and the entries at their centres, where the pdf of
-// the samples says so; else as a grid of points with p bilinear between them, which is then known only to the curvature from
-// point to point, and that much is granted.
+// The density comes from a table, wix,wiy,wiz,pdf or cos_theta,phi,pdf (phi in radians): a full grid in cos theta and
+// phi, over the sphere or over the hemisphere. It is read as cells, p constant in each and the entries at their
+// centres, where the pdf of the samples says so; else as a grid of points with p bilinear between them, which is then
+// known only to the curvature from point to point, and that much is granted.
 #pragma once
 
 #include <memory>
@@ -32,9 +33,9 @@ private:
     std::string name_;
     bool has_drawn_f_ = false, cells_ = true;
     std::vector<unsigned> lines_;
-    std::vector<double> rows_, columns_;        // cos theta and phi of the entries
+    std::vector<double> rows_, columns_;  // cos theta and phi of the entries
     std::vector<double> row_edges_, column_edges_;
-    std::vector<double> values_, bent_;         // p by row; how far p bends away from a straight line there
+    std::vector<double> values_, bent_;  // p by row; how far p bends away from a straight line there
     void read_samples(const std::string& path);
     void read_table(const std::string& path);
     void find_bends();

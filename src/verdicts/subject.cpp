@@ -20,7 +20,8 @@ const TrialDisk* TrialLight::first_met(Vec3d wi) const {
     const TrialDisk* first = nullptr;
     double nearest = 0;
     for (const TrialDisk& disk : disks)
-        if (const std::optional<double> d = disk.distance(wi); d && (!first || *d < nearest)) first = &disk, nearest = *d;
+        if (const std::optional<double> d = disk.distance(wi); d && (!first || *d < nearest))
+            first = &disk, nearest = *d;
     return first;
 }
 

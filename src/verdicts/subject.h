@@ -49,7 +49,9 @@ public:
     virtual void sample(int technique, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const = 0;
     virtual void pdf(int technique, std::span<const Pair> at, std::span<double> out) const = 0;
     /// The same density in double where the sampler has one, for quadrature.
-    virtual void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const { pdf(technique, at, out); }
+    virtual void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const {
+        pdf(technique, at, out);
+    }
     /// MIS weight of a direction drawn by `technique`.
     virtual void mis_weight(int /*technique*/, std::span<const Pair> at, std::span<double> out) const {
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = 1;

@@ -47,7 +47,9 @@ std::map<std::string, Count> count_cases(const Judgement& j) {
     for (const Verdict& v : j.verdicts) cases[v.arm].insert(v.trial);
     std::map<std::string, Count> out;
     for (const auto& [arm, trials] : cases)
-        out[arm] = {trials.size(), std::all_of(trials.begin(), trials.end(), [](const std::string& t) { return t.starts_with("w_o") && t.find(',') == std::string::npos; })};
+        out[arm] = {trials.size(), std::all_of(trials.begin(), trials.end(), [](const std::string& t) {
+                        return t.starts_with("w_o") && t.find(',') == std::string::npos;
+                    })};
     return out;
 }
 
@@ -61,7 +63,8 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
         if (v == f.worst) continue;
         const std::string say = told(*v);
         if (say == told(*f.worst)) continue;
-        const auto same = std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == say; });
+        const auto same =
+            std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == say; });
         if (same != f.sentences.end()) same->second.push_back(v->trial);
         else f.sentences.push_back({say, {v->trial}});
     }
@@ -88,9 +91,11 @@ std::vector<Finding> findings_of(const Judgement& j) {
         const auto left = left_out.find({v.arm, v.trial});
         if (left != left_out.end() && left->second.count(v.name)) continue;
         const bool expected = v.expected && !v.why_expected.empty();
-        const auto [at, fresh] = place.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
+        const auto [at, fresh] =
+            place.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
         if (fresh) {
-            out.push_back({v.arm, v.name, v.state, expected, 0, counts.at(v.arm).cases, counts.at(v.arm).by_wo ? "w_o" : "cases", nullptr, {}});
+            out.push_back({v.arm, v.name, v.state, expected, 0, counts.at(v.arm).cases,
+                counts.at(v.arm).by_wo ? "w_o" : "cases", nullptr, {}});
             members.emplace_back();
         }
         add(out[at->second], v);
@@ -98,8 +103,9 @@ std::vector<Finding> findings_of(const Judgement& j) {
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
-        else for (const Verdict* v : members[i])
-            if (v->evidence.contains("first_fault")) out[i].worst = v;
+        else
+            for (const Verdict* v : members[i])
+                if (v->evidence.contains("first_fault")) out[i].worst = v;
         if (out[i].state == State::error) out[i].of = j.verdicts.size(), out[i].cases = "verdicts";
     }
     const auto order = [](const Finding& f) {
@@ -111,9 +117,12 @@ std::vector<Finding> findings_of(const Judgement& j) {
 }
 
 std::string told(const Finding& f) {
-    if (f.state == State::error) return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of, f.worst->trial, told(*f.worst));
+    if (f.state == State::error)
+        return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
+            f.worst->trial, told(*f.worst));
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    return fmt::format("{}: {} at {} of {} {}, {} {}. {}", f.name, word(f.state), f.count, f.of, f.cases, as, f.worst->trial, told(*f.worst));
+    return fmt::format("{}: {} at {} of {} {}, {} {}. {}", f.name, word(f.state), f.count, f.of, f.cases, as,
+        f.worst->trial, told(*f.worst));
 }
 
 std::string left_out_told(const Judgement& j) {
@@ -126,7 +135,8 @@ std::string left_out_told(const Judgement& j) {
         trials.push_back(l.trial);
         valid_alone = valid_alone && l.verdicts.size() + 1 == verdict_names.size();
     }
-    return fmt::format("Left out: {} at {} of {} w_o ({}). {}", valid_alone ? "all but valid" : "some verdicts", trials.size(), cases.size(), fmt::join(trials, "; "), j.left_out[0].why);
+    return fmt::format("Left out: {} at {} of {} w_o ({}). {}", valid_alone ? "all but valid" : "some verdicts",
+        trials.size(), cases.size(), fmt::join(trials, "; "), j.left_out[0].why);
 }
 
 std::string summary_of(const Judgement& j) {
@@ -136,7 +146,8 @@ std::string summary_of(const Judgement& j) {
         out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", told(f));
         if (f.sentences.empty()) continue;
         details += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
-        for (const auto& [say, trials] : f.sentences) details += fmt::format("  [{}] {}\n", fmt::join(trials, "; "), say);
+        for (const auto& [say, trials] : f.sentences)
+            details += fmt::format("  [{}] {}\n", fmt::join(trials, "; "), say);
     }
     if (const std::string left = left_out_told(j); !left.empty()) out += left + "\n";
     return out + details;

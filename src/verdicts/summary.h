@@ -1,4 +1,5 @@
-// What a judgement comes to, one line a finding over all w_o, worst first; and its details, each sentence once with the cases it is true of.
+// What a judgement comes to, one line a finding over all w_o, worst first; and its details, each sentence once with the
+// cases it is true of.
 #pragma once
 
 #include <string>
@@ -17,11 +18,12 @@ struct Finding {
     std::size_t count = 0, of = 0;
     const char* cases = "w_o";       // what is counted
     const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
-    std::vector<std::pair<std::string, std::vector<std::string>>> sentences;  // each other than the worst's with its cases
+    std::vector<std::pair<std::string, std::vector<std::string>>>
+        sentences;  // each other than the worst's with its cases
 };
 
-/// Wrong ones first, then errors, then what is inconclusive. What was left out for want of time is not among them, and of
-/// the errors of one arm the first alone, which counts for all. Points into `judgement`.
+/// Wrong ones first, then errors, then what is inconclusive. What was left out for want of time is not among them, and
+/// of the errors of one arm the first alone, which counts for all. Points into `judgement`.
 std::vector<Finding> findings_of(const Judgement& judgement);
 /// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
 std::string told(const Finding& finding);

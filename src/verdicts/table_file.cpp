@@ -33,8 +33,10 @@ double number(Complaints& in, std::string_view word, unsigned line, unsigned col
     double v = 0;
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
-    if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) return (digits.starts_with('-') ? -1 : 1) * out_of_range(digits.substr(digits.starts_with('-')), false);
-    if (error != std::errc{} || end != digits.data() + digits.size()) in.add(line, column, fmt::format("expected a number, not '{}'", printable(word, 40)));
+    if (error == std::errc::result_out_of_range && end == digits.data() + digits.size())
+        return (digits.starts_with('-') ? -1 : 1) * out_of_range(digits.substr(digits.starts_with('-')), false);
+    if (error != std::errc{} || end != digits.data() + digits.size())
+        in.add(line, column, fmt::format("expected a number, not '{}'", printable(word, 40)));
     return v;
 }
 
@@ -49,7 +51,8 @@ NumberTable read_csv(Complaints& in, std::istream& file) {
             continue;
         }
         const std::size_t before = t.values.size();
-        cells_of(text, [&](std::string_view cell, unsigned column) { t.values.push_back(number(in, cell, line, column)); });
+        cells_of(
+            text, [&](std::string_view cell, unsigned column) { t.values.push_back(number(in, cell, line, column)); });
         const std::size_t got = t.values.size() - before;
         if (got != t.columns.size()) {
             in.add(line, 1, fmt::format("expected {} values, as the header has, not {}", t.columns.size(), got));
@@ -64,12 +67,19 @@ NumberTable read_csv(Complaints& in, std::istream& file) {
 }
 
 void name_columns(Complaints& in, const NumberTable& t, const std::vector<std::vector<std::string>>& layouts) {
-    const auto has_all = [&](const std::vector<std::string>& layout) { return std::all_of(layout.begin(), layout.end(), [&](const std::string& n) { return t.column(n) >= 0; }); };
-    const auto fits = [&](const std::vector<std::string>& layout) { return has_all(layout) && layout.size() == t.columns.size(); };
+    const auto has_all = [&](const std::vector<std::string>& layout) {
+        return std::all_of(layout.begin(), layout.end(), [&](const std::string& n) { return t.column(n) >= 0; });
+    };
+    const auto fits = [&](const std::vector<std::string>& layout) {
+        return has_all(layout) && layout.size() == t.columns.size();
+    };
     if (std::any_of(layouts.begin(), layouts.end(), fits)) return;
     std::string expected;
-    for (const auto& layout : layouts) expected += fmt::format("{}{}", expected.empty() ? "" : " or ", fmt::join(layout, ","));
-    in.add(1, 1, fmt::format("expected the header {}, not {}", expected, printable(fmt::format("{}", fmt::join(t.columns, ",")), 100)));
+    for (const auto& layout : layouts)
+        expected += fmt::format("{}{}", expected.empty() ? "" : " or ", fmt::join(layout, ","));
+    in.add(1, 1,
+        fmt::format(
+            "expected the header {}, not {}", expected, printable(fmt::format("{}", fmt::join(t.columns, ",")), 100)));
     in.settle();
 }
 
@@ -78,7 +88,9 @@ struct NpyHeader {
     bool by_column = false;
 };
 
-std::string_view without_blanks(std::string_view s) { return s.substr(std::min(s.find_first_not_of(" \t\r\n"), s.size())); }
+std::string_view without_blanks(std::string_view s) {
+    return s.substr(std::min(s.find_first_not_of(" \t\r\n"), s.size()));
+}
 
 /// What stands after a key of the header, which is a Python dictionary.
 std::string_view value_of(std::string_view header, std::string_view key) {
@@ -117,8 +129,12 @@ NpyHeader npy_header(Complaints& in, std::istream& file) {
     std::string_view type = value_of(header, "'descr':"), shape = value_of(header, "'shape':");
     if (type.starts_with("'<f4'")) out.size = 4;
     if (type.starts_with("'<f8'")) out.size = 8;
-    const bool known = out.size > 0 && take(shape, '(') && take_count(shape, out.rows) && take(shape, ',') && take_count(shape, out.columns) && (take(shape, ','), take(shape, ')'));
-    if (!known) in.add(0, 0, fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", printable(trimmed(header), 100))), in.settle();
+    const bool known = out.size > 0 && take(shape, '(') && take_count(shape, out.rows) && take(shape, ',') &&
+        take_count(shape, out.columns) && (take(shape, ','), take(shape, ')'));
+    if (!known)
+        in.add(0, 0,
+            fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", printable(trimmed(header), 100))),
+            in.settle();
     out.by_column = value_of(header, "'fortran_order':").starts_with("True");
     return out;
 }
@@ -135,7 +151,8 @@ NumberTable read_npy(Complaints& in, std::istream& file, const std::vector<std::
     const auto start = file.tellg();
     file.seekg(0, std::ios::end);
     const std::size_t bytes = static_cast<std::size_t>(file.tellg() - start);
-    if (bytes / h.size / h.columns < h.rows) in.add(0, 0, fmt::format("the file ends in row {} of {}", bytes / h.size / h.columns + 1, h.rows)), in.settle();
+    if (bytes / h.size / h.columns < h.rows)
+        in.add(0, 0, fmt::format("the file ends in row {} of {}", bytes / h.size / h.columns + 1, h.rows)), in.settle();
     file.seekg(start);
     std::vector<char> raw(h.rows * h.columns * h.size);
     file.read(raw.data(), static_cast<std::streamsize>(raw.size()));
@@ -160,7 +177,8 @@ int NumberTable::column(std::string_view name) const {
 
 NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::string>>& layouts) {
     std::ifstream file(in.path, std::ios::binary);
-    if (!file || file.peek() == std::ifstream::traits_type::eof()) in.add(0, 0, file ? "is empty" : "cannot be read"), in.settle();
+    if (!file || file.peek() == std::ifstream::traits_type::eof())
+        in.add(0, 0, file ? "is empty" : "cannot be read"), in.settle();
     if (in.path.ends_with(".npy")) return read_npy(in, file, layouts);
     NumberTable t = read_csv(in, file);
     name_columns(in, t, layouts);

@@ -1,4 +1,5 @@
-// Rows of numbers under named columns, from CSV with a header line or from NPY; every mistake with its file, line and column.
+// Rows of numbers under named columns, from CSV with a header line or from NPY; every mistake with its file, line and
+// column.
 #pragma once
 
 #include <string>
@@ -24,14 +25,15 @@ struct Complaints {
 
 struct NumberTable {
     std::vector<std::string> columns;
-    std::vector<double> values;  // row by row
+    std::vector<double> values;   // row by row
     std::vector<unsigned> lines;  // of the file, by row; empty where it has none
     std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
     double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }
     int column(std::string_view name) const;
 };
 
-/// .npy has no names: the one of `layouts` with as many columns applies. CSV must have all columns of one layout and no others.
+/// .npy has no names: the one of `layouts` with as many columns applies. CSV must have all columns of one layout and no
+/// others.
 NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::string>>& layouts);
 
 }  // namespace crescent

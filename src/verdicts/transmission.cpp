@@ -1,9 +1,10 @@
 // What lies under the surface: whether f is not 0 there, whether the sampler reaches it, and what may come through.
 //
-// An albedo over the whole sphere may exceed 1 and be right: radiance scales by eta^2 across the surface, so that f, seen from the
-// denser side, sums to as much as eta^2 (Walter et al. 2007, section 5.2; Veach 1997, section 5.2). What light from one direction below
-// gives to all directions above, int f(a, b) cos a da, is at most 1 for such an f, and what leaves as importance is at most 1 for an
-// f that is not scaled. An f that breaks both creates energy whatever the indices are.
+// An albedo over the whole sphere may exceed 1 and be right: radiance scales by eta^2 across the surface, so that f,
+// seen from the denser side, sums to as much as eta^2 (Walter et al. 2007, section 5.2; Veach 1997, section 5.2). What
+// light from one direction below gives to all directions above, int f(a, b) cos a da, is at most 1 for such an f, and
+// what leaves as importance is at most 1 for an f that is not scaled. An f that breaks both creates energy whatever the
+// indices are.
 #include <algorithm>
 #include <cmath>
 
@@ -65,13 +66,13 @@ Integral from_below(const Work& work, Vec3d b) {
         guides.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
     }
     return integrate(guided(graded_cells(1), map, guides), 1,
-                     [&](std::span<const Vec2d> at, std::span<double> out) {
-                         std::vector<Pair> pairs;
-                         for (Vec2d v : at) pairs.push_back({map.direction(v), b});
-                         work.subject.f(pairs, out);
-                         for (std::size_t i = 0; i < out.size(); ++i) out[i] *= pairs[i].wo.z > 0 ? 2 * pi * pairs[i].wo.z : 0;
-                     },
-                     {5e-6, work.rigour.evaluations / 2});
+        [&](std::span<const Vec2d> at, std::span<double> out) {
+            std::vector<Pair> pairs;
+            for (Vec2d v : at) pairs.push_back({map.direction(v), b});
+            work.subject.f(pairs, out);
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] *= pairs[i].wo.z > 0 ? 2 * pi * pairs[i].wo.z : 0;
+        },
+        {5e-6, work.rigour.evaluations / 2});
 }
 
 std::vector<Vec3d> drawn_below(const Work& work) {

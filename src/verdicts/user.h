@@ -4,13 +4,13 @@
 //   pdf(wo, wi)     -> a number, 1/sr
 //   f(wo, wi)       -> a number, 1/sr, without the cosine; optional
 //
-// in plain floats or doubles: directions may be std::array<T, 3>, const T*, or a struct {x, y, z}; u std::array<T, 2>, const T* or
-// {x, y}. n = +z; both directions leave the surface. No SIMD, no base class:
+// in plain floats or doubles: directions may be std::array<T, 3>, const T*, or a struct {x, y, z}; u std::array<T, 2>,
+// const T* or {x, y}. n = +z; both directions leave the surface. No SIMD, no base class:
 //
 //   crescent::Judgement j = crescent::judge_sampler("mine", MySampler{});
 //
-// It is called from many threads at once, so its members must be const or without state. What it throws is an error, not a fault of
-// the sampler; a std::optional that is empty is nothing drawn.
+// It is called from many threads at once, so its members must be const or without state. What it throws is an error,
+// not a fault of the sampler; a std::optional that is empty is nothing drawn.
 #pragma once
 
 #include <array>
@@ -26,7 +26,12 @@ namespace crescent {
 namespace user {
 
 template <class V> Vec3d direction(const V& v) {
-    if constexpr (requires { v.x; v.y; v.z; }) return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+    if constexpr (requires {
+                      v.x;
+                      v.y;
+                      v.z;
+                  })
+        return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
     else return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 template <class P> double number_of(const P& p) {
@@ -66,7 +71,8 @@ struct Anything {
     template <std::floating_point T> operator T() const { return static_cast<T>(v); }
 };
 struct Braces {};
-template <class S, class G> concept Takes = requires(const S s, typename G::Direction w, typename G::U u) {
+template <class S, class G>
+concept Takes = requires(const S s, typename G::Direction w, typename G::U u) {
     s.sample(w, u);
     s.pdf(w, w);
 };
@@ -83,13 +89,15 @@ template <class S> using Way = decltype(way<S>());
 
 template <class S> auto sample(const S& s, Vec3d wo, Vec2d u) {
     using G = Way<S>;
-    if constexpr (std::same_as<G, Braces>) return s.sample({Anything{wo.x}, Anything{wo.y}, Anything{wo.z}}, {Anything{u.x}, Anything{u.y}});
+    if constexpr (std::same_as<G, Braces>)
+        return s.sample({Anything{wo.x}, Anything{wo.y}, Anything{wo.z}}, {Anything{u.x}, Anything{u.y}});
     else return s.sample(G::give(wo), G::give(u));
 }
 template <class S> double pdf(const S& s, const Pair& p) {
     using G = Way<S>;
     if constexpr (std::same_as<G, Braces>)
-        return number_of(s.pdf({Anything{p.wo.x}, Anything{p.wo.y}, Anything{p.wo.z}}, {Anything{p.wi.x}, Anything{p.wi.y}, Anything{p.wi.z}}));
+        return number_of(s.pdf({Anything{p.wo.x}, Anything{p.wo.y}, Anything{p.wo.z}},
+            {Anything{p.wi.x}, Anything{p.wi.y}, Anything{p.wi.z}}));
     else return number_of(s.pdf(G::give(p.wo), G::give(p.wi)));
 }
 template <class S> constexpr bool has_f() {
@@ -99,47 +107,58 @@ template <class S> constexpr bool has_f() {
 template <class S> double f(const S& s, const Pair& p) {
     using G = Way<S>;
     if constexpr (std::same_as<G, Braces>)
-        return number_of(s.f({Anything{p.wo.x}, Anything{p.wo.y}, Anything{p.wo.z}}, {Anything{p.wi.x}, Anything{p.wi.y}, Anything{p.wi.z}}));
+        return number_of(s.f({Anything{p.wo.x}, Anything{p.wo.y}, Anything{p.wo.z}},
+            {Anything{p.wi.x}, Anything{p.wi.y}, Anything{p.wi.z}}));
     else return number_of(s.f(G::give(p.wo), G::give(p.wi)));
 }
 
 // What a struct lacks to be judged, each said in a sentence when it does not compile.
 
-template <class S> concept Callable = !std::same_as<Way<S>, Braces> || requires(const S s, Anything a) {
+template <class S>
+concept Callable = !std::same_as<Way<S>, Braces> || requires(const S s, Anything a) {
     s.sample({a, a, a}, {a, a});
     s.pdf({a, a, a}, {a, a, a});
 };
 /// {x, y, z} where {x, y} is meant would be filled up with 0 without a word.
-template <class S> concept TakesThree = requires(const S s, Anything a) { s.sample({a, a, a}, {a, a, a}); } && std::same_as<Way<S>, Braces>;
-template <class S> concept CallableIfNotConst = requires(S s, Anything a) { s.sample({a, a, a}, {a, a}); } ||
-                                                requires(S s, std::array<double, 3> w, std::array<double, 2> u) { s.sample(w, u); } ||
-                                                requires(S s, std::array<float, 3> w, std::array<float, 2> u) { s.sample(w, u); } ||
-                                                requires(S s, Vec3d w, Vec2d u) { s.sample(w, u); };
-template <class D> concept Optional = requires(const D d) {
+template <class S>
+concept TakesThree =
+    requires(const S s, Anything a) { s.sample({a, a, a}, {a, a, a}); } && std::same_as<Way<S>, Braces>;
+template <class S>
+concept CallableIfNotConst = requires(S s, Anything a) { s.sample({a, a, a}, {a, a}); } ||
+    requires(S s, std::array<double, 3> w, std::array<double, 2> u) { s.sample(w, u); } ||
+    requires(S s, std::array<float, 3> w, std::array<float, 2> u) { s.sample(w, u); } ||
+    requires(S s, Vec3d w, Vec2d u) { s.sample(w, u); };
+template <class D>
+concept Optional = requires(const D d) {
     d.has_value();
     *d;
 };
-template <class D> concept Drawn = requires(const D d) {
+template <class D>
+concept Drawn = requires(const D d) {
     direction(d.wi);
     { number_of(d.pdf) } -> std::convertible_to<double>;
 };
 template <class S> consteval void must_be_judgeable() {
-    static_assert(!TakesThree<S>, "the u of sample(wo, u) has three members: a sampler on trial takes two random numbers, std::array<T, 2>, const T* or {x, y}; make the third of them, or of one of its own");
-    static_assert(Callable<S> || !CallableIfNotConst<S>, "sample(wo, u) and pdf(wo, wi) must be const: they are called from many threads at once");
-    static_assert(Callable<S> || CallableIfNotConst<S>, "a sampler has sample(wo, u) and pdf(wo, wi), const, in floats or doubles: directions are std::array<T, 3>, const T* or a struct {x, y, z}, u is std::array<T, 2>, const T* or {x, y}");
+    static_assert(!TakesThree<S>,
+        "the u of sample(wo, u) has three members: a sampler on trial takes two random numbers, std::array<T, 2>, "
+        "const T* or {x, y}; make the third of them, or of one of its own");
+    static_assert(Callable<S> || !CallableIfNotConst<S>,
+        "sample(wo, u) and pdf(wo, wi) must be const: they are called from many threads at once");
+    static_assert(Callable<S> || CallableIfNotConst<S>,
+        "a sampler has sample(wo, u) and pdf(wo, wi), const, in floats or doubles: directions are std::array<T, 3>, "
+        "const T* or a struct {x, y, z}, u is std::array<T, 2>, const T* or {x, y}");
 }
 
 /// Calls; what is thrown becomes a fault with the place at which it was thrown.
 template <class Call> auto guarded(const char* what, Vec3d wo, Vec3d at, Call&& call) {
     const auto told = [&](const char* why) {
-        return SubjectFault(fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {} = ({:.9g}, {:.9g}{})", what, why, wo.x, wo.y, wo.z, what[0] == 's' ? "u" : "w_i", at.x, at.y,
-                                        what[0] == 's' ? "" : fmt::format(", {:.9g}", at.z)));
+        return SubjectFault(fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {} = ({:.9g}, {:.9g}{})",
+            what, why, wo.x, wo.y, wo.z, what[0] == 's' ? "u" : "w_i", at.x, at.y,
+            what[0] == 's' ? "" : fmt::format(", {:.9g}", at.z)));
     };
     try {
         return call();
-    } catch (const std::exception& e) {
-        throw told(e.what());
-    } catch (...) {
+    } catch (const std::exception& e) { throw told(e.what()); } catch (...) {
         throw told("something");
     }
 }
@@ -152,15 +171,18 @@ public:
     std::string name() const override { return name_; }
     void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i)
-            out[i] = user::guarded("sample(wo, u)", wo, {u[i].x, u[i].y, 0}, [&] { return drawn(user::sample(sampler_, wo, u[i])); });
+            out[i] = user::guarded(
+                "sample(wo, u)", wo, {u[i].x, u[i].y, 0}, [&] { return drawn(user::sample(sampler_, wo, u[i])); });
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = user::guarded("pdf(wo, wi)", at[i].wo, at[i].wi, [&] { return user::pdf(sampler_, at[i]); });
+        for (std::size_t i = 0; i < at.size(); ++i)
+            out[i] = user::guarded("pdf(wo, wi)", at[i].wo, at[i].wi, [&] { return user::pdf(sampler_, at[i]); });
     }
     bool has_f() const override { return user::has_f<S>(); }
     void f(std::span<const Pair> at, std::span<double> out) const override {
         if constexpr (user::has_f<S>())
-            for (std::size_t i = 0; i < at.size(); ++i) out[i] = user::guarded("f(wo, wi)", at[i].wo, at[i].wi, [&] { return user::f(sampler_, at[i]); });
+            for (std::size_t i = 0; i < at.size(); ++i)
+                out[i] = user::guarded("f(wo, wi)", at[i].wo, at[i].wi, [&] { return user::f(sampler_, at[i]); });
         else JudgedSampler::f(at, out);
     }
 
@@ -169,7 +191,9 @@ private:
         if constexpr (user::Optional<D>) {
             return d.has_value() ? drawn(*d) : Draw{{0, 0, 1}, 0, {}, {}};
         } else {
-            static_assert(user::Drawn<D>, "sample(wo, u) returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional of that)");
+            static_assert(user::Drawn<D>,
+                "sample(wo, u) returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional "
+                "of that)");
             Draw out{user::direction(d.wi), user::number_of(d.pdf), {}, {}};
             if constexpr (requires { d.weight; }) out.weight = user::number_of(d.weight);
             return out;
@@ -179,9 +203,10 @@ private:
     S sampler_;
 };
 
-/// Judges a sampler over a grid of w_o under an even light. Rigour::thorough() looks harder, and takes minutes. Where `watch` says
-/// stop, Interrupted is thrown.
-template <class S> Judgement judge_sampler(std::string name, S sampler, const Rigour& rigour = Rigour::quick(), Watch* watch = nullptr) {
+/// Judges a sampler over a grid of w_o under an even light. Rigour::thorough() looks harder, and takes minutes. Where
+/// `watch` says stop, Interrupted is thrown.
+template <class S>
+Judgement judge_sampler(std::string name, S sampler, const Rigour& rigour = Rigour::quick(), Watch* watch = nullptr) {
     user::must_be_judgeable<S>();
     if constexpr (user::Callable<S> && !user::TakesThree<S>) {
         const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));

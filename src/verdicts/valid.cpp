@@ -22,7 +22,8 @@ std::string fault_of(const Draw& d, double pdf_there) {
     if (d.pdf == 0) return "";
     const double length2 = dot(d.wi, d.wi);
     if (!std::isfinite(length2)) return "the direction is infinite";
-    if (std::fabs(std::sqrt(length2) - 1) > 1e-5) return fmt::format("the direction {} has length {:.9g}, not 1", told(d.wi), std::sqrt(length2));
+    if (std::fabs(std::sqrt(length2) - 1) > 1e-5)
+        return fmt::format("the direction {} has length {:.9g}, not 1", told(d.wi), std::sqrt(length2));
     if (!std::isfinite(pdf_there) || pdf_there < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(d.wi), pdf_there);
     if (d.weight && !std::isfinite(*d.weight)) return fmt::format("the weight at {} is not finite", told(d.wi));
     return "";
@@ -37,15 +38,19 @@ std::string at_place(const Work& work, const Batchful& b, std::size_t i) {
 std::string fault_of(const Work& work, int technique, const Batchful& b) {
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const std::string fault = fault_of(b.draws[i], b.pdf[i]);
-        if (!fault.empty()) return fmt::format("{}at {}{}: {}", at_place(work, b, i), told(b.u[i]), work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
+        if (!fault.empty())
+            return fmt::format("{}at {}{}: {}", at_place(work, b, i), told(b.u[i]),
+                work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
     }
     if (!work.subject.has_drawn_f()) return "";
     const std::vector<double>& f = work.f_of_drawn(b);
     for (std::size_t i = 0; i < f.size(); ++i) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || !work.counts(d.wi)) continue;
-        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("{}f at {} is {:.9g}", at_place(work, b, i), told(d.wi), f[i]);
-        if (!std::isfinite(f[i] * d.wi.z / d.pdf)) return fmt::format("the weight f cos / p at {} is not finite", told(d.wi));
+        if (!std::isfinite(f[i]) || f[i] < 0)
+            return fmt::format("{}f at {} is {:.9g}", at_place(work, b, i), told(d.wi), f[i]);
+        if (!std::isfinite(f[i] * d.wi.z / d.pdf))
+            return fmt::format("the weight f cos / p at {} is not finite", told(d.wi));
     }
     return "";
 }
@@ -97,7 +102,8 @@ CornerFaults corner_faults(const Work& work, int technique) {
 std::string fault_all_over(const Work& work, int technique) {
     std::vector<Vec3d> wi;
     constexpr int turns = 16;
-    for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.5, -0.9, -1.0})
+    for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1,
+             -0.5, -0.9, -1.0})
         for (int k = 0; k < turns; ++k) {
             const double phi = 2 * pi * (k + 0.37) / turns, sin = std::sqrt(1 - z * z);
             wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
@@ -121,14 +127,18 @@ std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
     Verdict v = work.verdict("valid", State::wrong, "");
     v.evidence["usable"] = true;
     if (at.count > 0) {
-        v.say = fmt::format("What the sampler returns cannot be used {}: so at {} of {} corners of u. Random numbers of 24 bits come upon one in {:.3g} samples.", at.first, at.count, at.tried, 1 / at.chance);
+        v.say = fmt::format(
+            "What the sampler returns cannot be used {}: so at {} of {} corners of u. Random numbers of 24 bits come "
+            "upon one in {:.3g} samples.",
+            at.first, at.count, at.tried, 1 / at.chance);
         v.evidence["first_fault"] = at.first;
         v.evidence["corners"] = at.count;
         v.evidence["chance_of_a_sample"] = at.chance;
     }
     if (!b.dropped.empty()) {
         const std::string fault = fmt::format("at {}: {}", told(b.dropped[0].first), fault_of(b.dropped[0].second, 0));
-        v.say += fmt::format("{}{} of {} draws cannot be used, first {}.", at.count ? " " : "", b.dropped.size(), b.draws.size(), fault);
+        v.say += fmt::format(
+            "{}{} of {} draws cannot be used, first {}.", at.count ? " " : "", b.dropped.size(), b.draws.size(), fault);
         if (at.count == 0) v.evidence["first_fault"] = fault;
         v.evidence["draws_dropped"] = b.dropped.size();
     }
@@ -153,34 +163,46 @@ Verdict judge_valid(const Work& work) {
         draws += work.first(t).draws.size();
         for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0;
     }
-    if (drawn == 0) return work.verdict("valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws));
-    Verdict v = work.verdict("valid", State::right, fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of u, over {} draws and all over the sphere.", draws));
+    if (drawn == 0)
+        return work.verdict(
+            "valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws));
+    Verdict v = work.verdict("valid", State::right,
+        fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of "
+                    "u, over {} draws and all over the sphere.",
+            draws));
     v.evidence["draws"] = draws;
     v.evidence["direction_grain"] = work.grain();
     return v;
 }
 
 Verdict judge_support(const Work& work) {
-    if (!work.subject.has_f()) return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
+    if (!work.subject.has_f())
+        return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
     const Work::Below& below = work.below();
     if (below.transmits && !below.reached) {
         Verdict v = work.verdict("support", State::inconclusive,
-                                 fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f transmits and none of that light is ever found, "
-                                             "or f ought to return 0 there, which would settle it.", below.f, told(below.at)));
+            fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f "
+                        "transmits and none of that light is ever found, "
+                        "or f ought to return 0 there, which would settle it.",
+                below.f, told(below.at)));
         v.evidence["f_below"] = below.f;
         return v;
     }
     const Integral all = work.incoming(Work::Where::everywhere, false);
     const Integral lost = work.incoming(Work::Where::lost, false);
-    if (!(all.value > 0)) return work.verdict("support", State::skipped, "f L cos is 0 everywhere: nothing can be lost.");
+    if (!(all.value > 0))
+        return work.verdict("support", State::skipped, "f L cos is 0 everywhere: nothing can be lost.");
     const double fraction = lost.value / all.value;
     constexpr double negligible = 1e-6;  // below what a float estimate of the mean can show
     const bool wrong = fraction > negligible;
-    std::string say = wrong ? fmt::format("p is 0 over directions that carry {:.4g} % of f L cos: no number of samples ever finds it.", 100 * fraction)
-                            : "Wherever f L cos is not 0, p is not 0 either: no light is out of reach.";
+    std::string say = wrong
+        ? fmt::format("p is 0 over directions that carry {:.4g} % of f L cos: no number of samples ever finds it.",
+              100 * fraction)
+        : "Wherever f L cos is not 0, p is not 0 either: no light is out of reach.";
     const Theory& theory = work.trial.theory;
     if (wrong && theory.lost)
-        say += fmt::format(" Theory: {:.4g} % of the diffuse part, (1 - cos theta_R)/2; measured: {:.4g} %.", 100 * *theory.lost, 100 * lost.value / theory.lost_of);
+        say += fmt::format(" Theory: {:.4g} % of the diffuse part, (1 - cos theta_R)/2; measured: {:.4g} %.",
+            100 * *theory.lost, 100 * lost.value / theory.lost_of);
     Verdict v = work.verdict("support", wrong ? State::wrong : State::right, say);
     v.evidence["lost_fraction"] = fraction;
     v.evidence["quadrature_error"] = (lost.error + all.error * fraction) / all.value;

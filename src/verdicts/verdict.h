@@ -13,21 +13,21 @@ namespace crescent {
 enum class State { right, wrong, inconclusive, skipped, error };
 std::string_view word(State state);
 
-inline constexpr std::array<std::string_view, 9> verdict_names = {"valid",   "support", "normalised", "density",   "identity",
-                                                                  "physics", "tail",    "mean",       "efficiency"};
+inline constexpr std::array<std::string_view, 9> verdict_names = {
+    "valid", "support", "normalised", "density", "identity", "physics", "tail", "mean", "efficiency"};
 
 struct Verdict {
     std::string arm;
     std::string trial;  // w_o and parameters
     std::string name;   // one of verdict_names
     State state = State::right;
-    std::string say;    // one sentence for the reader
+    std::string say;  // one sentence for the reader
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
     // What varies from run to run, kept apart so that equal calls give equal verdicts.
     double seconds = 0;
     std::string say_timed;
     nlohmann::ordered_json timing = nlohmann::ordered_json::object();
-    bool expected = true;     // the list expects this state
+    bool expected = true;      // the list expects this state
     std::string why_expected;  // said where a wrong one is expected
 };
 
@@ -43,8 +43,8 @@ struct WeightPicture {
     std::string arm, trial;
     std::vector<double> log10_edges, counts;  // histogram of log10 X
     double zeros = 0, k = 0, exceedances = 0;
-    double threshold = 0, sigma = 0;          // of the generalised Pareto law with that k; sigma from the median exceedance
-    std::vector<double> rose_p, rose_f;       // plane of incidence, from -90 to 90 deg of wi
+    double threshold = 0, sigma = 0;     // of the generalised Pareto law with that k; sigma from the median exceedance
+    std::vector<double> rose_p, rose_f;  // plane of incidence, from -90 to 90 deg of wi
 };
 
 /// What a call did not look at for want of time.
@@ -61,9 +61,9 @@ struct Judgement {
     std::vector<WeightPicture> weights;
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
-    std::uint64_t questions = 0;  // that a program answered
-    State state = State::right;  // of everything as drawn
-    bool as_expected = true;     // of everything beside what the list expects
+    std::uint64_t questions = 0;                           // that a program answered
+    State state = State::right;                            // of everything as drawn
+    bool as_expected = true;                               // of everything beside what the list expects
 };
 
 }  // namespace crescent

@@ -1,4 +1,5 @@
-// tail: how heavy the weights X = f L cos / p are. mean: whether their mean is the integral, where the tail allows the question.
+// tail: how heavy the weights X = f L cos / p are. mean: whether their mean is the integral, where the tail allows the
+// question.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -26,7 +27,9 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
         for (int i = 0; i <= bins; ++i) out.log10_edges.push_back(from + (to - from) * i / bins);
         out.counts.assign(bins, 0);
         for (double v : x)
-            if (v > 0) ++out.counts[static_cast<std::size_t>(std::clamp((math::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
+            if (v > 0)
+                ++out.counts[static_cast<std::size_t>(
+                    std::clamp((math::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
     }
     if (tail && tail->exceedances + 1 < x.size()) {
         out.k = tail->k;
@@ -73,7 +76,8 @@ Spread spread(std::span<const double> x) {
 
 double johnson_t(const Spread& s, double expected) {
     const double d = s.mean - expected;
-    if (!(s.sd > 1e-7 * std::fabs(expected))) return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // every sample alike
+    if (!(s.sd > 1e-7 * std::fabs(expected)))
+        return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // every sample alike
     const double corrected = d + s.skew * s.sd / (6 * s.n) + s.skew / (3 * s.sd) * d * d;
     return corrected * std::sqrt(s.n) / s.sd;
 }
@@ -81,12 +85,13 @@ double johnson_t(const Spread& s, double expected) {
 std::optional<Tail> tail_of(std::span<const double> x) {
     const std::size_t length = std::min(tail_length(x.size()) + 1, x.size());
     std::vector<double> largest(x.begin(), x.end());
-    std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
+    std::partial_sort(
+        largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
     return fit_tail(std::span<const double>(largest).first(length));
 }
 
-/// A tail with k >= 1/2 has a largest weight of the order of sqrt(n) means; one of a few means among thousands is bounded, whatever
-/// a fit to the few weights that stand out may say.
+/// A tail with k >= 1/2 has a largest weight of the order of sqrt(n) means; one of a few means among thousands is
+/// bounded, whatever a fit to the few weights that stand out may say.
 bool is_bounded(const Spread& s) { return s.n >= 1000 && s.largest <= std::min(4.0, 0.1 * std::sqrt(s.n)) * s.mean; }
 
 bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory) {
@@ -96,10 +101,12 @@ bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Th
 }
 
 double mean_p(const Spread& s, const Integral& expected) {
-    constexpr double allowed = 1e-4;  // relative: what normalised and identity allow p itself, float rounding of a sharp lobe included
+    constexpr double allowed =
+        1e-4;  // relative: what normalised and identity allow p itself, float rounding of a sharp lobe included
     const double doubt = expected.error + allowed * std::fabs(expected.value);
     const double off = std::max(std::fabs(s.mean - expected.value) - doubt, 0.0);
-    if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1) return std::min(2 * math::exp(-0.5 * s.n * off * off / (sqr(s.sd) + s.largest * off / 3 + 1e-300)), 1.0);
+    if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1)
+        return std::min(2 * math::exp(-0.5 * s.n * off * off / (sqr(s.sd) + s.largest * off / 3 + 1e-300)), 1.0);
     const double z = std::fabs(johnson_t(s, expected.value)) - doubt / std::max(s.sd / std::sqrt(s.n), 1e-300);
     return normal_p(std::max(z, 0.0));
 }
@@ -119,7 +126,8 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
 }
 
 Verdict judge_tail(Work& work) {
-    if (!work.subject.has_drawn_f()) return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
+    if (!work.subject.has_drawn_f())
+        return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
     std::vector<double> x = first_weights(work, false);
     const Spread s = spread(x);
     const std::optional<Tail> tail = tail_of(x);
@@ -138,18 +146,22 @@ Verdict judge_tail(Work& work) {
         v.evidence["k"] = tail->k;
         v.evidence["se"] = tail->se;
         v.evidence["exceedances"] = tail->exceedances;
-        v.say = fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", tail->k, tail->se, tail->exceedances);
+        v.say =
+            fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", tail->k, tail->se, tail->exceedances);
         if (theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *theory.tail_k);
         v.say += ". ";
     }
     const bool bounded = !infinite && is_bounded(s);
-    if (bounded) v.say += fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", x.size(), s.largest / s.mean);
+    if (bounded)
+        v.say +=
+            fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", x.size(), s.largest / s.mean);
     if (!bounded && (infinite || (tail && tail->k - 2 * tail->se >= 0.5))) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
-        v.say += infinite || !theory.bounded
-                     ? "Heavy tail: the variance is infinite or looks so, no number of samples gives 1 %, and no interval means anything."
-                     : "Heavy tail at this number of samples; the weight is bounded, so the variance is finite, but it is not seen yet.";
+        v.say += infinite || !theory.bounded ? "Heavy tail: the variance is infinite or looks so, no number of samples "
+                                               "gives 1 %, and no interval means anything."
+                                             : "Heavy tail at this number of samples; the weight is bounded, so the "
+                                               "variance is finite, but it is not seen yet.";
     } else if (!bounded && tail && tail->k + 2 * tail->se >= 0.5) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
@@ -157,14 +169,17 @@ Verdict judge_tail(Work& work) {
         v.say += work.rigour.full ? "." : "; --full asks for sixteen times as many draws.";
     } else {
         v.evidence["samples_for_1_percent"] = std::stod(samples_for(s.sd, s.mean > 0 ? s.mean : 1));
-        v.say += fmt::format("The variance is finite: about {} samples give 1 %.", samples_for(s.sd, s.mean > 0 ? s.mean : 1));
+        v.say += fmt::format(
+            "The variance is finite: about {} samples give 1 %.", samples_for(s.sd, s.mean > 0 ? s.mean : 1));
     }
     return v;
 }
 
 Verdict judge_mean(const Work& work) {
     if (!work.subject.has_f())
-        return work.verdict("mean", State::skipped, work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with." : "There is no BRDF, hence no integral to compare the mean with.");
+        return work.verdict("mean", State::skipped,
+            work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with."
+                                       : "There is no BRDF, hence no integral to compare the mean with.");
     Verdict v = work.verdict("mean", State::right, "");
     const Integral expected = work.incoming(Work::Where::reached, false);
     const std::vector<double> x = first_weights(work, false);
@@ -176,7 +191,10 @@ Verdict judge_mean(const Work& work) {
     v.evidence["skewness"] = s.skew;
     if (!mean_is_testable(s, tail_of(x), work.trial.theory)) {
         v.state = State::inconclusive;
-        v.say = fmt::format("inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a right sampler as readily as a wrong one.", x.size(), s.mean, expected.value);
+        v.say = fmt::format(
+            "inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a "
+            "right sampler as readily as a wrong one.",
+            x.size(), s.mean, expected.value);
         return v;
     }
     const double z = johnson_t(s, expected.value), p = mean_p(s, expected);
@@ -184,8 +202,12 @@ Verdict judge_mean(const Work& work) {
     v.evidence["p"] = p;
     const bool wrong = mean_fails(work, p, expected, false);
     v.state = wrong ? State::wrong : State::right;
-    v.say = wrong ? fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, and again on a fresh seed. The estimator is biased.", s.mean, expected.value, z)
-                  : fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, p = {:.3g}.", s.mean, expected.value, z, p);
+    v.say = wrong ? fmt::format(
+                        "The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, and again on a fresh "
+                        "seed. The estimator is biased.",
+                        s.mean, expected.value, z)
+                  : fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, p = {:.3g}.",
+                        s.mean, expected.value, z, p);
     return v;
 }
 

@@ -1,5 +1,6 @@
-// One file that is seen whole or not at all. It is written under a name of its own beside the place (mkstemp: nothing of anybody
-// else's is opened, followed or removed), brought to the disk and renamed. Pipes and devices are written to as they are.
+// One file that is seen whole or not at all. It is written under a name of its own beside the place (mkstemp: nothing
+// of anybody else's is opened, followed or removed), brought to the disk and renamed. Pipes and devices are written to
+// as they are.
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -15,18 +16,21 @@ namespace crescent {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& why) { throw OutputError("cannot write " + printable(path) + ": " + why); }
+[[noreturn]] void fail(const std::string& path, const std::string& why) {
+    throw OutputError("cannot write " + printable(path) + ": " + why);
+}
 
 /// /dev/stdout, a FIFO, /dev/null.
 bool takes_a_stream(const std::string& path) {
-    struct stat s {};
-    return path.starts_with("/dev/") || path.starts_with("/proc/") || (stat(path.c_str(), &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
+    struct stat s{};
+    return path.starts_with("/dev/") || path.starts_with("/proc/") ||
+        (stat(path.c_str(), &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
 }
 
 class Beside {
 public:
     explicit Beside(const std::string& path) : path_(path) {
-        struct stat s {};
+        struct stat s{};
         if (stat(path.c_str(), &s) == 0 && S_ISDIR(s.st_mode)) fail(path, "it is a folder");
         const std::size_t slash = path.rfind('/');
         name_ = (slash == std::string::npos ? "" : path.substr(0, slash + 1)) + ".crescent-XXXXXX";
@@ -42,7 +46,7 @@ public:
 
     int file() const { return file_; }
     void bring() {
-        struct stat s {};
+        struct stat s{};
         const mode_t mask = umask(0);
         umask(mask);
         const mode_t mode = stat(path_.c_str(), &s) == 0 ? s.st_mode & 07777 : 0666 & ~mask;

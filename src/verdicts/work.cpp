@@ -26,19 +26,24 @@ double grain_of(std::span<const Draw> all) {
     for (const Draw& d : draws)
         for (double v : {d.wi.x, d.wi.y, d.wi.z})
             if (static_cast<double>(static_cast<float>(v)) != v) {
-                return std::fabs(v - static_cast<double>(static_cast<float>(v))) < 2e-9 * std::fabs(v) ? 0x1p-24 : 0x1p-50;
+                return std::fabs(v - static_cast<double>(static_cast<float>(v))) < 2e-9 * std::fabs(v) ? 0x1p-24
+                                                                                                       : 0x1p-50;
             }
     return 0x1p-24;
 }
 
-bool is_usable(const Draw& d) { return std::isfinite(d.pdf) && d.pdf >= 0 && (d.pdf == 0 || is_finite(d.wi)) && (!d.weight || std::isfinite(*d.weight)); }
+bool is_usable(const Draw& d) {
+    return std::isfinite(d.pdf) && d.pdf >= 0 && (d.pdf == 0 || is_finite(d.wi)) &&
+        (!d.weight || std::isfinite(*d.weight));
+}
 
 /// Up to one draw in ten thousand hides no other fault: it is put aside, and `valid` tells of it.
 void drop_unusable(Batchful& b) {
     std::size_t bad = 0;
     for (const Draw& d : b.draws) bad += !is_usable(d);
     if (bad == 0 || 10000 * bad > b.draws.size()) return;
-    const std::size_t good = static_cast<std::size_t>(std::find_if(b.draws.begin(), b.draws.end(), is_usable) - b.draws.begin());
+    const std::size_t good =
+        static_cast<std::size_t>(std::find_if(b.draws.begin(), b.draws.end(), is_usable) - b.draws.begin());
     for (std::size_t i = 0, last = good; i < b.draws.size(); ++i) {
         if (is_usable(b.draws[i])) {
             last = i;
@@ -68,7 +73,8 @@ void Rigour::share(std::uint64_t tests) {
     confirm = std::min(each / screen, screen / 10);
 }
 
-Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index) : trial(t), rigour(r), tally(counts), subject(*t.subject), index_(index), seed_(r.seed) {
+Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index)
+    : trial(t), rigour(r), tally(counts), subject(*t.subject), index_(index), seed_(r.seed) {
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
     grain_ = grain_of(first_[0].draws);
     look_below();

@@ -23,13 +23,14 @@ struct Rigour {
     std::uint64_t draws = std::uint64_t{1} << 15;  // per trial and technique
     int rings = 20, sectors = 16;
     std::size_t evaluations = 80000;  // of one integral, at most
-    bool pictures = false;             // keep maps and weights for the HTML page
-    bool accept_few = false;           // a program too slow for every w_o is judged by those that were looked at
+    bool pictures = false;            // keep maps and weights for the HTML page
+    bool accept_few = false;          // a program too slow for every w_o is judged by those that were looked at
     // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
     double screen = 1e-3, confirm = 1e-4;
     static Rigour quick() { return {}; }
     static Rigour thorough();
-    /// Levels for `tests` statistical tests: screen * confirm = 1 - (1 - alpha)^(1/tests) (Sidak), confirm = screen / 10.
+    /// Levels for `tests` statistical tests: screen * confirm = 1 - (1 - alpha)^(1/tests) (Sidak), confirm = screen
+    /// / 10.
     void share(std::uint64_t tests);
 };
 
@@ -42,9 +43,10 @@ struct Tally {
 struct Batchful {
     std::vector<Vec2d> u;
     std::vector<Draw> draws;
-    std::vector<double> pdf;  // pdf(w) asked afterwards, as the sampler's own arithmetic says it
+    std::vector<double> pdf;        // pdf(w) asked afterwards, as the sampler's own arithmetic says it
     mutable std::vector<double> f;  // f of every draw above the horizon, once asked for
-    std::vector<std::pair<Vec2d, Draw>> dropped;  // draws that cannot be used, too few to matter; a neighbour stands in for each
+    std::vector<std::pair<Vec2d, Draw>>
+        dropped;                // draws that cannot be used, too few to matter; a neighbour stands in for each
     std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0
 };
 
@@ -60,9 +62,9 @@ struct Density {
     std::vector<double> rings;  // ascending edges of a = 1 - cos, first 0, last 2
     int sectors = 0;
     Integral mass;
-    std::optional<Integral> second;  // in other coordinates, where the first does not come to one
-    std::vector<double> doubt;  // by bin, where p was tabulated; else empty
-    double doubts = 0;          // their sum
+    std::optional<Integral> second;      // in other coordinates, where the first does not come to one
+    std::vector<double> doubt;           // by bin, where p was tabulated; else empty
+    double doubts = 0;                   // their sum
     double nothing = 0, nothing_se = 0;  // share of draws that draw nothing, randomised lattice
     std::size_t bin_of(Vec2d at) const;
 };
@@ -109,7 +111,8 @@ public:
 
     /// X = sum over techniques of w f L cos / p, sample by sample; even: L = 1 in place of the light.
     std::vector<double> weights(std::span<const Batchful> pair, bool even) const;
-    /// int f L |cos| over what counts, or only where any_pdf is (not) positive. bins: the upper and the lower half of the fill's part.
+    /// int f L |cos| over what counts, or only where any_pdf is (not) positive. bins: the upper and the lower half of
+    /// the fill's part.
     enum class Where { everywhere, reached, lost };
     const Integral& incoming(Where where, bool even) const;
 
@@ -144,7 +147,8 @@ private:
     void add_rims(Density& d) const;
     void sharpen(int technique, Density& d) const;
     Witnesses witnesses_of(int technique, const Density& d) const;
-    Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
+    Density density_about(
+        int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
     Density bins_about(Vec3d axis, bool about_n) const;
     Batch batch_of(int technique, const SphereMap& map) const;
     void grant_doubts(int technique, Density& d) const;

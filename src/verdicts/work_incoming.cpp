@@ -11,7 +11,9 @@ namespace crescent {
 const Integral& Work::incoming(Where where, bool even) const {
     even = even && (!trial.light.disks.empty() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
-    if (!kept) kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even) : integrate_incoming(where, even);
+    if (!kept)
+        kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even)
+                                                                                 : integrate_incoming(where, even);
     return *kept;
 }
 
@@ -29,26 +31,28 @@ bool hidden(const TrialLight& light, const TrialDisk& own, Vec3d y) {
 }
 
 /// Adds int f L cos over what a disk shows, above the fill that it hides; of_light: f cos where it counts.
-void add_disk(Integral& total, const TrialLight& light, const TrialDisk& disk, const OfLight& of_light, std::size_t evaluations) {
+void add_disk(
+    Integral& total, const TrialLight& light, const TrialDisk& disk, const OfLight& of_light, std::size_t evaluations) {
     const Frame<double> frame = frame_about(disk.normal);
     std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
     for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
     const double strength = pi * sqr(disk.radius) * (disk.radiance - light.fill);
     const Integral of_disk = integrate(cells, 1,
-                                       [&](std::span<const Vec2d> at, std::span<double> out) {
-                                           std::vector<Vec3d> wi;
-                                           std::vector<double> per_area;
-                                           for (Vec2d v : at) {
-                                               const double r = disk.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
-                                               const Vec3d y = disk.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
-                                               wi.push_back(normalize(y));
-                                               per_area.push_back(hidden(light, disk, y) ? 0 : std::max(-dot(wi.back(), disk.normal), 0.0) / dot(y, y));
-                                           }
-                                           of_light(wi, out);
-                                           for (std::size_t i = 0; i < out.size(); ++i) out[i] *= per_area[i] * strength;
-                                       },
-                                       {5e-6, evaluations});
+        [&](std::span<const Vec2d> at, std::span<double> out) {
+            std::vector<Vec3d> wi;
+            std::vector<double> per_area;
+            for (Vec2d v : at) {
+                const double r = disk.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
+                const Vec3d y = disk.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
+                wi.push_back(normalize(y));
+                per_area.push_back(
+                    hidden(light, disk, y) ? 0 : std::max(-dot(wi.back(), disk.normal), 0.0) / dot(y, y));
+            }
+            of_light(wi, out);
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] *= per_area[i] * strength;
+        },
+        {5e-6, evaluations});
     total.value += of_disk.value;
     total.error += of_disk.error;
     total.settled = total.settled && of_disk.settled;
@@ -71,15 +75,16 @@ Integral Work::integrate_incoming(Where where, bool even) const {
     if (fill > 0) {
         const SphereMap map(Vec3d{0, 0, 1});
         std::vector<Rect> cells = graded_cells(1);
-        for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i) cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
+        for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i)
+            cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
         total = integrate(guided(std::move(cells), map, guides_), whole() ? 2 : 1,
-                          [&](std::span<const Vec2d> at, std::span<double> out) {
-                              std::vector<Vec3d> wi;
-                              for (Vec2d v : at) wi.push_back(map.direction(v));
-                              of_light(wi, out);
-                              for (double& v : out) v *= 2 * pi * fill;
-                          },
-                          {5e-6, rigour.evaluations});
+            [&](std::span<const Vec2d> at, std::span<double> out) {
+                std::vector<Vec3d> wi;
+                for (Vec2d v : at) wi.push_back(map.direction(v));
+                of_light(wi, out);
+                for (double& v : out) v *= 2 * pi * fill;
+            },
+            {5e-6, rigour.evaluations});
     }
     for (const TrialDisk& disk : light.disks)
         if (!even) add_disk(total, light, disk, of_light, rigour.evaluations / 4);
