@@ -17,7 +17,7 @@ enum Exit : int {
     unwritable =
         3,  // an output could not be written, a needed part is missing, or (check) the sampler broke off: an error
     inconclusive = 4,  // check: neither right nor wrong
-    bug = 70,          // a claim of our own did not hold (EX_SOFTWARE of sysexits.h)
+    bug = 70,          // an internal check failed (EX_SOFTWARE of sysexits.h)
     interrupted = 130  // SIGINT or SIGTERM
 };
 

@@ -43,10 +43,12 @@ int perform(int argc, char** argv) {
     } catch (const InputError& e) { return complain(misused, e.what()); } catch (const OutputError& e) {
         return complain(unwritable, std::string("crescent: ") + e.what());
     } catch (const Interrupted&) {
-        return complain(interrupted, "crescent: interrupted; what was there before is untouched");
+        return complain(interrupted, "crescent: interrupted; existing outputs were not changed");
     } catch (const std::bad_alloc&) {
         return complain(unwritable, "crescent: out of memory");
-    } catch (const std::exception& e) { return complain(bug, std::string("crescent: a bug of its own: ") + e.what()); }
+    } catch (const std::exception& e) {
+        return complain(bug, std::string("crescent: internal error, please report it: ") + e.what());
+    }
 }
 
 }  // namespace

@@ -26,10 +26,9 @@ constexpr long moving_patience_s = 5;  // outputs that are being moved are let f
 const char* last_words() {
     const Watch* watch = watched.load();
     switch (watch ? watch->outputs.load() : left_behind.load()) {
-        case Outputs::moving:
-            return "crescent: interrupted; the outputs are all those of before, or all those of this run\n";
-        case Outputs::stand: return "crescent: interrupted; the outputs of this run stand\n";
-        default: return "crescent: interrupted; what was there before is untouched\n";
+        case Outputs::moving: return "crescent: interrupted; the outputs are either all of before or all of this run\n";
+        case Outputs::stand: return "crescent: interrupted; the outputs of this run are complete\n";
+        default: return "crescent: interrupted; existing outputs were not changed\n";
     }
 }
 

@@ -1,4 +1,4 @@
-// How much one draw may hold. Drivers end a draw that takes too long, and nobody can interrupt one: draws are made to
+// How much one draw may hold. Drivers end a draw that takes too long, and none can be interrupted: draws are made to
 // last about a tenth of a second, so that none comes near 0.2 s on llvmpipe even where the next rows cost twice as
 // much.
 #pragma once

@@ -1,5 +1,5 @@
-// What computes films, and by which word it goes on the command line. The CPU's is built in; a door that has another
-// registers it when the program starts, so that who asks for it need not know the door.
+// Back ends that compute films, each with its word on the command line. The CPU's is built in; doors register theirs
+// when the program starts.
 #pragma once
 
 #include <cstdint>

@@ -88,12 +88,12 @@ Kept::Kept(const Experiment& experiment, const std::string& instrument, const st
             if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
     });
     written_ = meters_.size();
-    if (holds_files(folder_)) watch_.say("going on from what a stopped run kept in " + folder_);
+    if (holds_files(folder_)) watch_.say("resuming from the checkpoint in " + folder_);
 }
 
 Kept::~Kept() {
     if (holds_files(folder_))
-        watch_.say("what was finished is kept in " + folder_ + ": the same command goes on from there");
+        watch_.say("partial results saved in " + folder_ + ": the same command resumes from them");
 }
 
 TileKeeper Kept::tiles(const Job& job) {

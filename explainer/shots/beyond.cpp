@@ -33,8 +33,7 @@ Shot beyond(const Data& data) {
     shot.name = "beyond", shot.title = Words("Both at once"), shot.kind = Kind::photograph;
     shot.seen = Words(
         "Four columns of one view: cosine, Phong, their mixture, and multiple importance sampling with the light; "
-        "under each "
-        "its error in both regions.");
+        "under each its error in both regions.");
     shot.cues = {{0.5, Words("Two ways of aiming, each with its own failure. Can one estimator have both?"), true},
         {10,
             both ? Words("Toss a coin between both lobes and divide by the mixture: neither region is starved.")

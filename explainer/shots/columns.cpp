@@ -54,8 +54,7 @@ Shot columns(const Data& data) {
     shot.name = "columns", shot.title = Words("Same light, same N"), shot.kind = Kind::photograph;
     shot.seen = Words(
         "The converged picture with two regions outlined, the highlight and the surround. Then three columns of the "
-        "same view, "
-        "aimed three ways; under each its error in both regions.");
+        "same view, aimed three ways; under each its error in both regions.");
     shot.cues = {{0.6, Words("One scene. A small bright key light, a dim even fill, and a glossy ball.")},
         {5.4,
             Words("Each pixel gets N\u00a0=\u00a0", data.n_of(data.key(c.cosine)),

@@ -159,8 +159,7 @@ Shot tilt(const Data& data) {
     shot.title = Words("What is never reached");
     shot.seen = Words(
         "A hemisphere from the side and from above. As the mirror direction tilts, a growing part behind it is out of "
-        "reach; "
-        "a chart compares its measured share with (one minus the cosine of the tilt) over two.");
+        "reach; a chart compares its measured share with (one minus the cosine of the tilt) over two.");
     shot.seconds = end;
     shot.still = end - 0.5;
     shot.cues = drawn->cues();

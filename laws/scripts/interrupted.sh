@@ -1,5 +1,5 @@
 #!/bin/bash
-# Ctrl-C and SIGTERM at any moment: exit 130 within a second, and what is said of the outputs is so: untouched, or those of
+# Ctrl-C and SIGTERM at any moment: exit 130 within a second, and what is said of the outputs is so: not changed, or those of
 # the new run. From the first milliseconds to the end of the run.
 . "$(dirname "$0")/common.sh"
 
@@ -25,7 +25,7 @@ for signal in INT TERM; do
         took=$((($(date +%s%N) - start) / 1000000))
         if [[ " $silent " != *" $after "* ]]; then
             [ "$code" -eq 130 ] || die "SIG$signal after $after s: exit $code: $(cat said)"
-            grep -q 'untouched' said || die "SIG$signal after $after s: nothing is said of the outputs: $(cat said)"
+            grep -q 'not changed' said || die "SIG$signal after $after s: nothing is said of the outputs: $(cat said)"
         fi
         [ "$took" -le 1000 ] || die "SIG$signal after $after s: took $took ms"
         visible good >of_good
@@ -49,8 +49,8 @@ for part in 60 80 90 95 100 105; do
     wait "$run"
     code=$?
     visible good >of_good
-    if [ "$code" -eq 0 ] || grep -q 'of this run stand' said; then cmp -s of_new of_good || die "exit $code, and the outputs are not the new ones"
-    elif grep -q 'untouched' said; then cmp -s of_before of_good || die "'untouched' is said, and it is not so"
+    if [ "$code" -eq 0 ] || grep -q 'of this run are complete' said; then cmp -s of_new of_good || die "exit $code, and the outputs are not the new ones"
+    elif grep -q 'not changed' said; then cmp -s of_before of_good || die "'not changed' is said, and it is not so"
     else cmp -s of_new of_good || cmp -s of_before of_good || die "exit $code: a mixture: $(cat said)"
     fi
 done

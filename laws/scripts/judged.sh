@@ -20,10 +20,10 @@ expect 0 "$CRESCENT" check --quiet --exec "python3 $pipes/cosine.py"
 sed 's/0\.5 \/ pi/1.01 \/ pi/' "$pipes/cosine.c" >bright.c
 expect 0 "${CC:-cc}" -O2 -o bright bright.c -lm
 expect 1 "$CRESCENT" check --quiet --exec ./bright
-grep -q "creates energy" printed || die "nobody says that energy is created: $(cat printed)"
+grep -q "creates energy" printed || die "it does not say that energy is created: $(cat printed)"
 expect 2 "$CRESCENT" check --quiet --exec ./nowhere
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
-grep -q "exit code 3" printed || die "nobody says how the program ended: $(cat printed)"
+grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"
 
 python3 - <<'PY'
 import math, random

@@ -20,7 +20,7 @@ expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among t
 # broken WORDS PROGRAM: an error, told with these words.
 broken() {
     expect 3 check --exec "$2" --json broken.json --junit broken.xml
-    grep -q -- "$1" printed || die "nobody says '$1': $(cat printed)"
+    grep -q -- "$1" printed || die "it does not say '$1': $(cat printed)"
     grep -q "<error" broken.xml && ! grep -q "<failure" broken.xml || die "no error in $(cat broken.xml)"
     fields broken.json "assert j['state'] == 'error' and all(v['state'] in ('right', 'skipped', 'error') for v in j['verdicts'])"
 }
@@ -59,11 +59,11 @@ while [ ! -s orphan ]; do sleep 0.1; done
 kill -9 $!
 gone orphan
 
-# Files appear whole; nobody else's is touched, and no link is followed.
+# Files appear whole; no other file is touched, and no link is followed.
 echo mine >r.json.part && echo mine >victim && ln -s victim r.json
 expect 1 check --exec "./slow 10000000 -1" --json r.json
 [ "$(cat r.json.part victim)" = "mine
-mine" ] || die "a file of somebody else's was touched"
+mine" ] || die "a file that is not ours was touched"
 fields r.json "assert j['state'] == 'wrong'"
 check --exec "./slow 10000000 -1" --json /dev/stdout 2>said | grep -q '"state": "wrong"' || die "nothing on /dev/stdout: $(cat said)"
 

@@ -31,7 +31,7 @@ drawn() { grep -o '"samples": [0-9]*' "$1/timing.json" | awk '{ sum += $2 } END 
 # Another experiment takes nothing from it, and leaves it where it is: the first one goes on afterwards.
 kill_when 'cosine-s32-seed7-*'
 expect 0 "$CRESCENT" run "$tiny" --out stopped
-grep -q 'going on' said && die "another experiment went on from what was kept: $(cat said)"
+grep -q 'resuming from' said && die "another experiment went on from what was kept: $(cat said)"
 grep -q 'another, unfinished run' said || die "nothing is said of what another run kept: $(cat said)"
 expect 0 "$CRESCENT" run "$tiny" --out tiny
 same_outputs_but_kept() { diff -r -x timing.json -x .crescent-kept "$1" "$2" >difference || die "$1 and $2 differ: $(cat difference)"; }

@@ -50,7 +50,7 @@ std::string to_string(const Place& at) {
 InputError::InputError(std::vector<Complaint> all) : std::invalid_argument(join(all)), all_(std::move(all)) {}
 
 Bug::Bug(const std::source_location& at, std::string_view claim)
-    : std::logic_error(fmt::format("{}:{}: a claim of our own does not hold: {}", at.file_name(), at.line(), claim)) {}
+    : std::logic_error(fmt::format("{}:{}: internal check failed: {}", at.file_name(), at.line(), claim)) {}
 
 std::string nearest(std::string_view word, const std::vector<std::string>& valid) {
     std::string best;

@@ -33,7 +33,7 @@ constexpr std::string_view owner_text = "a run of crescent that is writing, or w
     throw OutputError(fmt::format("another run is writing into {}: expected its end, or another folder", folder));
 }
 
-/// Nobody can know it beforehand and put something in its place.
+/// It cannot be guessed, so nothing can be put in its place beforehand.
 std::string new_stage_name() {
     std::uint64_t bits = 0;
     if (getrandom(&bits, sizeof bits, 0) != sizeof bits)

@@ -38,7 +38,7 @@ private:
 
     std::string folder_, kind_, stage_;  // stage_: its name in the folder
     Folder out_;
-    int owner_ = -1;  // a locked file in the stage: whoever holds it is alive
+    int owner_ = -1;  // a locked file in the stage: its holder is alive
     std::vector<std::string> names_, said_;
 };
 

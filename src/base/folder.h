@@ -1,5 +1,5 @@
 // A folder held by its descriptor. What is named in it is reached from there, step by step, and no step follows a link:
-// a link that somebody else planted leads nowhere. Every change is one system call.
+// a planted link is not followed. Every change is one system call.
 #pragma once
 
 #include <string>

@@ -104,7 +104,8 @@ void Journal::append(const std::vector<Bytes>& parts) {
         written = written && ftruncate(file_, 0) == 0 && write({bytes_of(key_)});
     }
     if (written && write(parts)) return;
-    watch_.say(fmt::format("cannot write {}: {}; if this run is stopped, it begins anew", path_, std::strerror(errno)));
+    watch_.say(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", path_,
+        std::strerror(errno)));
     remove();
     off_ = true;
 }

@@ -1,7 +1,7 @@
 // Threads: oneTBB where there are threads, one call after another where CRESCENT_SERIAL says that there are none (a
 // page in a browser, another machine's core under test). Nothing outside this file asks which.
 //
-// Outputs never depend on it: what threads add up is merged in the order of tiles, by whoever calls.
+// Outputs never depend on it: what threads add up is merged in the order of tiles, by the caller.
 #pragma once
 
 #include <cstddef>

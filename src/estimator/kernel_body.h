@@ -26,8 +26,8 @@ template <class F> struct Gathered {
     UintOf<F> horizon{0u}, bad{0u};
 };
 
-/// A pack's constants that every sample reads. A copy of its own, because the compiler must take whatever `meet` can
-/// reach for changed after each call, and would redo all that follows from it.
+/// A pack's constants that every sample reads. By value, so that they stay in registers: what `meet` can reach must be
+/// loaded again after each call.
 template <class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s;

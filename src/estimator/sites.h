@@ -28,7 +28,7 @@ struct DiskArrays {
     float power = 0;  // Y(L) pi r^2, relative to all disks
 };
 
-/// What every site of one surface shares: what a sample is worth there, by the light it meets.
+/// Constants of one surface: luminance of f L for the fill and for each disk light.
 struct Shading {
     Surface surface;
     float fill_d = 0, fill_s = 0;       // as in Sites

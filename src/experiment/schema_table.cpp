@@ -73,9 +73,8 @@ Section shapes() {
             "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
         {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Shape::material, &Material::brdf>,
             {"phong", "blinn-phong", "ggx"}},
-        {"alpha", Type::number, {0, 1, true}, "", optional,
-            "sqrt(2/(s+2)), a lobe about as wide; a ggx lobe states its own", "GGX roughness, not remapped.",
-            to<&Shape::material, &Material::alpha>},
+        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a ggx lobe",
+            "GGX roughness, not remapped.", to<&Shape::material, &Material::alpha>},
         {"reveal_rho_d", Type::color, unit_range, "", optional, "rho_d",
             "Diffuse albedo of the four sides of the recess.", to<&Shape::reveal_rho_d>, {}, "panel"},
         {"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the disks' light.",
@@ -92,7 +91,7 @@ Section disks() {
             {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
             {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.",
                 to<&DiskLight::radiance>},
-            {"two_sided", Type::flag, none, "", defaulted, "false", "Whether both sides shine.",
+            {"two_sided", Type::flag, none, "", defaulted, "false", "Emits from both sides.",
                 to<&DiskLight::two_sided>}},
         {}};
 }

@@ -1,4 +1,4 @@
-// A film: per pixel, what n samples of one arm said. Rows run bottom-up, pixel (i, j) at j * width + i.
+// A film: per pixel, the statistics of n samples of one arm. Rows run bottom-up, pixel (i, j) at j * width + i.
 #pragma once
 
 #include <cstddef>

@@ -158,7 +158,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
     double y = draw_words(sheet, parts, i, col, narrow);
     Rect dome{col.x, y, col.w, content_band.y + 294 - y};
     if (!(part.peak > 0)) {
-        paint_missing(sheet, dome, arm_name(part.key.arm, e) + " has no one density that needs no light");
+        paint_missing(sheet, dome, arm_name(part.key.arm, e) + " has no density that is independent of the lights");
         return;
     }
     draw_dome(sheet, part, dome, tilt);

@@ -63,7 +63,7 @@ void material_rows(const Page& page, std::vector<Row>& rows) {
     const Shape* shape = glossy(page.in.experiment);
     if (!shape) return;
     rows.push_back({"A metal instead?", with(page, {fmt::format("shapes.{}.rho_d=[0, 0, 0]", shape->name)}),
-        "Without its Lambert part the surface has no Failure B of its own; what is matt around it keeps its part."});
+        "Without its Lambert part the surface no longer shows Failure B; the Lambertian surfaces around it still do."});
     if (!shape->material.s) return;
     const double s = *shape->material.s;
     rows.push_back(
@@ -75,7 +75,8 @@ void material_rows(const Page& page, std::vector<Row>& rows) {
 
 void sampling_rows(const Page& page, std::vector<Row>& rows) {
     const Experiment& e = page.in.experiment;
-    rows.push_back({"Another seed?", with(page, {fmt::format("seed={}", e.seed + 1)}), "What turns round was noise."});
+    rows.push_back({"Another seed?", with(page, {fmt::format("seed={}", e.seed + 1)}),
+        "Rankings that change with the seed are within the noise."});
     rows.push_back(
         {"A stricter or laxer firefly?", with(page, {fmt::format("firefly_k={}", shortest(2 * e.firefly_k))}),
             "Counts fall as k rises; the order of the arms should not."});
@@ -102,9 +103,7 @@ std::string claims(const Page& page) {
     const Experiment& e = page.in.experiment;
     std::vector<std::string> can{
         "For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. "
-        "The films "
-        "can be made again, bit for "
-        "bit: their hashes stand at the end.",
+        "The films can be made again, bit for bit: their hashes stand at the end.",
         "Arms differ in their density alone: same directions of view, same light, same random numbers."};
     if (e.seeds > 1)
         can.push_back(fmt::format(
@@ -124,15 +123,14 @@ std::string claims(const Page& page) {
     const auto& bands = page.in.metrics.bands;
     const auto heavy = std::count_if(bands.begin(), bands.end(), [](const BandMeter& b) { return b.band.heavy; });
     if (heavy > 0)
-        cannot.push_back(fmt::format(
-            "{} of {} meters have no interval, because the tail of their samples is too heavy for one. More seeds "
-            "would not mend it.",
-            heavy, bands.size()));
+        cannot.push_back(
+            fmt::format("{} of {} meters have no interval, because the tail of their samples is too heavy for one. "
+                        "More seeds would not mend it.",
+                heavy, bands.size()));
     if (page.find.anything_published())
         cannot.push_back(
             "The geometry was fitted to published figures, which do not fix it. It is a scene that fits them, not the "
-            "one they "
-            "were made with.");
+            "one they were made with.");
     return "<h3>It can claim</h3>\n" + html::list(can) + "<h3>It cannot claim</h3>\n" + html::list(cannot);
 }
 
@@ -159,10 +157,8 @@ PageSection what_ifs(Page& page) {
         items += html::element("dt", row.question) +
             html::element("dd", html::command(row.command) + html::p(row.expect)) + "\n";
     return {"what-ifs", "What if",
-        html::p(
-            "Each question is one line. An override is checked like the file itself, and the experiment’s hash changes "
-            "with it. Assertions were "
-            "written for the experiment as it stands and may well fail here.") +
+        html::p("Each question is one line. An override is checked like the file itself, and the experiment’s hash "
+                "changes with it. Assertions were written for the experiment as it stands and may well fail here.") +
             "<dl class=\"what-if\">\n" + items + "</dl>\n"};
 }
 

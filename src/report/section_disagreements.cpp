@@ -63,9 +63,7 @@ std::string highlight_remark(const Page& page, const ArmPlan& broad, const std::
     if (mean && *mean > 0)
         out += fmt::format(
             " Raising them takes a highlight of more pixels, hence a larger {}. That raises {} at <i>s</i> = {} as "
-            "well, and "
-            "it "
-            "stands at {} already. One geometry does not meet both.",
+            "well, and it stands at {} already: no single geometry matches both.",
             escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
     return out;
 }
@@ -121,8 +119,7 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
     if (of < 2) return {};
     return fmt::format(
         "The published ladder of {} in {} strays from the −1/2 law by no more than {}. Of {} seeds here, {} keep as "
-        "close: "
-        "the others meet a rare bright sample on some rung.",
+        "close: the others meet a rare bright sample on some rung.",
         escape(narrow.name), escape(region), percent(limit, 2), of, close);
 }
 
@@ -144,9 +141,7 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
         if (of < 2) return {};
         return fmt::format(
             "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it "
-            "rises, in "
-            "{} by that "
-            "much. With an infinite variance behind it, it need not fall.",
+            "rises, in {} by that much. With an infinite variance behind it, it need not fall.",
             narrow.n[i - 1], narrow.n[i], meter_html("rmse." + region), escape(narrow.name), factor, rose, of, so_much);
     }
     return {};
@@ -171,9 +166,8 @@ std::string remarks(const Page& page) {
     if (all.empty()) return {};
     return html::p("What can be said about them, medians over seeds against published values:") + html::list(all) +
         html::p(
-            "None of this is tuned away. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was "
-            "found "
-            "that meets every published figure.");
+            "The scene was not refitted to meet them. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was "
+            "found that meets every published figure.");
 }
 
 }  // namespace

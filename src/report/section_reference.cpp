@@ -22,7 +22,7 @@ it were used instead.</p>
 std::string verdict(const std::vector<ReferenceMeter>& all) {
     const auto worst = std::max_element(all.begin(), all.end(),
         [](const ReferenceMeter& a, const ReferenceMeter& b) { return a.rmse_unlike < b.rmse_unlike; });
-    std::string out = fmt::format("At most {} of an RMSE hangs on the choice, in region {} at <i>s</i> = {}.",
+    std::string out = fmt::format("The choice changes an RMSE by at most {}, in region {} at <i>s</i> = {}.",
         percent(worst->rmse_unlike, 2), escape(worst->region), shortest(worst->s));
     const bool explained = std::all_of(
         all.begin(), all.end(), [](const ReferenceMeter& r) { return r.rms_difference <= 2 * r.rms_standard_error; });

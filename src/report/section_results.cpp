@@ -82,8 +82,8 @@ hemisphere, and what comes from the sides is left to the few rays that stray the
 never sent: the largest weighs {largest} with {narrow}. The pixel is dark until one arrives, and then it sparkles. The mean
 of the frame tells it at a glance: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub> reads {mean_narrow} with
 {narrow} and {mean_broad} with {broad}.{lost}</p>
-<p>On a surface without a gloss of its own the arm still aims about the mirror direction with the scene’s <i>s</i>, because an
-arm on trial is not told what it is shining on.</p>
+<p>On a Lambert surface the arm still aims about the mirror direction with the scene’s <i>s</i>: it samples the lobe whatever
+the material.</p>
 )";
 
 std::string lost_words(const Page& page) {

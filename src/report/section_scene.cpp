@@ -83,12 +83,12 @@ std::string lights_table(const Experiment& e) {
 
 PageSection scene(Page& page) {
     const Experiment& e = page.in.experiment;
-    std::string out = html::p(fmt::format(
-        "The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one primary ray through "
-        "the "
-        "centre of each; {} of them meet a surface. Directions are drawn once, at that surface: one bounce, no more.",
-        vec(e.camera.eye), vec(e.camera.target), shortest(e.camera.vfov_deg), e.image.width, e.image.height,
-        page.in.metrics.geometry_pixels));
+    std::string out =
+        html::p(fmt::format("The camera stands at {}, looks at {} and sees {}° from top to bottom, {} × {} pixels, one "
+                            "primary ray through the centre of each; {} of them meet a surface. Directions are drawn "
+                            "once, at that surface: one bounce, no more.",
+            vec(e.camera.eye), vec(e.camera.target), shortest(e.camera.vfov_deg), e.image.width, e.image.height,
+            page.in.metrics.geometry_pixels));
     out += page.figures.plates(PlateKind::gallery) + shapes_table(page) + lights_table(e);
     return {"scene", "The scene", out};
 }

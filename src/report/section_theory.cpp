@@ -17,7 +17,7 @@ the noise sits.</p>
 samples and is fed the same random numbers, pixel by pixel and sample by sample. The density
 <math><mi>p</mi></math> is all that differs, so whatever differs in the films is its doing.{regions}</p>
 <p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out of
-many; the band beside it shows what other seeds give, and where the samples are too unruly for a band to mean anything the
+many; the band beside it shows what other seeds give, and where the samples are too heavy-tailed for a band the
 words {heavy} stand in its place.</p>
 )";
 

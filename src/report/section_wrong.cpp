@@ -45,9 +45,7 @@ std::string intro(const Page& page) {
         : "This bench began with a note on a gallery lit by a spotlight, which explains some of its figures.";
     return fmt::format(
         "{} Three of the explanations can be put to a measurement of their own, and below they are, with "
-        "<i>ρ</i><sub>d</sub> "
-        "= {}, "
-        "<i>ρ</i><sub>s</sub> = {} and <i>s</i> = {}.",
+        "<i>ρ</i><sub>d</sub> = {}, <i>ρ</i><sub>s</sub> = {} and <i>s</i> = {}.",
         whose, html::value(figures(page.in.evidence.rho_d)), html::value(figures(page.in.evidence.rho_s)),
         shortest(page.in.evidence.s));
 }
@@ -69,9 +67,8 @@ std::string furnace_point(Page& page) {
     out += furnace_sentence(page);
     out += page.figures.chart(furnace_charts(page),
         "The combined furnace of the Phong arm at <i>R</i> = <i>n</i>, over replicates: median (line), middle half "
-        "(dark) and "
-        "middle 90 % (light). Solid rule: what is due. Dashed: what infinitely many samples read at that resolution of "
-        "<i>u</i>.",
+        "(dark) and middle 90 % (light). Solid rule: what is due. Dashed: what infinitely many samples read at that "
+        "resolution of <i>u</i>.",
         "metrics.json, evidence.furnace");
     return out + furnace_table(e);
 }

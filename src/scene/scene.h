@@ -1,4 +1,4 @@
-// An experiment's shapes, lights and camera, ready to be asked: what does pixel (i, j) see, and what blocks a light.
+// Shapes, lights and camera: what pixel (i, j) sees, and what hides a light.
 // Double precision; lengths in m. Lights are seen by sampled rays only, never by the camera.
 #pragma once
 

@@ -85,9 +85,9 @@ template <class F> struct Split {
 };
 template <class F> CRESCENT_INLINE F upper_half(F x) { return from_bits<F>(bits(x) & UintOf<F>(0xfffff000u)); }
 
-/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute; `near` is x - 1, used where x is close to 1, so
-/// that who knows it better than x says it can pass it. After FreeBSD's e_log2f.c (log(1+f) by atanh-like series in
-/// f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
+/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute; `near` is x - 1, used where x is close to 1;
+/// pass a more accurate value than the rounded x gives where there is one. After FreeBSD's e_log2f.c (log(1+f) by
+/// atanh-like series in f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
 template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F near) {
     using U = UintOf<F>;
     const U t = bits(x) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))

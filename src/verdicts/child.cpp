@@ -59,7 +59,7 @@ void kill_all() {
     }
 }
 
-/// The guard: tells how the shell ended, and ends everything when nobody holds the other end of `life` any more.
+/// The guard: tells how the shell ended, and ends everything when the other end of `life` is closed.
 [[noreturn]] void stand_guard(int life, int told, int in, int out, const char* command) {
     for (int* fd : {&life, &told, &in, &out}) *fd = fcntl(*fd, F_DUPFD_CLOEXEC, 3);  // clear of 0 and 1
     setpgid(0, 0);

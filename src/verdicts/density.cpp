@@ -135,7 +135,7 @@ Verdict judge_normalised(const Work& work) {
                     off - allowed - d.doubts - std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se), 0.0);
             };
         const bool second = d.second && excess_of(*d.second) < excess_of(d.mass);
-        const Integral& mass = second ? *d.second : d.mass;  // the one that speaks for the sampler
+        const Integral& mass = second ? *d.second : d.mass;  // the one closer to a right sampler
         const double sum = mass.value + d.nothing;
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         if (d.doubts > 0) v.evidence["table_known_to" + tag] = d.doubts;

@@ -1,4 +1,4 @@
-// GoogleTest matchers: a sampler judged in one line of somebody else's suite.
+// GoogleTest matchers: a sampler judged in one line of a user's own suite.
 //
 //   EXPECT_THAT(MySampler{}, crescent::IsARightSampler());        // nothing wrong, nothing left open
 //   EXPECT_THAT(MySampler{}, crescent::IsNotAWrongSampler());     // a heavy tail is allowed

@@ -98,7 +98,7 @@ void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects
             Suspect& s = suspects[i];
             const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), work.grain(), h);
             const double lacking = 1 - s.p_j;
-            if (h < step && 2 * q.noise > 0.25 * lacking) continue;  // rounding drowns it: the wider steps have spoken
+            if (h < step && 2 * q.noise > 0.25 * lacking) continue;  // lost in rounding: the wider steps decide
             if (s.p * q.largest > 1 - 0.3 * lacking) s.stands = false;
         }
     }

@@ -17,7 +17,7 @@ struct SubjectGone : SubjectFault {
     using SubjectFault::SubjectFault;
 };
 
-/// It answers as agreed, but not in anybody's lifetime.
+/// The program keeps to the protocol but needs more than PipeLimits::total_seconds.
 struct SubjectTooSlow : SubjectFault {
     using SubjectFault::SubjectFault;
 };

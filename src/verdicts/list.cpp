@@ -189,7 +189,7 @@ Trial trial_on(
 
 namespace {
 
-/// An arm of the list aimed at somebody else's BRDF.
+/// A built-in arm aimed at a user's BRDF.
 template <template <class> class A> class Borrowed : public BuiltIn<A> {
 public:
     Borrowed(std::shared_ptr<const JudgedSampler> owner, Vec3d wo) : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}

@@ -17,7 +17,7 @@ std::vector<std::pair<double, double>> wo_grid(bool full);
 /// Every trial of one arm, or of all where the name is empty. Throws InputError for an unknown name.
 std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full);
 
-/// Somebody's own sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a
+/// A user's sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a
 /// BRDF.
 std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full);
 /// The same at one w_o.

@@ -230,7 +230,7 @@ private:
             std::string_view text(incoming_.data() + read_from_, end - read_from_);
             if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
             if (answered >= written)
-                fault(write, std::min(answered, count - 1), "got an answer to nothing: " + shown(text), expected);
+                fault(write, std::min(answered, count - 1), "unexpected extra line: " + shown(text), expected);
             if (answered >= count) return;
             if (!read(answered, text)) fault(write, answered, "got " + shown(text), expected);
             ++answered;

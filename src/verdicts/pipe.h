@@ -19,7 +19,7 @@ struct PipeLimits {
     double quiet_seconds = 10;   // without a byte while an answer is due
     double total_seconds = 120;  // for everything; beyond it the program is too slow to judge
     std::size_t longest_line = 4096;
-    const std::atomic<bool>* stop = nullptr;  // somebody wants to go home: the program is ended and Interrupted thrown
+    const std::atomic<bool>* stop = nullptr;  // when set, the program is ended and Interrupted thrown
 };
 
 /// Starts `command` with /bin/sh -c. Throws SubjectFault that says at which request, what came and what was expected.

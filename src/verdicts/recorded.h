@@ -1,4 +1,4 @@
-// Draws that somebody else made, read from a file: judged as they are, since no more can be asked for.
+// Draws that were made elsewhere, read from a file: judged as they are, since no more can be asked for.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Samples of somebody's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array, columns
+// Samples of a user's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array, columns
 // in this order).
 //   u1,u2,wix,wiy,wiz,pdf[,f]         f without the cosine, 1/sr
 // The density comes from a table, wix,wiy,wiz,pdf or cos_theta,phi,pdf (phi in radians): a full grid in cos theta and

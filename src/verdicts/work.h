@@ -15,7 +15,7 @@
 
 namespace crescent {
 
-/// How hard the bench looks, and where it draws the line.
+/// Sample counts, quadrature budget and significance levels of the tests.
 struct Rigour {
     bool full = false;
     double alpha = 1e-3;  // family-wise, for everything tested in one call
@@ -52,7 +52,7 @@ struct Batchful {
 
 inline bool is_finite(Vec3d w) { return std::isfinite(w.x + w.y + w.z); }
 
-/// Nothing drawn: pdf 0, or a direction under the horizon that pdf(w) does not own up to.
+/// Nothing drawn: pdf 0, or a direction under the horizon at which pdf(w) is 0.
 inline bool is_nothing(const Draw& d, double pdf_there) { return !(d.pdf > 0) || (d.wi.z <= 0 && !(pdf_there > 0)); }
 
 /// The bins of one technique's density and their expected mass.

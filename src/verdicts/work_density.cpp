@@ -127,7 +127,7 @@ void Work::measure_density() {
             if (d.mass.error > 1e-4) d = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations);
         }
         share_nothing(t, d);
-        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5)  // nobody is accused on one quadrature's word
+        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5)  // a failure needs a second quadrature that confirms it
             d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
