@@ -97,7 +97,7 @@ Rgb pixel(const Scene& scene, const std::string& sampler, const Point& at, int n
 double row(const Scene& scene, const std::string& sampler, int j, int n, std::uint32_t seed) {
     double sum = 0;
     std::mt19937 generator(seed + static_cast<std::uint32_t>(j));
-    for (int i = 0; i < scene.experiment().image.width; ++i) {
+    for (int i = 0; i < scene.image().width; ++i) {
         const auto hit = scene.primary(i, j);
         if (!hit) continue;
         Point at{*hit, scene.surface(*hit), {}, {}, {}};
@@ -112,7 +112,7 @@ double row(const Scene& scene, const std::string& sampler, int j, int n, std::ui
 }  // namespace
 
 double straightforward(const Scene& scene, const std::string& sampler, int n, std::uint32_t seed, int threads) {
-    const Image image = scene.experiment().image;
+    const Image image = scene.image();
     std::vector<double> rows(static_cast<std::size_t>(image.height));
     std::vector<std::thread> crew;
     for (int t = 0; t < threads; ++t)

@@ -49,7 +49,7 @@ struct Difference {
 };
 
 inline void compare(const Scene& scene, const ShapeMap& shapes, const Film& cpu, const Film& gl, Difference& out) {
-    const int width = scene.experiment().image.width;
+    const int width = scene.image().width;
     out.bad_cpu += cpu.bad, out.bad_gl += gl.bad;
     for (std::size_t at = 0; at < cpu.size(); ++at) {
         if (shapes.shape[at] < 0) continue;

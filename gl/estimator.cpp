@@ -53,13 +53,13 @@ Estimator::Kernel& Estimator::kernel(const std::string& sampler, int lobe, std::
 }
 
 const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, Watch& watch) {
-    const Experiment& e = scene.experiment();
-    const std::string key = fmt::format(
-        "{:x} {} {}x{} {},{} {},{}", hash(e), e.s(), e.image.width, e.image.height, box.x0, box.y0, box.x1, box.y1);
-    if (sites_ && key == sites_key_) return *sites_;
+    const auto same = [](const TileBox& a, const TileBox& b) {
+        return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
+    };
+    if (sites_ && sites_of_->is_same_as(scene) && same(sites_->box(), box)) return *sites_;
     sites_.reset();
     sites_.emplace(context_, scene, box, watch);
-    sites_key_ = key;
+    sites_of_ = scene;
     return *sites_;
 }
 
@@ -100,7 +100,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {
         Kernel& k = kernel(sampler, lobe, disks, bodies);
-        set_scene(k.program, lights, bodies, box, scene.experiment().image.width, seed);
+        set_scene(k.program, lights, bodies, box, scene.image().width, seed);
         parts.push_back({&k.program, &k.pacer, here.pixels_of(lobe)});
     }
     const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(disks));
@@ -120,7 +120,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
 std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, Watch& watch) {
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
-    const Image& image = scene.experiment().image;
+    const Image& image = scene.image();
     std::vector<Film> out;
     for (const std::uint64_t rung : n)
         out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);

@@ -47,7 +47,7 @@ private:
     std::map<std::string, std::unique_ptr<Kernel>> kernels_;  // by source text
     std::optional<Framebuffer> framebuffer_;
     std::optional<SiteTexture> sites_;  // of the last rectangle
-    std::string sites_key_;
+    std::optional<Scene> sites_of_;     // and of this scene
 };
 
 /// The fragment shader of one arm on one lobe (-1 to 2).

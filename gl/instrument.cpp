@@ -66,7 +66,7 @@ void GlInstrument::claim_framebuffer(const std::string& what, int width, int hei
 std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch& watch) {
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
-        const Image& image = scene.experiment().image;
+        const Image& image = scene.image();
         const TileBox first =
             rectangles_of(image.width, image.height, scene.disks().size(), estimator_.largest_texture()).front();
         claim_framebuffer("film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(scene.disks().size()));

@@ -21,7 +21,7 @@ std::vector<TileBox> tiles_in(const TileBox& box) {
 }  // namespace
 
 SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileBox& box, Watch& watch)
-    : context_(context), box_(box), image_width_(static_cast<std::size_t>(scene.experiment().image.width)) {
+    : context_(context), box_(box), image_width_(static_cast<std::size_t>(scene.image().width)) {
     const std::vector<TileBox> tiles = tiles_in(box);
     std::vector<std::vector<Sites>> all(tiles.size());
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {

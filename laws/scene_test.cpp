@@ -63,8 +63,8 @@ TEST(Camera, UpIsUpHoweverItIsTilted) {
 }
 
 TEST(Camera, AHitFacesTheEyeAndKnowsTheWayBack) {
-    const Scene scene(test::small_scene());
-    const Experiment& e = scene.experiment();
+    const Experiment e = test::small_scene();
+    const Scene scene(e);
     int hits = 0;
     for (int j = 0; j < e.image.height; ++j)
         for (int i = 0; i < e.image.width; ++i) {

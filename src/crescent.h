@@ -23,7 +23,7 @@
 #include "base/files.h"
 #include "base/watch.h"
 #include "compare/compare.h"
-#include "display/turbo.h"
+#include "color/turbo.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"
 #include "estimator/pixel.h"

@@ -41,17 +41,22 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 class Run {
 public:
     Run(const Experiment& experiment, const RunOptions& options, Watch& watch)
-        : experiment_(experiment), options_(options), watch_(watch), isa_(kernels_for(options.isa).isa),
+        : experiment_(experiment),
+          options_(options),
+          watch_(watch),
+          isa_(kernels_for(options.isa).isa),
           instrument_(options.instrument ? options.instrument : cpu_instrument(isa_)),
           threads_(options.threads > 0 ? options.threads : usable_threads()),
-          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)), scene_(experiment) {}
+          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)),
+          scene_(experiment) {}
 
     Measured in_memory() {
         look();
         compute(std::numeric_limits<double>::infinity());
         judge_assertions();
         auto& references = experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_;
-        return {std::move(metrics_), std::move(evidence_), std::move(provenance_), std::move(shapes_), std::move(films_), std::move(references)};
+        return {std::move(metrics_), std::move(evidence_), std::move(provenance_), std::move(shapes_),
+            std::move(films_), std::move(references)};
     }
 
     RunResult operator()() {
@@ -106,7 +111,9 @@ private:
             metrics_.geometry_pixels += pixels[k];
         }
         if (metrics_.geometry_pixels == 0)
-            throw InputError(experiment_.place_of("camera"), "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+            throw InputError(experiment_.place_of("camera"),
+                "nothing is in view: every ray of the camera misses every shape; expected eye and target that face "
+                "one");
     }
 
     void references() {
@@ -118,7 +125,7 @@ private:
         TileKeeper quadrature = kept_->tiles("quadrature"), note = kept_->tiles("note");
         quadrature_ = quadrature_reference(scene_, exponents, watch_, &quadrature);
         watch_.begin("the note's reference", pixels);
-        note_ = note_reference(scene_, exponents, isa_, watch_, &note);
+        note_ = note_reference(scene_, experiment_, exponents, isa_, watch_, &note);
     }
 
     static const ReferenceFilm* find(const std::vector<ReferenceFilm>& films, double s) {
@@ -133,7 +140,8 @@ private:
         for (int k = 0; const std::uint32_t seed : seeds_of(experiment_)) {
             const std::vector<Job> jobs = jobs_of(experiment_, seed);
             double samples = 0;
-            for (const Job& job : jobs) samples += static_cast<double>(job.n.back()) * static_cast<double>(metrics_.geometry_pixels);
+            for (const Job& job : jobs)
+                samples += static_cast<double>(job.n.back()) * static_cast<double>(metrics_.geometry_pixels);
             watch_.begin(fmt::format("seed {} of {}", ++k, experiment_.seeds), samples);
             for (const Job& job : jobs) run_job(job, k == 1);
         }
@@ -150,28 +158,33 @@ private:
             std::vector<Film> made = instrument_->films(scene_.with_s(job.s), job, watch_);
             samples = static_cast<double>(metrics_.geometry_pixels * job.n.back()) - keeper.restored();
             if (meters.empty()) kept_->add(meters = meters_of(job, made));
-            for (std::size_t r = 0; films && r < made.size(); ++r) films_.emplace_back(meters[r].key, std::move(made[r]));
+            for (std::size_t r = 0; films && r < made.size(); ++r)
+                films_.emplace_back(meters[r].key, std::move(made[r]));
         }
         if (!films) keeper.remove();
-        timing_.arms.push_back({job.arm->name, job.n.back(), job.s, static_cast<std::uint64_t>(samples), seconds_since(start)});
+        timing_.arms.push_back(
+            {job.arm->name, job.n.back(), job.s, static_cast<std::uint64_t>(samples), seconds_since(start)});
         metrics_.runs.insert(metrics_.runs.end(), meters.begin(), meters.end());
     }
 
     std::vector<RunMeter> meters_of(const Job& job, const std::vector<Film>& films) const {
         std::vector<RunMeter> out;
-        for (const Film& film : films) out.push_back(measure(experiment_, {job.arm->name, film.n, job.s, job.seed}, film, reference(job.s), shapes_));
+        for (const Film& film : films)
+            out.push_back(
+                measure(experiment_, {job.arm->name, film.n, job.s, job.seed}, film, reference(job.s), shapes_));
         return out;
     }
 
-    /// The tail index of each region's samples at the published seed. It belongs to an arm and exponent, not to N, and stands
-    /// beside every rung.
+    /// The tail index of each region's samples at the published seed. It belongs to an arm and exponent, not to N, and
+    /// stands beside every rung.
     void tails() {
         for (const Job& job : jobs_of(experiment_, experiment_.seed)) {
             const Scene scene = scene_.with_s(job.s);
             for (std::size_t r = 0; r < experiment_.regions.size(); ++r) {
                 const std::optional<Tail> tail = region_tail(scene, job, experiment_.regions[r].box, isa_, watch_);
                 for (RunMeter& run : metrics_.runs)
-                    if (run.key.seed == job.seed && run.key.arm == job.arm->name && run.key.s == job.s) run.regions[r].tail = tail;
+                    if (run.key.seed == job.seed && run.key.arm == job.arm->name && run.key.s == job.s)
+                        run.regions[r].tail = tail;
             }
         }
     }
@@ -181,20 +194,26 @@ private:
         metrics_.published_seed = published() ? published()->seed : std::nullopt;
         metrics_.ladders = ladders(experiment_, metrics_.runs);
         for (const auto& [key, film] : films_) metrics_.film_hashes[to_string(key)] = hash(film);
-        for (const ReferenceFilm& film : quadrature_) metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
-        for (const ReferenceFilm& film : note_) metrics_.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
+        for (const ReferenceFilm& film : quadrature_)
+            metrics_.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
+        for (const ReferenceFilm& film : note_)
+            metrics_.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
         for (const ReferenceFilm& q : quadrature_)
-            for (const Region& region : experiment_.regions) metrics_.references.push_back(compare(q, *find(note_, q.s), region, films_, experiment_.reference.kind));
+            for (const Region& region : experiment_.regions)
+                metrics_.references.push_back(
+                    compare(q, *find(note_, q.s), region, films_, experiment_.reference.kind));
     }
 
     void provenance() {
-        provenance_ = provenance_of(experiment_, *instrument_, options_.command.empty() ? "crescent run " + experiment_.file : options_.command);
+        provenance_ = provenance_of(experiment_, *instrument_,
+            options_.command.empty() ? "crescent run " + experiment_.file : options_.command);
     }
 
     Attributes attributes() const {
         return {{"crescent", provenance_.version + " " + provenance_.commit}, {"compiler", provenance_.compiler},
-                {"experiment", provenance_.experiment_file + " " + provenance_.experiment_hash},
-                {"command", provenance_.command}, {"instrument", provenance_.instrument}, {"seed", std::to_string(experiment_.seed)}};
+            {"experiment", provenance_.experiment_file + " " + provenance_.experiment_hash},
+            {"command", provenance_.command}, {"instrument", provenance_.instrument},
+            {"seed", std::to_string(experiment_.seed)}};
     }
 
     void draw_and_write(Staging& staging) {
@@ -214,12 +233,14 @@ private:
 
     std::vector<unsigned char> draw(const PlatePlan& plan) const {
         const PlateInputs in{experiment_, metrics_, shapes_,
-                             [this](const RunKey& key) -> const Film* {
-                                 const auto film = std::ranges::find(films_, key, &std::pair<RunKey, Film>::first);
-                                 return film == films_.end() ? nullptr : &film->second;
-                             },
-                             [this](double s) { return find(experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_, s); },
-                             instrument_->name()};
+            [this](const RunKey& key) -> const Film* {
+                const auto film = std::ranges::find(films_, key, &std::pair<RunKey, Film>::first);
+                return film == films_.end() ? nullptr : &film->second;
+            },
+            [this](double s) {
+                return find(experiment_.reference.kind == ReferenceKind::quadrature ? quadrature_ : note_, s);
+            },
+            instrument_->name()};
         Attributes text = attributes();
         text.emplace_back("plate", plan.name);
         return encode_png(draw_plate(plan, in), text);

@@ -57,7 +57,7 @@ void print(const Experiment& experiment) {
                 std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film)
                           << '\n';
     for (const std::string& isa : isas())
-        for (const ReferenceFilm& film : note_reference(scene, {experiment.s()}, isa, watch))
+        for (const ReferenceFilm& film : note_reference(scene, experiment, {experiment.s()}, isa, watch))
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
     for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, watch))
         std::cout << experiment.file << " quadrature " << hash(film) << '\n';

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "compare/schema.h"
-#include "display/turbo.h"
+#include "color/turbo.h"
 #include "meters/meters.h"
 #include "plates/raster.h"
 #include "plates/style.h"

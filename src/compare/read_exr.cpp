@@ -20,6 +20,7 @@
 #include <map>
 
 #include "base/errors.h"
+#include "color/rgb.h"
 #include "compare/render.h"
 #include "films/film.h"
 

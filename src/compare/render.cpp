@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "base/errors.h"
+#include "color/rgb.h"
 #include "films/film.h"
 
 namespace crescent {

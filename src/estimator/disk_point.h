@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "films/film.h"
+#include "color/rgb.h"
 #include "scene/brdf.h"
 #include "scene/scene.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
+#include "color/rgb.h"
 
 namespace crescent {
 
@@ -88,7 +89,7 @@ void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* 
 
 std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, const std::string& isa, Watch& watch, TileKeeper* keeper) {
-    const Image& image = scene.experiment().image;
+    const Image& image = scene.image();
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
     parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
@@ -120,7 +121,7 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
 }
 
 ShapeMap shape_map(const Scene& scene) {
-    const Image& image = scene.experiment().image;
+    const Image& image = scene.image();
     ShapeMap map{image.width, image.height, {}};
     map.shape.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), -1);
     parallel_for(0, image.height, [&](int j) {

@@ -165,7 +165,7 @@ double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
     Watch watch;
     const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0],
-                        note = note_reference(scene, {experiment.s()}, "", watch)[0];
+                        note = note_reference(scene, experiment, {experiment.s()}, "", watch)[0];
     double difference = 0, variance = 0;
     for (std::size_t at = 0; at < q.size(); ++at) {
         difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
@@ -189,8 +189,8 @@ TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     alone.disks.erase(alone.disks.begin());
     Watch watch;
     const Scene both(experiment), bare(alone);
-    const ReferenceFilm with = quadrature_reference(both, {both.experiment().s()}, watch)[0];
-    const ReferenceFilm without = quadrature_reference(bare, {bare.experiment().s()}, watch)[0];
+    const ReferenceFilm with = quadrature_reference(both, {both.s()}, watch)[0];
+    const ReferenceFilm without = quadrature_reference(bare, {bare.s()}, watch)[0];
     int darker = 0;  // ten times less radiant than what it hides
     for (std::size_t at = 0; at < with.size(); ++at) darker += with.y[at] < 0.7f * without.y[at];
     EXPECT_GT(darker, 100);
@@ -212,7 +212,8 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
     const Scene scene(experiment);
     Watch watch;
     const std::vector<double> s = {experiment.s()};
-    const ReferenceFilm truth = quadrature_reference(scene, s, watch)[0], note = note_reference(scene, s, "", watch)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, s, watch)[0],
+                        note = note_reference(scene, experiment, s, "", watch)[0];
     for (std::uint32_t k = 0; k < 4; ++k)
         for (const char* arm : {"phong", "light-area"}) {
             const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", watch)[0];

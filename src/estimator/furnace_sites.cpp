@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "films/film.h"
+#include "color/rgb.h"
 
 namespace crescent {
 
-Surface furnace_surface(const Experiment& experiment, const Shape& shape, bool lobe_only) {
-    Surface surface = surface_of(shape.material, experiment.s());
+Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only) {
+    Surface surface = surface_of(shape.material, scene.s());
     if (lobe_only) surface.rho_d = {};
     return surface;
 }

@@ -6,8 +6,8 @@
 
 namespace crescent {
 
-/// The material of a shape, with the experiment's own s where it has none; lobe_only drops rho_d.
-Surface furnace_surface(const Experiment& experiment, const Shape& shape, bool lobe_only);
+/// The material of a shape, with the scene's own s where it has none; lobe_only drops rho_d.
+Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only);
 
 /// `count` alike sites, each with random numbers of its own. X = (cos/p) f.
 Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o = 1);

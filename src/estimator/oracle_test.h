@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "films/film.h"
+#include "color/rgb.h"
 #include "scene/brdf.h"
 #include "scene/scene.h"
 

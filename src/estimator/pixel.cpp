@@ -6,7 +6,7 @@
 #include "arms/all.h"
 #include "base/errors.h"
 #include "estimator/disk_hit.h"
-#include "films/film.h"
+#include "color/rgb.h"
 #include "math/functions.h"
 #include "scene/brdf.h"
 #include "simd/random.h"

@@ -17,8 +17,8 @@ constexpr std::uint64_t n = 48;
 /// Pixels of the test scene: the ball's highlight, its side, the block, the ground and its shadow.
 std::vector<std::pair<int, int>> pixels(const Scene& scene) {
     std::vector<std::pair<int, int>> out;
-    for (int j = 2; j < scene.experiment().image.height; j += 5)
-        for (int i = 1; i < scene.experiment().image.width; i += 6)
+    for (int j = 2; j < scene.image().height; j += 5)
+        for (int i = 1; i < scene.image().width; i += 6)
             if (scene.primary(i, j)) out.emplace_back(i, j);
     return out;
 }

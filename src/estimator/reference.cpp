@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "color/rgb.h"
 #include "estimator/disk_quadrature.h"
 #include "estimator/estimator.h"
 #include "estimator/lobe_albedo.h"
@@ -19,7 +20,7 @@ namespace {
 class Albedos {
 public:
     explicit Albedos(const Scene& scene) {
-        for (std::size_t k = 0; k < scene.experiment().shapes.size(); ++k) {
+        for (std::size_t k = 0; k < scene.shapes().size(); ++k) {
             Hit hit;
             hit.shape = static_cast<int>(k);
             const Surface surface = scene.surface(hit);
@@ -141,10 +142,11 @@ bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, do
 /// The note's reference over one group of sites.
 class NotePixels {
 public:
-    NotePixels(const Scene& scene, const Sites& sites, const std::string& isa, Watch& watch)
+    NotePixels(
+        const Scene& scene, const Experiment& experiment, const Sites& sites, const std::string& isa, Watch& watch)
         : scene_(scene), sites_(sites) {
-        const ReferencePlan& plan = scene.experiment().reference;
-        const auto seed = [&](std::uint32_t k) { return reference_seed(scene.experiment(), k); };
+        const ReferencePlan& plan = experiment.reference;
+        const auto seed = [&](std::uint32_t k) { return reference_seed(experiment, k); };
         if (sites.lobe >= 0)
             lobe_ =
                 estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, seed(0), isa, &watch.stop);
@@ -186,10 +188,10 @@ private:
 
 /// One film per exponent, made by calling work(tile, films) for every tile.
 template <class Work> std::vector<ReferenceFilm> by_tiles(
-    const Experiment& experiment, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper, Work&& work) {
+    const Image& image, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper, Work&& work) {
     std::vector<ReferenceFilm> films;
-    for (double s : exponents) films.emplace_back(experiment.image.width, experiment.image.height, s);
-    const std::vector<TileBox> tiles = tiles_of(experiment.image.width, experiment.image.height);
+    for (double s : exponents) films.emplace_back(image.width, image.height, s);
+    const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     if (keeper) keeper->begin(tiles, outputs_of(films));
     for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
         work(tiles[k], films);
@@ -219,14 +221,13 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
 
 std::vector<ReferenceFilm> quadrature_reference(
     const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper) {
-    const Experiment& experiment = scene.experiment();
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     const std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
     const auto pixel = [&](int i, int j, std::vector<ReferenceFilm>& films) {
         const auto hit = scenes[0].primary(i, j);
         if (!hit) return;
-        const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment.image.width) +
-            static_cast<std::size_t>(i);
+        const std::size_t at =
+            static_cast<std::size_t>(j) * static_cast<std::size_t>(scene.image().width) + static_cast<std::size_t>(i);
         for (std::size_t e = 0; e < scenes.size(); ++e) {
             const Surface surface = scenes[e].surface(*hit);
             if (e > 0 && !(surface.rho_s > 0)) {  // no lobe, no exponent
@@ -237,28 +238,29 @@ std::vector<ReferenceFilm> quadrature_reference(
             store(films[e], at, radiance, error);
         }
     };
-    return by_tiles(experiment, exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
-        for (int j = tile.y0; j < tile.y1 && !watch.stop.load(std::memory_order_relaxed); ++j)
-            for (int i = tile.x0; i < tile.x1; ++i) pixel(i, j, films);
-    });
+    return by_tiles(
+        scene.image(), exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+            for (int j = tile.y0; j < tile.y1 && !watch.stop.load(std::memory_order_relaxed); ++j)
+                for (int i = tile.x0; i < tile.x1; ++i) pixel(i, j, films);
+        });
 }
 
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents,
-    const std::string& isa, Watch& watch, TileKeeper* keeper) {
-    const Experiment& experiment = scene.experiment();
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const Experiment& experiment,
+    const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
-    return by_tiles(experiment, exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
-        for (std::size_t e = 0; e < scenes.size(); ++e) {
-            for (const Sites& sites : sites_of(scenes[e], tile, nullptr)) {
-                if (e > 0 && sites.lobe < 0) {
-                    for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
-                    continue;
+    return by_tiles(
+        scene.image(), exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+            for (std::size_t e = 0; e < scenes.size(); ++e) {
+                for (const Sites& sites : sites_of(scenes[e], tile, nullptr)) {
+                    if (e > 0 && sites.lobe < 0) {
+                        for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
+                        continue;
+                    }
+                    const NotePixels pixels(scenes[e], experiment, sites, isa, watch);
+                    for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
                 }
-                const NotePixels pixels(scenes[e], sites, isa, watch);
-                for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
             }
-        }
-    });
+        });
 }
 
 }  // namespace crescent

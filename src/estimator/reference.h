@@ -11,8 +11,9 @@
 
 #include "base/watch.h"
 #include "estimator/tile_keeper.h"
-#include "scene/scene.h"
+#include "experiment/experiment.h"
 #include "films/film.h"
+#include "scene/scene.h"
 
 namespace crescent {
 
@@ -22,7 +23,8 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 /// One film per exponent, in order. `keeper`: keeps finished tiles.
 std::vector<ReferenceFilm> quadrature_reference(
     const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper = nullptr);
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const std::vector<double>& exponents,
-    const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
+/// `experiment`: whose reference it is; says how many samples, and which seeds.
+std::vector<ReferenceFilm> note_reference(const Scene& scene, const Experiment& experiment,
+    const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
 
 }  // namespace crescent

@@ -56,7 +56,7 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthWithinItsStatedError) {
     for (std::uint32_t seed = 1000 * GetParam(); seed < 1000 * GetParam() + scenes_a_shard; ++seed) {
         test::RandomScene draw(seed);
         const Scene scene(draw());
-        const ReferenceFilm film = quadrature_reference(scene, {scene.experiment().s()}, watch)[0];
+        const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, watch)[0];
         Comparison all;
         std::string off;
         for (int j = 0; j < film.height; ++j)

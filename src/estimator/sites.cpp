@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "films/film.h"
+#include "color/rgb.h"
 #include "scene/shadow.h"
 
 namespace crescent {
@@ -187,7 +187,7 @@ private:
 
 std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
     Sorter sorter(scene, tile);
-    const int width = scene.experiment().image.width;
+    const int width = scene.image().width;
     for (int j = tile.y0; j < tile.y1; ++j) {
         sorter.next_row();
         for (int i = tile.x0; i < tile.x1; ++i) {

@@ -13,69 +13,9 @@
 #include "base/errors.h"
 #include "base/vec.h"
 #include "experiment/published.h"
+#include "scene/scene_data.h"
 
 namespace crescent {
-
-using Rgb = std::array<double, 3>;  // linear Rec.709
-
-/// Inclusive pixel coordinates at the image's size, origin bottom-left.
-struct Box {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    int width() const { return x1 - x0 + 1; }
-    int height() const { return y1 - y0 + 1; }
-};
-
-struct Image {
-    int width = 0, height = 0;  // pixels
-};
-
-struct Camera {
-    Vec3d eye{}, target{}, up{};
-    double vfov_deg = 0;  // vertical field of view
-};
-
-inline constexpr std::size_t most_disks = 64;  // disk lights in one scene: kernels hold the sums of each at hand
-
-enum class BrdfKind { phong, blinn_phong, ggx };
-
-/// f = rho_d/pi + rho_s * lobe(s or alpha). A Lambert surface has rho_s = 0; its s only steers the arms.
-struct Material {
-    Rgb rho_d{};
-    double rho_s = 0;
-    BrdfKind brdf = BrdfKind::phong;
-    std::optional<double> s;      // Phong exponent
-    std::optional<double> alpha;  // GGX roughness, (0, 1], no remapping
-    bool inherits_s = false;      // s is not the shape's own but the experiment's
-};
-
-enum class ShapeKind { sphere, box, quad, disk, plane, panel };
-
-/// One shape; which fields count depends on the kind (see `crescent schema`).
-struct Shape {
-    std::string name;
-    ShapeKind kind = ShapeKind::sphere;
-    Material material;
-    std::optional<Rgb> reveal_rho_d;     // panel: the four sides of the recess
-    bool occludes = false;               // whether it blocks the disk lights
-    Vec3d center{};                      // sphere, disk
-    double radius = 0;                   // sphere, disk
-    Vec3d min{}, max{};                  // box
-    Vec3d corner{}, edge_u{}, edge_v{};  // quad, panel opening; the outward normal is edge_u x edge_v
-    Vec3d point{};                       // plane
-    Vec3d normal{};                      // plane, disk; unit
-    double depth = 0;                    // panel: how far it is set back, against the normal
-    Place at;
-};
-
-/// A disk that emits `radiance` from the side its normal points to (or both). Seen by sampled rays only.
-struct DiskLight {
-    std::string name;
-    Vec3d center{}, normal{};
-    double radius = 0;
-    Rgb radiance{};
-    bool two_sided = false;
-    Place at;
-};
 
 /// One sampler with its ladder: rungs are prefixes of one stream.
 struct ArmPlan {
@@ -90,7 +30,7 @@ struct ExponentControl {
     std::string arm;
     std::uint64_t n = 0;
     std::vector<double> s;
-    std::string shape;  // whose s is meant
+    std::string shape;  // whose s is meant: SceneData::s_of
     Place at;
 };
 
@@ -149,21 +89,16 @@ struct AssertionPlan {
     Place at;
 };
 
-struct Experiment {
+/// A scene, and what is asked of it.
+struct Experiment : SceneData {
     std::string file;  // as given
     std::string title;
     std::vector<std::string> overrides;  // PATH=VALUE, as given
     std::uint32_t seed = 0;
-    std::uint64_t n =
-        0;          // samples per pixel meant where a plate, a check or the exponent control names none; 0: none given
-    int seeds = 1;  // how many seeds the bands are made of; the first is `seed`
+    std::uint64_t n = 0;  // samples per pixel meant where a plate, check or exponent control names none; 0: none given
+    int seeds = 1;        // how many seeds the bands are made of; the first is `seed`
     double exposure = 1;
     double firefly_k = 4;
-    Image image;
-    Camera camera;
-    std::vector<Shape> shapes;
-    std::vector<DiskLight> disks;
-    Rgb fill{};  // uniform over the hemisphere
     std::vector<ArmPlan> arms;
     std::optional<ExponentControl> exponent;
     std::vector<Region> regions;
@@ -175,19 +110,12 @@ struct Experiment {
     std::optional<Published> figures;      // what it says, once it is read: by load(), else by run()
     std::map<std::string, Place> places;   // "camera.eye" -> where it was written
 
-    /// The experiment's own s, which steers arms on surfaces without a lobe and which the exponent control changes:
-    /// that of the control's shape, else of the first shape with a lobe, else of the first shape that has one;
-    /// 0 where nothing in the experiment needs an s.
-    double s() const;
-    /// The shape whose exponent that is; null where nothing needs one.
-    const Shape* shape_of_s() const;
     /// This experiment with another s: on the shape that s() is read from and on all that inherit it.
     Experiment with_s(double s) const;
     /// The n meant where none is named: the experiment's own where `arm` has that rung, else the arm's highest.
     std::uint64_t n_of(const ArmPlan& arm) const;
     const ArmPlan* find_arm(std::string_view name) const;
     const Region* find_region(std::string_view name) const;
-    const Shape* find_shape(std::string_view name) const;
     /// Where a key was written; a key that was not, stands where its table does.
     Place place_of(const std::string& path) const;
 };

@@ -148,6 +148,8 @@ std::uint64_t hash(const Experiment& experiment) {
     } else {
         text = canonical_text(experiment);
     }
+    if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code: no key says it
+        text += toml_text(experiment.s_of);
     return XXH3_64bits(text.data(), text.size());
 }
 

@@ -38,6 +38,7 @@ void resolve_s(Draft& draft) {
                 fmt::format(
                     "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
     }
+    if (e.exponent) e.s_of = e.exponent->shape;
     const double s = e.s();
     for (Shape& shape : e.shapes)
         if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;

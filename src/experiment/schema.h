@@ -202,15 +202,16 @@ template <auto First, auto... Rest> auto& member_of(auto& object) {
     else return member_of<Rest...>(object.*First);
 }
 
-/// A key stored in a member, or in a member of a member: to<&Shape::material, &Material::rho_s>.
-template <auto First, auto... Rest> constexpr Slot to = {
-    [](void* object, const Value& value) {
-        assign(member_of<First, Rest...>(*static_cast<typename OwnerOf<decltype(First)>::type*>(object)), value);
-    },
+/// A key stored in a member of an Owner, or in a member of a member.
+template <class Owner, auto First, auto... Rest> constexpr Slot to_owner = {
+    [](void* object, const Value& value) { assign(member_of<First, Rest...>(*static_cast<Owner*>(object)), value); },
     [](const void* object, Value& value) {
-        return fetch(
-            member_of<First, Rest...>(*static_cast<const typename OwnerOf<decltype(First)>::type*>(object)), value);
+        return fetch(member_of<First, Rest...>(*static_cast<const Owner*>(object)), value);
     }};
+
+/// The same where the first member's class is the object's own: to<&Shape::material, &Material::rho_s>.
+template <auto First, auto... Rest> constexpr Slot to =
+    to_owner<typename OwnerOf<decltype(First)>::type, First, Rest...>;
 
 template <class T> T* make_room(T& member) { return &member; }
 template <class T> T* make_room(std::optional<T>& member) { return &member.emplace(); }

@@ -19,14 +19,15 @@ constexpr Need required = Need::required, optional = Need::optional, defaulted =
 
 Section image() {
     return {"image", Many::one, required,
-        "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.", in<&Experiment::image>,
+        "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.",
+        in<&Experiment::image, Experiment>,
         {{"width", Type::integer, {1, 16384}, "pixels", required, "", "Columns.", to<&Image::width>},
             {"height", Type::integer, {1, 16384}, "pixels", required, "", "Rows.", to<&Image::height>}},
         {}};
 }
 
 Section camera() {
-    return {"camera", Many::one, required, "A pinhole camera.", in<&Experiment::camera>,
+    return {"camera", Many::one, required, "A pinhole camera.", in<&Experiment::camera, Experiment>,
         {{"eye", Type::point, free_range, "m", required, "", "Where it stands.", to<&Camera::eye>},
             {"target", Type::point, free_range, "m", required, "", "The point in the middle of the picture.",
                 to<&Camera::target>},
@@ -80,12 +81,13 @@ Section shapes() {
         {"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the disks' light.",
             to<&Shape::occludes>}};
     keys.insert(keys.end(), material.begin(), material.end());
-    return {"shapes", Many::named, required, "What the camera sees.", in<&Experiment::shapes>, std::move(keys), {}};
+    return {"shapes", Many::named, required, "What the camera sees.", in<&Experiment::shapes, Experiment>,
+        std::move(keys), {}};
 }
 
 Section disks() {
     return {"disks", Many::named, optional, "Disks that shine; sampled rays meet them, the camera does not see them.",
-        in<&Experiment::disks>,
+        in<&Experiment::disks, Experiment>,
         {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
             {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
             {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
@@ -99,7 +101,7 @@ Section disks() {
 Section fill() {
     return {"fill", Many::one, optional, "Light from every direction in which no disk is met.", {},
         {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
-            to<&Experiment::fill>}},
+            to_owner<Experiment, &Experiment::fill>}},
         {}};
 }
 

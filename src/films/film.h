@@ -9,13 +9,6 @@
 
 namespace crescent {
 
-/// Weights of linear Rec.709 luminance, ITU-R BT.709.
-inline constexpr double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
-
-template <class C> double luminance(const C& rgb) {
-    return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
-}
-
 /// What was run: an arm at n samples per pixel, exponent s, seed.
 struct RunKey {
     std::string arm;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "arms/all.h"
+#include "color/rgb.h"
 #include "estimator/estimator.h"
 #include "estimator/furnace_sites.h"
 #include "math/distributions.h"

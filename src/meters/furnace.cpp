@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/errors.h"
+#include "color/rgb.h"
 #include "estimator/estimator.h"
 #include "estimator/furnace_sites.h"
 #include "estimator/lobe_albedo.h"

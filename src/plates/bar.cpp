@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "display/turbo.h"
+#include "color/turbo.h"
 #include "plates/sheet.h"
 
 namespace crescent::plates {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "display/tone.h"
+#include "color/tone.h"
 #include "plates/plates.h"
 
 typedef struct _cairo cairo_t;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "arms/all.h"
-#include "films/film.h"
+#include "color/rgb.h"
 #include "math/functions.h"
 #include "scene/scene.h"
 

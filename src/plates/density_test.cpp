@@ -41,9 +41,9 @@ TEST(Density, IsOfTheShapeWhoseExponentIsTheExperiments) {
     other.material.alpha = 0.9;
     e.shapes.push_back(other);
     e.exponent.emplace();
-    e.exponent->shape = "other";
+    e.s_of = e.exponent->shape = "other";
     const Density as_other(e, "ggx-d", e.s(), 0);
-    e.exponent->shape = e.shapes[0].name;
+    e.s_of = e.exponent->shape = e.shapes[0].name;
     EXPECT_GT(Density(e, "ggx-d", e.s(), 0).in_plane(0), 5 * as_other.in_plane(0));
 }
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "display/turbo.h"
+#include "color/turbo.h"
 
 namespace crescent::plates {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "display/turbo.h"
+#include "color/turbo.h"
 #include "math/functions.h"
 #include "plates/density.h"
 #include "plates/polar.h"

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "experiment/experiment.h"
 #include "scene/frame.h"
+#include "scene/shape.h"
 
 namespace crescent {
 

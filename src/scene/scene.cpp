@@ -33,27 +33,25 @@ void add_occluders(const Shape& q, int index, std::vector<Occluder>& out) {
 
 }  // namespace
 
-Scene::Scene(const Experiment& experiment) : experiment_(experiment) {
-    const Camera& c = experiment_.camera;
-    const Image& image = experiment_.image;
-    const Vec3d forward = normalize(c.target - c.eye);
-    const Vec3d right = normalize(cross(forward, c.up));
-    const double pixel = 2 * math::tan(c.vfov_deg * pi / 360) / image.height;  // at distance 1
-    forward_ = forward;
-    right_ = pixel * right;
-    up_ = pixel * cross(right, forward);
-    bool needs_s = false;
-    for (const Shape& shape : experiment_.shapes) needs_s = needs_s || !shape.material.s;
-    s_ = needs_s ? experiment_.s() : 0;
-    for (std::size_t k = 0; k < experiment_.shapes.size(); ++k)
-        if (experiment_.shapes[k].occludes) add_occluders(experiment_.shapes[k], static_cast<int>(k), occluders_);
-    origin_ = nearest_seen();
+Scene::Made::Made(SceneData from) : data(std::move(from)) {
+    const Camera& c = data.camera;
+    forward = normalize(c.target - c.eye);
+    const Vec3d across = normalize(cross(forward, c.up));
+    const double pixel = 2 * math::tan(c.vfov_deg * pi / 360) / data.image.height;  // at distance 1
+    right = pixel * across;
+    up = pixel * cross(across, forward);
+    for (std::size_t k = 0; k < data.shapes.size(); ++k)
+        if (data.shapes[k].occludes) add_occluders(data.shapes[k], static_cast<int>(k), occluders);
+    if (const Shape* own = data.shape_of_s()) s_shape = own - data.shapes.data();
+    origin = nearest_seen();
 }
 
-Vec3d Scene::nearest_seen() const {
+Scene::Scene(SceneData data) : made_(std::make_shared<const Made>(std::move(data))), s_(made_->data.s()) {}
+
+Vec3d Scene::Made::nearest_seen() const {
     constexpr int rays = 12;  // up and across
-    const Camera& c = experiment_.camera;
-    const Image& image = experiment_.image;
+    const Camera& c = data.camera;
+    const Image& image = data.image;
     Vec3d nearest = c.eye;
     double least = std::numeric_limits<double>::infinity();
     for (int j = 0; j < rays; ++j) {
@@ -69,38 +67,38 @@ Vec3d Scene::nearest_seen() const {
 }
 
 void Scene::remember_primaries() {
-    const std::size_t width = static_cast<std::size_t>(experiment_.image.width),
-                      height = static_cast<std::size_t>(experiment_.image.height);
+    const std::size_t width = static_cast<std::size_t>(image().width),
+                      height = static_cast<std::size_t>(image().height);
     if (width * height > std::size_t{1} << 20) return;
     auto all = std::make_shared<std::vector<Hit>>(width * height);
     parallel_for(std::size_t{0}, height, [&](std::size_t j) {
         for (std::size_t i = 0; i < width; ++i)
-            if (const auto hit = trace(static_cast<int>(i), static_cast<int>(j))) (*all)[j * width + i] = *hit;
+            if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j))) (*all)[j * width + i] = *hit;
     });
     primaries_ = std::move(all);
 }
 
 Scene Scene::with_s(double s) const {
-    Scene other(experiment_.with_s(s));
-    other.primaries_ = primaries_;
+    Scene other = *this;
+    if (made_->s_shape >= 0) other.s_ = s, other.other_s_ = true;
     return other;
 }
 
 std::optional<Hit> Scene::primary(int i, int j) const {
-    if (!primaries_) return trace(i, j);
-    const Hit& hit = (*primaries_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(experiment_.image.width) +
+    if (!primaries_) return made_->trace(i, j);
+    const Hit& hit = (*primaries_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) +
         static_cast<std::size_t>(i)];
     return hit.shape < 0 ? std::nullopt : std::optional<Hit>(hit);
 }
 
-std::optional<Hit> Scene::trace(int i, int j) const {
-    const Image& image = experiment_.image;
-    const Vec3d d = normalize(forward_ + (i + 0.5 - 0.5 * image.width) * right_ + (j + 0.5 - 0.5 * image.height) * up_);
-    const Vec3d eye = experiment_.camera.eye;
+std::optional<Hit> Scene::Made::trace(int i, int j) const {
+    const Image& image = data.image;
+    const Vec3d d = normalize(forward + (i + 0.5 - 0.5 * image.width) * right + (j + 0.5 - 0.5 * image.height) * up);
+    const Vec3d eye = data.camera.eye;
     Crossing best;
     Hit hit;
-    for (std::size_t k = 0; k < experiment_.shapes.size(); ++k) {
-        const Crossing c = intersect(experiment_.shapes[k], eye, d);
+    for (std::size_t k = 0; k < data.shapes.size(); ++k) {
+        const Crossing c = intersect(data.shapes[k], eye, d);
         if (c.order < best.order) best = c, hit.shape = static_cast<int>(k);
     }
     if (hit.shape < 0) return {};
@@ -111,14 +109,11 @@ std::optional<Hit> Scene::trace(int i, int j) const {
     return hit;
 }
 
-Surface surface_of(const Material& m, double common_s) {
-    const double s = m.s.value_or(common_s);
-    return {m.rho_d, m.rho_s, m.brdf, s, m.alpha.value_or(std::sqrt(2 / (s + 2)))};
-}
-
 Surface Scene::surface(const Hit& hit) const {
-    const Shape& shape = experiment_.shapes[static_cast<std::size_t>(hit.shape)];
-    Surface out = surface_of(shape.material, s_);
+    const Shape& shape = shapes()[static_cast<std::size_t>(hit.shape)];
+    Material material = shape.material;
+    if (other_s_ && (hit.shape == made_->s_shape || material.inherits_s)) material.s = s_;
+    Surface out = surface_of(material, s_);
     if (hit.reveal) {
         out.rho_d = shape.reveal_rho_d.value_or(out.rho_d);
         out.rho_s = 0;

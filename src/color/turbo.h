@@ -2,7 +2,7 @@
 // Source: A. Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", Google AI Blog, 20 August 2019.
 #pragma once
 
-#include "display/tone.h"
+#include "color/tone.h"
 
 namespace crescent {
 

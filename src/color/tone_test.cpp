@@ -1,4 +1,4 @@
-#include "display/tone.h"
+#include "color/tone.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "experiment/experiment.h"
+#include "color/rgb.h"
 
 namespace crescent {
 

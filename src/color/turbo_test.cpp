@@ -1,4 +1,4 @@
-#include "display/turbo.h"
+#include "color/turbo.h"
 
 #include <gtest/gtest.h>
 
