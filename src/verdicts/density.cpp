@@ -171,11 +171,16 @@ Verdict judge_normalised(const Work& work) {
         }
         if (!mass.settled && mass.error > allowed && v.state == State::right) {
             v.state = State::inconclusive;
-            v.say = told + fmt::format(", but the quadrature itself is only good to {:.2g}.", mass.error);
+            v.say = told +
+                fmt::format(", but the quadrature itself is only good to {:.2g} after {} evaluations.", mass.error,
+                    mass.evaluations);
+            v.settle = work.rigour.full
+                ? "More evaluations (Rigour::evaluations), or a p that jumps along fewer curves."
+                : "--full, with twelve times as many evaluations.";
         }
         if (v.state == State::right && d.doubts > allowed) {
             v.say = told + fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.doubts);
-            if (d.doubts > 0.05) v.state = State::inconclusive;
+            if (d.doubts > 0.05) v.state = State::inconclusive, v.settle = "A finer table.";
         } else if (v.state == State::right) {
             v.say = told + ": one, as a density must.";
         }
@@ -230,7 +235,9 @@ Verdict judge_density(Work& work) {
             work.first(t).draws.size(), f.joint.statistic, f.joint.degrees, f.joint.p, coordinates(d));
         if (f.joint.pools < 2) {
             v.state = State::inconclusive;
-            v.say = "Fewer than two bins expect 5 draws: too few draws for a chi-square test.";
+            v.say = fmt::format("Fewer than two bins expect 5 draws: {} draws are too few for a chi-square test.",
+                work.first(t).draws.size());
+            v.settle = "More draws, or a sampler that draws something more often.";
         }
     }
     return v;

@@ -35,7 +35,8 @@ Efficiency measure_efficiency(const Work& work, std::size_t trial) {
     for (double v : x) m4 += sqr(sqr(v - s.mean)) / s.n;
     e.variance = sqr(s.sd);
     e.relative_se = e.variance > 0 ? std::sqrt(std::max(m4 / sqr(e.variance) - 1, 0.0) / s.n) : 0;
-    e.heavy = !mean_is_testable(s, tail_of(x), work.trial.theory);
+    e.heavy =
+        !mean_is_testable(s, tail_of(x), work.trial.theory) || (!work.guides().empty() && has_unmet_tail(work, false));
     return e;
 }
 
@@ -103,6 +104,7 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         if (e.heavy) {
             v.state = State::inconclusive;
             v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
+            v.settle = "What settles the tail.";
             continue;
         }
         std::vector<std::string> better, worse, level;

@@ -28,7 +28,8 @@ void skip_rest(const Trial& trial, Outcome& out, const std::string& why) {
 }
 
 void expect(const Trial& trial, Verdict& v) {
-    const bool may_doubt = v.name == "tail" || v.name == "mean" || v.name == "efficiency";
+    const bool unmet = v.evidence.contains("unmet_share");
+    const bool may_doubt = unmet || v.name == "tail" || v.name == "mean" || v.name == "efficiency";
     const bool must_be_wrong = trial.theory.wrong && *trial.theory.wrong == v.name;
     const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= 0.5;
     if (must_be_wrong) {
@@ -37,6 +38,9 @@ void expect(const Trial& trial, Verdict& v) {
     } else if (infinite && (v.name == "tail" || v.name == "mean")) {
         v.expected = v.state == State::inconclusive;
         v.why_expected = trial.theory.why;
+    } else if (!trial.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
+        v.expected = true;
+        v.why_expected = trial.theory.underflows;
     } else {
         v.expected =
             v.state == State::right || v.state == State::skipped || (may_doubt && v.state == State::inconclusive);
@@ -54,6 +58,7 @@ void own_up_to_one_half(const Work& work, Verdict& v) {
     if (!work.below().transmits || work.whole() || v.state != State::right || (v.name != "physics" && v.name != "mean"))
         return;
     v.state = State::inconclusive;
+    v.settle = "An f that returns 0 under the surface, or a sampler that draws there.";
     v.say = "f transmits, or does not return 0 under the surface; this is of the upper half only. " + v.say;
 }
 
@@ -126,6 +131,7 @@ void fill_up(const Trial& trial, Outcome& out) {
     for (bool first = true; out.verdicts.size() < verdict_names.size(); first = false) {
         Verdict v = skipped(trial, verdict_names[out.verdicts.size()], first ? out.cut->first : out.cut->rest);
         v.state = out.cut->state;
+        if (v.state == State::inconclusive) v.settle = "More time (--patience), or a program that answers faster.";
         if (first) v.evidence = out.cut->evidence;
         out.verdicts.push_back(std::move(v));
     }

@@ -67,11 +67,24 @@ Stages stages_of(const std::string& arm) {
     return all;
 }
 
+/// A power of n.h or w.R that is less than the smallest double, 2^-1074, somewhere above the surface, where Lambert is
+/// not 0. n.h is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
+bool power_underflows(const std::string& arm, const SurfaceSetup& f, double theta_deg) {
+    if (f.rho_d <= 0) return false;
+    const double least =
+        arm == "blinn" ? math::cos((theta_deg + 90) * pi / 360) : 1e-3;  // w.R: 1e-6 of Lambert's light lies below
+    return (arm == "blinn" || arm == "phong") && f.s * math::log(least) < -1074 * math::log(2.0) + math::log(f.s + 1);
+}
+
 /// What is known of an arm on a stage at theta_R = theta.
 Theory theory_of(const std::string& arm, const Stage& stage, double theta_deg) {
     Theory t;
     const SurfaceSetup& f = stage.surface;
     const double tilted = theta_deg * pi / 180;
+    if (power_underflows(arm, f, theta_deg))
+        t.underflows =
+            "the lobe's power is less than the smallest number there is where Lambert is not 0: p is 0 in the arm's "
+            "own arithmetic";
     if (arm == "phong" && f.rho_d > 0) {
         t.lost = (1 - math::cos(tilted)) / 2;
         t.lost_of = f.rho_d;

@@ -33,6 +33,12 @@ bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Th
 double mean_p(const Spread& s, const Integral& expected);
 bool mean_fails(const Work& work, double p, const Integral& expected, bool even);
 
+/// The mean is short, and a tail that no draw met explains it: such a mean is not accused (unmet.cpp).
+bool has_unmet_tail(const Work& work, bool even);
+Unmet look_for_unmet(const Work& work, std::span<const double> x, bool even);
+/// "heavy tail that no draw met", with its mass and how many draws would meet it; sets `settle` too.
+void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::size_t draws);
+
 /// How far the sampler's p may move when wo and wi move by their own rounding: the largest change over twelve nudges.
 double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
 double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f);

@@ -126,6 +126,11 @@ Verdict judge_physics(const Work& work) {
     v.evidence["furnace_p"] = p;
     v.say += fmt::format(
         "; the arm's white furnace reads {:.6g} where quadrature says {:.6g} (p = {:.3g}).", s.mean, reached.value, p);
+    if (has_unmet_tail(work, true)) {
+        v.say += " ";
+        tell_unmet(v, work.unmet(true), reached, x.size());
+        return v;
+    }
     if (mean_fails(work, p, reached, true)) {
         v.state = State::wrong;
         v.say = fmt::format("The white furnace reads {:.6g}, quadrature says {:.6g}, and again on a fresh seed.",

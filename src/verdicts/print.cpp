@@ -112,6 +112,7 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
         one["name"] = v.name;
         one["state"] = word(v.state);
         one["say"] = v.say;
+        if (!v.settle.empty()) one["settle"] = v.settle;
         one["expected"] = v.expected;
         if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
         one["evidence"] = v.evidence;
@@ -150,7 +151,8 @@ std::string verdict_junit(const Judgement& judgement) {
             cases += fmt::format("<failure message=\"{}\">{}</failure>", message, escape(v.say));
         } else if (v.state == State::skipped || v.state == State::inconclusive) {
             ++skipped;
-            cases += fmt::format("<skipped message=\"{}: {}\"/>", word(v.state), escape(v.say));
+            cases += fmt::format("<skipped message=\"{}: {}\"/>", word(v.state),
+                escape(v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle)));
         }
         cases += "</testcase>\n";
     }

@@ -72,7 +72,10 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
 
 }  // namespace
 
-std::string told(const Verdict& v) { return v.say + (v.say_timed.empty() ? "" : " " + v.say_timed); }
+std::string told(const Verdict& v) {
+    return v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle) +
+        (v.say_timed.empty() ? "" : " " + v.say_timed);
+}
 
 std::string first_sentence(const std::string& text) {
     for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1))

@@ -183,8 +183,9 @@ Verdict judge_support(const Work& work) {
         Verdict v = work.verdict("support", State::inconclusive,
             fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f "
                         "transmits and none of that light is ever found, "
-                        "or f ought to return 0 there, which would settle it.",
+                        "or f ought to return 0 there.",
                 below.f, told(below.at)));
+        v.settle = "An f that returns 0 under the surface, or a sampler that draws there.";
         v.evidence["f_below"] = below.f;
         return v;
     }

@@ -21,7 +21,8 @@ struct Verdict {
     std::string trial;  // w_o and parameters
     std::string name;   // one of verdict_names
     State state = State::right;
-    std::string say;  // one sentence for the reader
+    std::string say;       // one sentence for the reader
+    std::string settle{};  // what would settle it, where it is inconclusive
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
     // What varies from run to run, kept apart so that equal calls give equal verdicts.
     double seconds = 0;

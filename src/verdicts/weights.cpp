@@ -49,6 +49,14 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
     return out;
 }
 
+/// Where a recorded file has no more to give, and where sixteen times as many can be asked for.
+std::string more_draws(const Work& work) {
+    const std::size_t n = work.first(0).draws.size();
+    if (!work.subject.draws_at_will()) return fmt::format("More samples in the file than these {}", n);
+    return work.rigour.full ? fmt::format("More draws than {} (Rigour::draws)", n)
+                            : fmt::format("--full, with sixteen times as many draws as these {}", n);
+}
+
 std::string samples_for(double sd, double mean) {
     const double n = sqr(sd / mean) / 1e-4;
     return fmt::format("{:.3g}", std::max(n, 1.0));
@@ -121,7 +129,9 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
     return work.fails(p, [&](int round) {
         std::vector<Batchful> fresh;
         for (int t = 0; t < work.subject.techniques(); ++t) fresh.push_back(work.draw(t, round));
-        return mean_p(spread(work.weights(fresh, even)), expected);
+        const std::vector<double> x = work.weights(fresh, even);
+        const double p_fresh = mean_p(spread(x), expected);
+        return p_fresh < work.rigour.confirm && look_for_unmet(work, x, even).heavy ? 1.0 : p_fresh;
     });
 }
 
@@ -155,18 +165,23 @@ Verdict judge_tail(Work& work) {
     if (bounded)
         v.say +=
             fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", x.size(), s.largest / s.mean);
-    if (!bounded && (infinite || (tail && tail->k - 2 * tail->se >= 0.5))) {
+    if (!infinite && work.subject.has_f() && mean_is_testable(s, tail, theory) && has_unmet_tail(work, false)) {
+        v.evidence["samples_for_1_percent"] = "not known";
+        tell_unmet(v, work.unmet(false), work.incoming(Work::Where::reached, false), x.size());
+    } else if (!bounded && (infinite || (tail && tail->k - 2 * tail->se >= 0.5))) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
         v.say += infinite || !theory.bounded ? "Heavy tail: the variance is infinite or looks so, no number of samples "
                                                "gives 1 %, and no interval means anything."
                                              : "Heavy tail at this number of samples; the weight is bounded, so the "
                                                "variance is finite, but it is not seen yet.";
+        v.settle = infinite ? "No number of draws: an arm whose p falls off no faster than f L cos."
+                            : more_draws(work) + ", or an arm whose p falls off no faster than f L cos.";
     } else if (!bounded && tail && tail->k + 2 * tail->se >= 0.5) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
-        v.say += "Too close to 1/2 to tell whether the variance is finite";
-        v.say += work.rigour.full ? "." : "; --full asks for sixteen times as many draws.";
+        v.say += "Too close to 1/2 to tell whether the variance is finite.";
+        v.settle = more_draws(work) + ".";
     } else {
         v.evidence["samples_for_1_percent"] = std::stod(samples_for(s.sd, s.mean > 0 ? s.mean : 1));
         v.say += fmt::format(
@@ -191,6 +206,7 @@ Verdict judge_mean(const Work& work) {
     v.evidence["skewness"] = s.skew;
     if (!mean_is_testable(s, tail_of(x), work.trial.theory)) {
         v.state = State::inconclusive;
+        v.settle = "What settles the tail.";
         v.say = fmt::format(
             "inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a "
             "right sampler as readily as a wrong one.",
@@ -200,6 +216,11 @@ Verdict judge_mean(const Work& work) {
     const double z = johnson_t(s, expected.value), p = mean_p(s, expected);
     v.evidence["z"] = z;
     v.evidence["p"] = p;
+    if (has_unmet_tail(work, false)) {
+        v.say = fmt::format("{} samples read {:.6g} where quadrature says {:.6g}. ", x.size(), s.mean, expected.value);
+        tell_unmet(v, work.unmet(false), expected, x.size());
+        return v;
+    }
     const bool wrong = mean_fails(work, p, expected, false);
     v.state = wrong ? State::wrong : State::right;
     v.say = wrong ? fmt::format(

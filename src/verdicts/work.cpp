@@ -82,6 +82,7 @@ Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index)
 
 void Work::redraw(std::uint32_t seed) {
     seed_ = seed;
+    unmet_ = {};
     for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -69,6 +70,15 @@ struct Density {
     std::size_t bin_of(Vec2d at) const;
 };
 
+/// Light in directions whose weight X = f L cos / p is larger than any that was drawn; see unmet.cpp.
+struct Unmet {
+    double largest = 0;          // of the drawn weights
+    double mass = 0, error = 0;  // int f L cos there
+    double chance = 0;           // int p there: of one draw to meet it
+    double variance = 0;         // of the weights up to the largest, by quadrature
+    bool heavy = false;          // it explains what the mean lacks, and so many draws need not have met it
+};
+
 class Work {
 public:
     Work(const Trial& trial, const Rigour& rigour, Tally& tally, std::uint32_t index);
@@ -115,6 +125,11 @@ public:
     /// the fill's part.
     enum class Where { everywhere, reached, lost };
     const Integral& incoming(Where where, bool even) const;
+    /// int g L over what counts, g = f |cos| or what goes with it at each direction; even: L = 1.
+    using OfLight = std::function<void(std::span<const Vec3d>, std::span<double>)>;
+    Integral integrate_light(const OfLight& g, bool even) const;
+    /// What the screening draws did not meet of the light; looked for once.
+    const Unmet& unmet(bool even) const;
 
     Verdict verdict(std::string_view name, State state, std::string say) const;
     /// Both stages of a statistical test: p(round) is its p-value on that round's draws.
@@ -139,6 +154,7 @@ private:
     std::optional<Vec3d> circle_;  // the axis of a rim that is a circle
     double grain_ = 0;
     mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
+    mutable std::array<std::optional<Unmet>, 2> unmet_;        // by even
     Integral integrate_incoming(Where where, bool even) const;
     Below below_;
     void look_below();

@@ -19,7 +19,7 @@ const Integral& Work::incoming(Where where, bool even) const {
 
 namespace {
 
-using OfLight = std::function<void(std::span<const Vec3d>, std::span<double>)>;
+using OfLight = Work::OfLight;
 
 /// Another disk stands before y.
 bool hidden(const TrialLight& light, const TrialDisk& own, Vec3d y) {
@@ -61,14 +61,20 @@ void add_disk(
 }  // namespace
 
 Integral Work::integrate_incoming(Where where, bool even) const {
-    const auto of_light = [&](std::span<const Vec3d> wi, std::span<double> out) {
-        const std::vector<double> value = f(wi, true);
-        const std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
-            out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
-        }
-    };
+    return integrate_light(
+        [&](std::span<const Vec3d> wi, std::span<double> out) {
+            const std::vector<double> value = f(wi, true);
+            const std::vector<double> p =
+                where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
+                out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
+            }
+        },
+        even);
+}
+
+Integral Work::integrate_light(const OfLight& of_light, bool even) const {
     const TrialLight& light = trial.light;
     const double fill = even ? 1 : light.fill;
     Integral total;

@@ -1,0 +1,133 @@
+// A tail that no draw met. Where p is tiny and f is not, X = f L cos / p is huge and nobody draws there: every sample
+// then looks alike, and their mean is short by what comes from those directions. A mean is not accused before the
+// integral of f L cos over the directions whose X exceeds the largest drawn weight W is known, and the variance of the
+// weights up to W:
+//
+//   E[X; X <= W] = int f L cos - M,  M = int_{X > W} f L cos,  E[X^2; X <= W] = int_{X <= W} (f L cos)^2 / p
+//
+// Bernstein's inequality with that variance and the range W says how far a mean of n weights up to W may be off; that
+// none of n draws met what p gives the chance Q = int_{X > W} p has the probability exp(-n Q).
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+/// Weights that differ by the rounding of a float p are alike.
+constexpr double alike = 1e-3;
+
+/// What a technique makes of one direction.
+struct Part {
+    double share = 0;   // f cos times its MIS weight
+    double weight = 0;  // X; 0 where p is
+    double p = 0;
+};
+
+std::vector<Part> parts_of(const Work& work, int technique, std::span<const Vec3d> wi, bool even) {
+    const std::vector<double> f = work.f(wi, true), p = work.pdf(technique, wi, true);
+    std::vector<Pair> at;
+    for (Vec3d w : wi) at.push_back({work.trial.wo, w});
+    std::vector<double> mis(wi.size());
+    work.subject.mis_weight(technique, at, mis);
+    std::vector<Part> out(wi.size());
+    for (std::size_t i = 0; i < wi.size(); ++i) {
+        if (!(p[i] > 0) || !work.counts(wi[i])) continue;
+        out[i].p = p[i];
+        out[i].share = mis[i] * f[i] * std::fabs(wi[i].z);
+        out[i].weight = out[i].share * (even ? 1 : work.light(wi[i])) / p[i];
+    }
+    return out;
+}
+
+/// int p over the whole sphere where X > W.
+double chance_of(const Work& work, int technique, double threshold, bool even) {
+    const SphereMap map(Vec3d{0, 0, 1});
+    const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
+        std::vector<Vec3d> wi;
+        for (Vec2d v : at) wi.push_back(map.direction(v));
+        const std::vector<Part> parts = parts_of(work, technique, wi, even);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
+    };
+    return integrate(
+        guided(graded_cells(work.whole() ? 2 : 1), map, work.guides()), 1, g, {1e-7, work.rigour.evaluations})
+        .value;
+}
+
+/// Two-sided, of a mean that is off by this much.
+double bernstein_p(double off, double n, double variance, double range) {
+    return std::min(2 * math::exp(-0.5 * n * off * off / (variance + range * off / 3 + 1e-300)), 1.0);
+}
+
+}  // namespace
+
+Unmet look_for_unmet(const Work& work, std::span<const double> x, bool even) {
+    const Spread s = spread(x);
+    const Integral& expected = work.incoming(Work::Where::reached, even);
+    Unmet out;
+    out.largest = s.largest;
+    const double threshold = s.largest * (1 + alike);
+    double squares = 0;
+    const int techniques = work.subject.techniques();
+    for (int t = 0; t < techniques; ++t) {
+        const auto region = [&](bool above) {
+            return work.integrate_light(
+                [&](std::span<const Vec3d> wi, std::span<double> to) {
+                    const std::vector<Part> parts = parts_of(work, t, wi, even);
+                    for (std::size_t i = 0; i < to.size(); ++i) {
+                        const bool inside = (parts[i].weight > threshold) == above;
+                        to[i] = !inside ? 0 : above ? parts[i].share : parts[i].share * parts[i].weight;
+                    }
+                },
+                even);
+        };
+        const Integral mass = region(true);
+        out.mass += mass.value;
+        out.error += mass.error;
+        squares += region(false).value;
+        if (mass.value > 0) out.chance += chance_of(work, t, threshold, even);
+    }
+    const double due = expected.value - out.mass;
+    out.variance = std::max(squares - sqr(due) / techniques, sqr(s.sd));
+    constexpr double allowed = 1e-4;  // as mean_p grants
+    const double off = std::max(std::fabs(s.mean - due) - out.error - expected.error - allowed * expected.value, 0.0);
+    const bool worth_it = out.mass > allowed * expected.value + out.error;
+    const bool may_be_missed = s.n * out.chance < -math::log(work.rigour.confirm);
+    out.heavy = worth_it && may_be_missed && bernstein_p(off, s.n, out.variance, threshold) >= work.rigour.screen;
+    return out;
+}
+
+const Unmet& Work::unmet(bool even) const {
+    even = even && (!trial.light.disks.empty() || trial.light.fill != 1);
+    auto& kept = unmet_[even ? 1 : 0];
+    if (!kept) kept = look_for_unmet(*this, first_weights(*this, even), even);
+    return *kept;
+}
+
+bool has_unmet_tail(const Work& work, bool even) {
+    const Spread s = spread(first_weights(work, even));
+    return mean_p(s, work.incoming(Work::Where::reached, even)) < work.rigour.screen && work.unmet(even).heavy;
+}
+
+void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::size_t draws) {
+    v.state = State::inconclusive;
+    const double share = unmet.mass / expected.value;
+    const std::string enough =
+        unmet.chance > 0 ? fmt::format("about {:.2g}", 1 / unmet.chance) : std::string("more than 1e300");
+    v.evidence["unmet_share"] = share;
+    v.evidence["unmet_chance_of_a_draw"] = unmet.chance;
+    v.evidence["largest_drawn_weight"] = unmet.largest;
+    v.say += fmt::format(
+        "Heavy tail that no draw met: {:.3g} % of f L cos comes from directions whose weight is larger than the "
+        "largest of {} draws, {:.4g}, and which p gives {:.2g} of a draw.",
+        100 * share, draws, unmet.largest, unmet.chance);
+    v.settle = fmt::format(
+        "{} draws, one of which meets such a direction on average; or an arm that does not leave them out.", enough);
+    v.settle[0] = unmet.chance > 0 ? 'A' : 'M';
+}
+
+}  // namespace crescent
