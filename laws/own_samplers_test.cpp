@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <gtest/gtest.h>
 #include <mutex>
 
@@ -9,6 +10,7 @@
 #include "verdicts/error_rates.h"
 #include "verdicts/list.h"
 #include "verdicts/mesh.h"
+#include "verdicts/pipe.h"
 
 namespace crescent {
 namespace {
@@ -179,6 +181,24 @@ TEST(Meshes, AreNotSeenInASmoothDensityOrInACone) {
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = dot(map.direction(at[i]), tilt(40, 70)) > 0.6 ? 1 : 0;
     };
     EXPECT_FALSE(find_mesh(cone));
+}
+
+/// A library leaves the signals of the process that it is in alone, and does not let a program's end kill it.
+TEST(OwnSamplers, BehindAPipeThatBreaksTouchNoSignal) {
+    const auto before = std::signal(SIGPIPE, SIG_DFL);
+    try {
+        const auto pipe = start_pipe("read hello; echo hello 1 x; read f; echo -; exec <&-; sleep 0.2");
+        std::vector<Vec2d> u(100000, {0.5, 0.5});
+        std::vector<Draw> out(u.size());
+        pipe->sample(0, {0, 0, 1}, u, out);
+        ADD_FAILURE() << "it answered";
+    } catch (const SubjectFault& fault) {
+        EXPECT_NE(std::string(fault.what()).find("closed its input"), std::string::npos) << fault.what();
+    }
+    sigset_t pending;
+    sigpending(&pending);
+    EXPECT_FALSE(sigismember(&pending, SIGPIPE));
+    EXPECT_EQ(std::signal(SIGPIPE, before), SIG_DFL);
 }
 
 TEST(ErrorRates, HaveTheIntervalOfClopperAndPearson) {

@@ -103,7 +103,6 @@ void kill_all() {
 }  // namespace
 
 Child::Child(const std::string& command) {
-    std::signal(SIGPIPE, SIG_IGN);  // a program that closed its input shows as EPIPE
     Ends in, out, life, told;
     guard_ = fork();
     if (guard_ == 0) {
@@ -119,6 +118,21 @@ Child::Child(const std::string& command) {
 }
 
 Child::~Child() { end(0); }
+
+ssize_t Child::write(std::string_view text) const {
+    sigset_t pipe, before, pending;
+    sigemptyset(&pipe);
+    sigaddset(&pipe, SIGPIPE);
+    sigpending(&pending);
+    pthread_sigmask(SIG_BLOCK, &pipe, &before);
+    const ssize_t n = ::write(to_, text.data(), text.size());
+    const int why = errno;
+    const timespec at_once{0, 0};
+    if (n < 0 && why == EPIPE && !sigismember(&pending, SIGPIPE)) sigtimedwait(&pipe, nullptr, &at_once);  // ours alone
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    errno = why;
+    return n;
+}
 
 std::optional<int> Child::status(int milliseconds) const {
     if (status_ || told_ < 0) return status_;

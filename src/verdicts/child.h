@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <sys/types.h>
 
 namespace crescent {
@@ -20,6 +21,8 @@ public:
     /// Both without blocking.
     int input() const { return to_; }
     int output() const { return from_; }
+    /// As write(2) into its input; a program that closed it shows as EPIPE, and no signal of this process is touched.
+    ssize_t write(std::string_view text) const;
     /// The shell's wait status, once it has ended; waits for it up to so long.
     std::optional<int> status(int milliseconds) const;
     /// Closes both ends, gives it so long to end by itself, and ends what is left.

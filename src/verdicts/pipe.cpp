@@ -168,7 +168,7 @@ private:
                 {child_.input(), static_cast<short>(sent < outgoing.size() ? POLLOUT : 0), 0}};
             const int ready = poll(ends, sent < outgoing.size() ? 2 : 1, 50);
             if (ready > 0 && (ends[1].revents & (POLLOUT | POLLERR)) != 0 && sent < outgoing.size()) {
-                const ssize_t n = ::write(child_.input(), outgoing.data() + sent, outgoing.size() - sent);
+                const ssize_t n = child_.write(std::string_view(outgoing).substr(sent));
                 if (n > 0) sent += static_cast<std::size_t>(n);
                 else if (n < 0 && errno == EPIPE && (ends[0].revents & POLLIN) == 0)
                     fault(write, answered, "but it closed its input: " + why_closed(), expected);

@@ -113,6 +113,7 @@ double mean_p(const Spread& s, const Integral& expected) {
         1e-4;  // relative: what normalised and identity allow p itself, float rounding of a sharp lobe included
     const double doubt = expected.error + allowed * std::fabs(expected.value);
     const double off = std::max(std::fabs(s.mean - expected.value) - doubt, 0.0);
+    if (!(s.sd > 1e-7 * std::fabs(expected.value))) return off > 0 ? 0 : 1;  // every sample alike: no chance is in it
     if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1)
         return std::min(2 * math::exp(-0.5 * s.n * off * off / (sqr(s.sd) + s.largest * off / 3 + 1e-300)), 1.0);
     const double z = std::fabs(johnson_t(s, expected.value)) - doubt / std::max(s.sd / std::sqrt(s.n), 1e-300);
