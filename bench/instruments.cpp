@@ -30,9 +30,8 @@ struct Figures {
 
 Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampler, std::uint64_t n, double samples) {
     Watch watch;
-    const ArmPlan plan{sampler, sampler, {n}, {}};
-    const Job job{&plan, {n}, scene.s(), 1};
-    gl.films(scene, {&plan, {1}, job.s, 1}, watch);  // compiles
+    const Job job{sampler, sampler, {n}, scene.s(), 1};
+    gl.films(scene, {sampler, sampler, {1}, job.s, 1}, watch);  // compiles
     double cpu_s = 1e30, gl_s = 1e30;
     for (int k = 0; k < 7; ++k) {
         cpu_s = std::min(cpu_s, seconds_of([&] { estimate_films(scene, sampler, {n}, 1, "", watch); }));

@@ -91,17 +91,13 @@ macro(crescent_folder name)
   endif()
 endmacro()
 
-# The public face: crescent.h, run.h and every folder behind one name.
+# The public face: crescent.h and every folder behind one name.
 macro(crescent_public_library)
   file(GLOB face_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.cpp)
   add_library(crescent_face STATIC ${face_sources})
   target_include_directories(crescent_face PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
   target_link_libraries(crescent_face PUBLIC ${crescent_folders} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
-  crescent_unoptimised(${PROJECT_SOURCE_DIR}/src/kept.cpp)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/version.cpp PROPERTIES
-    COMPILE_DEFINITIONS "${crescent_provenance}" INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/provenance)
-  add_dependencies(crescent_face crescent_commit)
   add_library(crescent INTERFACE)
   target_link_libraries(crescent INTERFACE crescent_face)
   add_library(crescent::crescent ALIAS crescent)

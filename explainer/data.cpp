@@ -89,7 +89,8 @@ Data collect(const Experiment& experiment, const RunOptions& options, Watch& wat
     data.provenance = std::move(measured.provenance);
     data.shapes = std::move(measured.shapes);
     data.films = std::move(measured.films);
-    data.references = std::move(measured.references);
+    const bool quadrature = data.experiment.reference.kind == ReferenceKind::quadrature;
+    data.references = std::move(quadrature ? measured.quadrature : measured.monte_carlo);
     data.opening = opening_of(data.experiment, data.cast, options.isa, watch);
     data.measures = std::make_shared<const Measures>(take_measures(data, options.isa, watch));
     return data;

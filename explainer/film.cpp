@@ -1,6 +1,5 @@
 // crescent film: an experiment -> its film. The door registers itself in the program that links it.
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -158,8 +157,6 @@ private:
 };
 
 std::string make(const Experiment& experiment, const FilmOptions& options, Watch& watch) {
-    const int threads = options.threads > 0 ? options.threads : usable_threads();
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     const bool pictures = !options.still.empty() || options.stills;
     Experiment cast = experiment;
     cast_of(cast);  // what is missing is told before the work
@@ -186,7 +183,10 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Watch
 }
 
 const bool registered = [] {
-    film_maker() = make;
+    film_maker() = [](const Experiment& experiment, const FilmOptions& options, Watch& watch) {
+        const int threads = options.threads > 0 ? options.threads : usable_threads();
+        return on_threads(threads, [&] { return make(experiment, options, watch); });
+    };
     return true;
 }();
 

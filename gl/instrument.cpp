@@ -63,7 +63,7 @@ void GlInstrument::claim_framebuffer(const std::string& what, int width, int hei
     claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
 }
 
-std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch& watch) {
+std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch& watch, TileKeeper*) {
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.image();
@@ -74,7 +74,7 @@ std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch&
             "integers that differ"));
         claimed_film_ = true;
     }
-    return estimator_.films(scene, job.arm->sampler, job.n, job.seed, watch);
+    return estimator_.films(scene, job.sampler, job.n, job.seed, watch);
 }
 
 }  // namespace crescent::gl

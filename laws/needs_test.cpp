@@ -1,5 +1,5 @@
 // A run that the machine cannot hold is refused before it begins, in words that say what would fit.
-#include "needs.h"
+#include "run/needs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

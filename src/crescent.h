@@ -8,6 +8,9 @@
 //   judge             a sampler by itself -> ordered verdicts with their evidence; verdicts/gtest.h has the matchers
 //   find_instrument   what else can compute films, where a door has brought it
 //   film_maker        what makes an explainer of a run, where a door has brought it
+//   plan, prepare, execute, collect, write
+//                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and meters -> every
+//                     number -> a folder; a stop is an answer, see run/execute.h
 //   measure_in_memory an Experiment -> films, meters and evidence, nothing written
 //   compare           renders of other programs -> meters, bias tests, plates and report under one folder
 //   run               an Experiment -> films, meters, plates and report under one folder
@@ -21,23 +24,27 @@
 #include "base/machine.h"
 #include "base/text.h"
 #include "base/files.h"
+#include "base/parallel.h"
+#include "base/polled_watch.h"
 #include "base/watch.h"
 #include "compare/compare.h"
 #include "color/turbo.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"
 #include "estimator/pixel.h"
+#include "estimator/reference.h"
 #include "experiment/experiment.h"
 #include "experiment/names.h"
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 #include "film_maker.h"
+#include "films/exr.h"
 #include "films/film.h"
-#include "instruments.h"
 #include "math/functions.h"
 #include "meters/evidence.h"
 #include "meters/meters.h"
 #include "meters/metrics.h"
+#include "meters/quantity.h"
 #include "meters/tail.h"
 #include "plates/canvas.h"
 #include "plates/density.h"
@@ -45,8 +52,9 @@
 #include "plates/raster.h"
 #include "plates/style.h"
 #include "plates/words.h"
+#include "report/charts.h"
 #include "report/report.h"
-#include "run.h"
+#include "run/run.h"
 #include "scene/scene.h"
 #include "scene/shadow.h"
 #include "simd/random.h"
@@ -57,4 +65,4 @@
 #include "verdicts/print.h"
 #include "verdicts/samples.h"
 #include "verdicts/user.h"
-#include "version.h"
+#include "run/version.h"

@@ -11,6 +11,8 @@
 #ifndef CRESCENT_SERIAL
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <mutex>
 #endif
@@ -24,6 +26,19 @@ namespace crescent {
 template <class Index, class Work> void parallel_for(Index begin, Index end, const Work& work) {
     oneapi::tbb::parallel_for(begin, end, work);
 }
+
+/// Calls both, at the same time where a thread is free; what one of them throws comes out here once both have ended.
+template <class A, class B> void side_by_side(const A& a, const B& b) { oneapi::tbb::parallel_invoke(a, b); }
+
+/// work(), and what it returns; what it and all below it do at the same time, they do on `threads` threads at most.
+/// Nothing outside of it is limited: other threads of the process, and oneTBB as a whole, stay as they are.
+template <class Work> auto on_threads(int threads, const Work& work) {
+    oneapi::tbb::task_arena arena(threads);
+    return arena.execute(work);
+}
+
+/// How many threads the innermost on_threads() allows; without one, as many as oneTBB takes by itself.
+inline int threads_here() { return oneapi::tbb::this_task_arena::max_concurrency(); }
 
 /// One T a thread, made by `make` when the thread first asks.
 template <class T> class PerThread {
@@ -43,6 +58,15 @@ using Guard = std::lock_guard<std::mutex>;
 template <class Index, class Work> void parallel_for(Index begin, Index end, const Work& work) {
     for (Index i = begin; i < end; ++i) work(i);
 }
+
+template <class A, class B> void side_by_side(const A& a, const B& b) {
+    a();
+    b();
+}
+
+template <class Work> auto on_threads(int, const Work& work) { return work(); }
+
+inline int threads_here() { return 1; }
 
 template <class T> class PerThread {
 public:

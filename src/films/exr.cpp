@@ -8,9 +8,9 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
-#include <oneapi/tbb/global_control.h>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 
 namespace crescent {
 
@@ -56,15 +56,29 @@ template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
     return buffer;
 }
 
-/// As many as the rest of the run works on; 0: this thread alone.
-int threads_besides_this() {
-    const std::size_t all = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    return all > 1 ? static_cast<int>(all) : 0;
-}
+/// OpenEXR compresses on threads of its own, of which a process has one set: as many as on_threads() allows while one
+/// file is written, then as many as there were.
+class ExrThreads {
+public:
+    ExrThreads() : guard_(lock()), before_(Imf::globalThreadCount()) {
+        Imf::setGlobalThreadCount(threads_here() > 1 ? threads_here() : 0);  // 0: this thread alone
+    }
+    ~ExrThreads() { Imf::setGlobalThreadCount(before_); }
+    ExrThreads(const ExrThreads&) = delete;
+    ExrThreads& operator=(const ExrThreads&) = delete;
+
+private:
+    static Mutex& lock() {
+        static Mutex all;
+        return all;
+    }
+    Guard guard_;
+    int before_;
+};
 
 template <class AnyFilm> void write_parts(const std::string& path,
     const std::vector<std::pair<std::string, const AnyFilm*>>& parts, const Attributes& attributes) {
-    Imf::setGlobalThreadCount(threads_besides_this());
+    const ExrThreads threads;
     std::vector<Imf::Header> headers;
     for (const auto& [name, film] : parts) headers.push_back(header_of(name, *film, attributes));
     try {

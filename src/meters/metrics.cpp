@@ -16,8 +16,6 @@ const RunMeter* Metrics::find(const std::string& arm, std::uint64_t n, double s,
     return at == runs.end() ? nullptr : &*at;
 }
 
-bool Metrics::all_hold() const {
-    return std::all_of(assertions.begin(), assertions.end(), [](const AssertionResult& a) { return a.pass; });
-}
+bool Metrics::all_hold() const { return std::ranges::none_of(assertions, &AssertionResult::failed); }
 
 }  // namespace crescent

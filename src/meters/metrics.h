@@ -81,8 +81,11 @@ struct AssertionResult {
     bool pass = false;
     double measured = 0, bound = 0;
     std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
-    bool reference_good =
-        true;  // where not, an RMSE in it is no longer than a few errors of the reference: it does not pass
+    // Where not, an RMSE in it is no longer than a few errors of the reference: it does not pass.
+    bool reference_good = true;
+    bool cannot_fail = false;  // true of every run that ends: a plate that was drawn has bytes
+    std::string skipped;       // why it was not judged, so that it neither holds nor fails; "": it was
+    bool failed() const { return !pass && skipped.empty(); }
 };
 
 /// How far the note's Monte Carlo reference is from the quadrature, per region and exponent.

@@ -12,14 +12,18 @@
 
 namespace crescent {
 
-/// The value of a quantity at `seed`, in the unit of its meter; NaN where it was not measured. `plate_bytes` holds the
-/// size of every plate that was written; a plate that was not has 0 bytes.
+/// Bytes of every plate that was drawn, by its name.
+using PlateBytes = std::map<std::string, std::size_t>;
+
+/// The value of a quantity at `seed`, in the unit of its meter; NaN where it was not measured. A plate that is not in
+/// `plate_bytes` has 0 bytes.
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
-    const std::map<std::string, std::size_t>& plate_bytes);
+    const PlateBytes& plate_bytes);
 
 /// One result for each assertion, in the experiment's order. over = "median" compares the median of each side over all
 /// seeds that were run (an even count: the mean of the middle two). A NaN on either side, at any of these seeds, fails.
+/// `drawn` = false: no plates were made in this run, so that claims about them are skipped.
 std::vector<AssertionResult> judge(
-    const Experiment& experiment, const Metrics& metrics, const std::map<std::string, std::size_t>& plate_bytes);
+    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
 }  // namespace crescent

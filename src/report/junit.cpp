@@ -19,6 +19,7 @@ std::string failure(const AssertionResult& a) {
 
 std::string test_case(const AssertionResult& a, const std::string& group) {
     const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escape(group), escape(a.name));
+    if (!a.skipped.empty()) return fmt::format("{}><skipped message=\"{}\" /></testcase>\n", head, escape(a.skipped));
     if (a.pass) return head + " />\n";
     return head + ">\n" + failure(a) + "    </testcase>\n";
 }
@@ -31,12 +32,14 @@ std::string property(const char* name, const std::string& value) {
 
 std::string junit_xml(const ReportInputs& in) {
     const auto& all = in.metrics.assertions;
-    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return !a.pass; });
+    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return a.failed(); });
+    const auto skipped =
+        std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return !a.skipped.empty(); });
     const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\"", all.size(), failed);
     const Provenance& p = in.provenance;
     std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
     out += fmt::format("<testsuites name=\"crescent\" {}>\n", counts);
-    out += fmt::format("  <testsuite name=\"{}\" {} skipped=\"0\">\n", escape(in.experiment.title), counts);
+    out += fmt::format("  <testsuite name=\"{}\" {} skipped=\"{}\">\n", escape(in.experiment.title), counts, skipped);
     out += "    <properties>\n" + property("version", p.version) + property("commit", p.commit) +
         property("experiment", p.experiment_file) + property("hash", p.experiment_hash) +
         property("command", p.command) + "    </properties>\n";

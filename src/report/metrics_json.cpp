@@ -65,8 +65,11 @@ Json reference_json(const ReferenceMeter& r) {
 }
 
 Json assertion_json(const AssertionResult& a) {
-    return {{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)}, {"bound", number(a.bound)},
+    Json out = {{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)}, {"bound", number(a.bound)},
         {"op", a.op}, {"text", a.text}};
+    if (a.cannot_fail) out["cannot_fail"] = true;
+    if (!a.skipped.empty()) out["skipped"] = a.skipped;
+    return out;
 }
 
 Json quantiles_json(const FurnaceQuantiles& q) {
@@ -105,6 +108,9 @@ Json provenance_json(const Provenance& p) {
     Json out = {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
         {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}}, {"seeds", p.seeds},
         {"instrument", p.instrument}, {"command", p.command}};
+    if (p.series > 0)
+        out["series"] = {{"first", p.first_of_series},
+            {"last", p.first_of_series + static_cast<int>(p.seeds.size()) - 1}, {"of", p.series}};
     for (const auto& [what, said] : p.instrument_details) out["instrument_details"][what] = said;
     return out;
 }

@@ -15,6 +15,7 @@ namespace crescent {
 struct Provenance {
     std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
     std::vector<std::uint32_t> seeds;
+    int first_of_series = 1, series = 0;  // the place of the first of them in the experiment's series, and its length
     std::vector<std::pair<std::string, std::string>> instrument_details;  // what a driver says of itself; none: the CPU
 };
 
@@ -34,12 +35,23 @@ struct Timing {
     std::vector<std::pair<std::string, double>> stages;  // name, seconds
 };
 
+/// Which outputs a run writes; timing.json always is.
+struct OutputParts {
+    bool metrics = true;  // metrics.json, metrics.csv, junit.xml
+    bool films = true;    // films/*.exr
+    bool plates = true;   // plates/*.png
+    bool report = true;   // report.html, with the plates in it
+    bool draws() const { return plates || report; }
+};
+
+using Plates = std::map<std::string, std::vector<unsigned char>>;  // name -> PNG
+
 struct ReportInputs {
     const Experiment& experiment;
     const Metrics& metrics;
     const Evidence& evidence;  // "Where the note is wrong"
     const Provenance& provenance;
-    const std::map<std::string, std::vector<unsigned char>>& plates;  // name -> PNG bytes
+    const Plates& plates;
 };
 
 std::string metrics_json(const ReportInputs& in);
@@ -48,6 +60,7 @@ std::string junit_xml(const ReportInputs& in);
 std::string report_html(const ReportInputs& in);
 std::string timing_json(const Timing& timing, const Provenance& provenance);
 /// At most 80 columns: first whether all held, then the figures, then where to look.
-std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir, bool colour);
+std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir,
+    const OutputParts& parts = {}, bool colour = false);
 
 }  // namespace crescent

@@ -53,7 +53,7 @@ std::vector<PageSection> all_sections(Page& page) {
 
 std::string verdict(const std::vector<AssertionResult>& all) {
     if (all.empty()) return {};
-    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return !a.pass; });
+    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return a.failed(); });
     if (failed == 0)
         return fmt::format("<p class=\"verdict good\">All {} assertions of this run hold.</p>\n", all.size());
     return fmt::format("<p class=\"verdict bad\">{} of {} assertions of this run FAIL. See {}.</p>\n", failed,

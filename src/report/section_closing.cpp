@@ -140,6 +140,12 @@ std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
     return out;
 }
 
+std::string result_of(const AssertionResult& a) {
+    if (!a.skipped.empty()) return "not judged: " + escape(a.skipped);
+    if (a.failed()) return "<b class=\"bad\">FAILED</b>";
+    return a.cannot_fail ? "holds<small>whatever the run measures</small>" : "holds";
+}
+
 }  // namespace
 
 PageSection more_plates(Page& page) {
@@ -167,7 +173,7 @@ PageSection limits(Page& page) { return {"limits", "Limits", claims(page)}; }
 PageSection assertions(Page& page) {
     const auto& all = page.in.metrics.assertions;
     if (all.empty()) return {};
-    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return !a.pass; });
+    const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return a.failed(); });
     html::Table table(
         fmt::format("{} assertions, {}", all.size(), failed == 0 ? "all hold" : std::to_string(failed) + " failed"),
         {words("Assertion"), {"Measured", true}, words(""), {"Bound", true}, words("Result")});
@@ -175,7 +181,7 @@ PageSection assertions(Page& page) {
         table.row({html::heading(
                        escape(a.name) + (a.text.empty() ? "" : "<small><code>" + escape(a.text) + "</code></small>")),
             html::figure(compact(a.measured)), words(escape(a.op)), html::figure(compact(a.bound)),
-            words(a.pass ? "holds" : "<b class=\"bad\">FAILED</b>")});
+            words(result_of(a))});
     return {"assertions", "Assertions", table.str()};
 }
 

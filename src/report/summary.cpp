@@ -30,11 +30,13 @@ std::string failures_line(const std::vector<const AssertionResult*>& failed, std
     return clip(head + failed.front()->name, columns - more.size()) + more;
 }
 
-std::string verdict(const std::vector<AssertionResult>& all, const Paint& paint) {
+std::string verdict(const std::vector<AssertionResult>& given, const Paint& paint) {
+    std::vector<AssertionResult> all;
+    std::ranges::copy_if(given, std::back_inserter(all), [](const AssertionResult& a) { return a.skipped.empty(); });
     if (all.empty()) return "no assertions in this experiment\n";
     std::vector<const AssertionResult*> failed;
     for (const AssertionResult& a : all)
-        if (!a.pass) failed.push_back(&a);
+        if (a.failed()) failed.push_back(&a);
     if (failed.empty() && all.size() == 1) return paint(green, "the one assertion holds") + "\n";
     if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", all.size())) + "\n";
     std::string out = paint(red, failures_line(failed, all.size())) + "\n";
@@ -109,25 +111,28 @@ std::string speed(const Timing& t) {
         "\n";
 }
 
-std::string where(const ReportInputs& in, const std::string& out_dir) {
+std::string where(const ReportInputs& in, const std::string& out_dir, const OutputParts& parts) {
     const std::string dir = out_dir.empty() ? "." : out_dir;
     const auto line = [](const char* what, const std::string& path) {
         return fmt::format("  {:<9}{}\n", what, clip(path, columns - 11));
     };
-    std::string out = line("look at", dir + "/report.html");
-    if (!in.plates.empty()) out += line("plates", dir + "/plates/");
-    return out + line("numbers", dir + "/metrics.json");
+    std::string out;
+    if (parts.report) out += line("look at", dir + "/report.html");
+    if (parts.plates && !in.plates.empty()) out += line("plates", dir + "/plates/");
+    if (parts.films) out += parts.metrics ? "" : line("films", dir + "/films/");
+    return parts.metrics ? out + line("numbers", dir + "/metrics.json") : out;
 }
 
 }  // namespace
 
-std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir, bool colour) {
+std::string terminal_summary(
+    const ReportInputs& in, const Timing& timing, const std::string& out_dir, const OutputParts& parts, bool colour) {
     const Paint paint{colour};
     std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(in.metrics.film_hashes, paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format(
             "\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));
-    return out + "\n" + speed(timing) + where(in, out_dir);
+    return out + "\n" + speed(timing) + where(in, out_dir, parts);
 }
 
 }  // namespace crescent

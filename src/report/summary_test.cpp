@@ -10,7 +10,7 @@ namespace crescent::testing {
 namespace {
 
 std::string summary(const Sample& s, const std::string& dir = "out", bool colour = false) {
-    return terminal_summary(s.inputs(), s.timing, dir, colour);
+    return terminal_summary(s.inputs(), s.timing, dir, {}, colour);
 }
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 

@@ -1,5 +1,5 @@
 // Version, commit and compiler; cmake/provenance.cmake passes them in, commit.h is made anew at every build.
-#include "version.h"
+#include "run/version.h"
 
 #include <commit.h>
 

@@ -1,4 +1,4 @@
-#include "jobs.h"
+#include "run/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ std::vector<std::string> told(const Experiment& e) {
     std::vector<std::string> out;
     for (const Job& job : jobs_of(e, 9)) {
         EXPECT_EQ(job.seed, 9u);
-        for (const std::uint64_t n : job.n) out.push_back(to_string(RunKey{job.arm->name, n, job.s, job.seed}));
+        for (const std::uint64_t n : job.n) out.push_back(to_string(RunKey{job.arm, n, job.s, job.seed}));
     }
     return out;
 }

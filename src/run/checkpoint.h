@@ -10,21 +10,21 @@
 #include "base/journal.h"
 #include "base/watch.h"
 #include "estimator/tile_keeper.h"
-#include "instruments.h"
+#include "run/plan.h"
 #include "meters/metrics.h"
 
 namespace crescent {
 
-class Kept {
+class Checkpoint {
 public:
     /// Outputs go to `out`; nothing is kept before `patience_s` seconds; `instrument` as provenance names it. Says so
     /// where there is something to go on from.
-    Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s,
+    Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s,
         Watch& watch);
     /// Where the run ends before forget(): says what is kept.
-    ~Kept();
-    Kept(const Kept&) = delete;
-    Kept& operator=(const Kept&) = delete;
+    ~Checkpoint();
+    Checkpoint(const Checkpoint&) = delete;
+    Checkpoint& operator=(const Checkpoint&) = delete;
 
     /// For the tiles of one pass; `name`, or what the job computes, tells it from the run's others.
     TileKeeper tiles(const std::string& name);

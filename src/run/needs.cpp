@@ -1,4 +1,4 @@
-#include "needs.h"
+#include "run/needs.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/machine.h"
 #include "films/film.h"
-#include "jobs.h"
+#include "run/plan.h"
 #include "plates/canvas.h"
 #include "plates/style.h"
 #include "scene/scene.h"
@@ -64,9 +64,12 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
     return say;
 }
 
-void check_needs(const Experiment& experiment) {
+void check_memory(const Experiment& experiment) {
     if (const std::string why = why_too_large(experiment, available_memory()); !why.empty()) throw OutputError(why);
-    if (!experiment.plates.empty()) const plates::Canvas font(16, 16, plates::ground);  // throws where Inter is missing
+}
+
+void check_font(const Experiment& experiment) {
+    if (!experiment.plates.empty()) const plates::Canvas font(16, 16, plates::ground);
 }
 
 }  // namespace crescent

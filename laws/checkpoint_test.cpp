@@ -1,5 +1,5 @@
 // What a stopped run kept is taken by the same work alone: another scene, ladder, seed or content is another work.
-#include "kept.h"
+#include "run/checkpoint.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "films/film.h"
-#include "jobs.h"
+#include "run/plan.h"
 
 namespace crescent {
 namespace {
@@ -32,7 +32,7 @@ protected:
     Job job(const Experiment& e, std::size_t k = 0) const { return jobs_of(e, e.seed)[k]; }
     static RunMeter meter(const Experiment& e, const Job& job, std::uint64_t n) {
         RunMeter m;
-        m.key = {job.arm->name, n, job.s, job.seed};
+        m.key = {job.arm, n, job.s, job.seed};
         m.regions.resize(e.regions.size());
         for (std::size_t r = 0; r < e.regions.size(); ++r) m.regions[r].region = e.regions[r].name;
         m.y_mean = 0.25;
@@ -40,7 +40,7 @@ protected:
     }
     /// What a run of `e` keeps: the meters of its first pass and one tile of its second.
     void keep(const Experiment& e) const {
-        Kept kept(e, "CPU", out_, 0, watch_);
+        Checkpoint kept(e, "CPU", out_, 0, watch_);
         const Job first = job(e), second = job(e, 1);
         std::vector<RunMeter> meters;
         for (const std::uint64_t n : first.n) meters.push_back(meter(e, first, n));
@@ -53,7 +53,7 @@ protected:
     }
     /// How many meters and tiles a run of `e` finds.
     std::pair<std::size_t, int> found(const Experiment& e) const {
-        Kept kept(e, "CPU", out_, 0, watch_);
+        Checkpoint kept(e, "CPU", out_, 0, watch_);
         const Job second = job(e, 1);
         TileKeeper tiles = kept.tiles(second);
         std::vector<Film> films(second.n.size(), Film(4, 4, 4));
@@ -83,12 +83,12 @@ TEST_F(Keeping, GivesOtherWorkNothing) {
     other = experiment_;
     other.seed = 8;
     EXPECT_EQ(found(other), nothing) << "another seed";
-    Kept by_another(experiment_, "GL", out_, 0, watch_);
+    Checkpoint by_another(experiment_, "GL", out_, 0, watch_);
     EXPECT_TRUE(by_another.meters(job(experiment_)).empty()) << "another instrument";
 }
 
 TEST_F(Keeping, TwoLaddersOfOneArmAreTwoPasses) {
-    Kept kept(experiment_, "CPU", out_, 0, watch_);
+    Checkpoint kept(experiment_, "CPU", out_, 0, watch_);
     Job other = job(experiment_, 1);
     other.n = {2, 16};
     keep(experiment_);
@@ -115,13 +115,13 @@ TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {
     other.seed = 8;
     keep(other);
     {
-        Kept kept(other, "CPU", out_, 0, watch_);
+        Checkpoint kept(other, "CPU", out_, 0, watch_);
         kept.forget();
     }
     EXPECT_NE(watch_.said.find("another, unfinished run"), std::string::npos) << watch_.said;
     EXPECT_EQ(found(experiment_), (std::pair<std::size_t, int>(2, 1)));
     EXPECT_EQ(found(other).first, 0u);
-    Kept kept(experiment_, "CPU", out_, 0, watch_);
+    Checkpoint kept(experiment_, "CPU", out_, 0, watch_);
     kept.forget();
     EXPECT_FALSE(fs::exists(out_ + "/.crescent-kept"));
 }
@@ -129,7 +129,7 @@ TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {
 TEST_F(Keeping, IsNotLedElsewhereByALink) {
     fs::create_directories(out_ + "/elsewhere");
     fs::create_directory_symlink("elsewhere", out_ + "/.crescent-kept");
-    EXPECT_THROW(Kept(experiment_, "CPU", out_, 0, watch_), OutputError);
+    EXPECT_THROW(Checkpoint(experiment_, "CPU", out_, 0, watch_), OutputError);
 }
 
 TEST(SeedSeries, HaveNoSeedTwice) {

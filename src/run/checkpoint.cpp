@@ -1,4 +1,4 @@
-#include "kept.h"
+#include "run/checkpoint.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "version.h"
+#include "run/version.h"
 
 namespace crescent {
 
@@ -70,8 +70,8 @@ bool holds_files(const std::string& folder) {
 
 }  // namespace
 
-Kept::Kept(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s,
-    Watch& watch)
+Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
+    double patience_s, Watch& watch)
     : all_(out + "/.crescent-kept"),
       key_(key_of(experiment, instrument)),
       folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
@@ -91,26 +91,26 @@ Kept::Kept(const Experiment& experiment, const std::string& instrument, const st
     if (holds_files(folder_)) watch_.say("resuming from the checkpoint in " + folder_);
 }
 
-Kept::~Kept() {
+Checkpoint::~Checkpoint() {
     if (holds_files(folder_))
         watch_.say("partial results saved in " + folder_ + ": the same command resumes from them");
 }
 
-TileKeeper Kept::tiles(const Job& job) {
+TileKeeper Checkpoint::tiles(const Job& job) {
     const std::string ladder = fmt::format("n{}", fmt::join(job.n, ","));
-    const std::string name = fmt::format("{}-s{}-seed{}", job.arm->name, job.s, job.seed);
+    const std::string name = fmt::format("{}-s{}-seed{}", job.arm, job.s, job.seed);
     const std::string file = fmt::format("{}-{:08x}", name, XXH3_64bits(ladder.data(), ladder.size()) & 0xffffffffu);
     return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, watch_};
 }
 
-TileKeeper Kept::tiles(const std::string& name) {
+TileKeeper Checkpoint::tiles(const std::string& name) {
     return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_};
 }
 
-std::vector<RunMeter> Kept::meters(const Job& job) const {
+std::vector<RunMeter> Checkpoint::meters(const Job& job) const {
     std::vector<RunMeter> out;
     for (const std::uint64_t n : job.n) {
-        const RunKey key{job.arm->name, n, job.s, job.seed};
+        const RunKey key{job.arm, n, job.s, job.seed};
         const auto meter =
             std::find_if(meters_.begin(), meters_.end(), [&](const RunMeter& m) { return m.key == key; });
         if (meter == meters_.end()) return {};
@@ -119,7 +119,7 @@ std::vector<RunMeter> Kept::meters(const Job& job) const {
     return out;
 }
 
-void Kept::add(const std::vector<RunMeter>& meters) {
+void Checkpoint::add(const std::vector<RunMeter>& meters) {
     meters_.insert(meters_.end(), meters.begin(), meters.end());
     if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < patience_s_) return;
     const std::vector<RunMeter> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
@@ -128,7 +128,7 @@ void Kept::add(const std::vector<RunMeter>& meters) {
     written_ = meters_.size();
 }
 
-void Kept::forget() {
+void Checkpoint::forget() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
     if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;

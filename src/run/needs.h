@@ -15,7 +15,9 @@ std::uint64_t memory_needed(const Experiment& experiment);
 /// "this run needs about 70 GB of memory ...", with what would need less; "" where `available` bytes are enough.
 std::string why_too_large(const Experiment& experiment, std::uint64_t available);
 
-/// Throws OutputError where the memory is not there, or the font that the plates are drawn with.
-void check_needs(const Experiment& experiment);
+/// Throws OutputError where the memory is not there.
+void check_memory(const Experiment& experiment);
+/// Throws OutputError where the font that the experiment's plates are drawn with is not there.
+void check_font(const Experiment& experiment);
 
 }  // namespace crescent

@@ -2,43 +2,37 @@
 // when the program starts.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/watch.h"
-#include "experiment/experiment.h"
 #include "films/film.h"
 #include "meters/metrics.h"
+#include "run/plan.h"
 #include "scene/scene.h"
 
 namespace crescent {
 
 class TileKeeper;
 
-/// One pass over the pixels: one arm, every rung, one exponent, one seed.
-struct Job {
-    const ArmPlan* arm = nullptr;
-    std::vector<std::uint64_t> n;  // ascending
-    double s = 0;
-    std::uint32_t seed = 0;
-    TileKeeper* keeper = nullptr;  // an instrument that works tile by tile may keep finished ones in it
-};
-
-/// What computes films. The CPU's is built in; a door may bring another (GL).
+/// What computes films. One call at a time; what it throws ends the run.
 class Instrument {
 public:
     virtual ~Instrument() = default;
     virtual std::string name() const = 0;  // for provenance and plates
-    /// One film per rung, in order. The scene already has the job's s.
-    virtual std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch) = 0;
+    /// One film per rung, in order. The scene already has the job's s. `keeper`: where an instrument that works tile by
+    /// tile keeps finished ones; null: nowhere.
+    virtual std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch, TileKeeper* keeper = nullptr) = 0;
     /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
     virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
     /// Claims of its own that join the assertions ("framebuffer is RGBA32F").
     virtual std::vector<AssertionResult> assertions() const { return {}; }
 };
+
+/// The one that is built in; `isa` is a name of isas().
+std::shared_ptr<Instrument> cpu_instrument(std::string isa);
 
 /// What the command line may say of an instrument; "" and -1: the instrument's own choice.
 struct InstrumentChoice {

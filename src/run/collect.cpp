@@ -1,0 +1,154 @@
+#include "run/collect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "estimator/estimator.h"
+#include "meters/evidence_measure.h"
+#include "meters/furnace.h"
+#include "meters/meters.h"
+#include "meters/quantity.h"
+#include "meters/tail.h"
+#include "run/stopping.h"
+#include "run/version.h"
+
+namespace crescent {
+
+namespace {
+
+const Published* figures_of(const Experiment& experiment) {
+    return experiment.figures ? &*experiment.figures : nullptr;
+}
+
+/// Results in the plan's order, whatever order they came in.
+void sort_results(const RunPlan& plan, std::vector<JobResult>& results) {
+    const auto place = [&](const JobResult& r) {
+        return std::ranges::find_if(plan.jobs, [&](const Job& job) {
+            return job.arm == r.job.arm && job.n == r.job.n && job.s == r.job.s && job.seed == r.job.seed;
+        });
+    };
+    std::ranges::stable_sort(results, {}, place);
+}
+
+void take_results(std::vector<JobResult>&& results, Measured& out) {
+    for (JobResult& result : results) {
+        out.stopped = out.stopped || result.stopped;
+        if (result.stopped) continue;
+        const Job& job = result.job;
+        out.timing.arms.push_back(
+            {job.arm, job.n.back(), job.s, static_cast<std::uint64_t>(result.samples), result.seconds});
+        for (std::size_t r = 0; r < result.films.size(); ++r)
+            out.films.emplace_back(result.meters[r].key, std::move(result.films[r]));
+        auto& runs = out.metrics.runs;
+        runs.insert(runs.end(), result.meters.begin(), result.meters.end());
+    }
+}
+
+/// The tail index of each region's samples at the first seed. It belongs to an arm and exponent, not to N, and stands
+/// beside every rung.
+void add_tails(const RunPlan& plan, const Scene& base, const std::string& isa, Watch& watch, Metrics& metrics) {
+    for (const Job& job : jobs_of(plan.experiment, plan.seeds.front())) {
+        const Scene scene = base.with_s(job.s);
+        for (std::size_t r = 0; r < plan.experiment.regions.size(); ++r) {
+            const std::optional<Tail> tail = region_tail(scene, job, plan.experiment.regions[r].box, isa, watch);
+            for (RunMeter& run : metrics.runs)
+                if (run.key.seed == job.seed && run.key.arm == job.arm && run.key.s == job.s)
+                    run.regions[r].tail = tail;
+        }
+    }
+}
+
+void add_summaries(Measured& out) {
+    const Experiment& experiment = out.experiment;
+    Metrics& metrics = out.metrics;
+    const Published* published = figures_of(experiment);
+    metrics.bands = bands(experiment, metrics.runs, published);
+    metrics.published_seed = published ? published->seed : std::nullopt;
+    metrics.ladders = ladders(experiment, metrics.runs);
+    for (const auto& [key, film] : out.films) metrics.film_hashes[to_string(key)] = hash(film);
+    for (const ReferenceFilm& film : out.quadrature)
+        metrics.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
+    for (const ReferenceFilm& film : out.monte_carlo)
+        metrics.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
+    for (std::size_t e = 0; e < out.quadrature.size(); ++e)
+        for (const Region& region : experiment.regions)
+            metrics.references.push_back(
+                compare(out.quadrature[e], out.monte_carlo[e], region, out.films, experiment.reference.kind));
+}
+
+void add_view(Prepared& prepared, Measured& out) {
+    for (std::size_t k = 0; k < prepared.shape_pixels.size(); ++k)
+        out.metrics.shape_pixels[out.experiment.shapes[k].name] = prepared.shape_pixels[k];
+    out.metrics.geometry_pixels = prepared.geometry_pixels;
+    out.shapes = std::move(prepared.shapes);
+    out.quadrature = std::move(prepared.quadrature), out.monte_carlo = std::move(prepared.monte_carlo);
+}
+
+}  // namespace
+
+const Film* Measured::film(const RunKey& key) const {
+    const auto found = std::ranges::find(films, key, &std::pair<RunKey, Film>::first);
+    return found == films.end() ? nullptr : &found->second;
+}
+
+const ReferenceFilm* Measured::reference(double s) const {
+    return reference_of(experiment, quadrature, monte_carlo, s);
+}
+
+std::optional<Tail> region_tail(
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch) {
+    constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
+    const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
+    const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
+    const std::size_t length = tail_length(pixels * n);
+    std::uint64_t drawn = 0;
+    if (length == 0) return std::nullopt;
+    return fit_pooled_tail(largest_samples(scene, job.sampler, n, job.seed, box, length + 1, isa, watch, drawn));
+}
+
+Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
+    Provenance p;
+    p.version = version();
+    p.commit = commit();
+    p.compiler = compiler();
+    p.experiment_file = plan.experiment.file;
+    p.experiment_hash = fmt::format("{:016x}", plan.hash);
+    p.instrument = instrument.name(), p.instrument_details = instrument.details();
+    p.command = command.empty() ? "crescent run " + plan.experiment.file : command;
+    p.seeds = plan.seeds;
+    p.first_of_series = plan.range.first, p.series = plan.series;
+    return p;
+}
+
+Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
+    Watch& watch, const CollectOptions& options) {
+    const Engine with = settled(engine);
+    Measured out;
+    out.experiment = plan.experiment;
+    out.timing.threads = with.threads, out.timing.isa = with.isa;
+    out.stopped = prepared.stopped;
+    sort_results(plan, results);
+    take_results(std::move(results), out);
+    const auto stage = [&](const char* name, const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        out.stopped = out.stopped || !unless_stopped(with.threads, watch, work);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        out.timing.stages.emplace_back(name, took.count());
+    };
+    if (options.studies) {
+        stage("tails", [&] { add_tails(plan, prepared.scene, with.isa, watch, out.metrics); });
+        stage("furnaces",
+            [&] { out.metrics.furnaces = furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch); });
+        stage("evidence", [&] { out.evidence = measure_evidence(plan.experiment, with.isa, watch); });
+    }
+    add_view(prepared, out);
+    stage("meters", [&] { add_summaries(out); });
+    out.provenance = provenance_of(plan, *with.instrument, options.command);
+    out.metrics.assertions = judge(out.experiment, out.metrics, {}, false);
+    for (AssertionResult& a : with.instrument->assertions()) out.metrics.assertions.push_back(std::move(a));
+    return out;
+}
+
+}  // namespace crescent

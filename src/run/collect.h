@@ -1,0 +1,50 @@
+// Third step of a run: the results of its jobs -> every number of the run, in memory. Results may come in any order,
+// and from other threads or machines.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "meters/evidence.h"
+#include "meters/metrics.h"
+#include "report/report.h"
+#include "run/execute.h"
+
+namespace crescent {
+
+/// Everything that a run measured; nothing in it refers to something outside.
+struct Measured {
+    Experiment experiment;  // as in the plan
+    Metrics metrics;        // assertions on plates are not judged: none are drawn yet
+    Evidence evidence;
+    Provenance provenance;
+    Timing timing;
+    ShapeMap shapes;
+    std::vector<std::pair<RunKey, Film>> films;          // of the jobs whose films were kept
+    std::vector<ReferenceFilm> quadrature, monte_carlo;  // one an exponent; none where not asked for
+    Plates plates;                                       // none before write()
+    bool stopped = false;
+
+    const Film* film(const RunKey& key) const;       // null: not kept
+    const ReferenceFilm* reference(double s) const;  // the one that the meters use; null: not made
+};
+
+/// What is measured beside the jobs.
+struct CollectOptions {
+    std::string command;  // as typed, for the provenance; "": `crescent run` and the experiment's file
+    bool studies = true;  // tails, furnaces, evidence; without them the meters of the jobs alone
+};
+
+/// Takes what was made; `results` need not be all of the plan's.
+Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
+    Watch& watch, const CollectOptions& options = {});
+
+/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
+/// few spread. May throw Interrupted.
+std::optional<Tail> region_tail(
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch);
+
+Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
+
+}  // namespace crescent

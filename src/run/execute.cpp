@@ -1,0 +1,119 @@
+#include "run/execute.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/errors.h"
+#include "base/machine.h"
+#include "base/parallel.h"
+#include "estimator/estimator.h"
+#include "estimator/kernel.h"
+#include "estimator/reference.h"
+#include "meters/meters.h"
+#include "run/checkpoint.h"
+#include "run/needs.h"
+#include "run/stopping.h"
+
+namespace crescent {
+
+namespace {
+
+std::vector<RunMeter> meters_of(
+    const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
+    const ReferenceFilm* reference = reference_of(plan.experiment, prepared.quadrature, prepared.monte_carlo, job.s);
+    ensure(reference != nullptr, "references are made before the jobs that are measured against them");
+    std::vector<RunMeter> out;
+    for (const Film& film : films)
+        out.push_back(measure(plan.experiment, {job.arm, film.n, job.s, job.seed}, film, *reference, prepared.shapes));
+    return out;
+}
+
+void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, Watch& watch, bool keep_films,
+    Checkpoint* checkpoint, JobResult& out) {
+    std::unique_ptr<TileKeeper> keeper;
+    if (checkpoint) {
+        out.meters = checkpoint->meters(out.job);
+        keeper.reset(new TileKeeper(checkpoint->tiles(out.job)));
+    }
+    if (keep_films || out.meters.empty()) {
+        const Scene scene = prepared.scene.with_s(out.job.s);
+        std::vector<Film> films = engine.instrument->films(scene, out.job, watch, keeper.get());
+        const auto all = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
+        out.samples = all - (keeper ? keeper->restored() : 0);
+        const bool fresh = out.meters.empty();
+        if (fresh) out.meters = meters_of(plan, prepared, out.job, films);
+        if (fresh && checkpoint) checkpoint->add(out.meters);
+        if (keep_films) out.films = std::move(films);
+    }
+    if (!keep_films && keeper) keeper->remove();
+}
+
+}  // namespace
+
+Engine settled(Engine engine) {
+    engine.isa = std::string(kernels_for(engine.isa).isa);
+    if (engine.threads <= 0) engine.threads = usable_threads();
+    if (!engine.instrument) engine.instrument = cpu_instrument(engine.isa);
+    return engine;
+}
+
+const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,
+    const std::vector<ReferenceFilm>& monte_carlo, double s) {
+    const auto& films = experiment.reference.kind == ReferenceKind::quadrature ? quadrature : monte_carlo;
+    const auto film = std::ranges::find(films, s, &ReferenceFilm::s);
+    return film == films.end() ? nullptr : &*film;
+}
+
+Prepared look(const RunPlan& plan, const Engine& engine) {
+    const Experiment& experiment = plan.experiment;
+    check_memory(experiment);
+    Prepared out(experiment);
+    on_threads(settled(engine).threads, [&] {
+        out.scene.remember_primaries();
+        out.shapes = shape_map(out.scene);
+    });
+    out.shape_pixels.resize(experiment.shapes.size());
+    for (const std::int16_t shape : out.shapes.shape)
+        if (shape >= 0) ++out.shape_pixels[static_cast<std::size_t>(shape)], ++out.geometry_pixels;
+    if (out.geometry_pixels == 0)
+        throw InputError(experiment.place_of("camera"),
+            "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+    return out;
+}
+
+void add_references(
+    const RunPlan& plan, Prepared& prepared, const Engine& engine, Watch& watch, Checkpoint* checkpoint) {
+    const Engine with = settled(engine);
+    const auto pixels = static_cast<double>(prepared.shapes.shape.size());
+    const auto keeper = [&](const char* name) {
+        return std::unique_ptr<TileKeeper>(checkpoint ? new TileKeeper(checkpoint->tiles(name)) : nullptr);
+    };
+    prepared.stopped = !unless_stopped(with.threads, watch, [&] {
+        watch.begin("reference by quadrature", pixels);
+        const std::unique_ptr<TileKeeper> quadrature = keeper("quadrature"), note = keeper("note");
+        prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, watch, quadrature.get());
+        watch.begin("the note's reference", pixels);
+        prepared.monte_carlo =
+            note_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, watch, note.get());
+    });
+}
+
+Prepared prepare(const RunPlan& plan, const Engine& engine, Watch& watch) {
+    Prepared out = look(plan, engine);
+    add_references(plan, out, engine, watch);
+    return out;
+}
+
+JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine, Watch& watch,
+    bool keep_films, Checkpoint* checkpoint) {
+    const Engine with = settled(engine);
+    const auto start = std::chrono::steady_clock::now();
+    JobResult out;
+    out.job = job;
+    out.stopped = !unless_stopped(
+        with.threads, watch, [&] { compute(plan, prepared, with, watch, keep_films, checkpoint, out); });
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return out;
+}
+
+}  // namespace crescent

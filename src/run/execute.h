@@ -1,0 +1,71 @@
+// Second step of a run: what all jobs look at and are measured against, then one job after another -> films and meters.
+//
+// Of these and the later steps: a stop that the Watch was asked for is no exception. What is returned says `stopped`
+// and holds nothing that can be relied on. InputError and OutputError are thrown as everywhere. No step changes
+// anything that belongs to the process: signals, locale, thread pools; each may be called from several threads with
+// plans of their own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "films/film.h"
+#include "meters/metrics.h"
+#include "run/instruments.h"
+#include "run/plan.h"
+#include "scene/scene.h"
+
+namespace crescent {
+
+class Checkpoint;
+
+/// What a run is computed with. Films, references and meters are the same bits whatever it says, but for the
+/// instrument.
+struct Engine {
+    int threads = 0;                         // 0: usable_threads()
+    std::string isa;                         // a name of isas(); "": the best of this machine
+    std::shared_ptr<Instrument> instrument;  // null: the CPU
+};
+/// With nothing left open. Throws InputError where the instruction set is not known or not here.
+Engine settled(Engine engine);
+
+/// What all jobs of a plan share.
+struct Prepared {
+    explicit Prepared(const Experiment& experiment) : scene(experiment) {}
+
+    Scene scene;  // at the experiment's own s
+    ShapeMap shapes;
+    std::vector<std::uint64_t> shape_pixels;  // of each shape, in the experiment's order
+    std::uint64_t geometry_pixels = 0;
+    std::vector<ReferenceFilm> quadrature, monte_carlo;  // one an exponent, in the plan's order
+    bool stopped = false;
+};
+
+/// What the camera sees. Throws InputError where it sees nothing, and OutputError where the machine has not the memory.
+Prepared look(const RunPlan& plan, const Engine& engine = {});
+/// Adds the references that the experiment asks for. A checkpoint keeps what is finished.
+void add_references(
+    const RunPlan& plan, Prepared& prepared, const Engine& engine, Watch& watch, Checkpoint* checkpoint = nullptr);
+/// Both of them.
+Prepared prepare(const RunPlan& plan, const Engine& engine, Watch& watch);
+
+struct JobResult {
+    Job job;
+    std::vector<RunMeter> meters;  // one a rung; tails come with collect()
+    std::vector<Film> films;       // one a rung; none where they were not asked for
+    double samples = 0;            // that were drawn now
+    double seconds = 0;
+    bool stopped = false;
+};
+
+/// One job. `keep_films` = false: its meters alone, which a checkpoint may hold already.
+JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine, Watch& watch,
+    bool keep_films = true, Checkpoint* checkpoint = nullptr);
+
+/// The reference that the meters of exponent s use; null where none was made.
+const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,
+    const std::vector<ReferenceFilm>& monte_carlo, double s);
+
+}  // namespace crescent

@@ -1,0 +1,36 @@
+#include "run/instruments.h"
+
+#include "estimator/estimator.h"
+
+namespace crescent {
+
+namespace {
+
+class Cpu : public Instrument {
+public:
+    explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
+    std::string name() const override { return "CPU"; }
+    std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch, TileKeeper* keeper) override {
+        return estimate_films(scene, job.sampler, job.n, job.seed, isa_, watch, keeper);
+    }
+
+private:
+    std::string isa_;
+};
+
+}  // namespace
+
+std::shared_ptr<Instrument> cpu_instrument(std::string isa) { return std::make_shared<Cpu>(std::move(isa)); }
+
+std::vector<std::shared_ptr<const InstrumentKind>>& instrument_kinds() {
+    static std::vector<std::shared_ptr<const InstrumentKind>> kinds;
+    return kinds;
+}
+
+std::shared_ptr<const InstrumentKind> find_instrument(const std::string& name) {
+    for (const auto& kind : instrument_kinds())
+        if (kind->name() == name) return kind;
+    return nullptr;
+}
+
+}  // namespace crescent

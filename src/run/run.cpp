@@ -1,0 +1,95 @@
+#include "run/run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+
+#include "base/files.h"
+#include "base/parallel.h"
+#include "run/checkpoint.h"
+#include "run/needs.h"
+
+namespace crescent {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Films alone need neither other seeds nor what is measured beside the jobs.
+bool films_alone(const OutputParts& parts) { return parts.films && !parts.metrics && !parts.draws(); }
+
+RunPlan plan_of(const Experiment& experiment, const RunOptions& options) {
+    RunPlan all = plan(experiment, options.seeds);
+    if (!films_alone(options.parts)) return all;
+    return plan(experiment, {all.range.first, all.range.first});
+}
+
+double samples_of(const RunPlan& plan, std::uint32_t seed, std::uint64_t pixels) {
+    double samples = 0;
+    for (const Job& job : plan.jobs)
+        if (job.seed == seed) samples += static_cast<double>(job.n.back()) * static_cast<double>(pixels);
+    return samples;
+}
+
+std::vector<JobResult> execute_all(
+    const RunPlan& plan, const Prepared& prepared, const Engine& engine, Watch& watch, Checkpoint* checkpoint) {
+    std::vector<JobResult> results;
+    for (std::size_t k = 0, seed = 0; k < plan.jobs.size(); ++k) {
+        const Job& job = plan.jobs[k];
+        if (k == 0 || job.seed != plan.jobs[k - 1].seed)
+            watch.begin(fmt::format("seed {} of {}", plan.range.first + static_cast<int>(seed++), plan.series),
+                samples_of(plan, job.seed, prepared.geometry_pixels));
+        results.push_back(execute(plan, prepared, job, engine, watch, job.seed == plan.seeds.front(), checkpoint));
+        watch.check();
+    }
+    return results;
+}
+
+/// The steps up to the last; throws Interrupted.
+Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options, Watch& watch,
+    Checkpoint* checkpoint) {
+    const auto start = Clock::now();
+    add_references(plan, prepared, engine, watch, checkpoint);
+    watch.check();
+    const double references = seconds_since(start);
+    std::vector<JobResult> results = execute_all(plan, prepared, engine, watch, checkpoint);
+    const double estimating = seconds_since(start);
+    Measured out = collect(
+        plan, std::move(prepared), std::move(results), engine, watch, {options.command, !films_alone(options.parts)});
+    watch.check();
+    out.timing.estimating_s = estimating;
+    out.timing.stages.insert(
+        out.timing.stages.begin(), {{"references", references}, {"films", estimating - references}});
+    return out;
+}
+
+Engine engine_of(const RunOptions& options) { return settled({options.threads, options.isa, options.instrument}); }
+
+}  // namespace
+
+RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+    const auto start = Clock::now();
+    const Engine engine = engine_of(options);
+    const RunPlan plan = plan_of(experiment, options);
+    if (options.parts.draws()) check_font(plan.experiment);
+    Prepared prepared = look(plan, engine);
+    Staging staging(options.out);
+    Checkpoint checkpoint(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);
+    Measured all = measured(plan, std::move(prepared), engine, options, watch, &checkpoint);
+    all.timing.total_s = seconds_since(start);
+    on_threads(engine.threads, [&] { write(all, staging, watch, options.parts); });
+    staging.commit(watch);
+    checkpoint.forget();
+    std::string summary = terminal_summary(report_inputs(all), all.timing, options.out, options.parts);
+    return {std::move(all.metrics), std::move(all.timing), std::move(all.provenance), std::move(summary)};
+}
+
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+    const Engine engine = engine_of(options);
+    const RunPlan plan = plan_of(experiment, options);
+    return measured(plan, look(plan, engine), engine, options, watch, nullptr);
+}
+
+}  // namespace crescent

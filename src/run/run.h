@@ -1,0 +1,41 @@
+// The steps of a run in one call: plan, execute, collect, write.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/watch.h"
+#include "experiment/experiment.h"
+#include "run/collect.h"
+#include "run/execute.h"
+#include "run/instruments.h"
+#include "run/plan.h"
+#include "run/write.h"
+
+namespace crescent {
+
+struct RunOptions {
+    std::string out = "out";
+    int threads = 0;           // 0: as many as this process may use
+    std::string isa;           // "": the best this machine has
+    std::string command;       // as typed, for the provenance
+    double keep_after_s = 10;  // passes and runs that take longer keep what they have finished, see checkpoint.h
+    std::shared_ptr<Instrument> instrument;  // null: the CPU
+    OutputParts parts;
+    SeedRange seeds;
+};
+
+struct RunResult {
+    Metrics metrics;
+    Timing timing;
+    Provenance provenance;
+    std::string summary;  // for the terminal
+};
+
+/// Runs `experiment` and writes nothing. Throws Interrupted where the watch says so.
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch);
+
+/// Runs `experiment` and writes everything under options.out; outputs appear whole or not at all. Throws Interrupted.
+RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch);
+
+}  // namespace crescent

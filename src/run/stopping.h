@@ -1,0 +1,18 @@
+// Inside the steps of a run a stop is an exception; outside it is an answer.
+#pragma once
+
+#include "base/parallel.h"
+#include "base/watch.h"
+
+namespace crescent {
+
+/// Does the work on so many threads; false where the watch stopped it, on the way or before its end.
+template <class Work> bool unless_stopped(int threads, const Watch& watch, const Work& work) {
+    try {
+        on_threads(threads, work);
+        watch.check();
+        return true;
+    } catch (const Interrupted&) { return false; }
+}
+
+}  // namespace crescent

@@ -1,0 +1,149 @@
+#include "run/write.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/errors.h"
+#include "base/files.h"
+#include "base/machine.h"
+#include "base/parallel.h"
+#include "experiment/names.h"
+#include "meters/quantity.h"
+#include "plates/plates.h"
+#include "run/stopping.h"
+#include "run/version.h"
+
+namespace crescent {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attributes text) {
+    const PlateInputs in{m.experiment, m.metrics, m.shapes, [&](const RunKey& key) { return m.film(key); },
+        [&](double s) { return m.reference(s); }, m.provenance.instrument};
+    text.emplace_back("plate", plan.name);
+    return encode_png(draw_plate(plan, in), text);
+}
+
+/// One file an arm and exponent, rungs as parts.
+void write_films(const Measured& m, Staging& staging, const Watch& watch) {
+    std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
+    for (const auto& [key, film] : m.films) {
+        const std::string name = film_file(key.arm, key.s, m.experiment.s());
+        if (files.empty() || files.back().first != name) files.push_back({name, {}});
+        files.back().second.emplace_back(fmt::format("n={}", key.n), &film);
+    }
+    for (const auto& [name, parts] : files) {
+        write_exr(staging.path("films/" + name + ".exr"), parts, attributes_of(m));
+        watch.check();
+    }
+}
+
+void write_references(const Measured& m, Staging& staging) {
+    std::vector<std::pair<std::string, const ReferenceFilm*>> parts;
+    for (const ReferenceFilm& film : m.quadrature) parts.emplace_back(fmt::format("quadrature s={}", film.s), &film);
+    for (const ReferenceFilm& film : m.monte_carlo) parts.emplace_back(fmt::format("note s={}", film.s), &film);
+    if (!parts.empty()) write_exr(staging.path(fmt::format("films/{}.exr", reference_file)), parts, attributes_of(m));
+}
+
+/// The experiment's own assertions stand first; those of the instrument stay as they are.
+void judge_plates(Measured& m) {
+    PlateBytes bytes;
+    for (const auto& [name, png] : m.plates) bytes[name] = png.size();
+    std::ranges::move(judge(m.experiment, m.metrics, bytes), m.metrics.assertions.begin());
+}
+
+void write_reports(const Measured& m, Staging& staging, const OutputParts& parts) {
+    const ReportInputs in = report_inputs(m);
+    if (parts.metrics) {
+        staging.write("metrics.json", metrics_json(in));
+        staging.write("metrics.csv", metrics_csv(in));
+        staging.write("junit.xml", junit_xml(in));
+    }
+    if (parts.report) staging.write("report.html", report_html(in));
+}
+
+}  // namespace
+
+OutputParts output_parts(const std::string& words) {
+    OutputParts out{false, false, false, false};
+    const std::pair<const char*, bool*> all[] = {
+        {"metrics", &out.metrics}, {"films", &out.films}, {"plates", &out.plates}, {"report", &out.report}};
+    std::vector<std::string> names;
+    for (const auto& [name, part] : all) names.emplace_back(name);
+    for (std::size_t begin = 0; begin <= words.size();) {
+        const std::size_t end = std::min(words.find(',', begin), words.size());
+        const std::string word = words.substr(begin, end - begin);
+        const auto found = std::ranges::find(names, word);
+        if (found == names.end()) {
+            const std::string near = nearest(word, names);
+            throw InputError({"--only " + words, 0, 0},
+                fmt::format("expected metrics, films, plates or report, several with commas between, not '{}'{}", word,
+                    near.empty() ? "" : "; did you mean '" + near + "'?"));
+        }
+        *all[found - names.begin()].second = true;
+        begin = end + 1;
+    }
+    return out;
+}
+
+Attributes attributes_of(const Measured& m) {
+    const Provenance& p = m.provenance;
+    return {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
+        {"experiment", p.experiment_file + " " + p.experiment_hash}, {"command", p.command},
+        {"instrument", p.instrument}, {"seed", std::to_string(m.experiment.seed)}};
+}
+
+Plates draw_plates(const Measured& m, const Watch& watch) {
+    const std::vector<PlatePlan>& plans = m.experiment.plates;
+    std::vector<std::vector<unsigned char>> bytes(plans.size());
+    parallel_for(std::size_t{0}, plans.size(), [&](std::size_t k) {
+        watch.check();
+        bytes[k] = draw(plans[k], m, attributes_of(m));
+    });
+    Plates out;
+    for (std::size_t k = 0; k < plans.size(); ++k) out[plans[k].name] = std::move(bytes[k]);
+    return out;
+}
+
+ReportInputs report_inputs(const Measured& m) { return {m.experiment, m.metrics, m.evidence, m.provenance, m.plates}; }
+
+void write(Measured& m, Staging& staging, Watch& watch, const OutputParts& parts) {
+    const auto start = Clock::now();
+    side_by_side(
+        [&] {
+            if (!parts.films) return;
+            write_films(m, staging, watch);
+            write_references(m, staging);
+        },
+        [&] {
+            if (parts.draws()) m.plates = draw_plates(m, watch);
+        });
+    if (parts.plates)
+        for (const auto& [name, png] : m.plates) staging.write("plates/" + name + ".png", png);
+    m.timing.stages.emplace_back("plates and films on disk", seconds_since(start));
+    if (parts.draws()) judge_plates(m);
+    const auto report = Clock::now();
+    write_reports(m, staging, parts);
+    m.timing.stages.emplace_back("report", seconds_since(report));
+    m.timing.total_s += seconds_since(start);
+    m.timing.date = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+    m.timing.host_cpu = host_cpu();
+    staging.write("timing.json", timing_json(m.timing, m.provenance));
+    watch.check();
+}
+
+bool write(Measured& m, const std::string& folder, Watch& watch, const OutputParts& parts, int threads) {
+    Staging staging(folder);
+    const bool done =
+        unless_stopped(threads > 0 ? threads : usable_threads(), watch, [&] { write(m, staging, watch, parts); });
+    if (done) staging.commit(watch);
+    return done;
+}
+
+}  // namespace crescent
