@@ -2,10 +2,7 @@
 // span.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
 
 #include "test_scene.h"
 
@@ -22,20 +19,15 @@ box = [4, 4, 90, 16]
         "metered.toml", {"seeds=8", "n=64", "arms.phong.n=[4,16,64]"});
 }
 
-RunResult run_with(const std::shared_ptr<Instrument>& instrument) {
-    const std::filesystem::path out =
-        std::filesystem::temp_directory_path() / ("crescent-gl-" + std::to_string(::getpid()));
-    RunOptions options;
-    options.out = out.string();
-    options.instrument = instrument;
+Measured measured_with(const std::shared_ptr<Instrument>& instrument) {
     Watch watch;
-    RunResult result = run(metered_scene(), options, watch);
-    std::filesystem::remove_all(out);
-    return result;
+    RunOptions options;
+    options.instrument = instrument;
+    return measure_in_memory(metered_scene(), options, watch);
 }
 
 TEST(MeterLaw, EveryMeterOfARunIsTheCpusWithinOnePercentOfItsBand) {
-    const RunResult cpu = run_with(nullptr), gl = run_with(find_instrument("gl")->open({}));
+    const Measured cpu = measured_with(nullptr), gl = measured_with(find_instrument("gl")->open({}));
     ASSERT_EQ(cpu.metrics.bands.size(), gl.metrics.bands.size());
     ASSERT_GT(cpu.metrics.bands.size(), 20u);
     for (std::size_t k = 0; k < cpu.metrics.bands.size(); ++k) {

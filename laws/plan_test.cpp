@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/test_scene.h"
+#include "films/film.h"
 
 namespace crescent {
 namespace {
