@@ -146,8 +146,7 @@ Verdict caught_or_not(const PlantedFault& fault, const std::string& caught) {
     return v;
 }
 
-std::string catchers(const PlantedFault& fault, const Rigour& rigour, Watch& watch) {
-    const Judgement j = judge(fault.trials, rigour, watch);
+std::string catchers(const Judgement& j) {
     std::string caught;
     for (std::string_view name : verdict_names)
         for (const Verdict& v : j.verdicts)
@@ -164,7 +163,7 @@ int check_planted(const CheckFlags& flags, Progress& watch) {
     j.alpha = flags.alpha;
     std::string text;
     for (const PlantedFault& fault : planted_faults(flags.full)) {
-        const std::string caught = catchers(fault, rigour_of(flags), watch);
+        const std::string caught = catchers(judge(fault.trials, rigour_of(flags), watch));
         j.verdicts.push_back(caught_or_not(fault, caught));
         j.as_expected = j.as_expected && !caught.empty();
         char line[256];
@@ -217,15 +216,23 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     bool kept = rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha;
     const std::string law = right_tables(flags, watch, kept);
     std::vector<Caught> table;
+    std::vector<Explained> causes;
     const std::vector<PlantedFault> quick = planted_faults(false), full = planted_faults(true);
     for (std::size_t i = 0; i < quick.size(); ++i) {
-        table.push_back({quick[i].name, quick[i].breaks, catchers(quick[i], Rigour::quick(), watch),
-            catchers(full[i], Rigour::thorough(), watch)});
+        const Judgement seen = judge(quick[i].trials, Rigour::quick(), watch);
+        causes.push_back(explained(quick[i], seen));
+        table.push_back({quick[i].name, quick[i].breaks, catchers(seen),
+            catchers(judge(full[i].trials, Rigour::thorough(), watch))});
         kept = kept && !table.back().full.empty();
     }
     print(error_rates_text(alarms, law, table, command_of_rates(flags),
         "crescent " + crescent::version() + ", commit " + crescent::commit()));
-    return kept ? held : failed;
+    std::string told;
+    const std::size_t right = std::max<std::size_t>(flags.right, 100);
+    const std::size_t found = count_false_diagnoses(flags.first, right, flags.seed, told);
+    if (!told.empty()) watch.say(told);
+    print(explained_text(causes, found, right));
+    return kept && found == 0 ? held : failed;
 }
 
 /// Exit 0 where no right sampler is accused more often than was promised.

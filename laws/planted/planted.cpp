@@ -271,7 +271,7 @@ std::vector<PlantedFault> planted_faults(bool full) {
     weight_faults(plans);
     std::vector<PlantedFault> out;
     for (const Plan& p : plans) {
-        PlantedFault fault{p.name, p.arm, {}};
+        PlantedFault fault{p.name, p.arm, {}, cause_of(p.name)};
         const Stage on = stage(p.lobe, p.lambert, p.light, p.sharpness);
         for (const auto& [theta, azimuth] : wo_grid(full)) {
             if (theta != 0 && theta != 45 && theta != 75)

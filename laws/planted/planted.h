@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "verdicts/work.h"
+#include "verdicts/judge.h"
 
 namespace crescent {
 
@@ -14,8 +14,22 @@ struct PlantedFault {
     std::string name;    // a few words
     std::string breaks;  // the arm it breaks
     std::vector<Trial> trials;
+    std::string cause{};  // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
 };
 
 std::vector<PlantedFault> planted_faults(bool full);
+std::string cause_of(const std::string& fault);
+
+/// What was said of a planted fault over its w_o.
+struct Explained {
+    std::string fault, cause, said;  // said: the factors, or "none"
+    bool right = false;              // it has a cause, which is named, and nothing else is
+};
+Explained explained(const PlantedFault& fault, const Judgement& judgement);
+/// A table of them, and how many of those with a cause were named rightly; `false_alarms` of `right` right samplers had
+/// one found.
+std::string explained_text(const std::vector<Explained>& all, std::size_t false_alarms, std::size_t right);
+/// How many of the right samplers `first` to `first + count` a diagnosis finds something in, though nobody is accused.
+std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uint32_t seed, std::string& told);
 
 }  // namespace crescent

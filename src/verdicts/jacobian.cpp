@@ -125,6 +125,7 @@ WarpFinding study_warp(const Work& work, int technique) {
         const Derivative d = derivative(std::span(w).subspan(i, stencil), work.grain());
         if (!d.usable) continue;
         ++out.usable;
+        out.points.push_back({w[i].wi, d.j, d.error});
         const double pj = w[i].pdf * d.j, allowed = 5e-4 + 2 * d.error;
         if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf, pj});
         if (std::fabs(pj - 1) <= allowed) ++one;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "verdicts/diagnosis.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 
@@ -82,6 +83,7 @@ void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& wa
              +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_tail(w); },
              +[](Work& w) { return judge_mean(w); }})
         judge_next(work, out, watch, verdict);
+    diagnose(work, out.verdicts);
     if (work.subject.has_f()) out.efficiency = measure_efficiency(work, index);
 }
 

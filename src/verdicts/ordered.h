@@ -49,12 +49,19 @@ Integral from_below(const Work& work, Vec3d b);
 /// Up to three directions under the surface that the sampler draws, the one of the highest pdf first.
 std::vector<Vec3d> drawn_below(const Work& work);
 
+/// A point at which |Jacobian| of the warp is known: 1 / |J| is the density that is drawn there, where one u alone
+/// reaches it.
+struct WarpPoint {
+    Vec3d wi{};
+    double jacobian = 0, error = 0;  // sr; relative
+};
 /// What the warp's derivatives say; see jacobian.cpp.
 struct WarpFinding {
     std::size_t usable = 0, below = 0;  // points with a trusted |J|, and those with p |J| < 1
     double smallest = 1;                // p |J|
     Vec2d at{};
     double one_to_one = 0;                   // share of usable points with p |J| = 1
+    std::vector<WarpPoint> points;           // the usable ones
     std::size_t steps_tried = 0, stuck = 0;  // moves of u by 2^-19 that ought to show, and those that do not
 };
 WarpFinding study_warp(const Work& work, int technique);

@@ -1,0 +1,84 @@
+// Which planted faults have a cause that a diagnosis knows, and whether it is the one that is named.
+#include <fmt/format.h>
+#include <map>
+#include <set>
+
+#include "laws/planted/planted.h"
+#include "laws/right/right.h"
+#include "verdicts/diagnosis.h"
+#include "verdicts/error_rates.h"
+
+namespace crescent {
+
+std::string cause_of(const std::string& fault) {
+    static const std::map<std::string, std::string> causes = {
+        {"s+2 for s+1 in the pdf", "a constant"}, {"exponent s+1 for s in the pdf", "w_i.R"},
+        {"1/(s+2) for 1/(s+1) in the warp", "w_i.R"}, {"pdf renormalised over the horizon", "a constant"},
+        {"cosine folded in twice", "cos theta_i"}, {"cosine left out of the pdf", "cos theta_i"},
+        {"missing 4(w.h)", "w_o.m"}, {"n.h for w.h in the Jacobian", "(n.m) / (w_o.m)"},
+        {"missing G1 in the density of visible normals", "a constant"}, {"area measure for solid angle", "distance^2"},
+        {"light's cosine left out", "cosine at the light"}, {"pdf off by 1 %", "a constant"},
+        {"lights chosen by power, weighed alike", "chooser"}, {"sqrt forgotten", "cos theta_i"},
+        {"frame mirrored for half of the azimuths", "mirrored"}, {"swapped w_o and w_i in pdf(w)", "cos theta_i"},
+        {"cosine left out of the weight", "cos theta_i"}, {"BRDF scaled by 1.01", "a constant"},
+        {"s+1 for s+2 in the BRDF", "a constant"}, {"non-reciprocal f", "a constant"},  // at one w_o
+    };
+    const auto at = causes.find(fault);
+    return at == causes.end() ? "" : at->second;
+}
+
+Explained explained(const PlantedFault& fault, const Judgement& judgement) {
+    Explained out{fault.name, fault.cause, "none", false};
+    std::set<std::string> said;
+    bool other = false;
+    for (const Verdict& v : judgement.verdicts) {
+        if (v.state != State::wrong || !v.evidence.contains("diagnosis")) continue;
+        const std::string name = v.evidence["diagnosis"];
+        if (name == "none") continue;
+        said.insert(name);
+        const bool it = !fault.cause.empty() && name.find(fault.cause) != std::string::npos;
+        out.right = out.right || it;
+        other = other || !it;
+    }
+    out.right = out.right && !other;
+    if (!said.empty()) out.said = fmt::format("{}", fmt::join(said, "; "));
+    return out;
+}
+
+std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uint32_t seed, std::string& told) {
+    Rigour rigour = Rigour::quick();
+    rigour.seed = seed;
+    std::size_t found = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+        Tally tally;
+        const Trial trial = right_trial(i, seed);
+        Work work(trial, rigour, tally, static_cast<std::uint32_t>(i));
+        work.measure_density();
+        for (const std::optional<Diagnosis>& what : {diagnose_density(work, 0), diagnose_identity(work, 0)}) {
+            if (!what) continue;
+            ++found;
+            told += fmt::format("{} {} [{}]: {}\n", i, trial.arm, trial.text(), what->means);
+        }
+    }
+    return found;
+}
+
+std::string explained_text(const std::vector<Explained>& all, std::size_t false_alarms, std::size_t right) {
+    std::string out =
+        "\n## What a diagnosis says of a planted fault\n\n| fault | its cause | what is said to explain it "
+        "|\n|---|---|---|\n";
+    std::uint64_t with = 0, named = 0;
+    for (const Explained& e : all) {
+        out += fmt::format("| {} | {} | {} |\n", e.fault, e.cause.empty() ? "-" : e.cause, e.said);
+        with += !e.cause.empty();
+        named += e.right;
+    }
+    out += fmt::format("\nOf the faults with a cause that a diagnosis knows it is named, and no other, for {}.\n",
+        rate_text(named, with));
+    return out +
+        fmt::format(
+            "Asked of right samplers at random parameters, something is said to explain what is not there for {}.\n",
+            rate_text(false_alarms, right));
+}
+
+}  // namespace crescent

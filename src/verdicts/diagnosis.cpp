@@ -1,0 +1,228 @@
+// A factor explains the ratios where, up to one constant, nine of ten of them are it to 0.2 % and what they are known
+// to. The density that is drawn is 1 / |J| where one u alone reaches a direction; where there is no warp at hand, or
+// several u reach one direction, bins tell: draws weighed by 1 / (c g) must come to the mass that p has in each bin.
+#include "verdicts/diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr double close = 2e-3;      // relative
+constexpr double enough = 0.9;      // of all ratios
+constexpr std::size_t least = 100;  // ratios
+
+double median_of(std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+}
+
+/// Mean without the largest tenth.
+double trimmed(std::vector<double> v) {
+    std::sort(v.begin(), v.end());
+    v.resize(std::max<std::size_t>(v.size() * 9 / 10, 1));
+    double sum = 0;
+    for (double x : v) sum += x;
+    return sum / static_cast<double>(v.size());
+}
+
+std::vector<double> sizes(std::span<const double> v, double middle) {
+    std::vector<double> out;
+    for (double x : v) out.push_back(std::fabs(x - middle));
+    return out;
+}
+
+struct Fitted {
+    bool fits = false;
+    double constant = 1, left = 0, all = 0;  // trimmed means of |log|
+};
+
+Fitted fit(const Factor& factor, std::span<const Ratio> ratios) {
+    std::vector<double> logs, raw, allowed;
+    for (const Ratio& r : ratios) {
+        const double g = factor.g(r.wi);
+        if (!(g > 0) || !std::isfinite(g)) continue;
+        logs.push_back(math::log(r.value / g));
+        raw.push_back(math::log(r.value));
+        allowed.push_back(close + 2 * r.error);
+    }
+    if (logs.size() < ratios.size() * 9 / 10) return {};
+    const double middle = median_of(logs);
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < logs.size(); ++i) inside += std::fabs(logs[i] - middle) <= allowed[i];
+    return {static_cast<double>(inside) >= enough * static_cast<double>(ratios.size()), math::exp(middle),
+        trimmed(sizes(logs, middle)), trimmed(sizes(raw, 0))};
+}
+
+/// Nothing differs that could be explained: half of all ratios are one.
+bool mostly_one(std::span<const Ratio> ratios) {
+    std::size_t one = 0;
+    for (const Ratio& r : ratios) one += std::fabs(r.value - 1) <= 1e-3 + 2 * r.error;
+    return 2 * one >= ratios.size();
+}
+
+std::vector<Ratio> usable(std::vector<Ratio> all) {
+    std::erase_if(all, [](const Ratio& r) { return !(r.value > 0) || !std::isfinite(r.value) || r.error > 0.05; });
+    return all;
+}
+
+/// The frames that are taken for one another.
+struct Turn {
+    const char* name;
+    Vec3d (*of)(Vec3d);
+};
+constexpr Turn turns[] = {{"x and y exchanged", [](Vec3d w) { return Vec3d{w.y, w.x, w.z}; }},
+    {"the frame mirrored in x", [](Vec3d w) { return Vec3d{-w.x, w.y, w.z}; }},
+    {"the frame mirrored in y", [](Vec3d w) { return Vec3d{w.x, -w.y, w.z}; }},
+    {"the azimuth turned by 180 deg", [](Vec3d w) { return Vec3d{-w.x, -w.y, w.z}; }},
+    {"the azimuth turned by 90 deg", [](Vec3d w) { return Vec3d{-w.y, w.x, w.z}; }},
+    {"the azimuth turned by -90 deg", [](Vec3d w) { return Vec3d{w.y, -w.x, w.z}; }},
+    {"above and below exchanged", [](Vec3d w) { return Vec3d{w.x, w.y, -w.z}; }}};
+
+/// What is drawn is pdf(w) of another w_o, another w_i or both.
+std::optional<Diagnosis> turned(const Work& work, int technique, std::span<const WarpPoint> points) {
+    const std::size_t n = std::min<std::size_t>(points.size(), 256);
+    for (const Turn& turn : turns)
+        for (int which = 1; which < 4; ++which) {
+            std::vector<Pair> at;
+            for (std::size_t i = 0; i < n; ++i)
+                at.push_back({which & 1 ? turn.of(work.trial.wo) : work.trial.wo,
+                    which & 2 ? turn.of(points[i].wi) : points[i].wi});
+            std::vector<double> p(n);
+            work.subject.pdf(technique, at, p);
+            std::size_t same = 0;
+            for (std::size_t i = 0; i < n; ++i)
+                same += std::fabs(p[i] * points[i].jacobian - 1) <= close + 2 * points[i].error;
+            if (static_cast<double>(same) < enough * static_cast<double>(n)) continue;
+            const char* of[] = {"", " for w_o", " for w_i", ""};
+            const std::string name = std::string(turn.name) + of[which];
+            return Diagnosis{
+                name, 1, static_cast<double>(same) / static_cast<double>(n), "what is drawn is pdf(w) with " + name};
+        }
+    return {};
+}
+
+}  // namespace
+
+std::optional<Diagnosis> explain(const Work& work, std::span<const Ratio> ratios) {
+    if (ratios.size() < least || mostly_one(ratios)) return {};
+    std::optional<Diagnosis> best;
+    for (const Factor& factor : usual_factors(work)) {
+        const Fitted f = fit(factor, ratios);
+        if (!f.fits || !(f.all > 0)) continue;
+        const Diagnosis now{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
+            factor_text(work, factor.name, f.constant)};
+        const bool plain = std::fabs(now.constant - 1) < close;
+        if (!best ||
+            (plain && factor.name != "a constant" && std::fabs(best->constant - 1) >= close &&
+                best->name != "a constant"))
+            best = now;
+        if (factor.name == "a constant") break;
+    }
+    if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close) return {};
+    return best;
+}
+
+std::optional<Diagnosis> diagnose_density(const Work& work, int technique) {
+    const WarpFinding warp = study_warp(work, technique);
+    if (warp.points.size() < least) return diagnose_by_bins(work, technique);
+    std::vector<Vec3d> wi;
+    for (const WarpPoint& p : warp.points) wi.push_back(p.wi);
+    const std::vector<double> claimed = work.pdf(technique, wi);
+    std::vector<Ratio> ratios;
+    for (std::size_t i = 0; i < wi.size(); ++i)
+        ratios.push_back({wi[i], 1 / (claimed[i] * warp.points[i].jacobian), warp.points[i].error});
+    const std::vector<Ratio> known = usable(std::move(ratios));
+    if (10 * known.size() >= 9 * wi.size())
+        if (std::optional<Diagnosis> found = explain(work, known); found && comes_to_one(work, technique, *found)) {
+            found->means = "what is drawn is pdf(w) times " + found->means;
+            return found;
+        }
+    if (std::optional<Diagnosis> found = mostly_one(known) && 10 * known.size() >= 9 * wi.size()
+            ? std::nullopt
+            : turned(work, technique, warp.points))
+        return found;
+    return diagnose_by_bins(work, technique);
+}
+
+namespace {
+
+/// A factor with a constant that nobody knows may be chance: weights cut off are 1 / cos up to some constant.
+bool is_told_apart(const Work& work, const Diagnosis& found) {
+    return found.name == "a constant" || std::fabs(found.constant - 1) < close ||
+        !name_of_constant(work, found.constant).empty();
+}
+
+}  // namespace
+
+std::optional<Diagnosis> diagnose_identity(const Work& work, int technique) {
+    const Batchful& b = work.first(technique);
+    const std::size_t n = std::min<std::size_t>(b.draws.size(), 4096);
+    std::vector<Ratio> pdf, weight, f;
+    std::vector<Vec3d> wi;
+    for (std::size_t i = 0; i < n; ++i)
+        if (const Draw& d = b.draws[i]; d.pdf > 0 && work.counts(d.wi)) wi.push_back(d.wi);
+    const std::vector<double> truth = work.subject.has_true_f() ? work.f(wi, true) : std::vector<double>(wi.size());
+    const std::vector<double>& value = work.f_of_drawn(b);
+    for (std::size_t i = 0, k = 0; i < n; ++i) {
+        const Draw& d = b.draws[i];
+        if (!(d.pdf > 0) || !work.counts(d.wi)) continue;
+        pdf.push_back({d.wi, d.pdf / b.pdf[i], 0});
+        if (d.weight) weight.push_back({d.wi, *d.weight * d.pdf / (value[i] * std::fabs(d.wi.z)), 0});
+        if (work.subject.has_true_f()) f.push_back({d.wi, value[i] / truth[k], 0});
+        ++k;
+    }
+    for (const auto& [all, what] : {std::pair(&pdf, "the pdf with a draw is pdf(w) times "),
+             {&weight, "the weight is f cos / p times "}, {&f, "f is what it ought to be times "}})
+        if (std::optional<Diagnosis> found = explain(work, usable(*all)); found && is_told_apart(work, *found)) {
+            found->means = what + found->means;
+            return found;
+        }
+    return {};
+}
+
+namespace {
+
+void tell(Verdict& v, const std::optional<Diagnosis>& found) {
+    if (!found) {
+        v.say += " None of the usual factors explains it.";
+        v.evidence["diagnosis"] = "none";
+        return;
+    }
+    v.say += fmt::format(" What explains it, {:.3g} % of it: {}.", 100 * found->explained, found->means);
+    v.evidence["diagnosis"] = found->name;
+    v.evidence["diagnosis_constant"] = found->constant;
+    v.evidence["diagnosis_explains"] = found->explained;
+}
+
+}  // namespace
+
+void diagnose(const Work& work, std::span<Verdict> verdicts) {
+    std::string first;
+    std::optional<Diagnosis> density, identity;
+    for (Verdict& v : verdicts) {
+        const bool of_density = v.name == "normalised" || v.name == "density", of_identity = v.name == "identity";
+        const bool follows = !first.empty() && v.name == "physics" && v.evidence.contains("furnace_expected");
+        if (v.state != State::wrong || !(of_density || of_identity || follows || v.name == "mean")) continue;
+        if (!first.empty()) {
+            v.say += fmt::format(" See {}, which comes first.", first);
+            if (density || identity) v.evidence["diagnosis"] = (density ? density : identity)->name;
+            continue;
+        }
+        for (int t = 0; t < work.subject.techniques() && !density && !identity; ++t) {
+            if (!of_identity) density = diagnose_density(work, t);
+            if (!density) identity = diagnose_identity(work, t);
+            if (of_identity && !identity) density = diagnose_density(work, t);
+        }
+        tell(v, density ? density : identity);
+        first = v.name;
+    }
+}
+
+}  // namespace crescent

@@ -1,0 +1,48 @@
+// What would explain a wrong verdict: the ratio of what was observed to what was claimed, over the sphere, held against
+// the factors that people forget, double or exchange.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "verdicts/work.h"
+
+namespace crescent {
+
+/// Observed over claimed at one direction, and what that is known to, relative.
+struct Ratio {
+    Vec3d wi{};
+    double value = 0, error = 0;
+};
+
+/// A factor g of observed / claimed; g <= 0 where it says nothing.
+struct Factor {
+    std::string name;  // "cos theta_i"
+    std::function<double(Vec3d wi)> g;
+};
+
+struct Diagnosis {
+    std::string name;      // "cos theta_i", "a constant", "x and y exchanged"
+    double constant = 1;   // observed = constant * factor * claimed
+    double explained = 0;  // share of the difference, in the logarithm
+    std::string means;     // "a constant 0.9706 = (s+1)/(s+2)"
+};
+
+std::vector<Factor> usual_factors(const Work& work);
+/// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows.
+std::string name_of_constant(const Work& work, double constant);
+/// "4 (w_o.m) and a constant 0.5 = 1/2".
+std::string factor_text(const Work& work, const std::string& name, double constant);
+/// The first factor that explains nine of ten ratios; none where nothing differs, or nothing explains it.
+std::optional<Diagnosis> explain(const Work& work, std::span<const Ratio> ratios);
+/// What is drawn against pdf(w), by the warp's Jacobian, or by bins where there is none: a factor, or another frame.
+std::optional<Diagnosis> diagnose_density(const Work& work, int technique);
+std::optional<Diagnosis> diagnose_by_bins(const Work& work, int technique);
+/// c g p comes to what is drawn: a p that is right on half of the sphere and drawn nowhere else is not off by 2 there.
+bool comes_to_one(const Work& work, int technique, const Diagnosis& found);
+/// What comes with the draws against what is asked: pdf, weight, f.
+std::optional<Diagnosis> diagnose_identity(const Work& work, int technique);
+/// Says of the first verdict that is wrong what explains it, or that nothing usual does; the later ones refer to it.
+void diagnose(const Work& work, std::span<Verdict> verdicts);
+
+}  // namespace crescent

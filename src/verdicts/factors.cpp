@@ -1,0 +1,109 @@
+// The factors that people forget, double or exchange, at one w_o. m is the half vector, R the mirror direction.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "scene/brdf.h"
+#include "verdicts/diagnosis.h"
+
+namespace crescent {
+
+namespace {
+
+std::optional<double> parameter(const Work& work, std::string_view name) {
+    for (const auto& [key, value] : work.trial.parameters)
+        if (key == name) return value;
+    return {};
+}
+
+/// A factor and its inverse: forgotten, or counted once too often.
+void add(std::vector<Factor>& out, const std::string& name, std::function<double(Vec3d)> g) {
+    out.push_back({name, g});
+    out.push_back(
+        {"1 / " + (name.find(' ') == std::string::npos || name.front() == '(' ? name : "(" + name + ")"), [g](Vec3d w) {
+             const double v = g(w);
+             return v > 0 ? 1 / v : 0;
+         }});
+}
+
+void add_microfacets(std::vector<Factor>& out, const Work& work) {
+    const Vec3d wo = work.trial.wo, r = mirror(wo);
+    const auto half = [wo](Vec3d wi) {
+        const Vec3d sum = wo + wi;
+        const double size = length(sum);
+        return size > 1e-9 ? sum * (1 / size) : Vec3d{0, 0, 1};
+    };
+    add(out, "4 (w_o.m)", [=](Vec3d wi) { return 4 * std::fabs(dot(wo, half(wi))); });
+    add(out, "(n.m) / (w_o.m)", [=](Vec3d wi) { return half(wi).z / std::max(std::fabs(dot(wo, half(wi))), 1e-12); });
+    add(out, "n.m", [=](Vec3d wi) { return half(wi).z; });
+    add(out, "w_i.R", [=](Vec3d wi) { return dot(wi, r); });
+    std::vector<double> alphas = {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1};
+    if (const std::optional<double> alpha = parameter(work, "alpha")) alphas = {*alpha};
+    for (double alpha : alphas)
+        add(out, "G1(w_i)", [alpha](Vec3d wi) { return wi.z > 0 ? Ggx<double>{alpha}.G1(wi) : 0; });
+}
+
+void add_light(std::vector<Factor>& out, const Work& work) {
+    if (work.trial.light.disks.size() != 1) return;
+    const TrialDisk disk = work.trial.light.disks[0];
+    add(out, "cosine at the light", [disk](Vec3d wi) { return -dot(wi, disk.normal); });
+    add(out, "distance^2 / cosine at the light", [disk](Vec3d wi) {
+        const std::optional<double> d = disk.distance(wi);
+        return d ? *d * *d / -dot(wi, disk.normal) : 0;
+    });
+}
+
+}  // namespace
+
+std::vector<Factor> usual_factors(const Work& work) {
+    std::vector<Factor> out = {{"a constant", [](Vec3d) { return 1.0; }}};
+    const auto sin = [](Vec3d w) { return std::sqrt(std::max(1 - w.z * w.z, 0.0)); };
+    add(out, "cos theta_i", [](Vec3d w) { return std::fabs(w.z); });
+    add(out, "sin theta_i", sin);
+    const double cos_o = std::fabs(work.trial.wo.z);
+    add(out, "cos theta_i / cos theta_o", [=](Vec3d w) { return std::fabs(w.z) / cos_o; });
+    add_microfacets(out, work);
+    add_light(out, work);
+    return out;
+}
+
+std::string name_of_constant(const Work& work, double c) {
+    std::vector<std::pair<std::string, double>> known = {
+        {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}};
+    if (const std::optional<double> s = parameter(work, "s")) {
+        known.push_back({"(s+2)/(s+1)", (*s + 2) / (*s + 1)});
+        known.push_back({"(s+2)/(s+1)^2", (*s + 2) / sqr(*s + 1)});
+    }
+    if (const std::optional<double> alpha = parameter(work, "alpha"))
+        known.push_back({"1/G1(w_o)", 1 / Ggx<double>{*alpha}.G1(work.trial.wo)});
+    known.push_back({"1/(cos theta_o)", 1 / std::fabs(work.trial.wo.z)});
+    for (const auto& [name, eta] :
+        {std::pair("eta^2 with eta = 1.5", 1.5), {"eta^2 with eta = 1.33", 1.33}, {"eta^2 with eta = 1.8", 1.8}})
+        known.push_back({name, eta * eta});
+    const std::size_t techniques = static_cast<std::size_t>(work.subject.techniques());
+    for (std::size_t t = 0; t < techniques; ++t) {
+        const Batchful& b = work.first(static_cast<int>(t));
+        const double above = 1 - static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
+        if (above > 0.02 && above < 0.98 && std::fabs(c * above - 1) < 0.01) return "1 / the share above the horizon";
+        if (above > 0.02 && above < 0.98 && std::fabs(c / above - 1) < 0.01) return "the share above the horizon";
+    }
+    for (const auto& [name, value] : known) {
+        if (std::fabs(value - 1) < 1e-3) continue;
+        if (std::fabs(c / value - 1) < 1e-3) return name;
+        if (std::fabs(c * value - 1) < 1e-3)
+            return name.find('/') == std::string::npos
+                ? "1/" + (name.find(' ') == std::string::npos ? name : "(" + name + ")")
+                : "1/(" + name + ")";
+    }
+    return "";
+}
+
+std::string factor_text(const Work& work, const std::string& name, double constant) {
+    const std::string known = name_of_constant(work, constant);
+    const std::string number = fmt::format("{:.5g}", constant) + (known.empty() ? "" : " = " + known);
+    if (name == "a constant") return "a constant " + number;
+    return std::fabs(constant - 1) < 2e-3 ? name : fmt::format("{} and a constant {}", name, number);
+}
+
+}  // namespace crescent
