@@ -120,12 +120,11 @@ std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int
 }
 
 Bodies bodies_of(const std::vector<OccluderF>& occluders) {
-    using K = Occluder::Kind;
-    constexpr std::array<K, 5> order = {K::sphere, K::box, K::quad, K::disk, K::plane};
+    constexpr std::array<std::string_view, 5> order = {"sphere", "box", "quad", "disk", "plane"};
     Bodies out;
     for (std::size_t k = 0; k < order.size(); ++k) {
         for (const OccluderF& o : occluders) {
-            if (o.kind != order[k]) continue;
+            if (crescent::Bodies::names[o.kind] != order[k]) continue;
             ++out.counts[k];
             out.vectors.push_back({o.a[0], o.a[1], o.a[2], static_cast<float>(o.shape)});
             out.vectors.push_back({o.b[0], o.b[1], o.b[2], o.radius});

@@ -113,7 +113,7 @@ TEST(Surfaces, TakeTheCommonExponentAndAnAlphaAsWideWhereTheyStateNone) {
 TEST(Surfaces, TheSidesOfARecessHaveTheirOwnAlbedoAndNoLobe) {
     Experiment e = wall();
     Shape panel;
-    panel.kind = ShapeKind::panel;
+    panel.form = shapes::Panel{};
     panel.material.rho_d = {0.3, 0.3, 0.3}, panel.material.rho_s = 0.2, panel.material.s = 9;
     e.shapes.push_back(panel);
     const Scene scene(e);
@@ -123,7 +123,7 @@ TEST(Surfaces, TheSidesOfARecessHaveTheirOwnAlbedoAndNoLobe) {
     hit.reveal = true;
     EXPECT_EQ(scene.surface(hit).rho_s, 0);
     EXPECT_EQ(scene.surface(hit).rho_d, (Rgb{0.3, 0.3, 0.3}));
-    e.shapes[1].reveal_rho_d = Rgb{0.1, 0, 0};
+    std::get<shapes::Panel>(e.shapes[1].form).reveal_rho_d = Rgb{0.1, 0, 0};
     EXPECT_EQ(Scene(e).surface(hit).rho_d, (Rgb{0.1, 0, 0}));
 }
 

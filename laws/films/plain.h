@@ -61,10 +61,20 @@ template <class V, class T> void visit(V& v, std::vector<T>& x) {
 }
 template <class V, class... T> void each(V& v, T&... x) { (visit(v, x), ...); }
 
+template <class V> void visit(V& v, Shapes::Any& form) {
+    std::size_t kind = form.index();
+    v.item(kind);
+    if (V::reads) form = Shapes::make(kind);
+    std::visit(
+        [&]<class Kind>(Kind& k) {
+            for (const Parameter<Kind>& parameter : Kind::parameters())
+                std::visit([&](auto member) { visit(v, k.*member); }, parameter.member);
+        },
+        form);
+}
 template <class V> void visit(V& v, Shape& s) {
     Material& m = s.material;
-    each(v, s.name, s.kind, m.rho_d, m.rho_s, m.brdf, m.s, m.alpha, m.inherits_s, s.reveal_rho_d, s.occludes);
-    each(v, s.center, s.radius, s.min, s.max, s.corner, s.edge_u, s.edge_v, s.point, s.normal, s.depth);
+    each(v, s.name, s.form, m.rho_d, m.rho_s, m.brdf, m.s, m.alpha, m.inherits_s, s.occludes);
 }
 template <class V> void visit(V& v, DiskLight& d) {
     each(v, d.name, d.center, d.normal, d.radius, d.radiance, d.two_sided);

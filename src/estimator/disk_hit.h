@@ -70,55 +70,19 @@ template <class F> struct DiskCone {
 
 template <class F> Vec3<F> broadcast(const std::array<float, 3>& a) { return {F(a[0]), F(a[1]), F(a[2])}; }
 
-/// t range of a slab; a component of 0 is nudged so that no 0/0 arises.
-template <class F> void clip_slab(F lo, F hi, F o, F d, F& near, F& far) {
-    const F safe = select(abs(d) > number<F>(1e-20), d, number<F>(1e-20));
-    const F t0 = (lo - o) / safe, t1 = (hi - o) / safe;
-    near = larger(near, smaller(t0, t1));
-    far = smaller(far, larger(t0, t1));
-}
-
-template <class F> MaskOf<F> within(F t, F lo, F hi) { return (t > lo) & (t < hi); }
-
 /// Does the body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from
 /// either end it does not: a body that touches the surface point or the light hides nothing there.
 template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F> d, F distance) {
-    const F zero = number<F>(0), eps = distance * number<F>(1e-5), t_max = distance * number<F>(1 - 1e-5);
-    const Vec3<F> a = broadcast<F>(body.a), b = broadcast<F>(body.b);
-    switch (body.kind) {
-        case Occluder::Kind::sphere: {
-            const Vec3<F> c = a - o;
-            const F along = dot(c, d);
-            const F disc = sqr(along) - (dot(c, c) - sqr(F(body.radius)));
-            const F root = sqrt(larger(disc, zero));
-            return (disc > zero) & (within(along - root, eps, t_max) | within(along + root, eps, t_max));
-        }
-        case Occluder::Kind::box: {
-            F near = number<F>(-1e30), far = number<F>(1e30);
-            clip_slab(a.x, b.x, o.x, d.x, near, far);
-            clip_slab(a.y, b.y, o.y, d.y, near, far);
-            clip_slab(a.z, b.z, o.z, d.z, near, far);
-            return (near < far) & (within(near, eps, t_max) | within(far, eps, t_max));
-        }
-        case Occluder::Kind::quad: {
-            const Vec3<F> v = broadcast<F>(body.c), n = cross(b, v);
-            const F denominator = dot(n, d);
-            const F t = (F(body.offset) - dot(n, o)) / select(denominator == zero, number<F>(1e-30), denominator);
-            const Vec3<F> p = o + d * t - a;
-            const F nn = dot(n, n), x = dot(cross(p, v), n), y = dot(cross(b, p), n);
-            return (t > eps) & (t < t_max) & (x >= zero) & (x <= nn) & (y >= zero) & (y <= nn);
-        }
-        case Occluder::Kind::disk:
-        case Occluder::Kind::plane: {
-            const F denominator = dot(b, d);
-            const F t = (F(body.offset) - dot(b, o)) / select(denominator == zero, number<F>(1e-30), denominator);
-            const auto crosses = (t > eps) & (t < t_max);
-            if (body.kind == Occluder::Kind::plane) return crosses;
-            const Vec3<F> p = o + d * t - a;
-            return crosses & (dot(p, p) <= sqr(F(body.radius)));
-        }
-    }
-    return zero > zero;
+    const F lo = distance * number<F>(1e-5), hi = distance * number<F>(1 - 1e-5);
+    const PackedBody<F> packed = {
+        broadcast<F>(body.a), broadcast<F>(body.b), broadcast<F>(body.c), F(body.radius), F(body.offset)};
+    MaskOf<F> out = lo > hi;
+    const auto among = [&]<class... Kind>(KindList<Kind...>) {
+        std::size_t kind = 0;
+        ((kind++ == body.kind ? void(out = Kind::blocks(packed, o, d, lo, hi)) : void()), ...);
+    };
+    among(Bodies{});
+    return out;
 }
 
 }  // namespace crescent

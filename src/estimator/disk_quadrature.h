@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "estimator/figure.h"
 #include "scene/scene.h"
 #include "scene/shadow.h"
 
@@ -20,7 +21,7 @@ struct DiskIntegral {
 struct Blocker {
     Occluder body;
     Between between = before_light;
-    bool from_front_only = false;  // a light that shines from one side is not there from behind
+    const DiskLight* light = nullptr;  // which is not there from behind where it shines from one side alone
 };
 
 class DiskQuadrature {
@@ -30,11 +31,9 @@ public:
     DiskIntegral operator()(const Hit& hit, const Surface& surface) const;
 
 private:
-    bool shines_on(const Hit& hit) const;
-    std::vector<const Blocker*> in_the_way(const Hit& hit) const;
+    std::vector<const Blocker*> in_the_way(const Hit& hit, const Figure& figure) const;
 
-    const DiskLight& disk_;
-    Frame<double> frame_;
+    const DiskLight& light_;
     std::vector<Blocker> blockers_;
 };
 

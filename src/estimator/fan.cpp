@@ -19,14 +19,17 @@ double sector(const Direction& d) {
 
 }  // namespace
 
-Fan::Fan(const DiskPoint& point, const DiskLight& disk, const Frame<double>& about, double azimuth)
-    : axis(about.n), aside(math::cos(azimuth) * about.t + math::sin(azimuth) * about.b), to0(disk.center - point.x) {
-    const Vec3d center = to0, k = cross(axis, aside), across = k - dot(k, disk.normal) * disk.normal;
-    const double size2 = dot(across, across), off = dot(k, center);
-    if (!(size2 * sqr(disk.radius) > sqr(off))) return;
-    const double half = std::sqrt(sqr(disk.radius) - sqr(off) / size2);
-    const Vec3d foot = center - (off / size2) * across, along = (half / std::sqrt(size2)) * cross(disk.normal, across);
-    Vec3d from = foot - along, to = foot + along;
+Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, double azimuth)
+    : axis(about.n), aside(math::cos(azimuth) * about.t + math::sin(azimuth) * about.b) {
+    const Vec3d k = cross(axis, aside);
+    const std::optional<Line> line = std::visit(
+        [&](const auto& figure) {
+            if constexpr (requires { figure.center; }) return cut(figure, figure.center - point.x, k);
+            else return cut(figure, figure.corner - point.x, k);
+        },
+        light);
+    if (!line) return;
+    Vec3d from = line->from, to = line->to;
     const double side0 = dot(aside, from), side1 = dot(aside, to);
     if (side0 <= 0 && side1 <= 0) return;
     const Vec3d end = from + (side0 / (side0 - side1)) * (to - from);  // where the half-plane ends

@@ -1,8 +1,9 @@
-// One fan of directions from a surface point: the half-plane that ends in an axis, and the line in which it cuts a disk
+// One fan of directions from a surface point: the half-plane that ends in an axis, and the line in which it cuts a
 // light. Directions in it are cos(al) axis + sin(al) aside, al in [0, pi]; double precision.
 #pragma once
 
 #include "estimator/disk_point.h"
+#include "estimator/figure.h"
 #include "scene/shadow.h"
 
 namespace crescent {
@@ -14,10 +15,10 @@ struct Direction {
 
 struct Fan {
     Vec3d axis, aside;
-    Vec3d to0, step{};  // from the point to where the light begins, and on to where it ends
+    Vec3d to0{}, step{};  // from the point to where the light begins, and on to where it ends
     bool empty = true;
 
-    Fan(const DiskPoint& point, const DiskLight& disk, const Frame<double>& about, double azimuth);
+    Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, double azimuth);
     /// Towards the light's point v of the way from its beginning to its end.
     Direction at(double v) const;
     /// Leaves the part that is above the surface's horizon; to.al < from.al where none is.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/azimuth.h"
 #include "estimator/fan.h"
 #include "estimator/kronrod.h"
 #include "estimator/lobe_along.h"
@@ -12,6 +11,10 @@
 namespace crescent {
 
 namespace {
+
+Azimuths azimuths_of(const Bodies::Any& body, Vec3d x, const Frame<double>& frame) {
+    return std::visit([&](const auto& b) { return b.azimuths(x, frame); }, body);
+}
 
 /// What fans add up to: both parts, and the error of the lobe's rule along them.
 struct Sum {
@@ -31,26 +34,26 @@ Frame<double> frame_about_lobe(const DiskPoint& point) {
     return {t, cross(n, t), n};
 }
 
-Frame<double> frame_about_disk(const DiskPoint& point, const DiskLight& disk) {
-    const Vec3d d = disk.center - point.x;
+Frame<double> frame_about_light(const DiskPoint& point, const Figure& light) {
+    const Vec3d d = middle_of(light) - point.x;
     return frame_about((1 / std::sqrt(dot(d, d))) * d);
 }
 
-/// All fans that meet the disk, by a parameter tau in which the fans' integral is smooth where the disk is open: the
-/// azimuth itself where the axis meets the disk; else middle + half sin(tau), as chords grow from a tangent like a
-/// root.
+/// All fans that meet the light, by a parameter tau in which the fans' integral is smooth where the light is a disk
+/// and open: the azimuth itself where the axis meets it; else middle + half sin(tau), as chords grow from a tangent
+/// like a root.
 class Fans {
 public:
-    Fans(const DiskPoint& point, const DiskLight& disk, const std::vector<const Blocker*>& bodies, bool about_lobe,
+    Fans(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies, bool about_lobe,
         bool at_horizon)
         : point_(point),
-          disk_(disk),
-          about_(about_lobe ? frame_about_lobe(point) : frame_about_disk(point, disk)),
+          figure_(light),
+          about_(about_lobe ? frame_about_lobe(point) : frame_about_light(point, light)),
           shape_(point),
           about_lobe_(about_lobe),
           at_horizon_(at_horizon),
-          light_(azimuths_of({Occluder::Kind::disk, -1, disk.center, disk.normal, {}, disk.radius}, point.x, about_)) {
-        for (const Blocker* body : bodies) bodies_.push_back({body, azimuths_of(body->body, point.x, about_)});
+          light_(azimuths_of(body_of(light), point.x, about_)) {
+        for (const Blocker* body : bodies) bodies_.push_back({body, azimuths_of(body->body.body, point.x, about_)});
     }
 
     double last() const { return light_.whole() ? pi : pi / 2; }  // tau runs from -last() to last()
@@ -63,6 +66,8 @@ public:
         for (const Body& body : bodies_)
             if (!body.azimuths.whole())
                 for (const double end : {-body.azimuths.half, body.azimuths.half}) cut(body.azimuths.middle + end, at);
+        if (std::holds_alternative<shapes::Quad>(figure_))
+            for (const Vec3d corner : corners_about(figure_)) cut(azimuth_of(corner - point_.x), at);
         if (about_lobe_)
             for (double off = shape_.stretch; off < pi / 2; off *= 3)
                 for (const double middle : {0.0, pi}) cut(middle - off, at), cut(middle + off, at);
@@ -82,7 +87,7 @@ public:
     /// One fan, times what turns d tau into an azimuth.
     Sum operator()(double tau) {
         const double phi = azimuth(tau);
-        const Fan fan(point_, disk_, about_, phi);
+        const Fan fan(point_, figure_, about_, phi);
         if (fan.empty) return {};
         hidden_.clear();
         for (const Blocker* b : near_)
@@ -111,6 +116,7 @@ private:
         const Blocker* blocker;
         Azimuths azimuths;
     };
+    double azimuth_of(Vec3d d) const { return math::atan2(dot(d, about_.b), dot(d, about_.t)); }
     double azimuth(double tau) const { return light_.middle + (light_.whole() ? tau : light_.half * math::sin(tau)); }
     void cut(double phi, std::vector<double>& at) const {
         const double off = std::remainder(phi - light_.middle, 2 * pi);
@@ -118,7 +124,7 @@ private:
     }
 
     const DiskPoint& point_;
-    const DiskLight& disk_;
+    const Figure& figure_;
     Frame<double> about_;
     LobeShape shape_;
     bool about_lobe_, at_horizon_;
@@ -165,11 +171,12 @@ struct Adaptive {
 
 }  // namespace
 
-DiskIntegral fan_by_fan(const DiskPoint& point, const DiskLight& disk, const std::vector<const Blocker*>& bodies,
+DiskIntegral fan_by_fan(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies,
     bool about_lobe, bool at_horizon) {
-    const double open = sqr(disk.radius) / dot(disk.center - point.x, disk.center - point.x);  // Lambert's, about
-    if (!(point.weigh({1, 1}) > 0)) return {};                                                 // a black surface
-    Fans fans(point, disk, bodies, about_lobe, at_horizon);
+    const Vec3d d = middle_of(light) - point.x;
+    const double open = disk_area(light) / dot(d, d);  // Lambert's, about
+    if (!(point.weigh({1, 1}) > 0)) return {};         // a black surface
+    Fans fans(point, light, bodies, about_lobe, at_horizon);
     const std::vector<double> cuts = fans.cuts();
     std::vector<Panel> panels;
     double all = 0.01 * point.weigh({std::min(open, 1.0), 0});

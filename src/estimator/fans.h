@@ -12,7 +12,7 @@
 namespace crescent {
 
 /// `bodies` may stand between the point and the light; `at_horizon`: part of it may lie under the surface's horizon.
-DiskIntegral fan_by_fan(const DiskPoint& point, const DiskLight& disk, const std::vector<const Blocker*>& bodies,
+DiskIntegral fan_by_fan(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies,
     bool about_lobe, bool at_horizon);
 
 }  // namespace crescent

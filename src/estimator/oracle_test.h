@@ -14,43 +14,44 @@
 
 namespace crescent::test {
 
-/// Does the body's surface cross x + t d for a t in (lo, hi)?
-inline bool crosses(const Occluder& o, Vec3d x, Vec3d d, double lo, double hi) {
-    const auto in = [&](double t) { return t > lo && t < hi; };
-    const auto on_plane = [&](Vec3d p, Vec3d n) { return dot(n, d) == 0 ? -1 : dot(n, p - x) / dot(n, d); };
-    switch (o.kind) {
-        case Occluder::Kind::sphere: {
-            const Vec3d c = o.a - x;
-            const double foot = dot(c, d);
-            const Vec3d off = c - foot * d;
-            const double half2 = sqr(o.radius) - dot(off, off);
-            return half2 > 0 && (in(foot - std::sqrt(half2)) || in(foot + std::sqrt(half2)));
-        }
-        case Occluder::Kind::box: {
-            double near = -1e300, far = 1e300;
-            const auto slab = [&](double a, double b, double from, double v) {
-                const double t0 = (a - from) / v, t1 = (b - from) / v;  // v = 0 has probability 0
-                near = std::max(near, std::min(t0, t1)), far = std::min(far, std::max(t0, t1));
-            };
-            slab(o.a.x, o.b.x, x.x, d.x), slab(o.a.y, o.b.y, x.y, d.y), slab(o.a.z, o.b.z, x.z, d.z);
-            return near < far && (in(near) || in(far));
-        }
-        case Occluder::Kind::quad: {
-            const Vec3d n = cross(o.b, o.c);
-            const double t = on_plane(o.a, n);
-            const Vec3d p = x + t * d - o.a;
-            const double u = dot(cross(p, o.c), n) / dot(n, n), v = dot(cross(o.b, p), n) / dot(n, n);
-            return in(t) && u >= 0 && u <= 1 && v >= 0 && v <= 1;
-        }
-        case Occluder::Kind::disk: {
-            const double t = on_plane(o.a, o.b);
-            const Vec3d p = x + t * d - o.a;
-            return in(t) && dot(p, p) <= sqr(o.radius);
-        }
-        case Occluder::Kind::plane: return in(on_plane(o.a, o.b));
+/// Does the surface of a body cross x + t d for a t in (lo, hi)?
+struct Crosses {
+    Vec3d x, d;
+    double lo, hi;
+
+    bool in(double t) const { return t > lo && t < hi; }
+    double on_plane(Vec3d p, Vec3d n) const { return dot(n, d) == 0 ? -1 : dot(n, p - x) / dot(n, d); }
+
+    bool operator()(const shapes::Sphere& o) const {
+        const Vec3d c = o.center - x;
+        const double foot = dot(c, d);
+        const Vec3d off = c - foot * d;
+        const double half2 = sqr(o.radius) - dot(off, off);
+        return half2 > 0 && (in(foot - std::sqrt(half2)) || in(foot + std::sqrt(half2)));
     }
-    return false;
-}
+    bool operator()(const shapes::Box& o) const {
+        double near = -1e300, far = 1e300;
+        const auto slab = [&](double a, double b, double from, double v) {
+            const double t0 = (a - from) / v, t1 = (b - from) / v;  // v = 0 has probability 0
+            near = std::max(near, std::min(t0, t1)), far = std::min(far, std::max(t0, t1));
+        };
+        slab(o.min.x, o.max.x, x.x, d.x), slab(o.min.y, o.max.y, x.y, d.y), slab(o.min.z, o.max.z, x.z, d.z);
+        return near < far && (in(near) || in(far));
+    }
+    bool operator()(const shapes::Quad& o) const {
+        const Vec3d n = cross(o.edge_u, o.edge_v);
+        const double t = on_plane(o.corner, n);
+        const Vec3d p = x + t * d - o.corner;
+        const double u = dot(cross(p, o.edge_v), n) / dot(n, n), v = dot(cross(o.edge_u, p), n) / dot(n, n);
+        return in(t) && u >= 0 && u <= 1 && v >= 0 && v <= 1;
+    }
+    bool operator()(const shapes::Disk& o) const {
+        const double t = on_plane(o.center, o.normal);
+        const Vec3d p = x + t * d - o.center;
+        return in(t) && dot(p, p) <= sqr(o.radius);
+    }
+    bool operator()(const shapes::Plane& o) const { return in(on_plane(o.point, o.normal)); }
+};
 
 struct Opinion {
     double y = 0, variance = 0, largest = 0;  // of the mean; the largest share of one sample in it
@@ -152,7 +153,8 @@ private:
             if (t < nearest * (1 - 1e-5)) nearest = t, met = &disk;
         }
         for (const Occluder& o : scene_.occluders())
-            if (met && o.shape != hit_.shape && crosses(o, hit_.x, d, 1e-5 * nearest, (1 - 1e-5) * nearest))
+            if (met && o.shape != hit_.shape &&
+                std::visit(Crosses{hit_.x, d, 1e-5 * nearest, (1 - 1e-5) * nearest}, o.body))
                 met = nullptr;
         const double lobe = surface_.rho_s > 0 ? lobe_of(wi) : 0;
         double x = 0;

@@ -89,9 +89,8 @@ TEST(DiskQuadrature, FindsPixelsThatAreHalfInShadow) {
 Experiment lamp_above(double half, bool hidden) {
     Experiment e = test::small_scene();
     e.shapes.resize(2);
-    e.shapes[0].kind = ShapeKind::plane, e.shapes[0].point = {0, 0, 0}, e.shapes[0].normal = {0, 1, 0};
-    e.shapes[1].kind = ShapeKind::quad, e.shapes[1].corner = {0, 0.5, -9}, e.shapes[1].edge_u = {9, 0, 0},
-    e.shapes[1].edge_v = {0, 0, 18};
+    e.shapes[0].form = shapes::Plane{{0, 0, 0}, {0, 1, 0}};
+    e.shapes[1].form = shapes::Quad{{0, 0.5, -9}, {9, 0, 0}, {0, 0, 18}};
     e.shapes[1].occludes = hidden;
     e.disks.resize(1);
     e.disks[0].center = {0, 1, 0}, e.disks[0].normal = {0, -1, 0}, e.disks[0].radius = std::tan(half);

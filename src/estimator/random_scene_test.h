@@ -61,10 +61,13 @@ private:
     void floor(Experiment& e) {
         what.clear();
         Shape s;
-        s.name = "floor", s.kind = once_in(2) ? ShapeKind::plane : ShapeKind::sphere, s.material = material(),
-        s.occludes = once_in(2);
-        if (s.kind == ShapeKind::plane) s.normal = {0, 1, 0};
-        if (s.kind == ShapeKind::sphere) s.radius = scale(0.3, 30), s.center = {0, -s.radius, 0};
+        const bool flat = once_in(2);
+        s.name = "floor", s.material = material(), s.occludes = once_in(2);
+        if (flat) s.form = shapes::Plane{{}, {0, 1, 0}};
+        else {
+            const double radius = scale(0.3, 30);
+            s.form = shapes::Sphere{{0, -radius, 0}, radius};
+        }
         e.shapes.push_back(s);
     }
     void lamps(Experiment& e, Vec3d mirror) {
@@ -98,14 +101,10 @@ private:
         s.name = "body" + std::to_string(e.shapes.size()), s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3},
         s.material.s = 10;
         const int kind = static_cast<int>(between(0, 12));
-        const auto ball = [&](Vec3d c, double r) { s.kind = ShapeKind::sphere, s.center = c, s.radius = r; };
-        const auto box = [&](Vec3d c, Vec3d half) { s.kind = ShapeKind::box, s.min = c - half, s.max = c + half; };
-        const auto disk = [&](Vec3d c, Vec3d n, double r) {
-            s.kind = ShapeKind::disk, s.center = c, s.normal = n, s.radius = r;
-        };
-        const auto quad = [&](Vec3d c, Vec3d u, Vec3d v) {
-            s.kind = ShapeKind::quad, s.corner = c - 0.5 * (u + v), s.edge_u = u, s.edge_v = v;
-        };
+        const auto ball = [&](Vec3d c, double r) { s.form = shapes::Sphere{c, r}; };
+        const auto box = [&](Vec3d c, Vec3d half) { s.form = shapes::Box{c - half, c + half}; };
+        const auto disk = [&](Vec3d c, Vec3d n, double r) { s.form = shapes::Disk{c, n, r}; };
+        const auto quad = [&](Vec3d c, Vec3d u, Vec3d v) { s.form = shapes::Quad{c - 0.5 * (u + v), u, v}; };
         switch (kind) {
             case 0: ball(middle, size); break;
             case 1: box(middle, {size, scale(0.01, 1) * size, size}); break;

@@ -31,11 +31,9 @@ float worth(double y) { return static_cast<float>(y + 0.0); }
 }  // namespace
 
 OccluderF occluder_about(const Occluder& o, Vec3d origin) {
-    using K = Occluder::Kind;
-    const Vec3d a = o.a - origin;
-    const double offset = o.kind == K::quad ? dot(cross(o.b, o.c), a) : dot(o.b, a);
-    return {o.kind, static_cast<std::uint32_t>(o.shape), single(a), single(o.kind == K::box ? o.b - origin : o.b),
-        single(o.c), static_cast<float>(o.radius), static_cast<float>(offset)};
+    const BodyNumbers n = std::visit([&](const auto& body) { return body.numbers(origin); }, o.body);
+    return {o.body.index(), static_cast<std::uint32_t>(o.shape), single(n.a), single(n.b), single(n.c),
+        static_cast<float>(n.radius), static_cast<float>(n.offset)};
 }
 
 std::vector<TileBox> tiles_of(int width, int height) {
@@ -138,7 +136,7 @@ void Sites::prune(const Scene& scene) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
         const bool clear = std::all_of(scene.disks().begin(), scene.disks().end(),
-            [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk); });
+            [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk.body()); });
         if (!clear) occluders[kept++] = occluders[k];
     }
     occluders.resize(kept);

@@ -39,11 +39,11 @@ struct Shading {
 /// Occluders in float, as the kernels test them: from the scene's origin, so that a scene far from (0, 0, 0) loses
 /// nothing.
 struct OccluderF {
-    Occluder::Kind kind;
+    std::size_t kind;  // index in Bodies
     std::uint32_t shape;
     std::array<float, 3> a, b, c;
     float radius;
-    float offset;  // quad, disk, plane: normal.point of its plane, the normal as the test has it
+    float offset;  // each kind's own, see scene/body.h
 };
 OccluderF occluder_about(const Occluder& o, Vec3d origin);
 

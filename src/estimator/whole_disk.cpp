@@ -45,7 +45,7 @@ const std::vector<PolarRule>& polar_rules() {
 /// The whole disk is above the horizon and open, Lambert: integral of cos(theta_i) dw / pi in closed form. The light's
 /// vector irradiance has a part along the disk's axis and a part towards it (Howell's catalog of view factors, elements
 /// parallel and perpendicular to a disk), written without cancellation.
-double whole_disk_diffuse(const DiskPoint& point, const DiskLight& disk) {
+double whole_disk_diffuse(const DiskPoint& point, const shapes::Disk& disk) {
     const Vec3d d = disk.center - point.x;
     const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
     const Vec3d axis = along < 0 ? -disk.normal : disk.normal;
@@ -58,7 +58,7 @@ double whole_disk_diffuse(const DiskPoint& point, const DiskLight& disk) {
 
 }  // namespace
 
-DiskIntegral whole_disk(const DiskPoint& point, const DiskLight& disk, const Frame<double>& frame) {
+DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const Frame<double>& frame) {
     DiskIntegral out;
     out.diffuse = whole_disk_diffuse(point, disk);
     if (!(point.surface.rho_s > 0)) return out;

@@ -8,6 +8,6 @@ namespace crescent {
 
 /// `frame` has the disk's normal for its axis. For lobes that are wide against the disk: rules of rising order until
 /// two agree, and the error is the difference of the last two.
-DiskIntegral whole_disk(const DiskPoint& point, const DiskLight& disk, const Frame<double>& frame);
+DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const Frame<double>& frame);
 
 }  // namespace crescent

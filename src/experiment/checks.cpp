@@ -44,29 +44,21 @@ void check_box_on_image(Draft& draft, const std::string& path, const Box& box) {
             image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
 }
 
-void check_shape(Draft& draft, const Shape& shape) {
-    const std::string path = "shapes." + shape.name;
-    const auto sound = [&](const char* key) { return draft.sound(path + "." + key); };
-    if (!sound("kind")) return;
-    if (shape.kind == ShapeKind::box && sound("min") && sound("max")) {
-        const Vec3d size = shape.max - shape.min;
-        const double sizes[] = {size.x, size.y, size.z};
-        for (int i = 0; i < 3; ++i)
-            if (!(sizes[i] > 0))
-                return draft.complain(path + ".max",
-                    fmt::format("{}.max: expected a corner above min on every axis, found {} no higher on {}", path,
-                        "xyz"[i], "xyz"[i]));
-    }
-    if ((shape.kind == ShapeKind::quad || shape.kind == ShapeKind::panel) && sound("edge_u") && sound("edge_v")) {
-        const double u = length(shape.edge_u), v = length(shape.edge_v);
-        if (!(u > 0) || !(v > 0))
-            return draft.complain(path + (u > 0 ? ".edge_v" : ".edge_u"),
-                fmt::format("{}: expected an edge with a length, found the zero vector",
-                    path + (u > 0 ? ".edge_v" : ".edge_u")));
-        if (length(cross(shape.edge_u, shape.edge_v)) < parallel * u * v)
-            return draft.complain(
-                path + ".edge_v", fmt::format("{}.edge_v: expected an edge that is not parallel to edge_u", path));
-    }
+/// What the parameters of a kind say of each other, where all of them could be read.
+template <class Any> void check_form(Draft& draft, const std::string& path, const Any& any) {
+    if (!draft.sound(path + ".kind")) return;
+    std::visit(
+        [&]<class Kind>(const Kind& kind) {
+            if constexpr (requires { kind.mistake(); }) {
+                for (const Parameter<Kind>& parameter : Kind::parameters())
+                    if (!draft.sound(fmt::format("{}.{}", path, parameter.name))) return;
+                if (const std::optional<Mistake> mistake = kind.mistake()) {
+                    const std::string key = fmt::format("{}.{}", path, mistake->key);
+                    draft.complain(key, fmt::format("{}: {}", key, mistake->says));
+                }
+            }
+        },
+        any);
 }
 
 void check_material(Draft& draft, const Shape& shape) {
@@ -113,7 +105,8 @@ void check_film_files(Draft& draft) {
 
 void check_geometry(Draft& draft) {
     check_camera(draft);
-    for (const Shape& shape : draft.e.shapes) check_shape(draft, shape), check_material(draft, shape);
+    for (const Shape& shape : draft.e.shapes)
+        check_form(draft, "shapes." + shape.name, shape.form), check_material(draft, shape);
     for (const Region& region : draft.e.regions)
         check_box_on_image(draft, "regions." + region.name + ".box", region.box);
     for (const PlatePlan& plate : draft.e.plates)

@@ -62,7 +62,7 @@ TEST(WhatIfs, AreOneLineEach) {
     EXPECT_EQ(gallery({"key.radiance[2]=9"}).disks[0].radiance[2], 9);
     EXPECT_EQ(gallery({"reference.kind=note"}).reference.kind, ReferenceKind::note);
     EXPECT_EQ(gallery({"title=hello there"}).title, "hello there");
-    EXPECT_EQ(gallery({"canvas.depth = 0.1"}).find_shape("canvas")->depth, 0.1);
+    EXPECT_EQ(std::get<shapes::Panel>(gallery({"canvas.depth = 0.1"}).find_shape("canvas")->form).depth, 0.1);
     EXPECT_EQ(gallery({"assertions.'region H has pixels'.over=median"}).assertions.size(), gallery().assertions.size());
     EXPECT_THAT(gallery({"arms.second={sampler=\"cosine\", n=9}"}).find_arm("second")->n, ElementsAre(9u));
 }

@@ -78,7 +78,7 @@ private:
 
     static std::string kind_of(const Section& section, const void* object) {
         Value value;
-        const Key* key = section.name == "shapes" ? section.find_key("kind") : nullptr;
+        const Key* key = section.find_key("kind");
         return key && key->slot.load(object, value) ? key->words[static_cast<std::size_t>(value.word)] : "";
     }
 

@@ -105,7 +105,7 @@ Value changed(const Key& key, Value value) {
 std::size_t change_each(const Section& section, void* object, const Experiment& e, std::uint64_t before) {
     std::size_t met = 0;
     Value value, kind;
-    const Key* kinds = section.name == "shapes" ? section.find_key("kind") : nullptr;
+    const Key* kinds = section.find_key("kind");
     const std::string own =
         kinds && kinds->slot.load(object, kind) ? kinds->words[static_cast<std::size_t>(kind.word)] : "";
     for (const Key& key : section.keys) {
@@ -113,9 +113,14 @@ std::size_t change_each(const Section& section, void* object, const Experiment& 
         ++met;
         if (key.type == Type::check)
             value.text = static_cast<AssertionPlan*>(object)->left;  // the slot stores one side
+        std::vector<std::pair<const Key*, Value>> lost;              // another kind has other parameters
+        for (const Key& other : section.keys)
+            if (&key == kinds && !other.kinds.empty() && has_kind(other, own))
+                if (Value kept; other.slot.load(object, kept)) lost.emplace_back(&other, kept);
         key.slot.store(object, changed(key, value));
         EXPECT_NE(hash(e), before) << section.name << "." << key.name;
         key.slot.store(object, value);
+        for (const auto& [other, kept] : lost) other->slot.store(object, kept);
         EXPECT_EQ(hash(e), before) << section.name << "." << key.name;
     }
     for (const Section& sub : section.sections) {

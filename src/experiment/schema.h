@@ -35,12 +35,6 @@ enum class Type {
     shape  // the name of one
 };
 
-/// Bounds of a number or of every number in a list.
-struct Range {
-    double low = 0, high = 0;
-    bool low_open = false, high_open = false;
-    bool holds(double x) const { return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high); }
-};
 std::string to_string(const Range& range);
 
 enum class Need { required, optional, defaulted };
@@ -71,7 +65,7 @@ struct Key {
     std::string_view means;
     Slot slot;
     std::vector<std::string> words = {};
-    std::string_view kinds = {};  // the kinds of shape that have this key; empty: all
+    std::string kinds = {};  // the kinds of shape that have this key; empty: all
 };
 
 enum class Many {

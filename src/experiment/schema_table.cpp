@@ -1,5 +1,6 @@
 // The table itself. Lengths in scene units (m), y up; radiance in W/(sr m^2) as linear Rec.709; angles in degrees.
 #include "experiment/schema.h"
+#include "experiment/schema_kinds.h"
 
 namespace crescent {
 
@@ -38,33 +39,10 @@ Section camera() {
         {}};
 }
 
-std::vector<Key> geometry_keys() {
-    return {
-        {"center", Type::point, free_range, "m", required, "", "Centre.", to<&Shape::center>, {}, "sphere disk"},
-        {"radius", Type::number, length, "m", required, "", "Radius.", to<&Shape::radius>, {}, "sphere disk"},
-        {"min", Type::point, free_range, "m", required, "", "Lowest corner of an axis-aligned box.", to<&Shape::min>,
-            {}, "box"},
-        {"max", Type::point, free_range, "m", required, "", "Highest corner; above min on every axis.", to<&Shape::max>,
-            {}, "box"},
-        {"corner", Type::point, free_range, "m", required, "", "A corner of the quad, or of the panel's opening.",
-            to<&Shape::corner>, {}, "quad panel"},
-        {"edge_u", Type::point, free_range, "m", required, "", "First edge from the corner.", to<&Shape::edge_u>, {},
-            "quad panel"},
-        {"edge_v", Type::point, free_range, "m", required, "", "Second edge; the face looks along edge_u x edge_v.",
-            to<&Shape::edge_v>, {}, "quad panel"},
-        {"depth", Type::number, length, "m", required, "", "How far the panel is set back behind its opening.",
-            to<&Shape::depth>, {}, "panel"},
-        {"point", Type::point, free_range, "m", required, "", "A point of the infinite plane.", to<&Shape::point>, {},
-            "plane"},
-        {"normal", Type::direction, none, "", required, "", "Where the face looks.", to<&Shape::normal>, {},
-            "plane disk"},
-    };
-}
-
-Section shapes() {
-    std::vector<Key> keys = {{"kind", Type::word, none, "", required, "", "What it is.", to<&Shape::kind>,
-        {"sphere", "box", "quad", "disk", "plane", "panel"}}};
-    for (Key& key : geometry_keys()) keys.push_back(std::move(key));
+Section shape_tables() {
+    std::vector<Key> keys = {kind_key<Shapes, &Shape::form>()}, colors;
+    for (Key& key : parameter_keys<Shapes, &Shape::form>())
+        (key.type == Type::color ? colors : keys).push_back(std::move(key));
     const std::vector<Key> material = {
         {"rho_d", Type::color, unit_range, "", required, "", "Diffuse albedo: f = rho_d/pi + rho_s lobe.",
             to<&Shape::material, &Material::rho_d>},
@@ -75,12 +53,11 @@ Section shapes() {
         {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Shape::material, &Material::brdf>,
             {"phong", "blinn-phong", "ggx"}},
         {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a ggx lobe",
-            "GGX roughness, not remapped.", to<&Shape::material, &Material::alpha>},
-        {"reveal_rho_d", Type::color, unit_range, "", optional, "rho_d",
-            "Diffuse albedo of the four sides of the recess.", to<&Shape::reveal_rho_d>, {}, "panel"},
-        {"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the disks' light.",
-            to<&Shape::occludes>}};
+            "GGX roughness, not remapped.", to<&Shape::material, &Material::alpha>}};
     keys.insert(keys.end(), material.begin(), material.end());
+    keys.insert(keys.end(), colors.begin(), colors.end());
+    keys.push_back({"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the lights.",
+        to<&Shape::occludes>});
     return {"shapes", Many::named, required, "What the camera sees.", in<&Experiment::shapes, Experiment>,
         std::move(keys), {}};
 }
@@ -219,8 +196,8 @@ const Section& schema() {
                 "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&Experiment::firefly_k>},
             {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
                 to<&Experiment::published>}},
-        {image(), camera(), shapes(), disks(), fill(), arms(), exponent(), regions(), reference(), furnaces(), plates(),
-            assertions()}};
+        {image(), camera(), shape_tables(), disks(), fill(), arms(), exponent(), regions(), reference(), furnaces(),
+            plates(), assertions()}};
     return root;
 }
 

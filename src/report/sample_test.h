@@ -65,7 +65,7 @@ inline Experiment sample_experiment() {
     experiment.image = {32, 32};
     Shape ball;
     ball.name = "ball";
-    ball.radius = 1;
+    ball.form = shapes::Sphere{{0, 0, 0}, 1};
     ball.material = {{0.2, 0.2, 0.2}, 0.1, BrdfKind::phong, 32, {}};
     experiment.shapes = {ball};
     DiskLight key;

@@ -1,6 +1,8 @@
 // The scene as the experiment gives it: camera, shapes, lights. Lengths in scene units, radiance in W/(sr m^2).
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/page.h"
 
 namespace crescent {
@@ -16,33 +18,27 @@ std::string rgb(const Rgb& c) {
     return html::value(fmt::format("({}, {}, {})", compact(c[0]), compact(c[1]), compact(c[2])));
 }
 
-const char* kind_name(ShapeKind kind) {
-    switch (kind) {
-        case ShapeKind::sphere: return "sphere";
-        case ShapeKind::box: return "box";
-        case ShapeKind::quad: return "quad";
-        case ShapeKind::disk: return "disk";
-        case ShapeKind::plane: return "plane";
-        case ShapeKind::panel: return "panel";
-    }
-    return "";
-}
+std::string value_of(double x) { return shortest(x); }
+std::string value_of(bool x) { return x ? "yes" : "no"; }
+std::string value_of(const Vec3d& v) { return vec(v); }
+std::string value_of(const std::optional<Rgb>& c) { return c ? rgb(*c) : ""; }
 
-std::string where(const Shape& shape) {
-    switch (shape.kind) {
-        case ShapeKind::sphere: return fmt::format("centre {}, radius {}", vec(shape.center), shortest(shape.radius));
-        case ShapeKind::box: return fmt::format("{} to {}", vec(shape.min), vec(shape.max));
-        case ShapeKind::disk:
-            return fmt::format(
-                "centre {}, facing {}, radius {}", vec(shape.center), vec(shape.normal), shortest(shape.radius));
-        case ShapeKind::plane: return fmt::format("through {}, facing {}", vec(shape.point), vec(shape.normal));
-        case ShapeKind::quad:
-            return fmt::format("corner {}, edges {} and {}", vec(shape.corner), vec(shape.edge_u), vec(shape.edge_v));
-        case ShapeKind::panel:
-            return fmt::format("corner {}, edges {} and {}, set back {}", vec(shape.corner), vec(shape.edge_u),
-                vec(shape.edge_v), shortest(shape.depth));
-    }
-    return {};
+/// "centre (0, 1, 0), radius 0.5": the parameters of the kind that `any` holds; those that are not given are left out.
+template <class Any> std::string parameters_of(const Any& any) {
+    return std::visit(
+        []<class Kind>(const Kind& kind) {
+            std::string out;
+            for (const Parameter<Kind>& parameter : Kind::parameters()) {
+                const std::string value =
+                    std::visit([&](auto member) { return value_of(kind.*member); }, parameter.member);
+                if (value.empty()) continue;
+                std::string name(parameter.name);
+                std::replace(name.begin(), name.end(), '_', ' ');
+                out += fmt::format("{}{} {}", out.empty() ? "" : ", ", name, value);
+            }
+            return out;
+        },
+        any);
 }
 
 std::string lobe(const Material& m) {
@@ -60,9 +56,9 @@ std::string shapes_table(const Page& page) {
     for (const Shape& shape : page.in.experiment.shapes) {
         const auto found = page.in.metrics.shape_pixels.find(shape.name);
         const bool known = found != page.in.metrics.shape_pixels.end();
-        table.row({html::heading(escape(shape.name)), words(kind_name(shape.kind)), words(where(shape)),
-            words(rgb(shape.material.rho_d)), words(lobe(shape.material)), words(shape.occludes ? "yes" : "no"),
-            html::figure(known ? std::to_string(found->second) : "")});
+        table.row({html::heading(escape(shape.name)), words(std::string(shape.kind())),
+            words(parameters_of(shape.form)), words(rgb(shape.material.rho_d)), words(lobe(shape.material)),
+            words(shape.occludes ? "yes" : "no"), html::figure(known ? std::to_string(found->second) : "")});
     }
     return table.empty() ? "" : table.str();
 }

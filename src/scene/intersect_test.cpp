@@ -1,12 +1,11 @@
 // Where a ray first meets a shape, against what that means: the point lies on the surface, the normal is unit and
 // turned out of it, and nothing of the shape stands before it. Random rays at random shapes of every kind.
-#include "scene/intersect.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "scene/shape.h"
 #include "simd/random.h"
 
 namespace crescent {
@@ -24,11 +23,37 @@ private:
     std::uint64_t k_ = 0;
 };
 
+enum class ShapeKind { sphere, box, quad, disk, plane, panel };
+
+/// The parameters of every kind, one of which is looked at.
+struct Sample {
+    ShapeKind kind = ShapeKind::sphere;
+    Vec3d center{}, min{}, max{}, corner{}, edge_u{}, edge_v{}, point{}, normal{};
+    double radius = 0, depth = 0;
+
+    Shapes::Any form() const {
+        switch (kind) {
+            case ShapeKind::sphere: return shapes::Sphere{center, radius};
+            case ShapeKind::box: return shapes::Box{min, max};
+            case ShapeKind::quad: return shapes::Quad{corner, edge_u, edge_v};
+            case ShapeKind::disk: return shapes::Disk{center, normal, radius};
+            case ShapeKind::plane: return shapes::Plane{point, normal};
+            case ShapeKind::panel: return shapes::Panel{corner, edge_u, edge_v, depth, {}};
+        }
+        return {};
+    }
+};
+
+Crossing intersect(const Sample& q, Vec3d x, Vec3d d) {
+    return crescent::intersect({"", q.form(), {}, false, {}}, x, d);
+}
+Vec3d quad_normal(const Sample& q) { return normalize(cross(q.edge_u, q.edge_v)); }
+
 constexpr std::array kinds = {
     ShapeKind::sphere, ShapeKind::box, ShapeKind::quad, ShapeKind::disk, ShapeKind::plane, ShapeKind::panel};
 
-Shape some_shape(ShapeKind kind, Numbers& next) {
-    Shape q;
+Sample some_shape(ShapeKind kind, Numbers& next) {
+    Sample q;
     q.kind = kind;
     q.center = next.vec(), q.point = next.vec(), q.corner = next.vec(), q.min = next.vec();
     q.radius = 0.2 + 0.6 * std::fabs(next());
@@ -49,7 +74,7 @@ bool on_parallelogram(Vec3d p, Vec3d corner, Vec3d u, Vec3d v, double slack) {
     return std::fabs(dot(d, n)) <= slack && a >= -slack && a <= 1 + slack && b >= -slack && b <= 1 + slack;
 }
 
-bool on_panel(const Shape& q, Vec3d p, bool reveal, double slack) {
+bool on_panel(const Sample& q, Vec3d p, bool reveal, double slack) {
     const Vec3d down = -q.depth * quad_normal(q);
     if (!reveal) return on_parallelogram(p, q.corner + down, q.edge_u, q.edge_v, slack);
     return on_parallelogram(p, q.corner, q.edge_u, down, slack) ||
@@ -59,7 +84,7 @@ bool on_panel(const Shape& q, Vec3d p, bool reveal, double slack) {
 }
 
 /// The point lies on the shape's surface.
-bool on_surface(const Shape& q, Vec3d p, bool reveal) {
+bool on_surface(const Sample& q, Vec3d p, bool reveal) {
     constexpr double slack = 1e-9;
     switch (q.kind) {
         case ShapeKind::sphere: return std::fabs(length(p - q.center) - q.radius) <= slack;
@@ -78,7 +103,7 @@ bool on_surface(const Shape& q, Vec3d p, bool reveal) {
 }
 
 /// The normal that the surface has there, by the shape's definition, up to its sign.
-bool normal_fits(const Shape& q, Vec3d p, const Crossing& c) {
+bool normal_fits(const Sample& q, Vec3d p, const Crossing& c) {
     const auto along = [&](Vec3d n) { return std::fabs(std::fabs(dot(c.n, n)) - 1) < 1e-9; };
     switch (q.kind) {
         case ShapeKind::sphere: return along(normalize(p - q.center)) && dot(c.n, p - q.center) > 0;
@@ -98,7 +123,7 @@ bool normal_fits(const Shape& q, Vec3d p, const Crossing& c) {
 template <class Visit> void for_each_ray(ShapeKind kind, Visit&& visit) {
     Numbers next(7 + static_cast<std::uint32_t>(kind));
     for (int k = 0; k < 20'000; ++k) {
-        const Shape q = some_shape(kind, next);
+        const Sample q = some_shape(kind, next);
         const Vec3d x = next.vec(3), towards = next.vec(1.2) - x;
         visit(q, x, normalize(towards));
     }
@@ -107,7 +132,7 @@ template <class Visit> void for_each_ray(ShapeKind kind, Visit&& visit) {
 TEST(IntersectLaw, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
     for (const ShapeKind kind : kinds) {
         int hits = 0;
-        for_each_ray(kind, [&](const Shape& q, Vec3d x, Vec3d d) {
+        for_each_ray(kind, [&](const Sample& q, Vec3d x, Vec3d d) {
             const Crossing c = intersect(q, x, d);
             if (!std::isfinite(c.t)) return;
             ++hits;
@@ -123,7 +148,7 @@ TEST(IntersectLaw, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
 }
 
 /// Steps along the ray and looks whether it changed sides of a closed body, or crossed a flat one, before t.
-bool crosses_before(const Shape& q, Vec3d x, Vec3d d, double t) {
+bool crosses_before(const Sample& q, Vec3d x, Vec3d d, double t) {
     constexpr int steps = 400;
     const auto inside = [&](Vec3d p) {
         if (q.kind == ShapeKind::sphere) return length(p - q.center) < q.radius;
@@ -137,7 +162,7 @@ bool crosses_before(const Shape& q, Vec3d x, Vec3d d, double t) {
 
 TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
     for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box})
-        for_each_ray(kind, [&, k = 0](const Shape& q, Vec3d x, Vec3d d) mutable {
+        for_each_ray(kind, [&, k = 0](const Sample& q, Vec3d x, Vec3d d) mutable {
             if (k++ % 10 != 0) return;
             const Crossing c = intersect(q, x, d);
             ASSERT_FALSE(crosses_before(q, x, d, std::isfinite(c.t) ? c.t : 8)) << static_cast<int>(kind);
@@ -147,7 +172,7 @@ TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
 TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
     Numbers next(3);
     for (int k = 0; k < 2000; ++k) {
-        const Shape ball = some_shape(ShapeKind::sphere, next), box = some_shape(ShapeKind::box, next);
+        const Sample ball = some_shape(ShapeKind::sphere, next), box = some_shape(ShapeKind::box, next);
         const Vec3d d = normalize(next.vec());
         const Crossing c = intersect(ball, ball.center, d);
         EXPECT_NEAR(c.t, ball.radius, 1e-12);
@@ -161,7 +186,7 @@ TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
     Numbers next(5);
     int reveals = 0;
     for (int k = 0; k < 20'000; ++k) {
-        const Shape q = some_shape(ShapeKind::panel, next);
+        const Sample q = some_shape(ShapeKind::panel, next);
         const Vec3d n = quad_normal(q),
                     in_it = q.corner + (0.5 + 0.5 * next()) * q.edge_u + (0.5 + 0.5 * next()) * q.edge_v;
         const Vec3d x = in_it + (0.2 + std::fabs(next())) * n + next.vec(0.5) - 0.0 * n;

@@ -5,33 +5,8 @@
 
 #include "base/parallel.h"
 #include "math/functions.h"
-#include "scene/intersect.h"
 
 namespace crescent {
-
-namespace {
-
-void add_occluders(const Shape& q, int index, std::vector<Occluder>& out) {
-    using K = Occluder::Kind;
-    switch (q.kind) {
-        case ShapeKind::sphere: out.push_back({K::sphere, index, q.center, {}, {}, q.radius}); break;
-        case ShapeKind::box: out.push_back({K::box, index, q.min, q.max, {}, 0}); break;
-        case ShapeKind::quad: out.push_back({K::quad, index, q.corner, q.edge_u, q.edge_v, 0}); break;
-        case ShapeKind::disk: out.push_back({K::disk, index, q.center, q.normal, {}, q.radius}); break;
-        case ShapeKind::plane: out.push_back({K::plane, index, q.point, q.normal, {}, 0}); break;
-        case ShapeKind::panel: {
-            const Vec3d down = -q.depth * quad_normal(q);
-            out.push_back({K::quad, index, q.corner + down, q.edge_u, q.edge_v, 0});
-            out.push_back({K::quad, index, q.corner, q.edge_u, down, 0});
-            out.push_back({K::quad, index, q.corner, q.edge_v, down, 0});
-            out.push_back({K::quad, index, q.corner + q.edge_v, q.edge_u, down, 0});
-            out.push_back({K::quad, index, q.corner + q.edge_u, q.edge_v, down, 0});
-            break;
-        }
-    }
-}
-
-}  // namespace
 
 Scene::Made::Made(SceneData from) : data(std::move(from)) {
     const Camera& c = data.camera;
@@ -115,7 +90,7 @@ Surface Scene::surface(const Hit& hit) const {
     if (other_s_ && (hit.shape == made_->s_shape || material.inherits_s)) material.s = s_;
     Surface out = surface_of(material, s_);
     if (hit.reveal) {
-        out.rho_d = shape.reveal_rho_d.value_or(out.rho_d);
+        out.rho_d = albedo_of_reveal(shape).value_or(out.rho_d);
         out.rho_s = 0;
     }
     return out;

@@ -19,14 +19,6 @@ struct Hit {
     Vec3d wo{};  // towards the camera, unit
 };
 
-/// A convex body that can stand between a surface and a light. Shapes that are not convex are made of several.
-struct Occluder {
-    enum class Kind { sphere, box, quad, disk, plane } kind = Kind::sphere;
-    int shape = -1;       // its own surface is never shadowed by it
-    Vec3d a{}, b{}, c{};  // sphere: centre; box: min, max; quad: corner, edges; disk, plane: centre, normal
-    double radius = 0;
-};
-
 class Scene {
 public:
     /// An experiment is such data too.

@@ -6,23 +6,10 @@
 #include <array>
 #include <span>
 
+#include "scene/chord.h"
 #include "scene/scene.h"
 
 namespace crescent {
-
-/// v in [lo, hi] of the chord y(v) = y0 + v (y1 - y0), v in [0, 1]; empty where lo >= hi.
-struct Interval {
-    double lo = 0, hi = 0;
-    bool empty() const { return !(lo < hi); }
-};
-
-/// The part of the way from the point (0) to the light (1) on which a surface stands in between. The ends are left out,
-/// so that rounding never decides whether a body hides what lies in its own face.
-struct Between {
-    double from = 0, to = 1;
-};
-inline constexpr double at_an_end = 1e-5;  // of the way; the kernels' share too
-inline constexpr Between before_light{at_an_end, 1 - at_an_end};
 
 /// The v for which the way from x to y(v) crosses the body's surface within `between`: one interval where x is outside
 /// the body, at most two else (what lies in one body sees each other).
@@ -36,9 +23,9 @@ struct Extent {
     Vec3d middle{}, half{};
 };
 
-/// A plane parts the body from all segments between these points and the disk: it hides nothing of it from any. Never
-/// true where it does hide some; false where none of the planes that are tried parts them.
-bool stands_clear(const Occluder& body, const Extent& from, const DiskLight& disk);
+/// A plane parts the body from all segments between these points and the light, which has this form: it hides nothing
+/// of it from any. Never true where it does hide some; false where none of the planes that are tried parts them.
+bool stands_clear(const Occluder& body, const Extent& from, const Bodies::Any& light);
 
 /// Calls f with each part of [0, 1] that no interval covers, in order. Sorts the intervals.
 template <class F> void each_open_part(std::span<Interval> hidden_parts, F&& f) {

@@ -22,16 +22,20 @@ private:
     std::uint64_t k_ = 0;
 };
 
-Occluder some_body(Occluder::Kind kind, Vec3d about, Numbers& next) {
-    Occluder o;
-    o.kind = kind;
-    o.a = about + next.vec(0.8);
-    o.radius = 0.3 * std::fabs(next());
+enum class Kind { sphere, box, quad, disk, plane };
+
+Occluder some_body(Kind kind, Vec3d about, Numbers& next) {
+    const Vec3d a = about + next.vec(0.8);
+    const double radius = 0.3 * std::fabs(next());
     const Vec3d size = next.vec(0.5);
-    if (kind == Occluder::Kind::box) o.b = o.a + Vec3d{std::fabs(size.x), std::fabs(size.y), std::fabs(size.z)};
-    if (kind == Occluder::Kind::quad) o.b = size, o.c = next.vec(0.5);
-    if (kind == Occluder::Kind::disk || kind == Occluder::Kind::plane) o.b = normalize(next.vec());
-    return o;
+    switch (kind) {
+        case Kind::sphere: return {shapes::Sphere{a, radius}};
+        case Kind::box: return {shapes::Box{a, a + Vec3d{std::fabs(size.x), std::fabs(size.y), std::fabs(size.z)}}};
+        case Kind::quad: return {shapes::Quad{a, size, next.vec(0.5)}};
+        case Kind::disk: return {shapes::Disk{a, normalize(next.vec()), radius}};
+        case Kind::plane: return {shapes::Plane{a, normalize(next.vec())}};
+    }
+    return {};
 }
 
 struct Obstacle {
@@ -40,7 +44,7 @@ struct Obstacle {
     DiskLight disk;
 };
 
-Obstacle some_obstacle(Occluder::Kind kind, Numbers& next) {
+Obstacle some_obstacle(Kind kind, Numbers& next) {
     Obstacle s;
     const Vec3d half = next.vec(0.2);
     s.from = {next.vec(1.5), {std::fabs(half.x), std::fabs(half.y), std::fabs(half.z)}};
@@ -66,13 +70,12 @@ int hidden_segments(const Obstacle& s, Numbers& next, int segments) {
 }
 
 TEST(StandsClear, NeverPartsABodyFromSegmentsThatItCrosses) {
-    using Kind = Occluder::Kind;
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
         Numbers next(7 + static_cast<std::uint32_t>(kind));
         int clear = 0, unclear = 0, in_the_way = 0;
         for (int trial = 0; trial < 1000; ++trial) {
             const Obstacle s = some_obstacle(kind, next);
-            const bool parted = stands_clear(s.body, s.from, s.disk);
+            const bool parted = stands_clear(s.body, s.from, s.disk.body());
             const int hidden_ones = hidden_segments(s, next, 200);
             EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
             in_the_way += hidden_ones > 0;

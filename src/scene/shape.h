@@ -3,30 +3,37 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/errors.h"
-#include "base/vec.h"
 #include "scene/material.h"
+#include "scene/shapes/all.h"
 
 namespace crescent {
 
-enum class ShapeKind { sphere, box, quad, disk, plane, panel };
-
-/// One shape; which fields count depends on the kind (see `crescent schema`).
+/// One shape: where it lies, what it reflects.
 struct Shape {
     std::string name;
-    ShapeKind kind = ShapeKind::sphere;
+    Shapes::Any form;  // one of the kinds of shapes/all.h
     Material material;
-    std::optional<Rgb> reveal_rho_d;     // panel: the four sides of the recess
-    bool occludes = false;               // whether it blocks the disk lights
-    Vec3d center{};                      // sphere, disk
-    double radius = 0;                   // sphere, disk
-    Vec3d min{}, max{};                  // box
-    Vec3d corner{}, edge_u{}, edge_v{};  // quad, panel opening; the outward normal is edge_u x edge_v
-    Vec3d point{};                       // plane
-    Vec3d normal{};                      // plane, disk; unit
-    double depth = 0;                    // panel: how far it is set back, against the normal
+    bool occludes = false;  // whether it stands before the lights
     Place at;
+    std::string_view kind() const { return Shapes::names[form.index()]; }
 };
+
+/// A convex body that can stand between a surface and a light. A shape that is not convex is made of several.
+struct Occluder {
+    Bodies::Any body;
+    int shape = -1;  // its own surface is never shadowed by it
+};
+
+/// Where the ray x + t d first meets the shape.
+Crossing intersect(const Shape& shape, Vec3d x, Vec3d d);
+
+/// What it puts before lights, as shape `index`.
+void add_occluders(const Shape& shape, int index, std::vector<Occluder>& out);
+
+/// The diffuse albedo of the sides of a recess, where the shape has one and states it.
+std::optional<Rgb> albedo_of_reveal(const Shape& shape);
 
 }  // namespace crescent

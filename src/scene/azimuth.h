@@ -2,7 +2,9 @@
 // axis have to cross. Radians; double precision.
 #pragma once
 
-#include "scene/scene.h"
+#include <span>
+
+#include "scene/frame.h"
 
 namespace crescent {
 
@@ -15,6 +17,11 @@ struct Azimuths {
     bool meet(double lo, double hi) const;
 };
 
-Azimuths azimuths_of(const Occluder& body, Vec3d x, const Frame<double>& frame);
+/// An ellipse about p with conjugate half-axes u and v, seen from the origin.
+Azimuths azimuths_of_ellipse(Vec3d p, Vec3d u, Vec3d v, const Frame<double>& frame);
+/// A ball about p.
+Azimuths azimuths_of_ball(Vec3d p, double radius, const Frame<double>& frame);
+/// The hull of some points.
+Azimuths azimuths_of_corners(std::span<const Vec3d> corners, const Frame<double>& frame);
 
 }  // namespace crescent

@@ -1,0 +1,72 @@
+// quad: a parallelogram, from a corner along two edges; its outward normal is edge_u x edge_v.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "scene/body.h"
+
+namespace crescent::shapes {
+
+/// Two edges that span nothing.
+inline std::optional<Mistake> mistake_of_edges(Vec3d u, Vec3d v) {
+    constexpr double parallel = 1e-6;  // sine of the angle under which two directions count as one
+    const double size_u = std::sqrt(dot(u, u)), size_v = std::sqrt(dot(v, v));
+    const Vec3d n = cross(u, v);
+    if (!(size_u > 0)) return Mistake{"edge_u", "expected an edge with a length, found the zero vector"};
+    if (!(size_v > 0)) return Mistake{"edge_v", "expected an edge with a length, found the zero vector"};
+    if (std::sqrt(dot(n, n)) < parallel * size_u * size_v)
+        return Mistake{"edge_v", "expected an edge that is not parallel to edge_u"};
+    return {};
+}
+
+struct Quad {
+    static constexpr std::string_view name = "quad";
+    Vec3d corner{}, edge_u{}, edge_v{};
+
+    static constexpr auto parameters() {
+        return std::array{parameter::place("corner", &Quad::corner, "A corner of the quad, or of the panel's opening."),
+            parameter::place("edge_u", &Quad::edge_u, "First edge from the corner."),
+            parameter::place("edge_v", &Quad::edge_v, "Second edge; the face looks along edge_u x edge_v.")};
+    }
+    std::optional<Mistake> mistake() const { return mistake_of_edges(edge_u, edge_v); }
+
+    Crossing intersect(Vec3d x, Vec3d d) const {
+        return crossing_at(parallelogram_t(corner, edge_u, edge_v, x, d), normalize(cross(edge_u, edge_v)));
+    }
+
+    std::array<Interval, 2> hidden(const Sight& s) const {
+        const Vec3d n = cross(edge_u, edge_v);
+        const OnPlane m = project(corner, n, s);
+        const auto inside = [&](Vec3d axis) {  // 0 <= axis . g <= w
+            const double a0 = dot(axis, m.at0), a1 = dot(axis, m.at0 + m.step);
+            return both(where_positive(a0, a1), where_positive(m.w0 - a0, m.w0 + m.w1 - a1));
+        };
+        const double nn = dot(n, n);
+        return {both(m.sides, both(inside(cross(edge_v, n) * (1 / nn)), inside(cross(n, edge_u) * (1 / nn)))), {}};
+    }
+    bool holds(Vec3d) const { return false; }
+
+    Vec3d middle() const { return corner + 0.5 * (edge_u + edge_v); }
+    double half_extent(Vec3d axis) const { return 0.5 * (std::fabs(dot(axis, edge_u)) + std::fabs(dot(axis, edge_v))); }
+    std::array<Vec3d, 3> faces() const { return {cross(edge_u, edge_v), edge_u, edge_v}; }
+    Azimuths azimuths(Vec3d x, const Frame<double>& frame) const {
+        const std::array corners = {corner - x, corner + edge_u - x, corner + edge_v - x, corner + edge_u + edge_v - x};
+        return azimuths_of_corners(corners, frame);
+    }
+
+    BodyNumbers numbers(Vec3d origin) const {
+        const Vec3d a = corner - origin;
+        return {a, edge_u, edge_v, 0, dot(cross(edge_u, edge_v), a)};
+    }
+    template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
+        const F zero = number<F>(0);
+        const Vec3<F> n = cross(body.b, body.c);
+        const F t = plane_at(n, body.offset, o, d);
+        const Vec3<F> p = o + d * t - body.a;
+        const F nn = dot(n, n), x = dot(cross(p, body.c), n), y = dot(cross(body.b, p), n);
+        return (t > lo) & (t < hi) & (x >= zero) & (x <= nn) & (y >= zero) & (y <= nn);
+    }
+};
+
+}  // namespace crescent::shapes
