@@ -23,7 +23,11 @@ std::vector<Word> words_of_key(const char* section, const char* key) {
 
 std::vector<Word> arms() {
     std::vector<Word> out;
-    for_each_arm(Arms{}, [&]<template <class> class A>() { out.push_back({std::string(A<float>::name), ""}); });
+    for (const ArmInfo& arm : arm_infos()) {
+        out.push_back({std::string(arm.name), std::string(arm.summary)});
+        if (!arm.misses.empty()) out.back().means += fmt::format("; cannot reach {}", arm.misses);
+        if (arm.techniques > 1) out.back().means += fmt::format("; {} directions a sample", arm.techniques);
+    }
     return out;
 }
 

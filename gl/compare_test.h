@@ -10,30 +10,10 @@
 
 namespace crescent::gl::test {
 
-/// What the law allows an arm.
-struct Tolerance {
-    std::string_view arm;
-    double relative;  // of Y, at one sample a pixel
-    std::string_view reason;
-};
-
 // One sample's X = f L cos / p. Directions are off by about 1.5e-7 absolute, so cos by as much and X relative to the
 // larger of itself and the pixel's Lambert level by a few such steps; what an arm divides by, or raises to a power,
-// adds to that. Each bound is about three times the largest difference among 270,000 samples on llvmpipe, stated in
-// docs/gl.md.
-inline constexpr Tolerance software_tolerances[] = {
-    {"uniform", 2.5e-6, "cos times the lobe: (w.R)^s turns 1e-7 of w.R into s 1e-7 of the lobe"},
-    {"cosine", 2.5e-6, "as uniform; cos/p is a constant"},
-    {"phong", 7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"},
-    {"mixture", 5e-6, "as phong; the cosine beside it bounds 1/p"},
-    {"mis-balance", 5e-6, "as mixture; weights are at most 1"},
-    {"mis-power", 5e-6, "as mixture; weights are at most 1"},
-    {"light-solid-angle", 2.5e-6, "frames and a cap: square roots and divisions alone"},
-    {"light-area", 3.5e-6, "as light-solid-angle, over cos at the light"},
-    {"blinn", 2e-5, "p has 1/(wo.m), and the mirrored wi doubles m's error"},
-    {"ggx-d", 2e-5, "as blinn"},
-    {"ggx-vndf", 5e-5, "D(m) in f and p nearly cancel: (n.m)^4 near the pole is off by 1e-7/alpha^2 in each"},
-};
+// adds to that. The arms state their bounds: each is about three times the largest difference among 270,000 samples on
+// llvmpipe, stated in docs/gl.md.
 /// A GPU's compiler may contract a b + c, and its square roots and reciprocals are good to 1 or 2 ULP instead of half
 /// of one.
 inline constexpr double gpu_factor = 8;

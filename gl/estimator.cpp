@@ -120,6 +120,8 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
 std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, Watch& watch) {
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
+    if (!(find_arm_info(sampler)->gl.relative > 0))
+        throw OutputError("the GL instrument has no copy of the sampler '" + sampler + "': use the cpu");
     const Image& image = scene.image();
     std::vector<Film> out;
     for (const std::uint64_t rung : n)

@@ -24,7 +24,7 @@ const Verdict& find(const Judgement& j, const std::string& trial, const std::str
 }
 
 TEST(Verdicts, EveryArmOfTheListGetsWhatTheListExpects) {
-    for (const std::string& arm : arm_names()) {
+    for (const std::string& arm : sampler_names()) {
         const Judgement j = of(arm);
         EXPECT_TRUE(j.as_expected) << verdict_table(j);
     }

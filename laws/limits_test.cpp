@@ -40,7 +40,7 @@ void expect_settled(const Judgement& j, std::set<std::string>& met) {
 
 TEST(Limits, OfTheSchemaLeadToNoAccusation) {
     std::set<std::string> met;
-    for (const std::string& arm : arm_names())
+    for (const std::string& arm : sampler_names())
         for (const Settings& at : {Settings{{"s", 1e-3}}, {{"s", 1e6}}, {{"alpha", 1e-4}}, {{"alpha", 1}}}) {
             if (!reads(arm, at)) continue;
             const Judgement j = at_a_few(arm, at);

@@ -1,4 +1,4 @@
-// The lobes without their albedo, as src/scene/brdf.h: f = rho_d / pi + rho_s lobe, a lobe in 1/sr without the cosine.
+// The lobes without their albedo, as src/lobes/brdf.h: f = rho_d / pi + rho_s lobe, a lobe in 1/sr without the cosine.
 // LOBE is the kind of this draw's surfaces: 0 none, 1 Phong, 2 Blinn-Phong, 3 GGX.
 #include "frame.glsl"
 

@@ -6,7 +6,7 @@
 
 #include "laws/right/right.h"
 #include "math/functions.h"
-#include "scene/frame.h"
+#include "simd/frame.h"
 
 namespace crescent {
 

@@ -2,8 +2,6 @@
 // files, the CLI, the kernels, the manual and the laws.
 #pragma once
 
-#include <cstdint>
-
 #include "arms/blinn.h"
 #include "arms/cosine.h"
 #include "arms/ggx_d.h"
@@ -28,16 +26,6 @@ using Arms =
 /// Calls f.template operator()<A>() for every arm A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_arm(ArmList<A...>, Call&& f) {
     (f.template operator()<A>(), ...);
-}
-
-/// How many directions an arm draws a sample: two where it is of two techniques. Its name is a word of the list.
-inline std::uint64_t directions_per_sample(std::string_view sampler) {
-    std::uint64_t directions = 1;
-    for_each_arm(Arms{}, [&]<template <class> class A>() {
-        if constexpr (requires { A<float>::techniques; })
-            if (A<float>::name == sampler) directions = A<float>::techniques;
-    });
-    return directions;
 }
 
 }  // namespace crescent

@@ -10,6 +10,23 @@ namespace crescent {
 
 template <class F> struct Blinn {
     static constexpr std::string_view name = "blinn";
+    static constexpr TrialSurface trials[] = {{.lobe = "blinn-phong", .sharpness = 8},
+        {.lobe = "blinn-phong", .sharpness = 32}, {.lobe = "blinn-phong", .sharpness = 128},
+        {.lobe = "blinn-phong", .sharpness = 1e4}, {.lobe = "blinn-phong", .sharpness = 1e5},
+        {.lobe = "blinn-phong", .sharpness = 32, .lambert = true}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "a half vector by a cosine power of exponent s about the normal",
+        .formula = R"(\frac{s+1}{2\pi}\,\frac{(n\cdot m)^s}{4(\omega_o\cdot m)})",
+        .draw = R"($\cos\theta_m=u_1^{1/(s+1)}$)",
+        .axis = "the normal $n$",
+        .needs_s = true,
+        .trials = trials,
+        .gl = {2e-5, "p has 1/(wo.m), and the mirrored wi doubles m's error"}};
+    /// n.h is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
+    static Theory theory(const TrialPoint& at) {
+        const double least = math::cos((at.theta_deg + 90) * pi / 360);
+        return {.bounded = at.rho_d == 0, .underflows = power_underflows(at, least)};
+    }
     F s, inverse, scale;
     explicit Blinn(const Site<F>& site)
         : s(site.s),

@@ -8,6 +8,17 @@ namespace crescent {
 
 template <class F> struct Cosine {
     static constexpr std::string_view name = "cosine";
+    static constexpr TrialSurface trials[] = {{.lambert = true}, {.lobe = "phong", .sharpness = 32, .lambert = true},
+        {.lobe = "ggx", .sharpness = 0.5, .lambert = true}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "by the cosine with the normal: right for Lambert under even light",
+        .formula = R"(\frac{(n\cdot\omega)}{\pi})",
+        .draw = R"($\cos\theta=\sqrt{u_1}$)",
+        .axis = "the normal $n$",
+        .about = PdfAxis::normal,
+        .trials = trials,
+        .gl = {2.5e-6, "as uniform; cos/p is a constant"}};
+    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
     explicit Cosine(const Site<F>&) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {

@@ -6,12 +6,23 @@
 #pragma once
 
 #include "arms/halfway.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 
 namespace crescent {
 
 template <class F> struct GgxD {
     static constexpr std::string_view name = "ggx-d";
+    static constexpr TrialSurface trials[] = {{.lobe = "ggx", .sharpness = 0.5}, {.lobe = "ggx", .sharpness = 0.1},
+        {.lobe = "ggx", .sharpness = 0.01}, {.lobe = "ggx", .sharpness = 0.001},
+        {.lobe = "ggx", .sharpness = 0.3, .lambert = true}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "a half vector by the GGX distribution D of roughness alpha",
+        .formula = R"(\frac{D(m)\,(n\cdot m)}{4(\omega_o\cdot m)})",
+        .draw = R"($\tan^2\theta_m=\frac{\alpha^2u_1}{1-u_1}$)",
+        .axis = "the normal $n$",
+        .trials = trials,
+        .gl = {2e-5, "as blinn"}};
+    static Theory theory(const TrialPoint& at) { return {.bounded = at.rho_d == 0}; }
     Ggx<F> ggx;
     explicit GgxD(const Site<F>& site) : ggx{site.alpha} {}
 

@@ -6,12 +6,23 @@
 #pragma once
 
 #include "arms/halfway.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 
 namespace crescent {
 
 template <class F> struct GgxVndf {
     static constexpr std::string_view name = "ggx-vndf";
+    static constexpr TrialSurface trials[] = {{.lobe = "ggx", .sharpness = 0.5}, {.lobe = "ggx", .sharpness = 0.1},
+        {.lobe = "ggx", .sharpness = 0.01}, {.lobe = "ggx", .sharpness = 0.001},
+        {.lobe = "ggx", .sharpness = 0.3, .lambert = true}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "a half vector by the GGX distribution of the normals that w_o sees",
+        .formula = R"(\frac{G_1(\omega_o)\,D(m)}{4(n\cdot\omega_o)})",
+        .draw = "even over a spherical cap, stretched",
+        .axis = "the normal $n$",
+        .trials = trials,
+        .gl = {5e-5, "D(m) in f and p nearly cancel: (n.m)^4 near the pole is off by 1e-7/alpha^2 in each"}};
+    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
     Ggx<F> ggx;
     explicit GgxVndf(const Site<F>& site) : ggx{site.alpha} {}
 

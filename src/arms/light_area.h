@@ -9,6 +9,18 @@ namespace crescent {
 
 template <class F> struct LightArea {
     static constexpr std::string_view name = "light-area";
+    static constexpr TrialSurface trials[] = {{.lambert = true, .light = "disk"},
+        {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
+        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr ArmManual manual = {.label = "light-area (NEE)",
+        .summary = "next-event estimation: a point of a disk light, even over its area",
+        .formula = R"(\frac{\lvert y-x\rvert^2}{\pi r^2\cos\theta_y})",
+        .draw = "even over the area of a disk",
+        .axis = "the disk",
+        .misses = light_arm_misses,
+        .trials = trials,
+        .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
+    static Theory theory(const TrialPoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
     int count;
 

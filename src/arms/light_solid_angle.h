@@ -17,6 +17,18 @@ namespace crescent {
 
 template <class F> struct LightSolidAngle {
     static constexpr std::string_view name = "light-solid-angle";
+    static constexpr TrialSurface trials[] = {{.lambert = true, .light = "disk"},
+        {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
+        {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr ArmManual manual = {.label = "light-solid-angle (NEE)",
+        .summary = "next-event estimation: a direction of the cap about a disk light, even over its solid angle",
+        .formula = R"(\frac{1}{2\pi\,(1-\cos\beta)})",
+        .draw = R"($\cos\theta=1-u_1(1-\cos\beta)$)",
+        .axis = R"(the middle of the cap, of half angle $\beta$, around the disk)",
+        .misses = light_arm_misses,
+        .trials = trials,
+        .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};
+    static Theory theory(const TrialPoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
     int count;
 

@@ -10,6 +10,11 @@
 
 namespace crescent {
 
+inline constexpr TrialSurface mis_trials[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
+    {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
+    {.lobe = "phong", .sharpness = 1000, .lambert = true},
+    {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + two disks"}};
+
 /// `Heuristic::weight(own, other)` of two densities in 1/sr, own > 0.
 template <class F, class Heuristic> struct TwoSampleMis {
     static constexpr int techniques = 2;

@@ -16,6 +16,17 @@ struct BalanceHeuristic {
 
 template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
     static constexpr std::string_view name = "mis-balance";
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "mixture and light-area, a direction of each, weighed by the balance heuristic",
+        .formula = R"(w_i=\frac{p_i}{p_1+p_2})",
+        .density = R"(p_1,p_2)",
+        .draw = "a direction by mixture and one by light-area, balance heuristic",
+        .axis = "both",
+        .needs_s = true,
+        .combines = true,
+        .trials = mis_trials,
+        .gl = {5e-6, "as mixture; weights are at most 1"}};
+    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, BalanceHeuristic>::TwoSampleMis;
 };
 

@@ -16,6 +16,17 @@ struct PowerHeuristic {
 
 template <class F> struct MisPower : TwoSampleMis<F, PowerHeuristic> {
     static constexpr std::string_view name = "mis-power";
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "mixture and light-area, a direction of each, weighed by the power heuristic",
+        .formula = R"(w_i=\frac{p_i^2}{p_1^2+p_2^2})",
+        .density = R"(p_1,p_2)",
+        .draw = "a direction by mixture and one by light-area, power heuristic",
+        .axis = "both",
+        .needs_s = true,
+        .combines = true,
+        .trials = mis_trials,
+        .gl = {5e-6, "as mixture; weights are at most 1"}};
+    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, PowerHeuristic>::TwoSampleMis;
 };
 

@@ -12,6 +12,19 @@ namespace crescent {
 
 template <class F> struct Mixture {
     static constexpr std::string_view name = "mixture";
+    static constexpr TrialSurface trials[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
+        {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
+        {.lobe = "phong", .sharpness = 1000, .lambert = true}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "phong or cosine, chosen by the albedos of lobe and Lambert part",
+        .formula = R"(q\,p_{\mathrm{phong}}+(1-q)\,p_{\mathrm{cosine}})",
+        .draw = "phong where $u_1<q$, else cosine",
+        .axis = "$R$ or $n$",
+        .needs_s = true,
+        .combines = true,
+        .trials = trials,
+        .gl = {5e-6, "as phong; the cosine beside it bounds 1/p"}};
+    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
     Phong<F> lobe;
     Cosine<F> diffuse;
     F q;

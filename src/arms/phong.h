@@ -5,11 +5,40 @@
 #pragma once
 
 #include "arms/sampler.h"
+#include "math/functions.h"
 
 namespace crescent {
 
 template <class F> struct Phong {
     static constexpr std::string_view name = "phong";
+    static constexpr TrialSurface trials[] = {{.lobe = "phong", .sharpness = 8}, {.lobe = "phong", .sharpness = 32},
+        {.lobe = "phong", .sharpness = 128}, {.lobe = "phong", .sharpness = 1e4}, {.lobe = "phong", .sharpness = 1e5},
+        {.lobe = "phong", .sharpness = 32, .lambert = true}, {.lambert = true}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "a cosine-power lobe of exponent s about the mirror direction R",
+        .formula = R"(\frac{s+1}{2\pi}\,(\omega\cdot R)_+^s)",
+        .draw = R"($\cos\theta=u_1^{1/(s+1)}$)",
+        .axis = "the mirror direction $R$",
+        .about = PdfAxis::mirror,
+        .needs_s = true,
+        .trials = trials,
+        .gl = {7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"}};
+    /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and past 90 deg from R no samples at
+    /// all.
+    static Theory theory(const TrialPoint& at) {
+        if (!(at.rho_d > 0)) return {.bounded = true};
+        const bool tilted = at.theta_deg > 0;
+        Theory t;
+        t.lost = (1 - math::cos(at.theta_deg * pi / 180)) / 2;
+        t.lost_of = at.rho_d;
+        t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light lies below
+        t.tail_k = tilted ? at.s / (at.s + 1) : (at.s - 1) / (at.s + 1);
+        if (tilted) t.wrong = "support";
+        t.why = tilted
+            ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the note's second error"
+            : "p falls off as (w.R)^s while Lambert only falls off as cos: the weight is Pareto, k = (s-1)/(s+1)";
+        return t;
+    }
     F s, inverse, scale;
     explicit Phong(const Site<F>& site)
         : s(site.s),

@@ -5,8 +5,9 @@
 #include <concepts>
 #include <string_view>
 
+#include "arms/info.h"
 #include "base/vec.h"
-#include "scene/frame.h"
+#include "simd/frame.h"
 
 namespace crescent {
 
@@ -65,6 +66,14 @@ template <class F> struct Site {
     const LocalDisk<F>* disks = nullptr;
     int disk_count = 0;
 };
+
+/// What holds of the arms that aim at disk lights alone.
+inline constexpr std::string_view light_arm_misses = "light that comes from no disk";
+inline Theory theory_of_light_arm(const TrialPoint& at) {
+    Theory t;
+    if (at.fill > 0) t.wrong = "support", t.why = "an arm that aims at the disk alone cannot find the fill";
+    return t;
+}
 
 template <class S, class F>
 concept Sampler = requires(const S s, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {

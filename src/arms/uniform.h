@@ -8,6 +8,17 @@ namespace crescent {
 
 template <class F> struct Uniform {
     static constexpr std::string_view name = "uniform";
+    static constexpr TrialSurface trials[] = {{.lambert = true}, {.lobe = "phong", .sharpness = 32, .lambert = true},
+        {.lobe = "ggx", .sharpness = 0.5, .lambert = true}, {.lambert = true, .light = "fill + disk"}};
+    static constexpr ArmManual manual = {.label = name,
+        .summary = "every direction above the surface alike",
+        .formula = R"(\frac{1}{2\pi})",
+        .draw = R"($\cos\theta=u_1$)",
+        .axis = "the normal $n$",
+        .about = PdfAxis::normal,
+        .trials = trials,
+        .gl = {2.5e-6, "cos times the lobe: (w.R)^s turns 1e-7 of w.R into s 1e-7 of the lobe"}};
+    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
     explicit Uniform(const Site<F>&) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {

@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "color/rgb.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 #include "scene/scene.h"
 
 namespace crescent {

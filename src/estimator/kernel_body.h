@@ -7,7 +7,7 @@
 
 #include "arms/all.h"
 #include "estimator/kernel_lights.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 #include "simd/random.h"
 
 namespace crescent {

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "math/gauss.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 
 namespace crescent {
 

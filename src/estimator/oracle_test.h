@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "color/rgb.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 #include "scene/scene.h"
 
 namespace crescent::test {

@@ -8,7 +8,7 @@
 #include "estimator/disk_hit.h"
 #include "color/rgb.h"
 #include "math/functions.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 #include "simd/random.h"
 
 namespace crescent {

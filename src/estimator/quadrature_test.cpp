@@ -5,7 +5,7 @@
 #include "estimator/disk_quadrature.h"
 #include "estimator/lobe_albedo.h"
 #include "estimator/test_scene.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 #include "simd/random.h"
 
 namespace crescent {

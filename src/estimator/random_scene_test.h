@@ -8,7 +8,7 @@
 #include <string>
 
 #include "experiment/experiment.h"
-#include "scene/frame.h"
+#include "simd/frame.h"
 #include "scene/scene.h"
 
 namespace crescent::test {

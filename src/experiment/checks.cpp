@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "arms/info.h"
 #include "experiment/draft.h"
 #include "experiment/names.h"
 

@@ -3,7 +3,7 @@
 // several values (names that must exist, unit vectors, boxes inside the image) is for the reader to check.
 #include <nlohmann/json.hpp>
 
-#include "experiment/names.h"
+#include "arms/info.h"
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "arms/info.h"
 #include "experiment/draft.h"
 #include "experiment/names.h"
 
@@ -47,7 +48,7 @@ void resolve_s(Draft& draft) {
         }))
         return;
     for (const ArmPlan& arm : e.arms)
-        if (sampler_needs_s(arm.sampler))
+        if (const ArmInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
             draft.complain("arms." + arm.name,
                 fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
 }

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "experiment/names.h"
+#include "arms/info.h"
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 

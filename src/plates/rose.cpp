@@ -181,13 +181,10 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
 void draw_rose(Sheet& sheet) {
     double tilt = tilt_deg * degree;
     std::vector<Part> parts = parts_of(sheet, tilt);
-    bool elementary = std::all_of(
-        parts.begin(), parts.end(), [&](const Part& p) { return !axis_of(p.key.arm, sheet.experiment()).empty(); });
     std::vector<RunKey> keys;
     for (const Part& p : parts) keys.push_back(p.key);
     instrument_header(sheet, "PDF ROSE",
-        "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)) +
-            (elementary ? " / not Blinn, not GGX VNDF" : ""),
+        "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
         "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i, tilt);
     if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured

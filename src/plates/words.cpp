@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arms/info.h"
+#include "base/formula.h"
 #include "math/functions.h"
 #include "plates/canvas.h"
 
@@ -12,44 +14,11 @@ namespace crescent::plates {
 
 namespace {
 
-struct Sampler {
-    const char *word, *name, *axis, *formula;
-};
-// Densities in 1/sr, weights for the arms that combine two; {s1} stands for s + 1 and {s} for s.
-constexpr Sampler samplers[] = {
-    {"uniform", "Uniform", "n", "p(ω) = 1/(2π)"},
-    {"cosine", "Cosine", "n", "p(ω) = (n·ω)/π"},
-    {"phong", "Phong-IS", "R", "p(ω) = {s1}/(2π) (ω·R)<sup>{s}</sup>"},
-    {"mixture", "Mixture", "", "p = q p<sub>phong</sub> + (1−q) p<sub>cosine</sub>"},
-    {"mis-balance", "MIS, balance", "", "w<sub>i</sub> = p<sub>i</sub> / (p<sub>1</sub> + p<sub>2</sub>)"},
-    {"mis-power", "MIS, power", "",
-        "w<sub>i</sub> = p<sub>i</sub><sup>2</sup> / (p<sub>1</sub><sup>2</sup> + p<sub>2</sub><sup>2</sup>)"},
-    {"light-solid-angle", "NEE, by angle", "", "p(ω) = 1/(2π (1 − cos β))"},
-    {"light-area", "NEE, by area", "", "p(ω) = |y − x|<sup>2</sup>/(π r<sup>2</sup> cos θ<sub>l</sub>)"},
-    {"blinn", "Blinn", "", "p(ω) = {s1}/(2π) (n·m)<sup>{s}</sup>/(4 ω<sub>o</sub>·m)"},
-    {"ggx-d", "GGX D", "", "p(ω) = D(m) (n·m)/(4 ω<sub>o</sub>·m)"},
-    {"ggx-vndf", "GGX VNDF", "", "p(ω) = G<sub>1</sub>(ω<sub>o</sub>) D(m)/(4 n·ω<sub>o</sub>)"},
-};
-
-const Sampler* find(const std::string& word) {
-    for (const Sampler& s : samplers) {
-        if (word == s.word) return &s;
-    }
-    return nullptr;
-}
-
-void replace(std::string& text, const std::string& what, const std::string& by) {
-    if (auto at = text.find(what); at != std::string::npos) text.replace(at, what.size(), by);
-}
-
-std::string formula(const std::string& arm, const Experiment& e, const std::string& s, const std::string& s1) {
-    std::string word = sampler_of(arm, e);
-    const Sampler* known = find(word);
-    if (!known) return "sampler " + escaped(word.empty() ? arm : word);
-    std::string text = known->formula;
-    replace(text, "{s1}", s1);
-    replace(text, "{s}", s);
-    return text;
+std::string formula_of(const std::string& arm, const Experiment& e, const crescent::formula::Value& value = {}) {
+    const ArmInfo* info = find_arm_info(sampler_of(arm, e));
+    if (!info) return "sampler " + escaped(arm);
+    const std::string line = crescent::formula::pango(info->formula, value);
+    return info->techniques > 1 ? line : "p(ω) = " + line;
 }
 
 // The distinct values in order of appearance, joined by " | ".
@@ -102,19 +71,19 @@ std::string sampler_of(const std::string& arm, const Experiment& e) {
 }
 
 std::string arm_name(const std::string& arm, const Experiment& e) {
-    const Sampler* known = sampler_of(arm, e) == arm ? find(arm) : nullptr;
-    return known ? known->name : escaped(arm);
+    const ArmInfo* info = sampler_of(arm, e) == arm ? find_arm_info(arm) : nullptr;
+    return escaped(info ? std::string(info->label) : arm);
 }
 
 std::string axis_of(const std::string& arm, const Experiment& e) {
-    const Sampler* known = find(sampler_of(arm, e));
-    return known ? known->axis : "";
+    const ArmInfo* info = find_arm_info(sampler_of(arm, e));
+    return !info || info->about == PdfAxis::none ? "" : info->about == PdfAxis::normal ? "n" : "R";
 }
 
-std::string density_formula(const std::string& arm, const Experiment& e) { return formula(arm, e, "s", "(s+1)"); }
+std::string density_formula(const std::string& arm, const Experiment& e) { return formula_of(arm, e); }
 
 std::string density_formula_at(const std::string& arm, double s, const Experiment& e) {
-    return formula(arm, e, number(s), number(s + 1));
+    return formula_of(arm, e, {'s', number(s), number(s + 1)});
 }
 
 std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n) {

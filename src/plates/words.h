@@ -16,18 +16,18 @@ namespace crescent::plates {
 RunKey key_of(const PlateRun& run, const Experiment& e);
 std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e);
 
-/// The arm as a reader calls it ("Phong-IS"); an arm that was given another name than its sampler keeps it.
+/// The label that an arm of the list has ("light-area (NEE)"); an arm under another name than its sampler keeps it.
 std::string arm_name(const std::string& arm, const Experiment& e);
 /// The word of arms/all.h that the arm uses, "" where the experiment has no such arm.
 std::string sampler_of(const std::string& arm, const Experiment& e);
 /// "n" or "R", what the arm's density is centred on; "" where that is not one of them.
 std::string axis_of(const std::string& arm, const Experiment& e);
-/// "p(ω) = (s+1)/(2π) (ω·R)<sup>s</sup>"; for a sampler without a short form, its name.
+/// "p(ω) = (s+1)/(2π) (ω·R)<sup>s</sup>"; of an arm that combines two, their weights.
 std::string density_formula(const std::string& arm, const Experiment& e);
 /// The same density after `s` has been put in.
 std::string density_formula_at(const std::string& arm, double s, const Experiment& e);
 
-/// "Phong-IS N=256 s=32", or with several runs "Uniform | Cosine | Phong-IS N=64 s=32": what they share is said once.
+/// "phong N=256 s=32", or with several runs "uniform | cosine | phong N=64 s=32": what they share is said once.
 std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n = true);
 
 /// How the reference was computed: "by quadrature, no samples" or its sample counts and seed.

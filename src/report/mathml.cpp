@@ -12,7 +12,6 @@ M two_pi() { return row({mn("2"), mi("π")}); }
 M Y(const M& low) { return sub(mi("Y"), low); }
 M f_r(std::string_view index) { return row({sub(mi("f"), mi("r")), paren({omega(index), mo(","), omega("o")})}); }
 M L_i(std::string_view index) { return row({sub(mi("L"), mi("i")), paren({omega(index)})}); }
-M four_o_dot_m() { return row({mn("4"), paren({omega("o"), mo("⋅"), mi("m")})}); }
 M hemisphere() { return sup(upright("Ω"), mo("+")); }
 M index_from_one() { return row({mi("k"), mo("="), mn("1")}); }
 
@@ -69,50 +68,6 @@ M variance() {
 
 M firefly() {
     return row({abs({Y(mi("N")), mo("−"), Y(upright("ref"))}), mo(">"), mi("k"), space(), Y(upright("ref"))});
-}
-
-M density_uniform() { return frac(mn("1"), two_pi()); }
-M density_cosine() { return frac(n_dot_omega(), mi("π")); }
-M density_phong() { return row({frac(plus_s(), two_pi()), space(), subsup(omega_dot_R(), mo("+"), mi("s"))}); }
-
-M inverse_uniform() { return row({mi("cos"), mi("θ"), mo("="), sub(mi("u"), mn("1"))}); }
-M inverse_cosine() { return row({mi("cos"), mi("θ"), mo("="), root(sub(mi("u"), mn("1")))}); }
-M inverse_phong() {
-    return row({mi("cos"), mi("θ"), mo("="), subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
-}
-
-M density_mixture() {
-    return row({mi("q"), sub(mi("p"), upright("lobe")), mo("+"), paren({mn("1"), mo("−"), mi("q")}),
-        sub(mi("p"), upright("cos"))});
-}
-M density_mis() { return row({sub(mi("p"), mn("1")), mo(","), sub(mi("p"), mn("2"))}); }
-M density_light_area() {
-    return frac(sup(abs({mi("y"), mo("−"), mi("x")}), mn("2")),
-        row({mi("π"), sup(mi("r"), mn("2")), space(), mi("cos"), sub(mi("θ"), mi("y"))}));
-}
-M density_light_cap() { return frac(mn("1"), row({two_pi(), paren({mn("1"), mo("−"), mi("cos"), mi("b")})})); }
-M density_blinn() {
-    return row(
-        {frac(plus_s(), two_pi()), space(), frac(sup(paren({mi("n"), mo("⋅"), mi("m")}), mi("s")), four_o_dot_m())});
-}
-M density_ggx_d() {
-    return frac(row({mi("D"), paren({mi("m")}), space(), paren({mi("n"), mo("⋅"), mi("m")})}), four_o_dot_m());
-}
-M density_ggx_vndf() {
-    return frac(row({sub(mi("G"), mn("1")), paren({omega("o")}), space(), mi("D"), paren({mi("m")})}),
-        row({mn("4"), paren({mi("n"), mo("⋅"), omega("o")})}));
-}
-M inverse_cap() {
-    return row({mi("cos"), mi("θ"), mo("="), mn("1"), mo("−"), sub(mi("u"), mn("1")),
-        paren({mn("1"), mo("−"), mi("cos"), mi("b")})});
-}
-M inverse_blinn() {
-    return row({mi("cos"), sub(mi("θ"), mi("m")), mo("="),
-        subsup(mi("u"), mn("1"), row({mn("1"), mo("/"), paren({plus_s()})}))});
-}
-M inverse_ggx() {
-    return row({sup(mi("tan"), mn("2")), sub(mi("θ"), mi("m")), mo("="),
-        frac(row({sup(mi("α"), mn("2")), sub(mi("u"), mn("1"))}), row({mn("1"), mo("−"), sub(mi("u"), mn("1"))}))});
 }
 
 M pareto_index() { return row({mi("k"), mo("="), frac(row({mi("s"), mo("−"), mn("1")}), plus_s())}); }

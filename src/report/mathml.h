@@ -49,29 +49,13 @@ M display(const M& inside, std::string_view alt);
 // The equations of the report.
 M omega(std::string_view index = "");
 M rmse(std::string_view region = "");
-M integral();     // L_o, over the upper hemisphere
-M estimator();    // its estimate from N samples
-M brdf_phong();   // Lambert + normalised Phong lobe
-M mirror();       // R
-M rmse_region();  // root mean square over a region
-M variance();     // of the mean of N samples
-M firefly();      // |Y - Y_ref| > k Y_ref
-M density_uniform();
-M density_cosine();
-M density_phong();
-M inverse_uniform();
-M inverse_cosine();
-M inverse_phong();
-M density_mixture();
-M density_mis();
-M density_light_area();
-M density_light_cap();
-M density_blinn();
-M density_ggx_d();
-M density_ggx_vndf();
-M inverse_cap();
-M inverse_blinn();
-M inverse_ggx();
+M integral();      // L_o, over the upper hemisphere
+M estimator();     // its estimate from N samples
+M brdf_phong();    // Lambert + normalised Phong lobe
+M mirror();        // R
+M rmse_region();   // root mean square over a region
+M variance();      // of the mean of N samples
+M firefly();       // |Y - Y_ref| > k Y_ref
 M pareto_index();  // k = (s-1)/(s+1)
 M lost_share();    // (1 - cos theta_R)/2
 M capped_mean();   // rho_s + rho_d (1 - 2^(-b(1-k)))

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "arms/info.h"
 #include "base/text.h"
 #include "report/page.h"
 
@@ -92,10 +93,11 @@ void sampling_rows(const Page& page, std::vector<Row>& rows) {
             "Films stay as they are; only what is read off them changes."});
 }
 
-/// Whether an arm samples lights or joins several densities.
+/// Whether an arm aims at the lights alone or joins several densities.
 bool remedies(const Experiment& e) {
     return std::any_of(e.arms.begin(), e.arms.end(), [](const ArmPlan& arm) {
-        return arm.sampler == "mixture" || arm.sampler.starts_with("mis-") || arm.sampler.starts_with("light-");
+        const ArmInfo* info = find_arm_info(arm.sampler);
+        return info && (info->combines || !info->misses.empty());
     });
 }
 

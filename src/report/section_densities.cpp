@@ -1,14 +1,15 @@
-// The densities of the arms with the maps that draw from them, as the headers in arms/ state them.
+// The densities of the arms with the maps that draw from them, as the arms' own files state them.
 #include <algorithm>
 
 #include <fmt/format.h>
 
+#include "arms/info.h"
+#include "base/formula.h"
 #include "report/page.h"
 
 namespace crescent {
 namespace {
 
-using namespace mathml;
 using html::words;
 
 constexpr const char* plain_prose = R"(
@@ -22,42 +23,26 @@ does so twice. <i>m</i> is the half vector, of which the direction is a mirror i
 <i>r</i>.</p>
 )";
 
-struct Known {
-    const char* sampler;
-    M density, inverse;  // both as cells
-    const char* axis;
-};
-
-const std::vector<Known>& all_known() {
-    static const std::vector<Known> all{
-        {"uniform", in_cell(density_uniform()), in_cell(inverse_uniform()), "the normal <i>n</i>"},
-        {"cosine", in_cell(density_cosine()), in_cell(inverse_cosine()), "the normal <i>n</i>"},
-        {"phong", in_cell(density_phong()), in_cell(inverse_phong()), "the mirror direction <i>R</i>"},
-        {"mixture", in_cell(density_mixture()), "lobe where <i>u</i><sub>1</sub> &lt; <i>q</i>, else cosine",
-            "<i>R</i> or <i>n</i>"},
-        {"mis-balance", in_cell(density_mis()), "a mixture and a disk sample, balance heuristic", "both"},
-        {"mis-power", in_cell(density_mis()), "a mixture and a disk sample, power heuristic", "both"},
-        {"light-area", in_cell(density_light_area()), "even over the area of a disk", "the disk"},
-        {"light-solid-angle", in_cell(density_light_cap()), in_cell(inverse_cap()), "the cap around the disk"},
-        {"blinn", in_cell(density_blinn()), in_cell(inverse_blinn()), "the normal <i>n</i>"},
-        {"ggx-d", in_cell(density_ggx_d()), in_cell(inverse_ggx()), "the normal <i>n</i>"},
-        {"ggx-vndf", in_cell(density_ggx_vndf()), "even over a spherical cap, stretched", "the normal <i>n</i>"}};
-    return all;
-}
-
-const Known* known(const std::string& sampler) {
-    for (const Known& k : all_known())
-        if (sampler == k.sampler) return &k;
-    return nullptr;
-}
-
 std::string rungs(const ArmPlan& arm) {
     std::vector<std::string> all;
     for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
     return html::join(all);
 }
 
-bool plain(const ArmPlan& arm) { return arm.sampler == "uniform" || arm.sampler == "cosine" || arm.sampler == "phong"; }
+/// One density about one direction: a polar angle is all that there is to it.
+bool plain(const ArmPlan& arm) {
+    const ArmInfo* info = find_arm_info(arm.sampler);
+    return info && info->about != PdfAxis::none;
+}
+
+/// The arm's name, with its sampler where that is another, and what light it cannot reach.
+std::string name_of(const ArmPlan& arm, const ArmInfo& info, bool fill) {
+    std::string out = escape(arm.name == arm.sampler ? std::string(info.label) : arm.name);
+    if (arm.name != arm.sampler) out += ", sampler " + html::code(arm.sampler);
+    if (!info.misses.empty() && fill)
+        out += fmt::format("<br /><small>cannot reach {}: biased here</small>", info.misses);
+    return out;
+}
 
 }  // namespace
 
@@ -65,10 +50,13 @@ PageSection densities(Page& page) {
     html::Table table("The densities, the maps that draw from them and the rungs of <i>N</i> each arm ran",
         {words("Arm"), words("Density <i>p</i>(ω), 1/sr"), words("Polar angle"), words("Axis"), words("<i>N</i>")});
     const auto& arms = page.in.experiment.arms;
+    const Rgb& fill = page.in.experiment.fill;
     for (const ArmPlan& arm : arms) {
-        const Known* it = known(arm.sampler);
-        table.row({html::heading(escape(arm.name)), words(it ? it->density : "sampler " + html::code(arm.sampler)),
-            words(it ? it->inverse : "–"), words(it ? it->axis : "–"), words(rungs(arm))});
+        const ArmInfo* info = find_arm_info(arm.sampler);
+        if (!info) continue;
+        table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
+            words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
+            words(formula::html(info->axis)), words(rungs(arm))});
     }
     if (table.empty()) return {};
     const char* prose = std::all_of(arms.begin(), arms.end(), plain) ? plain_prose : other_prose;

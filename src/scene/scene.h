@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "scene/frame.h"
 #include "scene/scene_data.h"
+#include "simd/frame.h"
 
 namespace crescent {
 

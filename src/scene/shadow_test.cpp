@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/frame.h"
+#include "simd/frame.h"
 #include "simd/random.h"
 
 namespace crescent {

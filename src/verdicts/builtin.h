@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "arms/all.h"
-#include "scene/brdf.h"
+#include "lobes/brdf.h"
 #include "verdicts/subject.h"
 
 namespace crescent {

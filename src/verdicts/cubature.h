@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/frame.h"
+#include "simd/frame.h"
 #include "verdicts/subject.h"
 
 namespace crescent {

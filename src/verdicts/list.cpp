@@ -28,82 +28,30 @@ TrialLight light_named(const std::string& name) {
 
 using Stages = std::vector<Stage>;
 
-void add_lobe(Stages& to, LobeKind lobe, std::initializer_list<double> sharpness, bool lambert = false,
-    const std::string& light = "fill") {
-    for (double v : sharpness) to.push_back(stage(lobe, lambert, light, v));
+constexpr std::string_view lobe_words[] = {"", "phong", "blinn-phong", "ggx"};
+LobeKind lobe_named(std::string_view word) {
+    const auto at = std::find(std::begin(lobe_words), std::end(lobe_words), word);
+    ensure(at != std::end(lobe_words), "arms name lobes that there are");
+    return static_cast<LobeKind>(at - std::begin(lobe_words));
 }
 
-/// Each arm on the surfaces it is made for, and on those where the note uses it.
-Stages stages_of(const std::string& arm) {
+/// The surfaces that an arm states; where it states none, every lobe at a middling width, and Lambert.
+Stages stages_of(const ArmInfo& arm) {
     Stages all;
-    const auto lambert = [&](const std::string& light) { all.push_back(stage(LobeKind::none, true, light, 32)); };
-    if (arm == "uniform" || arm == "cosine") {
-        lambert("fill");
-        add_lobe(all, LobeKind::phong, {32}, true);
-        add_lobe(all, LobeKind::ggx, {0.5}, true);
-        lambert("fill + disk");
-    } else if (arm == "phong") {
-        add_lobe(all, LobeKind::phong, {8, 32, 128, 1e4, 1e5});
-        add_lobe(all, LobeKind::phong, {32}, true);
-        lambert("fill");
-    } else if (arm == "mixture" || arm == "mis-balance" || arm == "mis-power") {
-        add_lobe(all, LobeKind::phong, {32}, true);
-        add_lobe(all, LobeKind::phong, {32}, true, "fill + disk");
-        add_lobe(all, LobeKind::phong, {1000}, true);
-        if (arm != "mixture") add_lobe(all, LobeKind::phong, {32}, true, "fill + two disks");
-    } else if (arm == "light-solid-angle" || arm == "light-area") {
-        lambert("disk");
-        lambert("overhead disk");
-        lambert("two disks");
-        add_lobe(all, LobeKind::phong, {8}, true, "disk");
-        lambert("fill + disk");
-    } else if (arm == "blinn") {
-        add_lobe(all, LobeKind::blinn_phong, {8, 32, 128, 1e4, 1e5});
-        add_lobe(all, LobeKind::blinn_phong, {32}, true);
-    } else {
-        add_lobe(all, LobeKind::ggx, {0.5, 0.1, 0.01, 0.001});
-        add_lobe(all, LobeKind::ggx, {0.3}, true);
-    }
+    for (const TrialSurface& on : arm.trials)
+        all.push_back(stage(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
+    if (!all.empty()) return all;
+    all.push_back(stage(LobeKind::none, true, "fill", 32));
+    all.push_back(stage(LobeKind::phong, true, "fill", 32));
+    all.push_back(stage(LobeKind::blinn_phong, true, "fill", 32));
+    all.push_back(stage(LobeKind::ggx, true, "fill", 0.3));
     return all;
 }
 
-/// A power of n.h or w.R that is less than the smallest double, 2^-1074, somewhere above the surface, where Lambert is
-/// not 0. n.h is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
-bool power_underflows(const std::string& arm, const SurfaceSetup& f, double theta_deg) {
-    if (f.rho_d <= 0) return false;
-    const double least =
-        arm == "blinn" ? math::cos((theta_deg + 90) * pi / 360) : 1e-3;  // w.R: 1e-6 of Lambert's light lies below
-    return (arm == "blinn" || arm == "phong") && f.s * math::log(least) < -1074 * math::log(2.0) + math::log(f.s + 1);
-}
-
 /// What is known of an arm on a stage at theta_R = theta.
-Theory theory_of(const std::string& arm, const Stage& stage, double theta_deg) {
-    Theory t;
-    const SurfaceSetup& f = stage.surface;
-    const double tilted = theta_deg * pi / 180;
-    if (power_underflows(arm, f, theta_deg))
-        t.underflows =
-            "the lobe's power is less than the smallest number there is where Lambert is not 0: p is 0 in the arm's "
-            "own arithmetic";
-    if (arm == "phong" && f.rho_d > 0) {
-        t.lost = (1 - math::cos(tilted)) / 2;
-        t.lost_of = f.rho_d;
-        t.tail_k = theta_deg == 0 ? (f.s - 1) / (f.s + 1) : f.s / (f.s + 1);
-        if (theta_deg > 0) t.wrong = "support";
-        t.why = theta_deg > 0
-            ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the note's second error"
-            : "p falls off as (w.R)^s while Lambert only falls off as cos: the weight is Pareto, k = (s-1)/(s+1)";
-        return t;
-    }
-    if ((arm == "light-area" || arm == "light-solid-angle") && stage.light.fill > 0) {
-        t.wrong = "support";
-        t.why = "an arm that aims at the disk alone cannot find the fill";
-        return t;
-    }
-    t.bounded = arm == "uniform" || arm == "cosine" || arm == "mixture" || arm == "mis-balance" || arm == "mis-power" ||
-        arm == "ggx-vndf" || (arm == "phong" && f.rho_d == 0) || (arm == "blinn" && f.rho_d == 0) ||
-        (arm == "ggx-d" && f.rho_d == 0);
-    return t;
+Theory theory_of(const ArmInfo& arm, const Stage& on, double theta_deg) {
+    const SurfaceSetup& f = on.surface;
+    return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : Theory{};
 }
 
 /// Sets what this stage has; the keys that it read are crossed out of `unread`.
@@ -150,12 +98,6 @@ double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
         case LobeKind::ggx: lobe = GgxLobe<double>(f.s, f.alpha)(wo, wi); break;
     }
     return f.rho_d / pi + f.rho_s * lobe;
-}
-
-std::vector<std::string> arm_names() {
-    std::vector<std::string> names;
-    for_each_arm(Arms{}, [&]<template <class> class A>() { names.emplace_back(A<float>::name); });
-    return names;
 }
 
 std::vector<std::pair<double, double>> wo_grid(bool full) {
@@ -243,7 +185,7 @@ std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>&
 
 std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full) {
     std::vector<Trial> trials;
-    const std::vector<std::string> names = arm_names();
+    const std::vector<std::string> names = sampler_names();
     if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
         const std::string near = nearest(arm, names);
         throw InputError({"crescent check", 0, 0},
@@ -255,7 +197,7 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
     for (const std::string& name : names) {
         if (!arm.empty() && name != arm) continue;
         Stages stages;
-        for (Stage s : stages_of(name)) {
+        for (Stage s : stages_of(*find_arm_info(name))) {
             apply(settings, s, unread);
             bool seen = false;
             for (const Stage& other : stages) seen = seen || alike(s, other);
@@ -264,7 +206,7 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
         for (const Stage& s : stages)
             for (const auto& [theta, azimuth] : wo_grid(full)) {
                 Trial t = trial_on(s, theta, azimuth, name, subject_of(name, s, tilt(theta, azimuth)));
-                t.theory = theory_of(name, s, theta);
+                t.theory = theory_of(*find_arm_info(name), s, theta);
                 trials.push_back(std::move(t));
             }
     }

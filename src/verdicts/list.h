@@ -11,7 +11,6 @@ namespace crescent {
 /// Values given with --set: "s", "alpha", "rho_d", "rho_s".
 using Settings = std::map<std::string, double>;
 
-std::vector<std::string> arm_names();
 /// Directions from the normal to 89 deg, each at its own azimuth: (theta, azimuth) in degrees.
 std::vector<std::pair<double, double>> wo_grid(bool full);
 /// Every trial of one arm, or of all where the name is empty. Throws InputError for an unknown name.

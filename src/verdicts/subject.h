@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/info.h"
 #include "base/vec.h"
 
 namespace crescent {
@@ -100,17 +101,6 @@ struct TrialLight {
 
 /// Named parameter values, in the order in which they are told.
 using Parameters = std::vector<std::pair<std::string, double>>;
-
-/// What a known theory says of a trial.
-struct Theory {
-    std::optional<double> lost;    // fraction of the diffuse part that p cannot reach
-    double lost_of = 0;            // that part's albedo
-    std::optional<double> tail_k;  // Pareto index of f L cos / p
-    bool bounded = false;          // the weight has a finite maximum
-    std::string underflows;  // why support may come out wrong: p is less than the smallest double where f is not 0
-    std::optional<std::string> wrong;  // the verdict that the list expects to be wrong
-    std::string why;
-};
 
 /// One sampler at one w_o with one BRDF under one light.
 struct Trial {

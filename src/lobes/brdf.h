@@ -8,7 +8,7 @@
 
 #include <string_view>
 
-#include "scene/frame.h"
+#include "simd/frame.h"
 
 namespace crescent {
 

@@ -1,0 +1,56 @@
+#include "arms/info.h"
+
+#include "arms/all.h"
+#include "math/functions.h"
+
+namespace crescent {
+
+namespace {
+
+template <template <class> class A> constexpr ArmInfo info_of() {
+    static_assert(A<float>::manual.label.find(A<float>::name) != std::string_view::npos,
+        "an arm goes by one name everywhere: its label holds it");
+    ArmInfo out{A<float>::manual, A<float>::name};
+    if constexpr (requires { A<float>::techniques; }) out.techniques = A<float>::techniques;
+    if constexpr (requires { A<float>::theory; }) out.theory = A<float>::theory;
+    if (out.density.empty()) out.density = out.formula;
+    return out;
+}
+
+}  // namespace
+
+std::string power_underflows(const TrialPoint& at, double least) {
+    const bool so = at.rho_d > 0 && at.s * math::log(least) < -1074 * math::log(2.0) + math::log(at.s + 1);
+    return so
+        ? "the lobe's power is less than the smallest number there is where Lambert is not 0: p is 0 in the arm's "
+          "own arithmetic"
+        : "";
+}
+
+const std::vector<ArmInfo>& arm_infos() {
+    static const std::vector<ArmInfo> all = [] {
+        std::vector<ArmInfo> infos;
+        for_each_arm(Arms{}, [&]<template <class> class A>() { infos.push_back(info_of<A>()); });
+        return infos;
+    }();
+    return all;
+}
+
+const ArmInfo* find_arm_info(std::string_view sampler) {
+    for (const ArmInfo& arm : arm_infos())
+        if (arm.name == sampler) return &arm;
+    return nullptr;
+}
+
+std::vector<std::string> sampler_names() {
+    std::vector<std::string> names;
+    for (const ArmInfo& arm : arm_infos()) names.emplace_back(arm.name);
+    return names;
+}
+
+std::uint64_t directions_per_sample(std::string_view sampler) {
+    const ArmInfo* arm = find_arm_info(sampler);
+    return arm ? static_cast<std::uint64_t>(arm->techniques) : 1;
+}
+
+}  // namespace crescent

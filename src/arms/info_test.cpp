@@ -1,0 +1,44 @@
+// What every arm of the list states is complete, and can be set.
+#include "arms/info.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "arms/all.h"
+#include "base/formula.h"
+
+namespace crescent {
+namespace {
+
+TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
+    std::set<std::string_view> names;
+    for (const ArmInfo& arm : arm_infos()) {
+        EXPECT_TRUE(names.insert(arm.name).second) << arm.name;
+        EXPECT_NE(arm.label.find(arm.name), std::string_view::npos) << arm.label;
+        EXPECT_EQ(find_arm_info(arm.name), &arm);
+    }
+    EXPECT_EQ(names.size(), Arms::count);
+    EXPECT_EQ(find_arm_info("no such arm"), nullptr);
+}
+
+TEST(ArmInfos, SayInOneLineWhatTheyAimAtAndHaveFormulasThatCanBeSet) {
+    for (const ArmInfo& arm : arm_infos()) {
+        EXPECT_FALSE(arm.summary.empty()) << arm.name;
+        EXPECT_LE(arm.summary.size(), 100u) << arm.name;
+        EXPECT_FALSE(formula::mathml(arm.density).empty()) << arm.name;
+        EXPECT_FALSE(formula::pango(arm.formula).empty()) << arm.name;
+        EXPECT_FALSE(formula::html(arm.draw).empty()) << arm.name;
+        EXPECT_FALSE(formula::html(arm.axis).empty()) << arm.name;
+    }
+}
+
+TEST(ArmInfos, TellTheLightThatTheyMissWhereTheoryExpectsThatOfTheirSupport) {
+    for (const ArmInfo& arm : arm_infos()) {
+        const bool support = arm.theory && arm.theory({.rho_d = 0.5, .fill = 1}).wrong == "support";
+        EXPECT_EQ(!arm.misses.empty(), support) << arm.name;
+    }
+}
+
+}  // namespace
+}  // namespace crescent
