@@ -31,6 +31,12 @@ std::vector<Word> arms() {
     return out;
 }
 
+std::vector<Word> lobes() {
+    std::vector<Word> out;
+    for (const LobeInfo& lobe : lobe_infos()) out.push_back({std::string(lobe.name), std::string(lobe.summary)});
+    return out;
+}
+
 std::vector<Word> meters() {
     std::vector<Word> out;
     for (const QuantityWord& word : quantity_words()) out.push_back({form_of(word), std::string(word.means)});
@@ -61,7 +67,7 @@ const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
         {"arms", "samplers on trial", arms},
         {"shapes", "kinds of shape", [] { return words_of_key("shapes", "kind"); }},
-        {"brdfs", "lobes beside the Lambert term", [] { return words_of_key("shapes", "brdf"); }},
+        {"brdfs", "lobes beside the Lambert term", lobes},
         {"plates", "kinds of picture", [] { return words_of_key("plates", "kind"); }},
         {"meters", "quantities that a check can name", meters},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},

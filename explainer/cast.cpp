@@ -66,7 +66,7 @@ Cast cast_of(Experiment& e) {
     if (e.disks.empty())
         wrong.push_back({e.place_of("disks"), "the film needs a disk light: it is what a cosine sample rarely meets"});
     const bool lobe = std::ranges::any_of(
-        e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == BrdfKind::phong; });
+        e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe_named("phong"); });
     if (!lobe)
         wrong.push_back(
             {e.place_of("shapes"), "the film needs a shape with a Phong lobe: rho_s above 0 and brdf = \"phong\""});

@@ -8,6 +8,12 @@
 
 namespace crescent::gl {
 
+namespace {
+
+std::string lobe_word(int lobe) { return glsl_word(std::string(lobe_info(static_cast<LobeKind>(lobe)).name)); }
+
+}  // namespace
+
 ShaderSource estimator_source(
     const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies) {
     ShaderSource source;
@@ -20,12 +26,14 @@ ShaderSource estimator_source(
     }
     source.define("BODY_SLOTS", std::max<std::size_t>(body_count, 1));  // GLSL has no empty arrays
     source.define("LOBE", std::to_string(lobe + 1));
+    if (lobe >= 0) source.define("lobe_here", "lobe_" + lobe_word(lobe));
     source.define("DISKS", disks);
     source.define("DISK_SLOTS", std::max<std::size_t>(disks, 1));
     source.define("RECORDED", recorded);
     source.define("RECORDED_SLOTS", std::max<std::size_t>((recorded + 1) / 2 * 2, 2));
     source.define("sample_arm", "sample_" + glsl_word(sampler));
     source.include("arms/" + glsl_word(sampler) + ".glsl");
+    if (lobe >= 0) source.include("lobes/" + lobe_word(lobe) + ".glsl");
     source.include("estimator.glsl");
     return source;
 }
@@ -99,6 +107,9 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     const Bodies bodies = bodies_of(lights.occluders);
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {
+        if (lobe >= 0 && !shader_text("lobes/" + lobe_word(lobe) + ".glsl"))
+            throw OutputError("the GL instrument has no copy of the lobe '" +
+                std::string(lobe_info(static_cast<LobeKind>(lobe)).name) + "': use the cpu");
         Kernel& k = kernel(sampler, lobe, disks, bodies);
         set_scene(k.program, lights, bodies, box, scene.image().width, seed);
         parts.push_back({&k.program, &k.pacer, here.pixels_of(lobe)});

@@ -50,7 +50,7 @@ private:
     std::optional<Scene> sites_of_;     // and of this scene
 };
 
-/// The fragment shader of one arm on one lobe (-1 to 2).
+/// The fragment shader of one arm on one lobe, its place in the list or -1.
 ShaderSource estimator_source(
     const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies);
 

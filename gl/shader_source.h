@@ -29,7 +29,7 @@ public:
     /// Adds text as if it were a file.
     void add(const std::string& path, const std::string& text);
     std::string text() const { return "#version 330 core\n" + head_ + body_; }
-    /// "lines 0 + n: brdf.glsl, 1000 + n: ...": what the line numbers of a log stand for.
+    /// "lines 0 + n: frame.glsl, 1000 + n: ...": what the line numbers of a log stand for.
     std::string key() const;
 
 private:

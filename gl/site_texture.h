@@ -31,7 +31,7 @@ public:
     int width() const { return box_.x1 - box_.x0; }
     int height() const { return box_.y1 - box_.y0; }
     const std::vector<Sites>& groups() const { return groups_; }
-    /// Lobes (-1 to 2) that some pixel here has.
+    /// Lobes, their places in the list or -1, that some pixel here has.
     std::vector<int> lobes() const;
     LobePixels pixels_of(int lobe) const;
     /// Where site i of a group stands in the rectangle, row by row.

@@ -52,6 +52,16 @@ rho_s = 0.2
 s = 24.0
 alpha = 0.15
 occludes = true
+[shapes.beckmann]
+kind = "sphere"
+center = [0.45, 1.3, -0.6]
+radius = 0.3
+rho_d = [0.2, 0.3, 0.2]
+brdf = "beckmann"
+rho_s = 0.2
+s = 24.0
+alpha = 0.25
+occludes = true
 [shapes.block]
 kind = "box"
 min = [-1.2, 0.0, -0.6]

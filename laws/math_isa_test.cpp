@@ -138,6 +138,13 @@ TEST(MathLaw, RootAndWhatItLacksOfOne) {
         });
 }
 
+TEST(MathLaw, LogarithmOfOneMinus) {
+    const Floats u = unit_numbers(6);
+    expect_stated(
+        "log_one_minus", n, [&](const MathTable& t, float* out) { t.log_one_minus(u.data(), out, n); },
+        [&](std::size_t k, float v) { return ulps(v, log1pl(-static_cast<long double>(u[k]))) - 3; });
+}
+
 /// n unit vectors about z, as far apart as 1/scale, three arrays one after another.
 Floats directions(std::uint32_t seed, const Floats& scale) {
     Floats a(3 * n);

@@ -97,12 +97,12 @@ TEST(Primaries, AreTheSameWhereTheyAreRemembered) {
 
 TEST(Surfaces, TakeTheCommonExponentAndAnAlphaAsWideWhereTheyStateNone) {
     Material m;
-    m.rho_d = {0.1, 0.2, 0.3}, m.rho_s = 0.4, m.brdf = BrdfKind::blinn_phong;
+    m.rho_d = {0.1, 0.2, 0.3}, m.rho_s = 0.4, m.brdf = lobe_named("blinn-phong");
     const Surface bare = surface_of(m, 48);
     EXPECT_EQ(bare.s, 48);
     EXPECT_DOUBLE_EQ(bare.alpha, 0.2);
     EXPECT_EQ(bare.rho_s, 0.4);
-    EXPECT_EQ(bare.brdf, BrdfKind::blinn_phong);
+    EXPECT_EQ(bare.brdf, lobe_named("blinn-phong"));
     m.s = 6, m.alpha = 0.7;
     EXPECT_EQ(surface_of(m, 48).s, 6);
     EXPECT_EQ(surface_of(m, 48).alpha, 0.7);

@@ -1,5 +1,6 @@
 // The estimator, as src/estimator/kernel_body.h: one pixel a fragment, samples [first_sample, first_sample + samples) one
-// after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. An arm's file stands before this one.
+// after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. The files of an arm and of a lobe stand before this one;
+// LOBE is that lobe's place in the list from 1 on, 0 for none.
 //
 //   sums    sum of g = cos/p, of g lobe, of (X - mean)^2 of this draw's samples; largest X
 //   counts  directions under the horizon, directions that met a disk, bad samples; mean X of this draw
@@ -7,7 +8,7 @@
 //
 // Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no more
 // than three times 16 roundings (relative error < 3e-6, a tenth of that as a rule); the program adds draws up in double.
-#include "brdf.glsl"
+#include "site.glsl"
 #include "disk_hit.glsl"
 #include "random.glsl"
 
@@ -57,12 +58,8 @@ void join(float before, float more) {
 }
 
 float lobe_of(vec3 wo, vec3 wi) {
-#if LOBE == 1
-    return lobe_phong(wo, wi, site.s);
-#elif LOBE == 2
-    return lobe_blinn_phong(wo, wi, site.s);
-#elif LOBE == 3
-    return lobe_ggx(wo, wi, site.alpha);
+#if LOBE > 0
+    return lobe_here(wo, wi);
 #else
     return 0.0;
 #endif

@@ -61,11 +61,10 @@ Bend with_mis(std::function<double(int, const Pair&, double)> mis) {
     b.mis = std::move(mis);
     return b;
 }
-
 using S = const SurfaceSetup&;
 
 void density_faults(std::vector<Plan>& out) {
-    const auto phong = LobeKind::phong;
+    const auto phong = lobe_named("phong");
     out.push_back({"s+2 for s+1 in the pdf", "phong", phong, false, "fill", 32,
         [](S f) { return scaled_pdf((f.s + 2) / (f.s + 1)); }});
     out.push_back({"exponent s+1 for s in the pdf", "phong", phong, false, "fill", 32, [](S f) {
@@ -85,8 +84,7 @@ void density_faults(std::vector<Plan>& out) {
                    }});
     out.push_back({"horizon samples dropped from N", "phong", phong, false, "fill", 8, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
-                           for (int k = 0; k < 64 && d.wi.z <= 0;
-                               ++k) {  // drawn again until it is above, as if it had not been
+                           for (int k = 0; k < 64 && d.wi.z <= 0; ++k) {  // again until it is above
                                u = {std::fmod(u.x * 97.13 + 0.31, 1.0), std::fmod(u.y * 89.7 + 0.73, 1.0)};
                                d.wi = about(mirror(wo), math::pow(u.x, 1 / (s + 1)), u.y);
                            }
@@ -97,19 +95,29 @@ void density_faults(std::vector<Plan>& out) {
         [](S) { return with_pdf([](const Pair& a, double p) { return p * std::max(a.wi.z, 0.0); }); }});
     out.push_back({"cosine left out of the pdf", "cosine", phong, true, "fill", 32,
         [](S) { return with_pdf([](const Pair& a, double) { return a.wi.z > 0 ? 1 / pi : 0.0; }); }});
-    out.push_back({"missing 4(w.h)", "blinn", LobeKind::blinn_phong, false, "fill", 32, [](S) {
+    out.push_back({"missing 4(w.h)", "blinn", lobe_named("blinn-phong"), false, "fill", 32, [](S) {
                        return with_pdf([](const Pair& a, double p) {
                            return p * 4 * std::max(dot(a.wo, normalize(a.wo + a.wi)), 0.0);
                        });
                    }});
-    out.push_back({"n.h for w.h in the Jacobian", "ggx-d", LobeKind::ggx, false, "fill", 0.3, [](S) {
+    out.push_back({"n.h for w.h in the Jacobian", "ggx-d", lobe_named("ggx"), false, "fill", 0.3, [](S) {
                        return with_pdf([](const Pair& a, double p) {
                            const Vec3d h = normalize(a.wo + a.wi);
                            return p * std::max(dot(a.wo, h), 0.0) / std::max(h.z, 1e-9);
                        });
                    }});
     out.push_back(
-        {"missing G1 in the density of visible normals", "ggx-vndf", LobeKind::ggx, false, "fill", 0.5, [](S f) {
+        {"bound forgotten in the density", "ggx-bounded-vndf", lobe_named("ggx"), false, "fill", 0.5, [](S f) {
+             return with_pdf([g = Ggx<double>{f.alpha}](const Pair& a, double p) {  // that of ggx-vndf
+                 return p > 0 ? g.G1(a.wo) * g.D(normalize(a.wo + a.wi)) / (4 * a.wo.z) : 0.0;
+             });
+         }});
+    out.push_back({"alpha for alpha^2 in the draw", "beckmann-d", lobe_named("beckmann"), false, "fill", 0.3, [](S f) {
+                       return with_u(
+                           [a = f.alpha](Vec2d u) { return Vec2d{-math::expm1(math::log1p(-u.x) / a), u.y}; });
+                   }});
+    out.push_back(
+        {"missing G1 in the density of visible normals", "ggx-vndf", lobe_named("ggx"), false, "fill", 0.5, [](S f) {
              return with_pdf([a = f.alpha](const Pair& at, double p) { return p / Ggx<double>{a}.G1(at.wo); });
          }});
     out.push_back({"area measure for solid angle", "light-area", LobeKind::none, true, "disk", 32,
@@ -169,7 +177,7 @@ void several_light_faults(std::vector<Plan>& out) {
 }
 
 void warp_faults(std::vector<Plan>& out) {
-    const auto phong = LobeKind::phong;
+    const auto phong = lobe_named("phong");
     out.push_back({"phi over half a turn", "phong", phong, false, "fill", 32,
         [](S) { return with_u([](Vec2d u) { return Vec2d{u.x, 0.5 * u.y}; }); }});
     out.push_back({"phi over a turn less two degrees", "cosine", LobeKind::none, true, "fill", 32,
@@ -215,7 +223,7 @@ void warp_faults(std::vector<Plan>& out) {
                  d.wi = normalize(y);
              });
          }});
-    out.push_back({"frame mirrored for half of the azimuths", "ggx-vndf", LobeKind::ggx, false, "fill", 0.3, [](S) {
+    out.push_back({"frame mirrored for half of the azimuths", "ggx-vndf", lobe_named("ggx"), false, "fill", 0.3, [](S) {
                        Bend b;
                        b.wo = [](Vec3d wo) { return wo.y < 0 ? Vec3d{wo.x, -wo.y, wo.z} : wo; };
                        return b;
@@ -230,7 +238,7 @@ void warp_faults(std::vector<Plan>& out) {
 }
 
 void weight_faults(std::vector<Plan>& out) {
-    const auto phong = LobeKind::phong;
+    const auto phong = lobe_named("phong");
     out.push_back({"swapped w_o and w_i in pdf(w)", "cosine", phong, true, "fill", 32, [](S) {
                        Bend b;
                        b.asked = [](const Pair& a, double) { return a.wo.z / pi; };

@@ -7,7 +7,7 @@
 # Every sampler of the list over the small scene, and scenes with other shapes, lobes and lights.
 {
     sed '/^\[arms/,/^n = /d' "$tiny"
-    "$CRESCENT" list arms | sed 's/.*/[arms.&]\nn = [4, 16]/'
+    "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'
 } >every-arm.toml
 cp "$CRESCENT_SOURCE"/experiments/*.toml "$CRESCENT_SOURCE"/experiments/published.json .
 experiments=(every-arm.toml)

@@ -2,8 +2,10 @@
 // files, the CLI, the kernels, the manual and the laws.
 #pragma once
 
+#include "arms/beckmann_d.h"
 #include "arms/blinn.h"
 #include "arms/cosine.h"
+#include "arms/ggx_bounded_vndf.h"
 #include "arms/ggx_d.h"
 #include "arms/ggx_vndf.h"
 #include "arms/light_area.h"
@@ -20,8 +22,8 @@ template <template <class> class... A> struct ArmList {
     static constexpr std::size_t count = sizeof...(A);
 };
 
-using Arms =
-    ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD, GgxVndf>;
+using Arms = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
+    GgxVndf, GgxBoundedVndf, BeckmannD>;
 
 /// Calls f.template operator()<A>() for every arm A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_arm(ArmList<A...>, Call&& f) {

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "arms/halfway.h"
-#include "lobes/brdf.h"
+#include "lobes/ggx.h"
 
 namespace crescent {
 

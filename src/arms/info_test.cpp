@@ -7,6 +7,7 @@
 
 #include "arms/all.h"
 #include "base/formula.h"
+#include "lobes/info.h"
 
 namespace crescent {
 namespace {
@@ -38,6 +39,21 @@ TEST(ArmInfos, TellTheLightThatTheyMissWhereTheoryExpectsThatOfTheirSupport) {
         const bool support = arm.theory && arm.theory({.rho_d = 0.5, .fill = 1}).wrong == "support";
         EXPECT_EQ(!arm.misses.empty(), support) << arm.name;
     }
+}
+
+TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
+    for (const LobeInfo& lobe : lobe_infos()) {
+        EXPECT_NE(find_arm_info(lobe.own_arm), nullptr) << lobe.name;
+        EXPECT_EQ(lobe_named(lobe.name), lobe.kind);
+        EXPECT_EQ(lobe_info(lobe.kind).name, lobe.name);
+        EXPECT_FALSE(formula::mathml(lobe.formula).empty()) << lobe.name;
+        EXPECT_FALSE(lobe.summary.empty() || lobe.label.empty()) << lobe.name;
+        const LobeWidth width = lobe.width(32, 0.25);
+        EXPECT_GT(width.width, 0) << lobe.name;
+        EXPECT_GT(width.reach, width.width) << lobe.name;
+        EXPECT_NEAR(lobe.exponent(32, 0.25), 32, 1e-12) << lobe.name;  // alpha = sqrt(2/s)
+    }
+    EXPECT_EQ(lobe_named(""), LobeKind::none);
 }
 
 }  // namespace

@@ -176,12 +176,12 @@ std::string beside_slash(const Node& n, bool below) {
 }
 
 std::string row_as_pango(const Node& n) {
-    const bool sum_of_letters = n.parts.size() == 3 && is_sign(n.parts[1], "+");  // s+1 stands close
+    const bool close = n.parts.size() == 3 && is_sign(n.parts[1], "+") && n.parts[2].kind == Kind::number;  // s+1
     std::string out;
     for (std::size_t k = 0; k < n.parts.size(); ++k) {
         const Node& each = n.parts[k];
-        const bool wide = each.kind == Kind::sign && each.text != "·" && each.text != "," && each.text != "/" &&
-            k > 0 && !sum_of_letters;
+        const bool wide =
+            each.kind == Kind::sign && each.text != "·" && each.text != "," && each.text != "/" && k > 0 && !close;
         const bool after_word = k > 0 && n.parts[k - 1].kind == Kind::word && each.kind != Kind::paren;
         if (wide || (after_word && each.kind != Kind::sign)) out += ' ';
         out += as_pango(each);

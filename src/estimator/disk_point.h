@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "color/rgb.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 #include "scene/scene.h"
 
 namespace crescent {
@@ -26,20 +26,13 @@ struct DiskPoint {
         const Vec3d wi = frame.to_local(d * inverse);
         return wi.z > 0 ? wi.z * std::fabs(dot(d, light_normal)) * inverse / r2 * lobe(wi) : 0.0;
     }
-    double lobe(Vec3d wi) const {
-        switch (surface.brdf) {
-            case BrdfKind::phong: return PhongLobe<double>(surface.s, surface.alpha)(wo, wi);
-            case BrdfKind::blinn_phong: return BlinnPhongLobe<double>(surface.s, surface.alpha)(wo, wi);
-            case BrdfKind::ggx: return GgxLobe<double>(surface.s, surface.alpha)(wo, wi);
-        }
-        return 0;
-    }
+    double lobe(Vec3d wi) const { return lobe_value(surface.brdf, surface.s, surface.alpha, wo, wi); }
     /// How many times the lobe's width goes into the angle t. A lobe about the half vector is a streak at grazing wo.
     double sharpness(double t) const {
         if (!(surface.rho_s > 0)) return 0;
-        if (surface.brdf == BrdfKind::phong) return t * std::sqrt(surface.s);
-        const double s = surface.brdf == BrdfKind::ggx ? 2 / sqr(surface.alpha) : surface.s;
-        return t * std::sqrt(s) / wo.z;
+        const LobeInfo& lobe = lobe_info(surface.brdf);
+        const double across = t * std::sqrt(lobe.exponent(surface.s, surface.alpha));
+        return lobe.about_mirror ? across : across / wo.z;
     }
     /// Y of what the pair is worth under light of radiance 1.
     double weigh(Parts p) const {

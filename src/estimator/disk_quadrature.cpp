@@ -30,9 +30,11 @@ bool is_soft(const DiskPoint& point, const Figure& figure, double height) {
     const Vec3d d = middle_of(figure) - point.x;
     const double radius = radius_of(figure);
     const double nearest = std::max(std::fabs(dot(d, point.light_normal)), std::sqrt(dot(d, d)) - radius);
-    const Vec3d r = point.frame.to_world(
-        mirror(point.wo));  // a Phong lobe of a small exponent ends with a jump at 90 degrees from it
-    if (point.surface.brdf == BrdfKind::phong && point.surface.s < 4 && dot(d, r) < radius) return false;
+    // A lobe of a small exponent about R ends with a jump at 90 degrees from it.
+    const LobeInfo& lobe = lobe_info(point.surface.brdf);
+    const Vec3d r = point.frame.to_world(mirror(point.wo));
+    const bool ends = lobe.about_mirror && lobe.exponent(point.surface.s, point.surface.alpha) < 4;
+    if (ends && dot(d, r) < radius) return false;
     return height > 0 && radius < nearest && point.sharpness(radius / nearest) < 2;
 }
 

@@ -13,7 +13,9 @@
 #define CRESCENT_ISAS_ARM(isa) isa(neon, true)
 #define CRESCENT_ISAS_WASM(isa) isa(wasm128, has("simd128"))
 
-#if defined(__x86_64__)
+#if defined(CRESCENT_SCALAR)
+#define CRESCENT_ISAS(isa)
+#elif defined(__x86_64__)
 #define CRESCENT_ISAS(isa) CRESCENT_ISAS_X86(isa)
 #define CRESCENT_MACHINE_HAS(feature) (__builtin_cpu_supports(feature) != 0)
 #elif defined(__aarch64__)

@@ -15,6 +15,7 @@
 
 #include "arms/all.h"
 #include "estimator/sites.h"
+#include "lobes/all.h"
 
 namespace crescent {
 
@@ -43,7 +44,7 @@ using Kernel = void (*)(const KernelCall&);
 /// The kernels of one instruction set, [arm in the list's order][lobe + 1].
 struct KernelTable {
     std::string_view isa;
-    std::array<std::array<Kernel, 4>, Arms::count> kernels;
+    std::array<std::array<Kernel, Lobes::count + 1>, Arms::count> kernels;
 };
 
 /// The instruction sets of isas.h that this machine can run, best last.

@@ -7,7 +7,7 @@
 
 #include "arms/all.h"
 #include "estimator/kernel_lights.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 #include "simd/random.h"
 
 namespace crescent {
@@ -238,10 +238,12 @@ template <class A, class L, class F> void estimate(const KernelCall& call) {
     for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count) estimate_pack<A, L, F>(call, at);
 }
 
+template <class F, template <class> class A, template <class> class... L>
+constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
+    return {estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, L<F>, F>...};
+}
 template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
-    return {isa,
-        {{{estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, PhongLobe<F>, F>, estimate<A<F>, BlinnPhongLobe<F>, F>,
-            estimate<A<F>, GgxLobe<F>, F>}...}}};
+    return {isa, {{kernels_on<F, A>(Lobes{})...}}};
 }
 
 }  // namespace CRESCENT_ISA

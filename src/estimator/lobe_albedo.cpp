@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "math/gauss.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 
 namespace crescent {
 
@@ -18,43 +18,22 @@ template <class Call> double integrate(Call&& f, double a, double b, double tole
     return b > a ? boost::math::quadrature::gauss_kronrod<double, 21>::integrate(f, a, b, 12, tolerance) : 0.0;
 }
 
-/// Phong: polar about R at tilt theta. The cosine n.w = a + b cos(phi), a = cos(al) cos(theta), b = sin(al) sin(theta),
-/// integrates over phi in closed form, cut where it turns negative; what is left is one integral over al.
-double phong_albedo(double s, double cos_o) {
-    const double sin_o = std::sqrt(1 - cos_o * cos_o);
-    const auto ring = [&](double al) {
-        const double c = math::cos(al), a = c * cos_o, b = math::sin(al) * sin_o;
-        double band = 2 * pi * a;
-        if (b > a) {
-            const double phi = math::acos(-a / b);
-            band = 2 * (a * phi + b * math::sin(phi));
-        }
-        return math::pow(c, s) * math::sin(al) * band;
-    };
-    const double horizon = math::asin(cos_o);                     // al where the lobe first dips under the horizon
-    const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
-    const double cut = std::min(horizon, wide);
-    return (s + 2) / (2 * pi) * (integrate(ring, 0, cut) + integrate(ring, cut, wide));
-}
-
 /// A lobe about the half vector m: with m drawn by the lobe's own distribution (cos(m) from u, azimuth phi, density
 /// p_m) and dwi = 4 (wo.m) dm, the integrand f cos(theta_i) 4 (wo.m) / p_m is smooth over those m whose wi is above the
 /// horizon: cos(phi) > (cos_o / (2 c) - cos_o c) / (sin_o sin_m). Gauss-Legendre in phi, cut there; adaptive in u.
-/// `below`: the u of an m at a given cosine.
-template <class L, class Height, class Below, class Density>
-double half_vector_albedo(const L& lobe, double cos_o, Height height, Below below, Density density) {
+template <class L, class Normals> double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals) {
     using Rule = math::Gauss<30>;
     const double theta_o = math::acos(cos_o), sin_o = math::sin(theta_o);
     const Vec3<double> wo = {sin_o, 0, cos_o};
     const auto ring = [&](double u) {
-        const double c = height(u), sin = std::sqrt(std::max(0.0, 1 - c * c));
+        const double c = normals.height(u), sin = std::sqrt(std::max(0.0, 1 - c * c));
         const double cut = (0.5 / c - c) * cos_o, all = sin_o * sin;
         const double last = cut <= -all ? pi : cut >= all ? 0 : math::acos(cut / all);
         const auto at = [&](double phi) {
             const Vec3<double> m = {sin * math::cos(phi), sin * math::sin(phi), c};
             const double d = dot(wo, m);
             const Vec3<double> wi = 2 * d * m - wo;
-            return d > 0 && wi.z > 0 ? lobe(wo, wi) * wi.z * 4 * d / density(c) : 0.0;
+            return d > 0 && wi.z > 0 ? lobe(wo, wi) * wi.z * 4 * d / normals.density(c) : 0.0;
         };
         return last > 0 ? Rule::integrate(at, 0.0, last) / pi : 0.0;  // even in phi
     };
@@ -64,36 +43,26 @@ double half_vector_albedo(const L& lobe, double cos_o, Height height, Below belo
     };
     // u rises as m tilts away from n or towards it: from m = n to where the first wi dips, and on to where the last one
     // has.
-    const double upright = below(1), dips = below(math::cos(0.5 * (pi / 2 - theta_o))),
-                 gone = below(math::cos(0.5 * (pi / 2 + theta_o)));
+    const double upright = normals.below(1), dips = normals.below(math::cos(0.5 * (pi / 2 - theta_o))),
+                 gone = normals.below(math::cos(0.5 * (pi / 2 + theta_o)));
     return std::fabs(piece(upright, dips) + piece(dips, gone));
-}
-
-double blinn_albedo(double s, double cos_o) {
-    return half_vector_albedo(
-        BlinnPhongLobe<double>(s, 0), cos_o, [s](double u) { return math::pow(u, 1 / (s + 1)); },
-        [s](double c) { return math::pow(c, s + 1); }, [s](double c) { return (s + 1) / (2 * pi) * math::pow(c, s); });
-}
-
-double ggx_albedo(double alpha, double cos_o) {
-    const Ggx<double> ggx{alpha};
-    return half_vector_albedo(
-        GgxLobe<double>(0, alpha), cos_o,
-        [alpha](double u) { return std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)); },
-        [alpha](double c) { return (1 - c * c) / (1 + (alpha * alpha - 1) * c * c); },
-        [&](double c) { return ggx.D({std::sqrt(std::max(0.0, 1 - c * c)), 0, c}) * c; });
 }
 
 }  // namespace
 
-double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o) {
+double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o) {
     const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no room at the horizon itself
-    switch (kind) {
-        case BrdfKind::phong: return phong_albedo(s, std::clamp(cos_o, 0.0, 1.0));
-        case BrdfKind::blinn_phong: return blinn_albedo(s, c);
-        case BrdfKind::ggx: return ggx_albedo(alpha, c);
-    }
-    return 0;
+    int index = 0;
+    double out = 0;
+    for_each_lobe(Lobes{}, [&]<template <class> class L>() {
+        if (index++ != static_cast<int>(kind)) return;
+        if constexpr (requires { typename L<double>::Normals; })
+            out = half_vector_albedo(L<double>(s, alpha), c, typename L<double>::Normals(s, alpha));
+        else
+            out = L<double>::albedo(s, alpha, std::clamp(cos_o, 0.0, 1.0),
+                [](const auto& f, double a, double b) { return integrate(f, a, b); });
+    });
+    return out;
 }
 
 namespace {
@@ -107,10 +76,11 @@ double through_five(const std::array<double, 5>& v, double t) {
 
 }  // namespace
 
-LobeAlbedo::LobeAlbedo(BrdfKind kind, double s, double alpha) {
+LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha) {
     const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta)); };
-    const double good = kind == BrdfKind::phong ? 1e-7 : 1e-6;  // half vectors take forty times as long
-    const double own = kind == BrdfKind::phong ? 1e-10 : 1e-6;
+    const bool about_mirror = lobe_info(kind).about_mirror;
+    const double good = about_mirror ? 1e-7 : 1e-6;  // half vectors take forty times as long
+    const double own = about_mirror ? 1e-10 : 1e-6;
     constexpr int even = 8, halvings = 12;
     std::vector<Cell> open(even), next;
     std::vector<std::array<double, 4>> between;

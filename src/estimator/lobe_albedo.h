@@ -5,18 +5,18 @@
 #include <array>
 #include <vector>
 
-#include "scene/scene.h"
+#include "lobes/info.h"
 
 namespace crescent {
 
-/// A at one angle by adaptive quadrature: Phong to about 1e-10, the half-vector lobes to about 1e-6.
-double lobe_albedo(BrdfKind kind, double s, double alpha, double cos_o);
+/// A at one angle by adaptive quadrature: lobes about R to about 1e-10, lobes about the half vector to about 1e-6.
+double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o);
 
 /// The same for many angles: interpolation through five quadratures a cell, cells halved until their own error is below
 /// 1e-7 (1e-6 for the half-vector lobes) or they are 2^-15 of a right angle: those that a lobe's edge runs through.
 class LobeAlbedo {
 public:
-    LobeAlbedo(BrdfKind kind, double s, double alpha);
+    LobeAlbedo(LobeKind kind, double s, double alpha);
     double operator()(double cos_o) const;
     /// Largest difference to quadrature seen between the nodes about this angle, and the quadrature's own.
     double error(double cos_o) const;

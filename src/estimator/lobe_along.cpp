@@ -26,17 +26,10 @@ AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, do
 
 LobeShape::LobeShape(const DiskPoint& point) {
     const Surface& surface = point.surface;
-    switch (surface.brdf) {
-        case BrdfKind::phong:  // cos^s(al) <= exp(-s al^2 / 2), 0 from pi/2 on
-            width = 1 / std::sqrt(surface.s);
-            reach = std::min(pi / 2, 9 * width);
-            break;
-        case BrdfKind::blinn_phong:  // the half vector turns by al / 2 at least
-            width = 2 / std::sqrt(surface.s), stretch = point.wo.z;
-            reach = std::min(pi, 9 * width);
-            break;
-        case BrdfKind::ggx: width = 2 * surface.alpha, stretch = point.wo.z; break;
-    }
+    const LobeInfo& lobe = lobe_info(surface.brdf);
+    const LobeWidth across = lobe.width(surface.s, surface.alpha);
+    width = across.width, reach = across.reach;
+    if (!lobe.about_mirror) stretch = point.wo.z;
     stretch = std::max(stretch, 1e-6);
     width = std::min(width, 1.0);
 }

@@ -1,6 +1,6 @@
 // A second opinion on a pixel, for tests: plain Monte Carlo in double, with rays of its own. Draws cosine-weighted,
 // from the lobe and on each disk, weighed by the balance heuristic (Veach 1997). Shares nothing with the quadrature but
-// brdf.h.
+// lobes/.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "color/rgb.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 #include "scene/scene.h"
 
 namespace crescent::test {
@@ -108,11 +108,13 @@ private:
         return polar(std::exp(log_cos), std::sqrt(-std::expm1(2 * log_cos)));
     }
     Vec3d lobe() {
-        if (surface_.brdf == BrdfKind::phong) return frame_about(mirror(wo_)).to_world(power(surface_.s));
+        if (surface_.brdf == lobe_named("phong")) return frame_about(mirror(wo_)).to_world(power(surface_.s));
         Vec3d m;
-        if (surface_.brdf == BrdfKind::blinn_phong) m = power(surface_.s);
+        if (surface_.brdf == lobe_named("blinn-phong")) m = power(surface_.s);
         else {
-            const double v = u(), tan2 = sqr(surface_.alpha) * v / (1 - v), cos = 1 / std::sqrt(1 + tan2);
+            const double v = u(), a2 = sqr(surface_.alpha);
+            const double tan2 = surface_.brdf == lobe_named("beckmann") ? -a2 * std::log1p(-v) : a2 * v / (1 - v);
+            const double cos = 1 / std::sqrt(1 + tan2);
             m = polar(cos, cos * std::sqrt(tan2));
         }
         return 2 * dot(wo_, m) * m - wo_;
@@ -120,10 +122,12 @@ private:
     double lobe_pdf(Vec3d wi) const {
         if (!(surface_.rho_s > 0)) return 0;
         const double s = surface_.s;
-        if (surface_.brdf == BrdfKind::phong) return (s + 1) / (s + 2) * PhongLobe<double>(s, 0)(wo_, wi);
+        if (surface_.brdf == lobe_named("phong")) return (s + 1) / (s + 2) * PhongLobe<double>(s, 0)(wo_, wi);
         const Vec3d sum = wo_ + wi, m = (1 / std::sqrt(dot(sum, sum))) * sum;
-        if (surface_.brdf == BrdfKind::blinn_phong)
+        if (surface_.brdf == lobe_named("blinn-phong"))
             return pdf_of_half((s + 1) / (2 * pi) * cosine_power(m, Vec3d{0, 0, 1}, s), wo_, m);
+        if (surface_.brdf == lobe_named("beckmann"))
+            return pdf_of_half(Beckmann<double>{surface_.alpha}.D(m) * m.z, wo_, m);
         return pdf_of_half(Ggx<double>{surface_.alpha}.D(m) * m.z, wo_, m);
     }
     Vec3d on_disk(std::size_t k) {
@@ -164,14 +168,7 @@ private:
         }
         return x * wi.z / pdf;
     }
-    double lobe_of(Vec3d wi) const {
-        switch (surface_.brdf) {
-            case BrdfKind::phong: return PhongLobe<double>(surface_.s, 0)(wo_, wi);
-            case BrdfKind::blinn_phong: return BlinnPhongLobe<double>(surface_.s, 0)(wo_, wi);
-            case BrdfKind::ggx: return GgxLobe<double>(0, surface_.alpha)(wo_, wi);
-        }
-        return 0;
-    }
+    double lobe_of(Vec3d wi) const { return lobe_value(surface_.brdf, surface_.s, surface_.alpha, wo_, wi); }
 
     const Scene& scene_;
     const Hit& hit_;

@@ -8,7 +8,7 @@
 #include "estimator/disk_hit.h"
 #include "color/rgb.h"
 #include "math/functions.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 #include "simd/random.h"
 
 namespace crescent {
@@ -25,13 +25,7 @@ Vec3f at(const std::vector<float>& x, const std::vector<float>& y, const std::ve
 float lobe_of(const Sites& sites, Vec3f wi) {
     const Vec3f wo = at(sites.wox, sites.woy, sites.woz);
     const float s = sites.s[0], alpha = sites.alpha[0];
-    if (sites.lobe < 0) return 0;
-    switch (static_cast<BrdfKind>(sites.lobe)) {
-        case BrdfKind::phong: return PhongLobe<float>(s, alpha)(wo, wi);
-        case BrdfKind::blinn_phong: return BlinnPhongLobe<float>(s, alpha)(wo, wi);
-        case BrdfKind::ggx: return GgxLobe<float>(s, alpha)(wo, wi);
-    }
-    return 0;
+    return lobe_value(static_cast<LobeKind>(sites.lobe), s, alpha, wo, wi);
 }
 
 std::vector<LocalDisk<float>> local_disks(const Sites& sites) {

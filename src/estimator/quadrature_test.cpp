@@ -5,7 +5,7 @@
 #include "estimator/disk_quadrature.h"
 #include "estimator/lobe_albedo.h"
 #include "estimator/test_scene.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 #include "simd/random.h"
 
 namespace crescent {
@@ -119,11 +119,12 @@ TEST(DiskQuadrature, StatesNoLessThanItsErrorWhereTheIntegralIsKnown) {
 }
 
 TEST(LobeAlbedo, IsOneForPhongFromAboveAndInterpolatesToItsStatedError) {
-    for (double s : {1.0, 8.0, 32.0, 128.0, 5000.0}) EXPECT_NEAR(lobe_albedo(BrdfKind::phong, s, 0, 1.0), 1, 1e-8) << s;
-    const LobeAlbedo table(BrdfKind::phong, 32, 0);
+    for (double s : {1.0, 8.0, 32.0, 128.0, 5000.0})
+        EXPECT_NEAR(lobe_albedo(lobe_named("phong"), s, 0, 1.0), 1, 1e-8) << s;
+    const LobeAlbedo table(lobe_named("phong"), 32, 0);
     for (double c = 0.01; c < 1; c += 0.0173) {
         EXPECT_LT(table.error(c), 2.01e-7) << c;
-        EXPECT_NEAR(table(c), lobe_albedo(BrdfKind::phong, 32, 0, c), table.error(c)) << c;
+        EXPECT_NEAR(table(c), lobe_albedo(lobe_named("phong"), 32, 0, c), table.error(c)) << c;
     }
 }
 
@@ -144,20 +145,24 @@ TEST(LobeAlbedo, OfHalfVectorLobesIsThatOfAMillionDirections) {
     for (double cos_o : {0.05, 0.5, 0.9}) {
         for (double alpha : {0.3, 0.5, 0.9})
             EXPECT_NEAR(
-                lobe_albedo(BrdfKind::ggx, 0, alpha, cos_o), brute_force(GgxLobe<double>(0, alpha), cos_o), 2e-6)
+                lobe_albedo(lobe_named("ggx"), 0, alpha, cos_o), brute_force(GgxLobe<double>(0, alpha), cos_o), 2e-6)
+                << alpha;
+        for (double alpha : {0.3, 0.5, 0.9})
+            EXPECT_NEAR(lobe_albedo(lobe_named("beckmann"), 0, alpha, cos_o),
+                brute_force(BeckmannLobe<double>(0, alpha), cos_o), 2e-6)
                 << alpha;
         for (double s : {3.0, 40.0})
-            EXPECT_NEAR(
-                lobe_albedo(BrdfKind::blinn_phong, s, 0, cos_o), brute_force(BlinnPhongLobe<double>(s, 0), cos_o), 2e-6)
+            EXPECT_NEAR(lobe_albedo(lobe_named("blinn-phong"), s, 0, cos_o),
+                brute_force(BlinnPhongLobe<double>(s, 0), cos_o), 2e-6)
                 << s;
     }
-    EXPECT_LT(LobeAlbedo(BrdfKind::ggx, 0, 0.5).error(0.5), 3e-6);
+    EXPECT_LT(LobeAlbedo(lobe_named("ggx"), 0, 0.5).error(0.5), 3e-6);
 }
 
 TEST(LobeAlbedo, NeverReflectsMoreThanArrives) {
     for (double c = 0.05; c <= 1; c += 0.19) {
-        EXPECT_LE(lobe_albedo(BrdfKind::phong, 32, 0, c), 1 + 1e-8);
-        EXPECT_LE(lobe_albedo(BrdfKind::ggx, 0, 0.3, c), 1 + 1e-6);
+        EXPECT_LE(lobe_albedo(lobe_named("phong"), 32, 0, c), 1 + 1e-8);
+        for (const LobeInfo& lobe : lobe_infos()) EXPECT_LE(lobe_albedo(lobe.kind, 32, 0.3, c), 1 + 1e-6) << lobe.name;
     }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "experiment/experiment.h"
+#include "lobes/all.h"
 #include "simd/frame.h"
 #include "scene/scene.h"
 
@@ -51,11 +52,12 @@ private:
         const double d = once_in(3) ? 0 : between(0.05, 0.6);
         m.rho_d = {d, d * 0.8, d * 0.5};
         m.s = scale(0.01, 1e6), m.alpha = scale(1e-4, 1);
-        const int lobe = static_cast<int>(between(0, 4));
-        m.rho_s = lobe < 3 ? between(0.1, 0.4) : 0;
-        m.brdf = static_cast<BrdfKind>(lobe % 3);
-        static constexpr const char* names[] = {"phong", "blinn", "ggx", "lambert"};
-        what += std::string(names[lobe]) + " s " + std::to_string(*m.s) + " alpha " + std::to_string(*m.alpha);
+        constexpr int lobes = static_cast<int>(Lobes::count);
+        const int lobe = static_cast<int>(between(0, lobes + 1));
+        m.rho_s = lobe < lobes ? between(0.1, 0.4) : 0;
+        m.brdf = static_cast<LobeKind>(lobe % lobes);
+        what += std::string(lobe < lobes ? lobe_info(m.brdf).name : "lambert") + " s " + std::to_string(*m.s) +
+            " alpha " + std::to_string(*m.alpha);
         return m;
     }
     void floor(Experiment& e) {

@@ -30,7 +30,7 @@ public:
     const LobeAlbedo& of(const Surface& surface) const { return tables_.at(key(surface)); }
 
 private:
-    using Key = std::tuple<BrdfKind, double, double>;
+    using Key = std::tuple<LobeKind, double, double>;
     static Key key(const Surface& surface) { return {surface.brdf, surface.s, surface.alpha}; }
     std::map<Key, LobeAlbedo> tables_;
 };
@@ -113,25 +113,14 @@ Sites only_lobe(const Sites& all) {
     return sites;
 }
 
-/// The arm that draws from a lobe itself.
-std::string_view lobe_sampler(int lobe) {
-    switch (static_cast<BrdfKind>(lobe)) {
-        case BrdfKind::phong: return "phong";
-        case BrdfKind::blinn_phong: return "blinn";
-        case BrdfKind::ggx: return "ggx-vndf";
-    }
-    return "cosine";
-}
-
 double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0; }
 
 /// May the lobe of site i peak in the disk, and be so narrow against it that fewer than ten of n samples would meet it?
 bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, double n) {
     const Vec3d c = {disk.cx[i], disk.cy[i], disk.cz[i]}, wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
-    const auto kind = static_cast<BrdfKind>(sites.lobe);
-    const double s =
-        kind == BrdfKind::ggx ? 2 / sqr(static_cast<double>(sites.alpha[i])) : static_cast<double>(sites.s[i]);
-    const double across = kind == BrdfKind::phong ? 1 : wo.z, far = std::sqrt(dot(c, c)),
+    const LobeInfo& lobe = lobe_info(static_cast<LobeKind>(sites.lobe));
+    const double s = lobe.exponent(static_cast<double>(sites.s[i]), static_cast<double>(sites.alpha[i]));
+    const double across = lobe.about_mirror ? 1 : wo.z, far = std::sqrt(dot(c, c)),
                  radius = static_cast<double>(disk.radius);
     const double off = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
     const bool peak_is_near = off < math::atan2(radius, far) + 8 / std::sqrt(s);
@@ -148,8 +137,8 @@ public:
         const ReferencePlan& plan = experiment.reference;
         const auto seed = [&](std::uint32_t k) { return reference_seed(experiment, k); };
         if (sites.lobe >= 0)
-            lobe_ =
-                estimate_sites(only_lobe(sites), lobe_sampler(sites.lobe), plan.lobe_spp, seed(0), isa, &watch.stop);
+            lobe_ = estimate_sites(only_lobe(sites), lobe_info(static_cast<LobeKind>(sites.lobe)).own_arm,
+                plan.lobe_spp, seed(0), isa, &watch.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         disk_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.disks().size(); ++k)

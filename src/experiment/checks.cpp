@@ -66,10 +66,13 @@ void check_material(Draft& draft, const Shape& shape) {
     const std::string path = "shapes." + shape.name;
     const Material& m = shape.material;
     if (!draft.sound(path + ".brdf") || !(m.rho_s > 0)) return;
-    if (m.brdf == BrdfKind::ggx && !m.alpha && draft.sound(path + ".alpha"))
+    const LobeInfo& lobe = lobe_info(m.brdf);
+    const bool by_alpha = lobe.parameter == LobeParameter::alpha;
+    if (by_alpha && !m.alpha && draft.sound(path + ".alpha"))
         draft.complain(path + ".alpha",
-            fmt::format("missing key 'alpha' in [{}]: expected the roughness of its ggx lobe, above 0, up to 1", path));
-    if (m.brdf != BrdfKind::ggx && !m.s && draft.sound(path + ".s"))
+            fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, above 0, up to 1", path,
+                lobe.name));
+    if (!by_alpha && !m.s && draft.sound(path + ".s"))
         draft.complain(path + ".s",
             fmt::format(
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));

@@ -51,9 +51,9 @@ Section shape_tables() {
         {"s", Type::number, exponent_range, "", optional, "the experiment's s; needed where rho_s > 0",
             "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
         {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Shape::material, &Material::brdf>,
-            {"phong", "blinn-phong", "ggx"}},
-        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a ggx lobe",
-            "GGX roughness, not remapped.", to<&Shape::material, &Material::alpha>}};
+            lobe_names()},
+        {"alpha", Type::number, {0, 1, true}, "", optional, "sqrt(2/(s+2)); required for a lobe of microfacets",
+            "Roughness of a lobe of microfacets, not remapped.", to<&Shape::material, &Material::alpha>}};
     keys.insert(keys.end(), material.begin(), material.end());
     keys.insert(keys.end(), colors.begin(), colors.end());
     keys.push_back({"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the lights.",

@@ -128,7 +128,7 @@ FalseRejection false_rejection(
 const Shape* subject_shape(const Experiment& experiment) {
     if (experiment.exponent) return experiment.find_shape(experiment.exponent->shape);
     for (const Shape& shape : experiment.shapes)
-        if (shape.material.rho_s > 0 && shape.material.brdf == BrdfKind::phong) return &shape;
+        if (shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong")) return &shape;
     return nullptr;
 }
 
@@ -139,7 +139,7 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     const bool phong = std::any_of(
         experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
     const Shape* shape = subject_shape(experiment);
-    if (!phong || !shape || shape->material.brdf != BrdfKind::phong || !(shape->material.rho_s > 0)) return out;
+    if (!phong || !shape || shape->material.brdf != lobe_named("phong") || !(shape->material.rho_s > 0)) return out;
     FurnaceSubject subject;
     subject.surface = furnace_surface(experiment, *shape, false);
     subject.s = out.s = subject.surface.s;

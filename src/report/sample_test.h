@@ -66,7 +66,7 @@ inline Experiment sample_experiment() {
     Shape ball;
     ball.name = "ball";
     ball.form = shapes::Sphere{{0, 0, 0}, 1};
-    ball.material = {{0.2, 0.2, 0.2}, 0.1, BrdfKind::phong, 32, {}};
+    ball.material = {{0.2, 0.2, 0.2}, 0.1, lobe_named("phong"), 32, {}};
     experiment.shapes = {ball};
     DiskLight key;
     key.name = "key";

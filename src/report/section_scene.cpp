@@ -44,9 +44,10 @@ template <class Any> std::string parameters_of(const Any& any) {
 std::string lobe(const Material& m) {
     if (m.rho_s == 0) return "–";
     const std::string share = "<i>ρ</i><sub>s</sub> = " + shortest(m.rho_s);
-    if (m.brdf == BrdfKind::ggx) return share + ", GGX, α = " + shortest(m.alpha.value_or(0));
-    const char* name = m.brdf == BrdfKind::phong ? "Phong" : "Blinn–Phong";
-    return fmt::format("{}, {}, <i>s</i> = {}", share, name, shortest(m.s.value_or(0)));
+    const LobeInfo& lobe = lobe_info(m.brdf);
+    const bool by_alpha = lobe.parameter == LobeParameter::alpha;
+    return fmt::format("{}, {}, {} = {}", share, lobe.label, by_alpha ? "<i>α</i>" : "<i>s</i>",
+        shortest((by_alpha ? m.alpha : m.s).value_or(0)));
 }
 
 std::string shapes_table(const Page& page) {

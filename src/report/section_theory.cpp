@@ -66,7 +66,7 @@ std::string regions_sentence(const Experiment& e) {
 
 bool any_phong_lobe(const Experiment& e) {
     for (const Shape& shape : e.shapes)
-        if (shape.material.rho_s > 0 && shape.material.brdf == BrdfKind::phong) return true;
+        if (shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong")) return true;
     return false;
 }
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "scene/frame.h"
+#include "simd/frame.h"
 
 namespace crescent {
 

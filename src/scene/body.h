@@ -6,7 +6,7 @@
 #include "scene/azimuth.h"
 #include "scene/chord.h"
 #include "scene/crossing.h"
-#include "scene/frame.h"
+#include "simd/frame.h"
 #include "scene/parameter.h"
 
 namespace crescent {

@@ -4,16 +4,15 @@
 #include <optional>
 
 #include "color/rgb.h"
+#include "lobes/info.h"
 
 namespace crescent {
-
-enum class BrdfKind { phong, blinn_phong, ggx };
 
 /// As it is given. A Lambert surface has rho_s = 0; its s only steers the arms.
 struct Material {
     Rgb rho_d{};
     double rho_s = 0;
-    BrdfKind brdf = BrdfKind::phong;
+    LobeKind brdf{0};
     std::optional<double> s;      // Phong exponent
     std::optional<double> alpha;  // GGX roughness, (0, 1], no remapping
     bool inherits_s = false;      // s is not the shape's own but the scene's
@@ -23,7 +22,7 @@ struct Material {
 struct Surface {
     Rgb rho_d{};
     double rho_s = 0;
-    BrdfKind brdf = BrdfKind::phong;
+    LobeKind brdf{0};
     double s = 0, alpha = 0;
 };
 

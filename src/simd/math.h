@@ -5,6 +5,7 @@
 //   root            u in [2^-24, 1], y <= 1/2      2 + y |log2 u| ULP
 //   pow             x in [0, 1], y in (0, 2^17]    3 ULP where the result > 2^-24, 12 ULP above 2^-126, else 0
 //   one_minus       of root and power              5 ULP of 1 - x^y
+//   log_one_minus   u in [0, 1 - 2^-24], of 24 bits  3 ULP
 //   cosine_power    unit a, b; s up to 10^6        3 + 4 s (1 - c)/c ULP of c^s, c = 1 - |a - b|^2 / 2
 //   normalize       any finite a                   3 ULP a component
 // On double the same names forward to math/functions.h, for quadrature and verdicts.
@@ -111,6 +112,13 @@ template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F near) {
     const F top = upper_half(sum);
     return {top, (sum - top) + rest};
 }
+
+/// log(1 - u) for u in [0, 1 - 2^-24], without cancellation for small u.
+template <class F> CRESCENT_INLINE F log_one_minus(F u) {
+    const Split<F> l = log2_split(number<F>(1) - u, number<F>(0) - u);
+    return (l.hi + l.lo) * number<F>(0.69314718055994531);
+}
+inline double log_one_minus(double u) { return math::log1p(-u); }
 
 /// x^y and 1 - x^y for x in [0, 1], y > 0, given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
 /// result under 2^-126.

@@ -18,6 +18,7 @@ struct MathTable {
     void (*pow_one_minus)(const float* x, const float* y, float* out, std::size_t n);
     void (*root)(const float* x, const float* y, float* out, std::size_t n);
     void (*root_one_minus)(const float* x, const float* y, float* out, std::size_t n);
+    void (*log_one_minus)(const float* u, float* out, std::size_t n);
     void (*cosine_power)(const float* a, const float* b, const float* s, float* out, std::size_t n);
     void (*normalize)(const float* a, float* unit, std::size_t n);
 };
@@ -56,6 +57,9 @@ template <class F> MathTable math_table() {
     };
     t.root_one_minus = [](const float* x, const float* y, float* out, std::size_t n) {
         each_pack<F>(n, [=](std::size_t k) { store(root(load_as<F>(x + k), load_as<F>(y + k)).one_minus, out + k); });
+    };
+    t.log_one_minus = [](const float* u, float* out, std::size_t n) {
+        each_pack<F>(n, [=](std::size_t k) { store(log_one_minus(load_as<F>(u + k)), out + k); });
     };
     t.cosine_power = [](const float* a, const float* b, const float* s, float* out, std::size_t n) {
         each_pack<F>(n, [=](std::size_t k) {

@@ -6,12 +6,10 @@
 #include <variant>
 
 #include "arms/all.h"
-#include "lobes/brdf.h"
+#include "lobes/all.h"
 #include "verdicts/subject.h"
 
 namespace crescent {
-
-enum class LobeKind { none, phong, blinn_phong, ggx };
 
 struct SurfaceSetup {
     LobeKind lobe = LobeKind::none;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "scene/brdf.h"
+#include "lobes/all.h"
 #include "verdicts/diagnosis.h"
 
 namespace crescent {

@@ -28,13 +28,6 @@ TrialLight light_named(const std::string& name) {
 
 using Stages = std::vector<Stage>;
 
-constexpr std::string_view lobe_words[] = {"", "phong", "blinn-phong", "ggx"};
-LobeKind lobe_named(std::string_view word) {
-    const auto at = std::find(std::begin(lobe_words), std::end(lobe_words), word);
-    ensure(at != std::end(lobe_words), "arms name lobes that there are");
-    return static_cast<LobeKind>(at - std::begin(lobe_words));
-}
-
 /// The surfaces that an arm states; where it states none, every lobe at a middling width, and Lambert.
 Stages stages_of(const ArmInfo& arm) {
     Stages all;
@@ -42,9 +35,8 @@ Stages stages_of(const ArmInfo& arm) {
         all.push_back(stage(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
     if (!all.empty()) return all;
     all.push_back(stage(LobeKind::none, true, "fill", 32));
-    all.push_back(stage(LobeKind::phong, true, "fill", 32));
-    all.push_back(stage(LobeKind::blinn_phong, true, "fill", 32));
-    all.push_back(stage(LobeKind::ggx, true, "fill", 0.3));
+    for (const LobeInfo& lobe : lobe_infos())
+        all.push_back(stage(lobe.kind, true, "fill", lobe.parameter == LobeParameter::alpha ? 0.3 : 32));
     return all;
 }
 
@@ -90,14 +82,7 @@ bool alike(const Stage& a, const Stage& b) {
 
 double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
     if (wo.z <= 0 || wi.z <= 0) return 0;
-    double lobe = 0;
-    switch (f.lobe) {
-        case LobeKind::none: break;
-        case LobeKind::phong: lobe = PhongLobe<double>(f.s, f.alpha)(wo, wi); break;
-        case LobeKind::blinn_phong: lobe = BlinnPhongLobe<double>(f.s, f.alpha)(wo, wi); break;
-        case LobeKind::ggx: lobe = GgxLobe<double>(f.s, f.alpha)(wo, wi); break;
-    }
-    return f.rho_d / pi + f.rho_s * lobe;
+    return f.rho_d / pi + f.rho_s * lobe_value(f.lobe, f.s, f.alpha, wo, wi);
 }
 
 std::vector<std::pair<double, double>> wo_grid(bool full) {
@@ -112,14 +97,14 @@ std::vector<std::pair<double, double>> wo_grid(bool full) {
 
 Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double sharpness) {
     Stage out;
-    const std::string names[] = {"", "Phong", "Blinn-Phong", "GGX"};
+    const LobeInfo* info = lobe == LobeKind::none ? nullptr : &lobe_info(lobe);
     out.surface.lobe = lobe;
     out.surface.rho_d = lambert ? 0.5 : 0;
     out.surface.rho_s = lobe == LobeKind::none ? 0 : 0.4;
-    out.tells_alpha = lobe == LobeKind::ggx;
-    out.tells_s = lobe == LobeKind::phong || lobe == LobeKind::blinn_phong;
+    out.tells_alpha = info && info->parameter == LobeParameter::alpha;
+    out.tells_s = info && info->parameter == LobeParameter::s;
     (out.tells_alpha ? out.surface.alpha : out.surface.s) = sharpness;
-    out.brdf = names[static_cast<int>(lobe)];
+    out.brdf = info ? info->label : "";
     if (lambert) out.brdf = out.brdf.empty() ? "Lambert" : "Lambert + " + out.brdf;
     out.lighting = lighting;
     out.light = light_named(lighting);

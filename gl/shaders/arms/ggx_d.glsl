@@ -2,7 +2,7 @@
 //   tan^2 = alpha^2 u1 / (1 - u1), phi = 2 pi u2;  p = D(m) (n.m) / (4 (wo.m)).
 // Walter et al. 2007, eqs (33), (35), (36), (14).
 #include "arms/halfway.glsl"
-#include "brdf.glsl"
+#include "lobes/ggx.glsl"
 
 Drawn sample_ggx_d(vec3 wo, vec2 u) {
     float a2 = sqr(site.alpha);

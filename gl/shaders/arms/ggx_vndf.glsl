@@ -3,7 +3,7 @@
 // Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eqs (3) and (17); the draw by a spherical cap:
 // Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.
 #include "arms/halfway.glsl"
-#include "brdf.glsl"
+#include "lobes/ggx.glsl"
 
 float ggx_vndf_density(vec3 wo, vec3 wi, vec3 m) {
     return above_horizon(wo, wi, ggx_G1(wo, site.alpha) * ggx_D(m, site.alpha) / (4.0 * max(wo.z, 1e-12)));

@@ -1,0 +1,93 @@
+// What scripts/extending.sh asks of something that was added by the steps of docs/extending.md.
+//   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
+//   it is
+//                             other than the list expects, and that both say what they are
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "base/formula.h"
+#include "estimator/estimator.h"
+#include "estimator/reference.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/print.h"
+
+using namespace crescent;
+
+namespace {
+
+constexpr const char* scene_text = R"(
+seed = 5
+[image]
+width = 32
+height = 20
+[camera]
+eye = [0.0, 1.0, 4.0]
+target = [0.0, 0.6, 0.0]
+vfov_deg = 30.0
+[fill]
+radiance = [0.5, 0.6, 0.7]
+[shapes.ball]
+kind = "sphere"
+center = [0.0, 0.6, 0.0]
+radius = 0.6
+rho_d = [0.3, 0.2, 0.1]
+rho_s = 0.3
+s = 12.0
+alpha = 0.4
+[shapes.ground]
+kind = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+rho_d = [0.5, 0.5, 0.5]
+[disks.lamp]
+center = [-1.5, 2.5, 1.0]
+normal = [0.0, -1.0, 0.0]
+radius = 0.8
+radiance = [4.0, 4.0, 4.0]
+[arms.it]
+n = [256]
+[regions.all]
+box = [0, 0, 31, 19]
+)";
+
+bool has_the_references_mean(const std::string& sampler, const std::string& brdf) {
+    const Experiment e =
+        parse(scene_text, "extending", {"arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
+    const Scene scene(e);
+    Watch watch;
+    const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", watch)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, watch)[0];
+    double off = 0, variance = 0, error = 0, all = 0;
+    for (std::size_t at = 0; at < film.size(); ++at) {
+        off += static_cast<double>(film.y[at]) - static_cast<double>(truth.y[at]);
+        variance += static_cast<double>(film.var[at]), error += static_cast<double>(truth.error[at]);
+        all += static_cast<double>(truth.y[at]);
+    }
+    std::printf("%s on %s: mean off by %.3g of %.4g, standard error %.2g, reference %.2g\n", sampler.c_str(),
+        brdf.c_str(), off, all, std::sqrt(variance), error);
+    return film.bad == 0 && all > 0 && std::fabs(off) < 5 * std::sqrt(variance) + error;
+}
+
+bool is_judged_as_expected(const std::string& sampler) {
+    Watch watch;
+    const Judgement j = judge(trials_of(sampler, {}, false), Rigour::quick(), watch);
+    if (!j.as_expected) std::cout << verdict_table(j);
+    return j.as_expected;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    if (argc != 3) return 2;
+    const ArmInfo* arm = find_arm_info(argv[1]);
+    const LobeInfo& lobe = lobe_info(lobe_named(argv[2]));
+    if (!arm) return 2;
+    std::cout << arm->label << ": " << arm->summary << ", " << formula::pango(arm->formula) << '\n'
+              << lobe.label << ": " << lobe.summary << ", " << formula::pango(lobe.formula) << '\n';
+    return has_the_references_mean(argv[1], argv[2]) && is_judged_as_expected(argv[1]) ? 0 : 1;
+} catch (const std::exception& e) {
+    std::cerr << e.what() << '\n';
+    return 1;
+}

@@ -1,0 +1,47 @@
+#include "lobes/info.h"
+
+#include "base/errors.h"
+#include "lobes/all.h"
+
+namespace crescent {
+
+namespace {
+
+template <template <class> class L> LobeInfo info_of(LobeKind kind) {
+    LobeInfo out{L<double>::manual, L<double>::name, kind};
+    out.exponent = L<double>::exponent;
+    out.width = L<double>::width;
+    return out;
+}
+
+}  // namespace
+
+const std::vector<LobeInfo>& lobe_infos() {
+    static const std::vector<LobeInfo> all = [] {
+        std::vector<LobeInfo> infos;
+        for_each_lobe(Lobes{},
+            [&]<template <class> class L>() { infos.push_back(info_of<L>(static_cast<LobeKind>(infos.size()))); });
+        return infos;
+    }();
+    return all;
+}
+
+std::vector<std::string> lobe_names() {
+    std::vector<std::string> names;
+    for (const LobeInfo& lobe : lobe_infos()) names.emplace_back(lobe.name);
+    return names;
+}
+
+const LobeInfo& lobe_info(LobeKind kind) {
+    ensure(kind != LobeKind::none, "a lobe that is asked about is there");
+    return lobe_infos().at(static_cast<std::size_t>(kind));
+}
+
+LobeKind lobe_named(std::string_view name) {
+    if (name.empty()) return LobeKind::none;
+    for (const LobeInfo& lobe : lobe_infos())
+        if (lobe.name == name) return lobe.kind;
+    throw Bug(std::source_location::current(), "no lobe of the list is called " + std::string(name));
+}
+
+}  // namespace crescent
