@@ -187,7 +187,11 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_option("--alpha", f->alpha, "chance of a false alarm; default 0.01")->type_name("P");
     c->add_option("--trim", f->trim, "share of pixels relMSE and MAPE leave out; default 0")->type_name("SHARE");
     c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(told);
-    c->add_flag("--schema", f->schema, "every key of FILE");
+    auto* schema = c->add_flag("--schema", f->schema, "every key of FILE");
+    c->add_flag("--json", f->json, "with --schema: as a JSON Schema")->needs(schema);
+    auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");
+    rates->type_name("CALLS")->check(CLI::Range(1, 100000));
+    c->add_option("--seed", f->seed, "of their noise; default 1")->type_name("SEED")->needs(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }
 

@@ -18,17 +18,27 @@ std::pair<std::string, std::string> cut(const std::string& flag, const std::stri
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-/// A number for all arms, or for one by name.
+/// Arms of the flags and of the file.
+std::vector<std::string> arms_of(const CompareFlags& flags) {
+    std::vector<std::string> out;
+    for (const std::string& arm : flags.arms) out.push_back(arm.substr(0, arm.find('=')));
+    if (!flags.file.empty())
+        for (const std::string& name : compare_arms(flags.file)) out.push_back(name);
+    return out;
+}
+
+/// A number for all arms, or for one by name, which stands over it.
 void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all,
     const std::string& flag, const char* key) {
     for (const std::string& text : all) {
-        if (text.find('=') != std::string::npos) {
-            const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
-            out.push_back({{"arms", arm, key}, value, true, flag + " " + text});
-            continue;
-        }
-        for (const std::string& arm : flags.arms)
-            out.push_back({{"arms", arm.substr(0, arm.find('=')), key}, text, true, flag + " " + text});
+        if (text.find('=') != std::string::npos) continue;
+        for (const std::string& arm : arms_of(flags))
+            out.push_back({{"arms", arm, key}, text, true, flag + " " + text});
+    }
+    for (const std::string& text : all) {
+        if (text.find('=') == std::string::npos) continue;
+        const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
+        out.push_back({{"arms", arm, key}, value, true, flag + " " + text});
     }
 }
 
@@ -87,10 +97,24 @@ std::string command_of(const CompareFlags& f) {
     return out;
 }
 
+/// A section of docs/error-rates.md.
+int error_rates(const CompareFlags& flags) {
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    const std::string text = compare_error_rates(flags.error_rates, flags.seed, progress);
+    progress.clear();
+    print(fmt::format(
+        "\n## How often compare errs\n\nWritten by the program (crescent {}, commit {}); made again with\n\n"
+        "    crescent compare --error-rates {} --seed {}\n\n{}",
+        crescent::version(), commit(), flags.error_rates, flags.seed, text));
+    return held;
+}
+
 }  // namespace
 
 int compare(const CompareFlags& flags) {
-    if (flags.schema) return print(compare_schema_text()), held;
+    if (flags.schema) return print(flags.json ? compare_schema_json() : compare_schema_text()), held;
+    if (flags.error_rates) return error_rates(flags);
     if (flags.file.empty() && flags.arms.empty())
         throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);

@@ -28,6 +28,7 @@
 #include "base/polled_watch.h"
 #include "base/watch.h"
 #include "compare/compare.h"
+#include "compare/rates.h"
 #include "color/turbo.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"

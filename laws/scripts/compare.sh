@@ -33,6 +33,28 @@ expect 0 "$CRESCENT" compare plan.toml --out from-file --quiet
 grep -q 'From a file' from-file/report.html || die "the title is not in the report"
 expect 0 "$CRESCENT" compare --schema
 
+# Rungs of a ladder are known by their names; --spp without a name is for all arms, of the file too.
+printf '[arms.u-16]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n[arms.u-4]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=4"\n' >ladder.toml
+expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --reference s7/films/reference.exr \
+    --layer 'reference=quadrature s=32' --region ball=40,20,56,34 --out ladder --quiet
+expect 0 "$CRESCENT" compare ladder.toml --spp 16 --out alike --quiet
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import json, sys
+import jsonschema
+schema = json.load(open(sys.argv[1] + "/docs/compare.schema.json"))
+ladder, alike = json.load(open("ladder/metrics.json")), json.load(open("alike/metrics.json"))
+jsonschema.validate(ladder, schema), jsonschema.validate(alike, schema)
+(rungs,) = ladder["ladders"]
+assert rungs["name"] == "u" and rungs["arms"] == ["u-4", "u-16"], rungs
+assert -0.7 < rungs["slopes"]["ball"]["value"] < -0.3, rungs
+assert [a["spp"] for a in alike["arms"]] == [16, 16] and not alike["ladders"]
+END
+expect 0 "$CRESCENT" compare --schema --json
+cp printed keys.json
+expect 0 /usr/bin/python3 -c 'import json; json.load(open("keys.json"))'
+expect 0 "$CRESCENT" compare --error-rates 3 --quiet
+grep -q '^### How often a bias is found' printed || die "no rates: $(cat printed)"
+
 # bad WORDS MESSAGE: exit 2, the message, nothing written.
 bad() {
     local message=$1
@@ -54,3 +76,12 @@ sed -i 's/^files/flies/' plan.toml
 bad "plan.toml:3:1: " plan.toml
 cp s7/films/uniform.exr copy.exr
 bad "the same pixels" --arm a=s7/films/uniform.exr --arm a=copy.exr --layer a=n=16
+bad "expected a render, found a folder" --arm a=s7/films
+bad "an inverted box" --arm 'a=s[789]/films/uniform.exr' --layer a=n=16 --region r=56,20,40,34
+head -c 3000 s7/films/uniform.exr >cut.exr
+bad "cut.exr: " --arm a=cut.exr --layer a=n=16
+printf 'PF\n2 2\n-1.0\n%048d' 0 >small.pfm
+bad "expected 96 x 54 pixels as in" --arm 'a=s7/films/uniform.exr' --layer a=n=16 --arm b=small.pfm
+bad "pixels as the renders have" --arm 'a=s[789]/films/uniform.exr' --layer a=n=16 --mask m=small.pfm
+bad "--pair: expected" --arm 'a=s[78]/films/uniform.exr' --arm 'b=s[789]/films/cosine.exr' --layer a=n=16 --layer b=n=16 --pair
+bad "did you mean 'same'?" --arm 'a=s[78]/films/uniform.exr' --layer a=n=16 --expect sane

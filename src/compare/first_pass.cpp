@@ -9,6 +9,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/parallel.h"
+#include "compare/second_pass.h"
+
+#include "base/parallel.h"
+
 namespace crescent {
 
 void MeanFilm::add(const Render& render) {
@@ -21,14 +26,18 @@ void MeanFilm::add(const Render& render) {
     ++count;
     const double n = static_cast<double>(count);
     const float share = static_cast<float>(1 / n);
-    for (std::size_t i = 0; i < y.size(); ++i) {
+    const auto add_pixel = [&](std::size_t i) {
         const double value = static_cast<double>(render.y(i)), off = value - y[i];
         y[i] += off / n;
         m2[i] += off * (value - y[i]);
-        r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share,
-            b[i] += (render.b[i] - b[i]) * share;
-    }
-    for (std::size_t i = 0; i < told_variance.size(); ++i) told_variance[i] += static_cast<double>(render.variance[i]);
+        r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share;
+        b[i] += (render.b[i] - b[i]) * share;
+        if (!told_variance.empty()) told_variance[i] += render.variance[i];
+    };
+    const auto width = static_cast<std::size_t>(render.width);
+    parallel_for(std::size_t{0}, static_cast<std::size_t>(render.height), [&](std::size_t row) {
+        for (std::size_t i = row * width; i < (row + 1) * width; ++i) add_pixel(i);
+    });
 }
 
 double MeanFilm::variance(std::size_t i) const {
@@ -40,6 +49,11 @@ Tiles::Tiles(int width, int height) {
     const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
     size = std::max(8, static_cast<int>(std::ceil(wanted)));
     across = (width + size - 1) / size, down = (height + size - 1) / size;
+}
+
+Box Tiles::box(std::size_t tile, int width, int height) const {
+    const int i = static_cast<int>(tile) % across * size, j = static_cast<int>(tile) / across * size;
+    return {i, j, std::min(width, i + size) - 1, std::min(height, j + size) - 1};
 }
 
 std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at) {
@@ -98,18 +112,15 @@ bool all_equal(const Render& render) {
 
 void FirstPass::arm(
     ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name) {
-    for (const std::string& path : files) {
-        watch_.check();
-        const Render render = read_render(path, layer);
+    each_render(all_.source, files, layer, watch_, [&](const Render& render) {
         fit(render);
         look(render);
-        RenderFile file{path, hash_of(render), render.layer, render.variance_channels, render.spp, render.seconds,
-            numbers_in(path)};
+        RenderFile file{render.file, hash_of(render), render.layer, render.variance_channels, render.sample_channel,
+            render.spp, render.seconds, numbers_in(render.file)};
         known(file, name);
         to.film.add(render);
         to.files.push_back(std::move(file));
-        watch_.advance(1);
-    }
+    });
 }
 
 void FirstPass::fit(const Render& render) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/flip.h"
 #include "compare/schema.h"
+#include "report/numbers.h"
 
 namespace crescent {
 
@@ -24,50 +24,36 @@ template <class Read> std::optional<double> told(const std::optional<double>& pl
     return sum / static_cast<double>(arm.files.size());
 }
 
-/// Mean FLIP of the arm's first render, a region each; none without a reference.
-std::vector<std::optional<double>> flips(const ComparePlan& plan, const Readings& all, std::size_t a, Watch& watch) {
-    std::vector<std::optional<double>> out(all.regions.size());
-    if (!all.reference) return out;
-    watch.begin("FLIP", 1);
-    const MeanFilm& ref = all.reference->film;
-    const Render test = read_render(all.arms[a].files[0].path, plan.arms[a].layer);
-    const std::vector<float> map = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
-        {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
-    for (std::size_t r = 0; r < all.regions.size(); ++r) {
-        double sum = 0;
-        for (const std::uint32_t i : all.regions[r].pixels) sum += static_cast<double>(map[i]);
-        out[r] = sum / static_cast<double>(all.regions[r].pixels.size());
-    }
-    watch.advance(1);
-    return out;
-}
-
 ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t a, Watch& watch) {
     ArmResult out;
     const ArmReadings& arm = all.arms[a];
     out.name = plan.arms[a].name, out.renders = arm.files.size();
     out.spp = told(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
     out.seconds = told(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
-    const auto flip = flips(plan, all, a, watch);
+    const std::vector<Flips> flip = measure_flip(plan, all, a, watch);
     for (std::size_t r = 0; r < all.regions.size(); ++r)
-        out.regions.push_back(measure_region(all, arm, r, out.seconds, flip[r]));
+        out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
     return out;
 }
 
-double value_of(const std::string& text, const CompareResult& result) {
-    std::string why;
+double value_of(const std::string& text, const CompareResult& result, std::string& why) {
     const auto check = parse_comparison(text + " == 0", why, compare_words());
     if (check->left.number) return *check->left.number;
-    for (const ArmResult& arm : result.arms)
-        if (arm.name == check->left.subject)
-            return arm.region(check->left.region).meter(check->left.word).value.value_or(std::nan(""));
+    for (const ArmResult& arm : result.arms) {
+        if (arm.name != check->left.subject) continue;
+        const MeterValue& value = arm.region(check->left.region).meter(check->left.word);
+        if (value.value) return *value.value;
+        why = fmt::format("{} has no value: {}", text, value.why);
+    }
     return std::nan("");
 }
 
-AssertionResult asserted(const AssertionPlan& plan, const CompareResult& result) {
+AssertionResult asserted(const AssertionPlan& plan, CompareResult& result) {
     AssertionResult out;
     out.name = plan.name, out.op = plan.op, out.text = fmt::format("{} {} {}", plan.left, plan.op, plan.right);
-    const double a = out.measured = value_of(plan.left, result), b = out.bound = value_of(plan.right, result);
+    std::string why;
+    const double a = out.measured = value_of(plan.left, result, why), b = out.bound = value_of(plan.right, result, why);
+    if (!why.empty()) result.warnings.push_back(out.name + ": " + why);
     out.pass = plan.op == "<" ? a < b
         : plan.op == "<="     ? a <= b
         : plan.op == ">"      ? a > b
@@ -92,7 +78,10 @@ std::string not_seen(const ComparePlan& plan, const BiasResult& bias) {
 void conclude(const ComparePlan& plan, CompareResult& result) {
     using State = CompareResult::State;
     for (const AssertionResult& a : result.assertions)
-        if (!a.pass) result.state = State::fails, result.say = "An assertion fails: " + a.text + ".";
+        if (!a.pass)
+            result.state = State::fails,
+            result.say = fmt::format(
+                "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
     if (plan.expect != Expectation::same) return;
     for (const BiasResult& bias : result.bias)
         if (bias.differs()) result.state = State::fails, result.say = bias.sentence;
@@ -111,7 +100,8 @@ CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch) 
     const std::size_t arms = all.arms.size();
     for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, all, a, watch));
     for (std::size_t r = 0; r < all.regions.size() && all.reference; ++r)
-        out.reference_error[all.regions[r].name] = reference_error(all, r);
+        out.reference_error[all.regions[r].name] = std::sqrt(reference_variance(all, r));
+    if (all.reference) out.reference_error_from = reference_error_from(*all.reference);
     const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
     const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
     for (std::size_t a = 0; a < arms; ++a) {
@@ -122,6 +112,7 @@ CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch) 
                 out.noise.push_back(judge_noise(plan, all, a, b, alpha));
         }
     }
+    out.rankings = rank(out), out.ladders = ladders_of(out);
     for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, out));
     conclude(plan, out);
     return out;

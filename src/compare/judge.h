@@ -6,16 +6,34 @@
 
 namespace crescent {
 
-/// Every meter of one arm in one region. `flip`: the mean over the region's pixels, where there is a reference.
-RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::size_t region,
-    const std::optional<double>& seconds, const std::optional<double>& flip);
+/// What one render of an arm cost, where it is known.
+struct Cost {
+    std::optional<double> seconds, spp;
+};
+/// Mean FLIP of a region's pixels, where there is a reference: of radiance, and of the photographs.
+struct Flips {
+    std::optional<double> hdr, ldr;
+};
 
-/// Root mean square standard error of the reference's Y over a region; NaN where nothing tells it.
-double reference_error(const Readings& all, std::size_t region);
+/// Of the arm's first render, a region each; none without a reference.
+std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t arm, Watch& watch);
+
+/// Every meter of one arm in one region.
+RegionResult measure_region(
+    const Readings& all, const ArmReadings& arm, std::size_t region, const Cost& cost, const Flips& flips);
+
+/// Mean over a region of the squared error of the reference's Y: over its files, else as it says, else estimated from
+/// how roughly arms differ from it (see roughness()).
+double reference_variance(const Readings& all, std::size_t region);
+/// How that is known, in words.
+std::string reference_error_from(const ArmReadings& reference);
 
 /// Whether two arms (b = arms.size(): the reference) have the same expectation; `alpha` is shared by all its tests.
 BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
     std::size_t b, double alpha);
+
+/// What it found, in one sentence; `alpha` is that of its regions.
+std::string sentence_of(const BiasResult& bias, double alpha);
 
 /// Where the variance of arm a differs from that of b.
 NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_t a, std::size_t b, double alpha);
@@ -23,6 +41,12 @@ NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_
 /// Pairs of renders of two arms with the same number in their names: indices into their files. Throws InputError where
 /// a render has no partner.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const ArmReadings& a, const ArmReadings& b);
+
+/// Arms in order by what a unit of time or a sample buys, region by region.
+std::vector<Ranking> rank(const CompareResult& result);
+
+/// Arms that are one arm at several samples a pixel, told by their names: "path-16" at 16, "path-64" at 64.
+std::vector<SppLadder> ladders_of(const CompareResult& result);
 
 /// Measures, tests and judges everything that the plan asks.
 CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch);

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "compare/judge.h"
+#include "compare/sides.h"
+#include "math/functions.h"
 #include "meters/tail.h"
 
 namespace crescent {
@@ -28,16 +30,11 @@ template <class Transform> MeterValue mean_of(const Values& values, bool heavy, 
     MeterValue out{transform(m.mean), {}, ""};
     if (values.size() < 2) out.why = "one render has no interval";
     else if (heavy) out.why = "heavy tail";
-    else out.interval = {transform(std::max(0.0, m.low)), transform(m.high)};
+    else out.interval = {transform(m.low), transform(m.high)};
     return out;
 }
 
-MeterValue plain_mean(const Values& values) {
-    const MeanInterval m = mean_interval(values, confidence);
-    MeterValue out{m.mean, {}, values.size() < 2 ? "one render has no interval" : ""};
-    if (values.size() >= 2) out.interval = {m.low, m.high};
-    return out;
-}
+double root_of(double v) { return std::sqrt(std::max(0.0, v)); }
 
 MeterValue missing(std::string why) { return {{}, {}, std::move(why)}; }
 
@@ -60,23 +57,21 @@ MeterValue variance(const ArmReadings& arm, const PixelSet& set, std::size_t reg
     return {told, {}, "as the renderer wrote it; one render has no interval"};
 }
 
-/// Mean over pixels of the squared error of the reference itself.
-double reference_variance(const ArmReadings& reference, const PixelSet& set) {
-    return mean_variance(reference.film, set) / static_cast<double>(reference.film.count);
-}
-
-/// Squared bias without the variance: the mean of e_k e_l over pairs of renders, less the reference's own error.
-MeterValue squared_bias(const ArmReadings& arm, std::size_t region, double reference, bool heavy) {
+/// Squared bias without the variance: the mean of e_k e_l over pairs of renders, less the reference's own error. Two
+/// renders that both err greatly in one pixel may be rare, and their absence looks like certainty: the standard error
+/// is never taken to be less than that of independent pixels of equal variance, sqrt(2 / (K (K - 1) pixels)) variance.
+MeterValue squared_bias(const ArmReadings& arm, const PixelSet& set, std::size_t region, double reference, bool heavy) {
     const double k = static_cast<double>(arm.files.size());
     if (arm.files.size() < 2) return missing("bias and variance part from two renders on");
     double sum = 0, squares = 0;
     for (const auto& render : arm.regions) sum += render[region].with_sum, squares += render[region].mse;
-    const double own = std::isnan(reference) ? 0 : reference;
-    const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - own; };
+    const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - reference; };
     MeterValue out{statistic(sum, squares, k), {}, ""};
     if (heavy) out.why = "heavy tail";
     else if (arm.files.size() < 3) out.why = "three renders or more have an interval";
     if (!out.why.empty()) return out;
+    const double least_se =
+        std::sqrt(2 / (k * (k - 1) * static_cast<double>(set.pixels.size()))) * mean_variance(arm.film, set);
     Values pseudo;
     for (const auto& render : arm.regions) {
         const RegionReading& r = render[region];
@@ -84,17 +79,38 @@ MeterValue squared_bias(const ArmReadings& arm, std::size_t region, double refer
         pseudo.push_back(k * *out.value - (k - 1) * without);
     }
     const MeanInterval m = mean_interval(pseudo, confidence);
-    out.interval = {*out.value + m.low - m.mean, *out.value + m.high - m.mean};
+    const double half = std::max(m.high - m.mean, student_quantile(0.5 + confidence / 2, k - 1) * least_se);
+    out.interval = {*out.value - half, *out.value + half};
     return out;
 }
 
-MeterValue efficiency(const MeterValue& variance, const std::optional<double>& seconds) {
-    if (!seconds) return missing("no render time: give --seconds");
-    if (!variance.value || !(*variance.value > 0)) return missing(variance.value ? "the variance is 0" : variance.why);
-    MeterValue out{1 / (*variance.value * *seconds), {}, variance.why};
-    if (variance.interval && variance.interval->first > 0)
-        out.interval = {1 / (variance.interval->second * *seconds), 1 / (variance.interval->first * *seconds)};
+/// `transform` of a meter by a known factor: rising, or falling (1/x).
+template <class Transform> MeterValue made_of(const MeterValue& from, const Transform& transform) {
+    if (!from.value) return missing(from.why);
+    if (!(*from.value > 0)) return missing("the variance is 0");
+    MeterValue out{transform(*from.value), {}, from.why};
+    if (!from.interval || !(from.interval->first > 0)) return out;
+    const double a = transform(from.interval->first), b = transform(from.interval->second);
+    out.interval = {std::min(a, b), std::max(a, b)};
     return out;
+}
+
+void costs(const MeterValue& var, const Cost& cost, RegionResult& out) {
+    const auto by = [&](const std::optional<double>& each, const char* why) {
+        return each ? made_of(var, [&](double v) { return v * *each; }) : missing(why);
+    };
+    const char* no_time = "no render time: give --seconds";
+    out.meters.emplace_back("efficiency",
+        cost.seconds ? made_of(var, [&](double v) { return 1 / (v * *cost.seconds); }) : missing(no_time));
+    out.meters.emplace_back("unit_time", by(cost.seconds, no_time));
+    out.meters.emplace_back("sample_var", by(cost.spp, "no samples a pixel: give --spp"));
+}
+
+/// Renders from which the largest error would be a twentieth of the sum: the largest of n grows as n^k, their sum as n.
+std::optional<double> needed(const RegionResult& r, double renders) {
+    const double k = r.tail ? std::max(0.5, r.tail->k) : 0.5;
+    if (!(k < 1)) return {};
+    return std::ceil(renders * math::pow(std::max(1.0, r.largest_share / 0.05), 1 / (1 - k)));
 }
 
 void tail_of(const ArmReadings& arm, std::size_t region, RegionResult& out) {
@@ -104,6 +120,16 @@ void tail_of(const ArmReadings& arm, std::size_t region, RegionResult& out) {
     sum *= static_cast<double>(out.pixels);
     if (sum > 0 && !arm.largest[region].empty())
         out.largest_share = static_cast<double>(arm.largest[region].front()) / sum;
+    if (out.heavy()) out.renders_needed = needed(out, static_cast<double>(arm.files.size()));
+}
+
+/// What the renderer says of its own variance beside what its renders spread.
+std::optional<double> told_over_measured(const ArmReadings& arm, const PixelSet& set) {
+    if (arm.film.told_variance.empty() || arm.film.count < 2) return {};
+    double told = 0, measured = 0;
+    for (const std::uint32_t i : set.pixels)
+        told += static_cast<double>(arm.film.told_variance[i]), measured += arm.film.variance(i);
+    return measured > 0 ? std::optional(told / static_cast<double>(arm.film.count) / measured) : std::nullopt;
 }
 
 }  // namespace
@@ -115,7 +141,9 @@ const MeterValue& RegionResult::meter(const std::string& name) const {
     return none;
 }
 
-bool RegionResult::heavy() const { return (tail && tail->k - 2 * tail->se >= 0.5) || largest_share > heavy_share; }
+bool RegionResult::mean_heavy() const { return (tail && tail->k >= 1) || largest_share > heavy_share; }
+
+bool RegionResult::heavy() const { return (tail && tail->k >= 0.5) || largest_share > heavy_share; }
 
 const RegionResult& ArmResult::region(const std::string& wanted) const {
     const auto it =
@@ -124,37 +152,48 @@ const RegionResult& ArmResult::region(const std::string& wanted) const {
     return *it;
 }
 
-double reference_error(const Readings& all, std::size_t region) {
-    return all.reference ? std::sqrt(reference_variance(*all.reference, all.regions[region])) : std::nan("");
+double reference_variance(const Readings& all, std::size_t region) {
+    const ArmReadings& reference = *all.reference;
+    const double told = mean_variance(reference.film, all.regions[region]) / static_cast<double>(reference.film.count);
+    if (!std::isnan(told)) return told;
+    double least = HUGE_VAL;  // a bias adds to what an arm's roughness says: the least of them is nearest
+    for (const ArmReadings& arm : all.arms)
+        if (arm.film.count > 1 || !arm.film.told_variance.empty())
+            least = std::min(least, roughness(all, arm, all.regions[region]));
+    return std::isfinite(least) ? least : 0;
 }
 
-RegionResult measure_region(const Readings& all, const ArmReadings& arm, std::size_t region,
-    const std::optional<double>& seconds, const std::optional<double>& flip) {
+RegionResult measure_region(
+    const Readings& all, const ArmReadings& arm, std::size_t region, const Cost& cost, const Flips& flips) {
     const PixelSet& set = all.regions[region];
     RegionResult out;
     out.region = set.name, out.pixels = set.pixels.size();
     tail_of(arm, region, out);
-    const bool heavy = out.heavy(), referred = all.reference.has_value();
-    const auto root = [](double v) { return std::sqrt(v); };
+    const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = all.reference.has_value();
     const auto same = [](double v) { return v; };
-    const auto against = [&](const char* name, auto read, auto transform) {
-        out.meters.emplace_back(
-            name, referred ? mean_of(over_renders(arm, region, read), heavy, transform) : missing("no reference"));
+    const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
+        out.meters.emplace_back(name,
+            referred ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
     };
-    against("rmse", [](const RegionReading& r) { return r.mse; }, root);
+    against("rmse", [](const RegionReading& r) { return r.mse; }, root_of, heavy);
     const MeterValue var = variance(arm, set, region, heavy);
     out.meters.emplace_back("var", var);
     out.meters.emplace_back("bias2",
-        referred ? squared_bias(arm, region, reference_variance(*all.reference, set), heavy) : missing("no reference"));
-    against("relmse", [](const RegionReading& r) { return r.relmse; }, same);
-    against("mape", [](const RegionReading& r) { return r.mape; }, same);
-    against("fireflies", [](const RegionReading& r) { return r.fireflies; }, same);
+        referred ? squared_bias(arm, set, region, reference_variance(all, region), heavy) : missing("no reference"));
+    against("relmse", [](const RegionReading& r) { return r.relmse; }, same, heavy);
+    against("mape", [](const RegionReading& r) { return r.mape; }, same, mean_heavy);
+    against("fireflies", [](const RegionReading& r) { return r.fireflies; }, same, false);
     out.meters.emplace_back(
-        "y_mean", plain_mean(over_renders(arm, region, [](const RegionReading& r) { return r.y; })));
-    out.meters.emplace_back("flip", flip ? MeterValue{*flip, {}, "of the first render"} : missing("no reference"));
-    out.meters.emplace_back("efficiency", efficiency(var, seconds));
+        "y_mean", mean_of(over_renders(arm, region, [](const RegionReading& r) { return r.y; }), mean_heavy, same));
+    const auto picture = [&](const char* name, const std::optional<double>& flip) {
+        out.meters.emplace_back(name,
+            flip ? MeterValue{*flip, {}, "of the first render"} : missing(referred ? "not asked for" : "no reference"));
+    };
+    picture("flip", flips.hdr), picture("flip_ldr", flips.ldr);
+    costs(var, cost, out);
     out.power = arm.power[region];
     out.colour = noise_colour(out.power);
+    out.told_ratio = told_over_measured(arm, set);
     return out;
 }
 

@@ -32,6 +32,8 @@ Json region_json(const RegionResult& r) {
         ? Json{{"k", number(r.tail->k)}, {"se", number(r.tail->se)}, {"exceedances", r.tail->exceedances}}
         : Json(nullptr);
     out["largest_share"] = number(r.largest_share);
+    if (r.heavy()) out["heavy_tail"] = {{"renders_needed", optional(r.renders_needed)}};
+    if (r.told_ratio) out["told_variance_ratio"] = number(*r.told_ratio);
     out["spectrum"] = {{"power", numbers(r.power)}, {"noise", to_string(r.colour)}};
     return out;
 }
@@ -44,6 +46,7 @@ Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vect
         const RenderFile& f = readings.files[k];
         Json file = {{"file", f.path}, {"hash", f.hash}, {"layer", f.layer}};
         if (!f.variance_channels.empty()) file["variance_channels"] = f.variance_channels;
+        if (!f.sample_channel.empty()) file["sample_channel"] = f.sample_channel;
         for (std::size_t r = 0; r < sets.size(); ++r) {
             const RegionReading& read = readings.regions[k][r];
             Json& at = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
@@ -56,27 +59,49 @@ Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vect
     return out;
 }
 
-Json bias_json(const BiasResult& b) {
-    Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"paired", b.paired}, {"say", b.sentence},
-        {"regions", Json::object()}};
-    for (const MeanTest& t : b.regions) {
-        Json& at = out["regions"][t.region] = {{"a", number(t.a)}, {"b", number(t.b)}, {"differs", t.differs}};
-        if (t.why.empty())
-            at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
-            at["smallest"] = number(t.smallest);
-        else at["why"] = t.why;
-    }
-    out["tiles"] = {{"tested", b.tiles_tested}, {"left_out", b.tiles_left_out}, {"different", b.tiles_different},
-        {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"}};
-    out["pixel_p"] = b.pixel_p;
+Json found_json(const std::vector<Found>& found) {
+    Json out = Json::array();
+    for (const Found& f : found)
+        out.push_back({{"box", {f.box.x0, f.box.y0, f.box.x1, f.box.y1}}, {"a", number(f.a)}, {"b", number(f.b)},
+            {"p", number(f.p)}});
     return out;
 }
 
-Json noise_json(const NoiseResult& n, const std::vector<PixelSet>&) {
+Json bias_json(const BiasResult& b) {
+    Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"paired", b.paired}, {"say", b.sentence},
+        {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"}, {"regions", Json::object()}};
+    if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
+    for (const MeanTest& t : b.regions) {
+        Json& at = out["regions"][t.region] = {{"a", number(t.a)}, {"b", number(t.b)}, {"differs", t.differs}};
+        if (!t.why.empty()) at["why"] = t.why;
+        else
+            at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
+            at["smallest"] = number(t.smallest);
+    }
+    out["tiles"] = {{"tested", b.tiles.tested}, {"left_out", b.tiles.left_out}, {"different", b.tiles.different},
+        {"first", found_json(b.tiles_found)}};
+    out["pixels"] = {{"tested", b.pixels_tested}, {"different", b.pixels_different},
+        {"first", found_json(b.pixels_found)}, {"p", b.pixel_p}};
+    return out;
+}
+
+Json noise_json(const NoiseResult& n) {
     std::size_t less = 0, more = 0;
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
         if (n.told_apart[t]) ++(n.log2_ratio[t] < 0 ? less : more);
-    return {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", less}, {"more_noise", more}};
+    Json out = {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", less}, {"more_noise", more},
+        {"say", n.sentence}, {"regions", Json::object()}};
+    for (const NoiseResult::Histogram& h : n.regions)
+        out["regions"][h.region] = {{"told_apart", h.told}, {"not_told_apart", h.rest}};
+    return out;
+}
+
+Json ladder_json(const SppLadder& ladder, const CompareResult& result) {
+    Json out = {{"name", ladder.name}, {"arms", Json::array()}, {"spp", Json::array()}};
+    for (const std::size_t a : ladder.arms)
+        out["arms"].push_back(result.arms[a].name), out["spp"].push_back(number(*result.arms[a].spp));
+    for (const auto& [region, slope] : ladder.slopes) out["slopes"][region] = measured_json(slope);
+    return out;
 }
 
 const char* word_of(CompareResult::State state) {
@@ -101,11 +126,15 @@ std::string compare_json(
             reference["files"].push_back({{"file", f.path}, {"hash", f.hash}});
         for (const auto& [region, error] : result.reference_error)
             reference["standard_error"][region] = std::isnan(error) ? Json(nullptr) : number(error);
+        reference["standard_error_from"] = result.reference_error_from;
         out["reference"] = std::move(reference);
     }
-    out["bias"] = out["noise"] = out["assertions"] = Json::array();
+    out["bias"] = out["noise"] = out["assertions"] = out["rankings"] = out["ladders"] = Json::array();
+    for (const Ranking& r : result.rankings)
+        out["rankings"].push_back({{"region", r.region}, {"by", r.measure}, {"order", r.order}, {"say", r.sentence}});
+    for (const SppLadder& l : result.ladders) out["ladders"].push_back(ladder_json(l, result));
     for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b));
-    for (const NoiseResult& n : result.noise) out["noise"].push_back(noise_json(n, all.regions));
+    for (const NoiseResult& n : result.noise) out["noise"].push_back(noise_json(n));
     for (const AssertionResult& a : result.assertions)
         out["assertions"].push_back({{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)},
             {"bound", number(a.bound)}, {"op", a.op}, {"text", a.text}});
@@ -164,21 +193,23 @@ std::string compare_summary(
     else if (!result.assertions.empty()) out += fmt::format("All {} assertions hold.\n", result.assertions.size());
     for (const PixelSet& set : all.regions) {
         out += fmt::format("\n{} ({} pixels)\n  {} {} {} {} {}\n", set.name, set.pixels.size(), left("arm", 18),
-            right("renders", 8), right("RMSE", 24), right("variance", 12), right("mean Y", 12));
+            right("renders", 8), right("RMSE", 32), right("variance", 12), right("mean Y", 12));
         for (const ArmResult& arm : result.arms) {
             const RegionResult& r = arm.region(set.name);
             const MeterValue &rmse = r.meter("rmse"), &var = r.meter("var"), &y = r.meter("y_mean");
             std::string spread = rmse.value ? figures(*rmse.value) : "-";
             if (rmse.interval)
                 spread += fmt::format(" ({}..{})", figures(rmse.interval->first, 3), figures(rmse.interval->second, 3));
-            else if (rmse.value && rmse.why == "heavy tail") spread += " (heavy tail)";
+            else if (rmse.value && !rmse.why.empty()) spread += fmt::format(" ({})", rmse.why);
             out += fmt::format("  {} {} {} {} {}\n", left(arm.name, 18), right(std::to_string(arm.renders), 8),
-                right(spread, 24), right(var.value ? figures(*var.value) : "-", 12),
+                right(spread, 32), right(var.value ? figures(*var.value) : "-", 12),
                 right(y.value ? figures(*y.value) : "-", 12));
         }
     }
     out += "\n";
     for (const BiasResult& b : result.bias) out += b.sentence + "\n";
+    if (!result.rankings.empty()) out += "\n";
+    for (const Ranking& r : result.rankings) out += r.sentence + "\n";
     return out + "\n" + out_dir + "/report.html tells the rest.\n";
 }
 

@@ -128,4 +128,13 @@ ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& fi
     return read_plan(std::move(root), draft, flags);
 }
 
+std::vector<std::string> compare_arms(const std::string& file) {
+    std::vector<std::string> out;
+    std::vector<Complaint> ignored;
+    Node root = read_toml(read_text(file, "a compare file"), file, &ignored);
+    if (const Member* arms = root.find("arms"))
+        for (const Member& arm : arms->value.members) out.push_back(arm.key);
+    return out;
+}
+
 }  // namespace crescent

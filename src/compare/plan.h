@@ -45,6 +45,7 @@ struct ComparePlan {
     double firefly_k = 4;  // a firefly: |Y - Y_ref| > k Y_ref
     double trim = 0;       // share of pixels left out of relMSE and MAPE, the largest first
     double pixels_per_degree = 67.0206;  // of the viewer, for FLIP: 0.7 m from a 0.7 m wide display of 3840 pixels
+    bool flip = true;                    // whether FLIP is measured
     Expectation expect = Expectation::nothing;
     double smallest = 0.01;  // with expect = "same": the relative difference of Y that must have been seen
 };
@@ -58,6 +59,9 @@ struct CompareFlag {
 };
 /// Reads a compare file (none: ""), with flags over it; every mistake with its place in one InputError.
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file = {});
+
+/// The arms that a compare file names; none where it cannot be read, which plan_of() tells.
+std::vector<std::string> compare_arms(const std::string& file);
 
 /// The manual of the TOML file, and its JSON Schema.
 std::string compare_schema_text();

@@ -13,4 +13,10 @@ namespace crescent {
 std::map<std::string, Picture> compare_plates(
     const ComparePlan& plan, const Readings& all, const CompareResult& result);
 
+struct Sides;
+/// Signed difference of two means, tiles and pixels in which it is told, and the ratio of two variances.
+Picture difference_plate(const Sides& sides, const std::string& a, const std::string& b);
+Picture bias_plate(const Sides& sides, const BiasResult& found, double alpha);
+Picture noise_plate(const Readings& all, const NoiseResult& noise);
+
 }  // namespace crescent

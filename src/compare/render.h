@@ -15,7 +15,8 @@ struct Render {
     int width = 0, height = 0;
     std::vector<float> r, g, b;     // radiance
     std::vector<float> variance;    // of Y of this render, where the renderer wrote it; empty elsewhere
-    std::string variance_channels;  // which channels that came from
+    std::string variance_channels;  // which channels that came from, and what was made of them
+    std::string sample_channel;     // where the renderer wrote the samples of each pixel
     std::optional<double> spp;      // samples a pixel, from the file's attributes or its sample-count channel
     std::optional<double> seconds;  // render time, from the file's attributes
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 
 #include "base/watch.h"
@@ -15,10 +16,10 @@ namespace crescent {
 
 /// Per pixel over K renders: Welford 1962 in double, for Y; mean colour for pictures.
 struct MeanFilm {
-    std::size_t count = 0;              // K
-    std::vector<double> y, m2;          // mean of Y; sum of (Y - mean)^2
-    std::vector<float> r, g, b;         // mean radiance
-    std::vector<double> told_variance;  // sum over renders of the variance of Y that the renderer wrote; empty: none
+    std::size_t count = 0;             // K
+    std::vector<double> y, m2;         // mean of Y; sum of (Y - mean)^2
+    std::vector<float> r, g, b;        // mean radiance
+    std::vector<float> told_variance;  // sum over renders of the variance of Y that the renderer wrote; empty: none
     void add(const Render& render);
     /// Variance of Y of one render at pixel i; NaN where nothing tells it.
     double variance(std::size_t i) const;
@@ -26,7 +27,7 @@ struct MeanFilm {
 
 struct RenderFile {
     std::string path, hash;
-    std::string layer, variance_channels;
+    std::string layer, variance_channels, sample_channel;
     std::optional<double> spp, seconds;
     std::vector<std::uint64_t> numbers;  // in its name, for pairs
 };
@@ -56,6 +57,7 @@ struct ArmReadings {
     std::vector<std::vector<TileReading>> tiles;      // [render][tile]
     std::vector<std::vector<float>> largest;          // [region]: the largest squared errors of all renders, falling
     std::vector<std::vector<double>> power;  // [region][frequency]: error spectrum, see spectrum.h; empty: none
+    double rare_event = 0;                   // largest rise of a pixel that stands alone in it, see second_pass.cpp
 };
 
 /// Square tiles, the last of a row or column cut off; about 512 of them, 8 pixels a side at least.
@@ -64,13 +66,25 @@ struct Tiles {
     Tiles() = default;
     Tiles(int width, int height);
     std::size_t count() const { return static_cast<std::size_t>(across) * static_cast<std::size_t>(down); }
+    /// The pixels of a tile of an image.
+    Box box(std::size_t tile, int width, int height) const;
     std::size_t of(int i, int j) const {
         return static_cast<std::size_t>(j / size) * static_cast<std::size_t>(across) +
             static_cast<std::size_t>(i / size);
     }
 };
 
+/// Files of the patterns, sorted by name; InputError where one matches nothing.
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at);
+
+/// Where renders come from: files, or what a program holds in memory.
+struct RenderSource {
+    std::function<std::vector<std::string>(const std::vector<std::string>&, const Place&)> expand = crescent::expand;
+    std::function<Render(const std::string& path, const std::string& layer)> read = read_render;
+};
+
 struct Readings {
+    RenderSource source;
     int width = 0, height = 0;
     Tiles tiles;
     std::vector<PixelSet> regions;  // those of the plan, masks, then the whole frame
@@ -81,10 +95,7 @@ struct Readings {
     std::vector<std::string> warnings;
 };
 
-/// Files of the patterns, sorted by name; InputError where one matches nothing.
-std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at);
-
 /// Reads everything twice. Throws InputError where files do not fit each other.
-Readings read_all(const ComparePlan& plan, Watch& watch);
+Readings read_all(const ComparePlan& plan, Watch& watch, const RenderSource& source = {});
 
 }  // namespace crescent

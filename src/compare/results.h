@@ -14,6 +14,7 @@
 
 namespace crescent {
 
+inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;  // of every interval
 
 /// A meter of one arm in one region. `why` says why there is no value or no interval.
@@ -26,15 +27,18 @@ struct MeterValue {
 struct RegionResult {
     std::string region;
     std::uint64_t pixels = 0;
-    std::vector<std::pair<std::string, MeterValue>>
-        meters;                 // rmse, var, bias2, relmse, mape, fireflies, y_mean, flip, efficiency
-    std::optional<Tail> tail;   // of the squared errors of all pixels and renders
-    double largest_share = 0;   // of the largest squared error in their sum
-    std::vector<double> power;  // error spectrum, see spectrum.h
+    std::vector<std::pair<std::string, MeterValue>> meters;  // in the order of compare_words()
+    std::optional<Tail> tail;                                // of the squared errors of all pixels and renders
+    double largest_share = 0;                                // of the largest squared error in their sum
+    std::vector<double> power;                               // error spectrum, see spectrum.h
     NoiseColour colour = NoiseColour::unknown;
+    std::optional<double> told_ratio;      // the variance that the renderer wrote over that over renders
+    std::optional<double> renders_needed;  // where the tail is heavy: renders from which an interval could be said
     const MeterValue& meter(const std::string& name) const;
     /// The tail is too heavy for an interval of a mean of squares to mean anything.
     bool heavy() const;
+    /// The same for a mean of the errors themselves: their squares' index is twice theirs.
+    bool mean_heavy() const;
 };
 
 struct ArmResult {
@@ -55,17 +59,34 @@ struct MeanTest {
     std::string why;      // why it was not tested; "" where it was
 };
 
+/// Tests of many places at once, their false discoveries controlled.
+struct PlaceTests {
+    std::vector<double> p;           // a place; NaN: not tested
+    std::vector<double> difference;  // mean Y of a less that of b
+    std::vector<bool> differs;
+    std::size_t tested = 0, left_out = 0, different = 0;
+};
+
+/// A place that differs: pixels, both ends inside, and mean Y of both there.
+struct Found {
+    Box box;
+    double a = 0, b = 0, p = 0;
+};
+
 /// Two arms, or an arm and the reference: are their expectations the same?
 struct BiasResult {
     std::string a, b;
+    std::size_t arm_a = 0, arm_b = 0;  // their places; the number of arms stands for the reference
+    double place_alpha = 0;            // what tiles have, and pixels
     bool paired = false;
-    bool dependent = false;  // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
+    bool dependent = false;       // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
+    std::string reference_error;  // how the reference's own error is known; "" between arms
     std::vector<MeanTest> regions;
-    std::vector<double> tile_p;           // NaN: not tested
-    std::vector<double> tile_difference;  // mean Y of a less that of b
-    std::vector<bool> tile_differs;
-    std::size_t tiles_tested = 0, tiles_left_out = 0, tiles_different = 0;
-    std::vector<std::uint64_t> pixel_p;  // histogram of per-pixel p in tenths
+    PlaceTests tiles;
+    std::vector<Found> tiles_found, pixels_found;  // the most certain first, a few of them
+    std::uint64_t pixels_tested = 0, pixels_different = 0;
+    double pixel_level = 0;              // p at or below which a pixel is told to differ; 0: none is
+    std::vector<std::uint64_t> pixel_p;  // histogram of p over pixels, in twentieths
     bool differs() const;
     std::string sentence;
 };
@@ -75,14 +96,39 @@ struct NoiseResult {
     std::string a, b;
     std::vector<double> log2_ratio;  // NaN: no variance
     std::vector<bool> told_apart;    // from 1
+    struct Histogram {
+        std::string region;
+        std::vector<std::uint64_t> told, rest;  // tiles by log2_ratio, noise_bins of them, ends open
+    };
+    std::vector<Histogram> regions;
+    std::string sentence;
+};
+inline constexpr int noise_bins = 16;       // of half a unit each
+inline constexpr double noise_range = 4.0;  // log2 from -4 to 4
+
+/// Who is better in one region, by one measure; arms whose intervals overlap are not ranked.
+struct Ranking {
+    std::string region, measure;
+    std::vector<std::string> order;  // best first
+    std::string sentence;
+};
+
+/// One arm at several samples a pixel.
+struct SppLadder {
+    std::string name;
+    std::vector<std::size_t> arms;                           // by rising spp
+    std::vector<std::pair<std::string, MeterValue>> slopes;  // of log RMSE (else log sd) over log spp, a region each
 };
 
 struct CompareResult {
     std::vector<ArmResult> arms;
     std::vector<BiasResult> bias;
     std::vector<NoiseResult> noise;
+    std::vector<Ranking> rankings;
+    std::vector<SppLadder> ladders;
     std::vector<AssertionResult> assertions;
     std::vector<std::string> warnings;
+    std::string reference_error_from;               // how it is known
     std::map<std::string, double> reference_error;  // region -> rms standard error of the reference's Y; NaN: not known
     enum class State { holds, fails, inconclusive } state = State::holds;
     std::string say;  // one sentence for the state

@@ -69,6 +69,8 @@ const Section& compare_schema() {
             {"pixels_per_degree", Type::number, {1, 1000}, "", defaulted, "67.0206",
                 "Of the viewer of FLIP: 0.7 m from a display 0.7 m wide with 3840 pixels.",
                 to<&ComparePlan::pixels_per_degree>},
+            {"flip", Type::flag, none, "", defaulted, "true", "Whether FLIP is measured: it takes longest.",
+                to<&ComparePlan::flip>},
             {"expect", Type::word, none, "", defaulted, "\"nothing\"",
                 "same: a difference between arms fails the call.", to<&ComparePlan::expect>, {"nothing", "same"}},
             {"smallest", Type::number, {1e-6, 10}, "", defaulted, "0.01",
@@ -88,7 +90,11 @@ const std::vector<QuantityWord>& compare_words() {
         {"fireflies", true, QuantityOf::run, "pixels with |Y - Y_ref| > firefly_k Y_ref, of one render"},
         {"y_mean", true, QuantityOf::run, "mean Y"},
         {"flip", true, QuantityOf::run, "mean HDR-FLIP of the arm's first render against the reference"},
+        {"flip_ldr", true, QuantityOf::run, "mean LDR-FLIP of the two photographs, at the exposure of the plates"},
         {"efficiency", true, QuantityOf::run, "1 / (variance x seconds)"},
+        {"unit_time", true, QuantityOf::run,
+            "seconds after which the mean of renders has a variance of 1: variance x seconds"},
+        {"sample_var", true, QuantityOf::run, "variance of one sample: variance x samples a pixel"},
     };
     return words;
 }

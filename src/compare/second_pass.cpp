@@ -1,27 +1,31 @@
-// Second pass: with means known, what each render says of each region and tile.
-#include <fmt/format.h>
+// Second pass: with means known, what each render says of each region and tile. Sums run over chunks of pixels and
+// rows of tiles, which are merged in their order: equal on any number of threads.
+#include "compare/second_pass.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "compare/first_pass.h"
-#include "compare/schema.h"
+#include "base/parallel.h"
 #include "compare/spectrum.h"
+#include "compare/statistics.h"
 #include "meters/tail.h"
 
 namespace crescent {
 
 namespace {
 
-constexpr double epsilon = 0.01;  // of relMSE and MAPE, as Rousselle et al. 2011 have it
+constexpr double epsilon = 0.01;         // of relMSE and MAPE, as Rousselle et al. 2011 have it
+constexpr std::size_t chunk = 1u << 15;  // pixels
 
 /// The largest values of many, falling.
 class Largest {
 public:
     explicit Largest(std::size_t keep) : keep_(keep) {}
+    /// What is not above this would not be kept.
+    float least() const { return heap_.size() < keep_ ? -1 : keep_ ? heap_.front() : HUGE_VALF; }
     void add(float x) {
-        if (keep_ == 0 || (heap_.size() == keep_ && x <= heap_.front())) return;
+        if (!(x > least())) return;
         heap_.push_back(x);
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
         if (heap_.size() > keep_) std::pop_heap(heap_.begin(), heap_.end(), std::greater<>()), heap_.pop_back();
@@ -38,55 +42,90 @@ private:
 };
 
 /// Mean of all but the largest `trim` of the values.
-double trimmed_mean(std::vector<double>& values, double trim) {
+double trimmed_mean(std::vector<float>& values, double trim) {
     const auto keep = values.size() - static_cast<std::size_t>(trim * static_cast<double>(values.size()));
-    if (keep < values.size())
-        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(keep), values.end());
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(keep), values.end());
     double sum = 0;
-    for (std::size_t i = 0; i < keep; ++i) sum += values[i];
+    for (std::size_t i = 0; i < keep; ++i) sum += static_cast<double>(values[i]);
     return sum / static_cast<double>(keep);
 }
+
+/// Sums over one chunk of a region; errors above `least` are kept for the tail.
+struct Part {
+    RegionReading sum;
+    std::vector<float> large;
+};
 
 class SecondPass {
 public:
     SecondPass(const ComparePlan& plan, const Readings& all, const MeanFilm* reference)
         : plan_(plan), all_(all), reference_(reference) {}
 
-    void render(const Render& render, ArmReadings& arm, std::vector<Largest>& largest) const {
+    void render(const Render& render, ArmReadings& arm, std::vector<Largest>& largest) {
         y_.resize(render.size());
-        for (std::size_t i = 0; i < y_.size(); ++i) y_[i] = static_cast<double>(render.y(i));
+        parallel_for(std::size_t{0}, (y_.size() + chunk - 1) / chunk, [&](std::size_t c) {
+            for (std::size_t i = c * chunk; i < std::min(y_.size(), (c + 1) * chunk); ++i) y_[i] = render.y(i);
+        });
         std::vector<RegionReading> regions;
         for (std::size_t r = 0; r < all_.regions.size(); ++r) {
             regions.push_back(region(all_.regions[r], arm.film, largest[r]));
             spectrum(all_.regions[r], arm, arm.power[r]);
         }
         arm.regions.push_back(std::move(regions));
-        arm.tiles.push_back(tiles(arm.film));
+        arm.tiles.push_back(tiles(arm));
     }
 
 private:
-    RegionReading region(const PixelSet& set, const MeanFilm& film, Largest& largest) const {
-        RegionReading out;
-        std::vector<double> relative, absolute;
-        const double count = static_cast<double>(set.pixels.size()), renders = static_cast<double>(film.count);
-        for (const std::uint32_t i : set.pixels) {
-            const double spread = (y_[i] - film.y[i]) * (y_[i] - film.y[i]);
-            out.y += y_[i], out.spread += spread;
-            if (!reference_) {
-                largest.add(static_cast<float>(spread));
-                continue;
+    double y(std::size_t i) const { return static_cast<double>(y_[i]); }
+
+    Part part(const PixelSet& set, std::size_t begin, const MeanFilm& film, float least) const {
+        Part out;
+        RegionReading& sum = out.sum;
+        const std::size_t end = std::min(set.pixels.size(), begin + chunk);
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = set.pixels[k];
+            const double spread = (y(i) - film.y[i]) * (y(i) - film.y[i]);
+            sum.y += y(i), sum.spread += spread;
+            double squared = spread;
+            if (reference_) {
+                const double ref = reference_->y[i], e = y(i) - ref;
+                squared = e * e;
+                sum.mse += squared, sum.with_sum += e * static_cast<double>(film.count) * (film.y[i] - ref);
+                sum.fireflies += std::fabs(e) > plan_.firefly_k * ref;
+                sum.relmse += squared / (ref * ref + epsilon);
+                sum.mape += std::fabs(e) / (std::fabs(ref) + epsilon);
             }
-            const double ref = reference_->y[i], e = y_[i] - ref;
-            out.mse += e * e;
-            out.with_sum += e * renders * (film.y[i] - ref);
-            out.fireflies += std::fabs(e) > plan_.firefly_k * ref;
-            relative.push_back(e * e / (ref * ref + epsilon));
-            absolute.push_back(std::fabs(e) / (std::fabs(ref) + epsilon));
-            largest.add(static_cast<float>(e * e));
+            if (const auto x = static_cast<float>(squared); x > least) out.large.push_back(x);
         }
-        out.y /= count, out.spread /= count, out.mse /= count, out.with_sum /= count;
-        if (reference_) out.relmse = trimmed_mean(relative, plan_.trim), out.mape = trimmed_mean(absolute, plan_.trim);
         return out;
+    }
+
+    RegionReading region(const PixelSet& set, const MeanFilm& film, Largest& largest) const {
+        std::vector<Part> parts((set.pixels.size() + chunk - 1) / chunk);
+        const float least = largest.least();
+        parallel_for(
+            std::size_t{0}, parts.size(), [&](std::size_t c) { parts[c] = part(set, c * chunk, film, least); });
+        RegionReading out;
+        for (const Part& p : parts) {
+            out.y += p.sum.y, out.spread += p.sum.spread, out.mse += p.sum.mse, out.with_sum += p.sum.with_sum;
+            out.relmse += p.sum.relmse, out.mape += p.sum.mape, out.fireflies += p.sum.fireflies;
+            for (const float x : p.large) largest.add(x);
+        }
+        const double count = static_cast<double>(set.pixels.size());
+        out.y /= count, out.spread /= count, out.mse /= count, out.with_sum /= count;
+        out.relmse /= count, out.mape /= count;
+        if (reference_ && plan_.trim > 0) trim(set, out);
+        return out;
+    }
+
+    void trim(const PixelSet& set, RegionReading& out) const {
+        std::vector<float> relative, absolute;
+        for (const std::uint32_t i : set.pixels) {
+            const double ref = reference_->y[i], e = y(i) - ref;
+            relative.push_back(static_cast<float>(e * e / (ref * ref + epsilon)));
+            absolute.push_back(static_cast<float>(std::fabs(e) / (std::fabs(ref) + epsilon)));
+        }
+        out.relmse = trimmed_mean(relative, plan_.trim), out.mape = trimmed_mean(absolute, plan_.trim);
     }
 
     /// The error's spectrum: about the mean of the renders, which leaves (K - 1)/K of it, or about the reference.
@@ -95,111 +134,61 @@ private:
         if (!set.box || !about) return;
         const double renders = static_cast<double>(arm.film.count);
         const double scale = arm.film.count > 1 ? std::sqrt(renders / (renders - 1)) : 1;
-        add_spectrum(power, *set.box, [&](int x, int y) {
+        add_spectrum(power, *set.box, [&](int x, int row) {
             const auto i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
-            return all_.bad[i] ? 0.0 : scale * (y_[i] - about->y[i]);
+                static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
+            return all_.bad[i] ? 0.0 : scale * (y(i) - about->y[i]);
         });
     }
 
-    std::vector<TileReading> tiles(const MeanFilm& film) const {
-        std::vector<TileReading> out(all_.tiles.count());
-        std::vector<double> pixels(out.size());
-        for (int j = 0; j < all_.height; ++j) {
-            for (int x = 0; x < all_.width; ++x) {
+    /// A pixel's deviation that would be an outlier among its K (Grubbs 1950) is a rare event: noise that one sample in
+    /// many brings. The largest of them bounds what renders that met none may have missed.
+    TileReading tile(const Box& box, const MeanFilm& film, double lone, double& rare) const {
+        TileReading out;
+        double pixels = 0;
+        for (int j = box.y0; j <= box.y1; ++j) {
+            for (int x = box.x0; x <= box.x1; ++x) {
                 const auto i =
                     static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
                 if (all_.bad[i]) continue;
-                const std::size_t t = all_.tiles.of(x, j);
-                const double spread = (y_[i] - film.y[i]) * (y_[i] - film.y[i]);
-                out[t].y += y_[i], out[t].spread += spread, pixels[t] += 1;
-                out[t].largest = std::max(out[t].largest, spread);
+                const double off = y(i) - film.y[i], spread = off * off;
+                out.y += y(i), out.spread += spread, pixels += 1;
+                out.largest = std::max(out.largest, spread);
+                if (off > 0 && spread >= lone * film.m2[i]) rare = std::max(rare, off);
             }
         }
-        for (std::size_t t = 0; t < out.size(); ++t)
-            out[t].y /= pixels[t], out[t].spread /= pixels[t], out[t].largest /= pixels[t];
+        out.y /= pixels, out.spread /= pixels, out.largest /= pixels;
+        return out;
+    }
+
+    std::vector<TileReading> tiles(ArmReadings& arm) const {
+        std::vector<TileReading> out(all_.tiles.count());
+        std::vector<double> rare(out.size());
+        const double lone = lone_share(arm.film.count);
+        parallel_for(std::size_t{0}, out.size(),
+            [&](std::size_t t) { out[t] = tile(all_.tiles.box(t, all_.width, all_.height), arm.film, lone, rare[t]); });
+        arm.rare_event = std::max(arm.rare_event, *std::max_element(rare.begin(), rare.end()));
         return out;
     }
 
     const ComparePlan& plan_;
     const Readings& all_;
     const MeanFilm* reference_;
-    mutable std::vector<double> y_;
+    std::vector<float> y_;
 };
-
-void second_pass(const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, Watch& watch) {
-    const MeanFilm* reference = all.reference && &*all.reference != &arm ? &all.reference->film : nullptr;
-    const SecondPass pass(plan, all, reference);
-    std::vector<Largest> largest;
-    for (const PixelSet& set : all.regions) largest.emplace_back(tail_length(set.pixels.size() * arm.files.size()) + 1);
-    arm.power.assign(all.regions.size(), {});
-    for (const RenderFile& file : arm.files) {
-        watch.check();
-        pass.render(read_render(file.path, layer), arm, largest);
-        watch.advance(1);
-    }
-    for (const Largest& values : largest) arm.largest.push_back(values.falling());
-}
-
-void add_set(Readings& all, PixelSet set, const Place& at) {
-    std::erase_if(set.pixels, [&](std::uint32_t i) { return all.bad[i]; });
-    if (set.pixels.empty()) throw InputError(at, fmt::format("the region '{}' has no finite pixel", set.name));
-    all.regions.push_back(std::move(set));
-}
-
-PixelSet boxed(const std::string& name, const Box& box, int width) {
-    PixelSet set{name, box, {}};
-    for (int j = box.y0; j <= box.y1; ++j)
-        for (int i = box.x0; i <= box.x1; ++i) set.pixels.push_back(static_cast<std::uint32_t>(j * width + i));
-    return set;
-}
-
-void regions(const ComparePlan& plan, Readings& all) {
-    for (const Region& r : plan.regions) {
-        if (r.box.x1 >= all.width || r.box.y1 >= all.height)
-            throw InputError(r.at,
-                fmt::format("regions.{}.box: expected a box on the image, x from 0 to {} and y from 0 to {}, found "
-                            "[{}, {}, {}, {}]",
-                    r.name, all.width - 1, all.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
-        add_set(all, boxed(r.name, r.box, all.width), r.at);
-    }
-    for (const MaskPlan& m : plan.masks) {
-        const Render mask = read_render(m.file);
-        if (mask.width != all.width || mask.height != all.height)
-            throw InputError({m.file, 0, 0},
-                fmt::format("expected {} x {} pixels as the renders have, found {} x {}", all.width, all.height,
-                    mask.width, mask.height));
-        PixelSet set{m.name, {}, {}};
-        for (std::size_t i = 0; i < mask.size(); ++i)
-            if (mask.y(i) > 0) set.pixels.push_back(static_cast<std::uint32_t>(i));
-        add_set(all, std::move(set), m.at);
-    }
-    add_set(all, boxed(whole_frame, {0, 0, all.width - 1, all.height - 1}, all.width), {plan.file, 0, 0});
-}
 
 }  // namespace
 
-Readings read_all(const ComparePlan& plan, Watch& watch) {
-    Readings all;
-    std::vector<std::vector<std::string>> files;
-    std::size_t total = 0;
-    for (const RenderArm& arm : plan.arms) files.push_back(expand(arm.files, arm.at)), total += files.back().size();
-    const std::vector<std::string> reference =
-        plan.reference.empty() ? std::vector<std::string>{} : expand(plan.reference, {plan.file, 0, 0});
-    total += reference.size();
-    watch.begin("first pass: means", static_cast<double>(total));
-    FirstPass first(all, watch);
-    all.arms.resize(plan.arms.size());
-    for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name);
-    if (!reference.empty()) first.arm(all.reference.emplace(), reference, plan.reference_layer, "the reference");
-    all.tiles = Tiles(all.width, all.height);
-    all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
-    regions(plan, all);
-    watch.begin("second pass: what each render says", static_cast<double>(total));
-    for (std::size_t a = 0; a < plan.arms.size(); ++a) second_pass(plan, all, all.arms[a], plan.arms[a].layer, watch);
-    if (all.reference) second_pass(plan, all, *all.reference, plan.reference_layer, watch);
-    return all;
+void second_pass(const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, Watch& watch) {
+    const MeanFilm* reference = all.reference && &*all.reference != &arm ? &all.reference->film : nullptr;
+    SecondPass pass(plan, all, reference);
+    std::vector<Largest> largest;
+    for (const PixelSet& set : all.regions) largest.emplace_back(tail_length(set.pixels.size() * arm.files.size()) + 1);
+    arm.power.assign(all.regions.size(), {});
+    std::vector<std::string> paths;
+    for (const RenderFile& file : arm.files) paths.push_back(file.path);
+    each_render(all.source, paths, layer, watch, [&](const Render& render) { pass.render(render, arm, largest); });
+    for (const Largest& values : largest) arm.largest.push_back(values.falling());
 }
 
 }  // namespace crescent

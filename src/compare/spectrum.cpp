@@ -29,13 +29,27 @@ const Row& turns() {
     return table;
 }
 
-/// Plain discrete Fourier transform of a row; blocks are small.
+/// z exp(-2 pi i k / block), without the library's care for infinities.
+Complex turned(const Complex& z, std::size_t k) {
+    const Complex& w = turns()[k];
+    return {z.real() * w.real() - z.imag() * w.imag(), z.real() * w.imag() + z.imag() * w.real()};
+}
+
+/// Radix-2 transform of a row (Cooley & Tukey 1965), decimation in time.
 Row transformed(const Row& x) {
     Row out;
     for (std::size_t k = 0; k < size; ++k) {
-        Complex sum = 0;
-        for (std::size_t n = 0; n < size; ++n) sum += x[n] * turns()[k * n % size];
-        out[k] = sum;
+        std::size_t reversed = 0;
+        for (std::size_t bit = 1; bit < size; bit *= 2) reversed = 2 * reversed + ((k & bit) ? 1 : 0);
+        out[reversed] = x[k];
+    }
+    for (std::size_t half = 1; half < size; half *= 2) {
+        for (std::size_t start = 0; start < size; start += 2 * half) {
+            for (std::size_t k = 0; k < half; ++k) {
+                const Complex even = out[start + k], odd = turned(out[start + k + half], k * (size / (2 * half)));
+                out[start + k] = even + odd, out[start + k + half] = even - odd;
+            }
+        }
     }
     return out;
 }
@@ -87,11 +101,12 @@ void add_block(std::vector<double>& power, int x0, int y0, const std::function<d
 }  // namespace
 
 void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error) {
-    for (int y = box.y0; y + spectrum_block - 1 <= box.y1; y += spectrum_block)
-        for (int x = box.x0; x + spectrum_block - 1 <= box.x1; x += spectrum_block) {
-            power.resize(spectrum_bins);
-            add_block(power, x, y, error);
-        }
+    const int across = box.width() / spectrum_block, count = across * (box.height() / spectrum_block);
+    const int step = (count + spectrum_blocks_most - 1) / spectrum_blocks_most;
+    for (int k = 0; k < count; k += step) {
+        power.resize(spectrum_bins);
+        add_block(power, box.x0 + k % across * spectrum_block, box.y0 + k / across * spectrum_block, error);
+    }
 }
 
 NoiseColour noise_colour(const std::vector<double>& power) {

@@ -14,8 +14,10 @@ namespace crescent {
 inline constexpr int spectrum_block = 32;                 // pixels a side of a block
 inline constexpr int spectrum_bins = spectrum_block / 2;  // frequencies 1..16 cycles a block; the mean is left out
 
-/// Adds the radial power of `error(i, j)` over all whole blocks of the box to `power` (spectrum_bins values). The box
-/// must hold a block; smaller ones add nothing. Error units squared.
+inline constexpr int spectrum_blocks_most = 1024;  // of a box; of more, every second, third, ... is taken
+
+/// Adds the radial power of `error(i, j)` over whole blocks of the box to `power` (spectrum_bins values). The box must
+/// hold a block; smaller ones add nothing. Error units squared.
 void add_spectrum(std::vector<double>& power, const Box& box, const std::function<double(int, int)>& error);
 
 /// What the noise is like, from the share of power below and above half the Nyquist frequency beside that of white

@@ -72,14 +72,27 @@ double detectable(const Welch& test, double alpha) {
     return test.se * (student_quantile(1 - alpha / 2, test.df) + student_quantile(0.9, test.df));
 }
 
+double lone_share(std::size_t count) {
+    if (count < 3) return 0;
+    constexpr double level = 1e-3;
+    const double k = static_cast<double>(count), t = student_quantile(1 - level / k, k - 2);
+    return (k - 1) / k * t * t / (k - 2 + t * t);
+}
+
+std::size_t discovered(std::span<const double> p, double of, double alpha, bool dependent) {
+    double harmonic = 1;
+    for (double i = 2; dependent && i <= of; ++i) harmonic += 1 / i;
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (p[i] <= alpha * static_cast<double>(i + 1) / (of * harmonic)) last = i + 1;
+    return last;
+}
+
 std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent) {
     const std::vector<std::size_t> order = rising(p);
-    const double m = static_cast<double>(order.size());
-    double harmonic = 1;
-    for (std::size_t i = 2; dependent && i <= order.size(); ++i) harmonic += 1 / static_cast<double>(i);
-    std::size_t last = 0;
-    for (std::size_t i = 0; i < order.size(); ++i)
-        if (p[order[i]] <= alpha * static_cast<double>(i + 1) / (m * harmonic)) last = i + 1;
+    std::vector<double> sorted;
+    for (const std::size_t i : order) sorted.push_back(p[i]);
+    const std::size_t last = discovered(sorted, static_cast<double>(order.size()), alpha, dependent);
     std::vector<bool> out(p.size());
     for (std::size_t i = 0; i < last; ++i) out[order[i]] = true;
     return out;

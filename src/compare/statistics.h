@@ -30,10 +30,16 @@ Welch paired_test(const MeanInterval& differences);
 /// The difference that the test sees nine times out of ten at level alpha.
 double detectable(const Welch& test, double alpha);
 
+/// The share of the sum of K squared deviations that one deviation of normal noise passes once in a thousand sets
+/// (Grubbs 1950); 0 for fewer than three, where one cannot stand alone.
+double lone_share(std::size_t k);
+
 /// Which hypotheses fall: false discoveries are at most `alpha` of them on average (Benjamini & Hochberg 1995), under
 /// any dependence where `dependent` (Benjamini & Yekutieli 2001). NaN: not tested. Under the global null the chance of
 /// any is at most alpha.
 std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent);
+/// How many of the smallest p, rising, fall; `of` were tested. Those above alpha may be left out.
+std::size_t discovered(std::span<const double> rising, double of, double alpha, bool dependent);
 /// The same with the chance of any false one at most alpha (Holm 1979).
 std::vector<bool> holm(std::span<const double> p, double alpha);
 

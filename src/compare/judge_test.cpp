@@ -1,0 +1,158 @@
+// How compare counts and judges, on renders that are made up, whose truth is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/made.h"
+#include "compare/schema.h"
+
+namespace crescent {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = MadeNoise::Kind;
+using State = CompareResult::State;
+
+constexpr MadeNoise coarse{Kind::normal, 0.5, 0}, fine{Kind::normal, 0.2, 0};
+
+MadeWorld world(int renders, double bias, int width = 24) {
+    return {coarse, {Kind::normal, 0.2, bias}, renders, width};
+}
+
+BiasResult between(const CompareResult& r, const std::string& a, const std::string& b) {
+    return *std::find_if(r.bias.begin(), r.bias.end(), [&](const BiasResult& x) { return x.a == a && x.b == b; });
+}
+
+bool told(const CompareResult& r) {
+    return std::any_of(r.bias.begin(), r.bias.end(), [](const BiasResult& b) { return b.differs(); });
+}
+
+int alarms(const MadeWorld& world, int repeats) {
+    int out = 0;
+    for (int seed = 1; seed <= repeats; ++seed) out += told(compare_made(world, static_cast<std::uint32_t>(seed)));
+    return out;
+}
+
+// alpha = 0.05 for a call: 3 of 60 on average, more than 9 with a probability below 0.2 %.
+TEST(CompareJudges, EqualArmsAreRarelyToldApart) { EXPECT_LE(alarms(world(4, 0), 60), 9); }
+
+TEST(CompareJudges, RareBrightEventsAreRarelyTakenForABias) {
+    for (const double chance : {0.01, 1e-3}) {
+        SCOPED_TRACE(chance);
+        EXPECT_LE(alarms({{Kind::events, chance, 0}, fine, 6, 24}, 40), 7);  // more: 0.4 %
+    }
+    EXPECT_LE(alarms({{Kind::lognormal, 1, 0}, fine, 6, 24}, 40), 7);
+}
+
+TEST(CompareJudges, ABiasOfFivePercentIsFound) {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+        const BiasResult found = between(compare_made(world(6, 0.05), seed), "b", the_reference);
+        EXPECT_TRUE(found.differs()) << found.sentence;
+        EXPECT_THAT(found.sentence, HasSubstr("differs from the reference"));
+    }
+}
+
+TEST(CompareJudges, TilesAndPixelsThatDifferAreNamed) {
+    MadeWorld w{{Kind::normal, 0.01, 0}, {Kind::normal, 0.01, 0.5}, 8, 24};
+    const BiasResult found = between(compare_made(w, 1), "b", "a");
+    EXPECT_EQ(found.tiles.different, 9u);
+    EXPECT_EQ(found.pixels_different, 24u * 24u);
+    EXPECT_EQ(found.tiles_found.size(), 5u);
+    EXPECT_NEAR(found.tiles_found[0].a / found.tiles_found[0].b, 1.5, 0.01);
+    EXPECT_THAT(found.sentence, HasSubstr("9 of 9 tiles differ: x "));
+    EXPECT_THAT(found.sentence, HasSubstr("576 of 576 pixels differ: ("));
+}
+
+TEST(CompareJudges, PIsSpreadEvenlyOverPixelsOfEqualArms) {
+    const BiasResult found = between(compare_made({fine, fine, 8, 64}, 3), "b", "a");
+    ASSERT_EQ(found.pixel_p.size(), 20u);
+    EXPECT_EQ(found.pixels_tested, 4096u);
+    // 205 a bin on average, standard deviation 14; Welch's test is a little conservative at few degrees of freedom.
+    for (const std::uint64_t count : found.pixel_p) EXPECT_NEAR(static_cast<double>(count), 204.8, 5 * 14.0);
+}
+
+TEST(CompareJudges, IntervalsHoldTheTruthAsOftenAsTheySay) {
+    constexpr int repeats = 100;
+    std::map<std::string, int> held;
+    const std::map<std::string, double> truth{{"var", 0.04}, {"bias2", 0.01}, {"rmse", std::sqrt(0.05)},
+        {"relmse", 0.05 / 1.01}, {"y_mean", 1.1}, {"efficiency", 12.5}, {"unit_time", 0.08}, {"sample_var", 0.64}};
+    const MadeWorld w{coarse, {Kind::normal, 0.2 / 1.1, 0.1}, 6, 24};
+    for (std::uint32_t seed = 1; seed <= repeats; ++seed) {
+        const CompareResult r = compare_made(
+            w, seed + 200, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"arms", "b", "spp"}, "16", true, ""}});
+        for (const auto& [meter, value] : truth) {
+            const MeterValue& m = r.arms[1].region(whole_frame).meter(meter);
+            held[meter] += m.interval && m.interval->first <= value && value <= m.interval->second;
+        }
+    }
+    // 95 of 100 are meant; fewer than 86 with a probability below 0.1 %.
+    for (const auto& [meter, count] : held) EXPECT_GE(count, 86) << meter;
+}
+
+TEST(CompareJudges, MetersAreWhatTheirNamesSay) {
+    const MadeWorld w{coarse, {Kind::normal, 0.2 / 1.1, 0.1}, 8, 24};
+    const CompareResult r =
+        compare_made(w, 7, {{{"arms", "b", "seconds"}, "2", true, ""}, {{"flip"}, "true", true, ""}});
+    const RegionResult& b = r.arms[1].region(whole_frame);
+    EXPECT_NEAR(*b.meter("var").value, 0.04, 0.002);
+    EXPECT_NEAR(*b.meter("bias2").value, 0.01, 0.001);
+    EXPECT_NEAR(*b.meter("rmse").value, std::sqrt(0.05), 0.005);
+    EXPECT_NEAR(*b.meter("relmse").value, 0.05 / 1.01, 0.002);
+    EXPECT_NEAR(*b.meter("y_mean").value, 1.1, 0.01);
+    EXPECT_NEAR(*b.meter("efficiency").value, 1 / (2 * *b.meter("var").value), 1e-9);
+    EXPECT_NEAR(*b.meter("unit_time").value, 2 * *b.meter("var").value, 1e-12);
+    EXPECT_GT(*b.meter("flip_ldr").value, 0);
+    EXPECT_FALSE(r.arms[0].region(whole_frame).meter("efficiency").value);
+    EXPECT_FALSE(b.heavy());
+}
+
+TEST(CompareJudges, AHeavyTailSaysFromHowManyRendersOn) {
+    const CompareResult r = compare_made({{Kind::events, 2e-4, 0}, fine, 6, 48}, 2);
+    const RegionResult& a = r.arms[0].region(whole_frame);
+    ASSERT_TRUE(a.heavy());
+    ASSERT_TRUE(a.renders_needed);
+    EXPECT_GT(*a.renders_needed, 6);
+    EXPECT_FALSE(a.meter("rmse").interval);
+    EXPECT_TRUE(a.meter("fireflies").interval);
+    EXPECT_THAT(between(r, "b", "a").sentence, HasSubstr("heavy tail: a, from about"));
+}
+
+TEST(CompareJudges, SameIsSaidOnlyWhereADifferenceWouldHaveBeenSeen) {
+    const std::vector<CompareFlag> same{{{"expect"}, "same", false, ""}};
+    EXPECT_EQ(compare_made(world(3, 0), 3, same).state, State::inconclusive);
+    std::vector<CompareFlag> large = same;
+    large.push_back({{"smallest"}, "0.5", true, ""});
+    EXPECT_EQ(compare_made(world(8, 0), 3, large).state, State::holds);
+    EXPECT_EQ(compare_made(world(8, 0.3), 3, large).state, State::fails);
+}
+
+TEST(CompareJudges, ArmsAreRankedOnlyWhereTheirIntervalsPart) {
+    const std::vector<CompareFlag> seconds{
+        {{"arms", "a", "seconds"}, "1", true, ""}, {{"arms", "b", "seconds"}, "1", true, ""}};
+    const auto by_time = [&](const MadeWorld& w) {
+        const CompareResult r = compare_made(w, 5, seconds);
+        return std::find_if(r.rankings.begin(), r.rankings.end(), [](const Ranking& x) {
+            return x.measure == "at equal time";
+        })->sentence;
+    };
+    EXPECT_THAT(by_time(world(6, 0)), HasSubstr("b before a"));
+    EXPECT_THAT(by_time({fine, fine, 6, 24}), HasSubstr("not told apart"));
+}
+
+TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
+    const CompareResult r = compare_made(world(8, 0), 5);
+    ASSERT_EQ(r.noise.size(), 1u);
+    const NoiseResult& n = r.noise[0];  // b over a: 0.04 / 0.25
+    EXPECT_EQ(std::count(n.told_apart.begin(), n.told_apart.end(), true), 9);
+    for (const double x : n.log2_ratio) EXPECT_NEAR(x, std::log2(0.16), 0.7);
+    std::uint64_t tiles = 0;
+    for (const std::uint64_t count : n.regions.back().told) tiles += count;
+    EXPECT_EQ(tiles, 9u);
+    const CompareResult equal = compare_made({fine, fine, 8, 24}, 5);
+    EXPECT_EQ(std::count(equal.noise[0].told_apart.begin(), equal.noise[0].told_apart.end(), true), 0);
+}
+
+}  // namespace
+}  // namespace crescent

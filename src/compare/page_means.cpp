@@ -1,0 +1,129 @@
+// The sections of a comparison's page about means and noise: whether arms agree, where the noise moved, its spectra.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compare/page.h"
+#include "report/charts.h"
+#include "report/html.h"
+#include "report/numbers.h"
+
+namespace crescent {
+
+namespace {
+
+using html::words;
+
+std::string region_table(const BiasResult& b) {
+    html::Table table(fmt::format("{} and {}{}", escape(b.a), escape(b.b), b.paired ? ", in pairs" : ""),
+        {words("region"), {"mean <i>Y</i>", true}, {"of the other", true}, {"<i>p</i>", true}, {"smallest seen", true},
+            words("verdict")});
+    for (const MeanTest& t : b.regions) {
+        const bool tested = t.why.empty();
+        const char* verdict = t.differs ? "<b class=\"bad\">differs</b>" : "no difference found";
+        table.row({html::heading(escape(t.region)), html::figure(figures(t.a)), html::figure(figures(t.b)),
+            html::figure(tested ? figures(t.welch.p, 2) : ""), html::figure(tested ? percent(t.smallest, 2) : ""),
+            words(tested ? verdict : escape(t.why))});
+    }
+    return table.str();
+}
+
+std::string places(const BiasResult& b) {
+    if (b.tiles.p.empty()) return {};
+    std::string out = fmt::format(
+        "Tiles: {} tested, {} differ, {} left out because one pixel of one render carries half of their spread.",
+        b.tiles.tested, b.tiles.different, b.tiles.left_out);
+    if (!b.pixel_p.empty()) out += fmt::format(" Pixels: {} tested, {} differ.", b.pixels_tested, b.pixels_different);
+    out += fmt::format(
+        " False discoveries are controlled after {}. A difference that rare events which no render met could make up "
+        "counts as none.",
+        b.dependent ? "Benjamini and Yekutieli, since neighbouring pixels’ noise is correlated"
+                    : "Benjamini and Hochberg");
+    if (!b.reference_error.empty()) out += " The reference’s own error: " + escape(b.reference_error) + ".";
+    return html::p(out);
+}
+
+/// Steps: `counts` over equal bins from low to high; a second series stands on the first.
+std::string histogram(const std::vector<std::uint64_t>& below, const std::vector<std::uint64_t>& above, Axis x,
+    const char* what, const char* title) {
+    std::vector<double> edges, zero, low, high, all{0};
+    const double width = (x.high - x.low) / static_cast<double>(below.size());
+    for (std::size_t k = 0; k < below.size(); ++k) {
+        const double first = static_cast<double>(below[k]),
+                     second = first + (above.empty() ? 0 : static_cast<double>(above[k]));
+        for (const double edge : {x.low + width * static_cast<double>(k), x.low + width * static_cast<double>(k + 1)})
+            edges.push_back(edge), zero.push_back(0), low.push_back(first), high.push_back(second);
+        all.push_back(second);
+    }
+    Chart chart(460, 200, std::move(x), linear_axis(what, all), title);
+    chart.band(edges, zero, low, "c1");
+    if (!above.empty()) chart.band(edges, low, high, "c0");
+    return chart.str();
+}
+
+std::string pixel_histogram(const BiasResult& b) {
+    if (b.pixel_p.empty()) return {};
+    const Axis x{0, 1, false, "p of a pixel", {0, 0.2, 0.4, 0.6, 0.8, 1}};
+    return fmt::format(
+        "<figure class=\"narrow\">{}<figcaption>Over pixels, p is spread evenly where nothing differs and noise is "
+        "near normal; a heap at 0 is a difference, one in the middle or at 1 noise with rare bright "
+        "events.</figcaption></figure>\n",
+        histogram(b.pixel_p, {}, x, "pixels", "Histogram of p over pixels"));
+}
+
+}  // namespace
+
+std::string means_section(const CompareResult& result) {
+    std::string out;
+    for (const BiasResult& b : result.bias) out += region_table(b) + places(b) + pixel_histogram(b);
+    return out;
+}
+
+std::string noise_section(const CompareResult& result) {
+    std::string out;
+    for (const NoiseResult& n : result.noise) {
+        out += html::p(escape(n.sentence));
+        for (const NoiseResult::Histogram& h : n.regions) {
+            if (std::all_of(h.told.begin(), h.told.end(), [](auto c) { return c == 0; }) &&
+                std::all_of(h.rest.begin(), h.rest.end(), [](auto c) { return c == 0; }))
+                continue;
+            const Axis x{-noise_range, noise_range, false,
+                fmt::format("log2 of the variance of {} over that of {}", n.a, n.b), {-4, -2, 0, 2, 4}};
+            out += fmt::format(
+                "<figure class=\"narrow\">{}<figcaption>Tiles of {}: coloured where the ratio is told apart from 1, "
+                "grey where not; the ends hold what lies beyond.</figcaption></figure>\n",
+                histogram(h.told, h.rest, x, "tiles", "Histogram of the variance ratio"), escape(h.region));
+        }
+    }
+    return out;
+}
+
+std::string spectra_section(const Readings& all, const CompareResult& result) {
+    std::string out;
+    for (const PixelSet& set : all.regions) {
+        std::vector<double> values;
+        for (const ArmResult& arm : result.arms)
+            for (const double p : arm.region(set.name).power)
+                if (p > 0) values.push_back(p);
+        if (values.empty()) continue;
+        Axis x{1, static_cast<double>(spectrum_bins), false, "frequency, cycles in 32 pixels", {1, 4, 8, 12, 16}};
+        Chart chart(520, 240, x, log_axis("power of the error of Y", values), "Error spectrum");
+        std::vector<std::string> said;
+        for (std::size_t a = 0; a < result.arms.size(); ++a) {
+            const RegionResult& r = result.arms[a].region(set.name);
+            std::vector<Point> line;
+            for (std::size_t k = 0; k < r.power.size(); ++k) line.push_back({static_cast<double>(k + 1), r.power[k]});
+            if (line.empty()) continue;
+            const std::string colour = fmt::format("c{}", a % 6);
+            chart.line(line, colour), chart.name(line.back(), result.arms[a].name, colour);
+            said.push_back(fmt::format("{}: {} noise", escape(result.arms[a].name), to_string(r.colour)));
+        }
+        out += fmt::format(
+            "<figure>{}<figcaption>Region {}. {}. White noise is level; blue noise rises to the right; filtered noise "
+            "falls.</figcaption></figure>\n",
+            chart.str(), escape(set.name), html::join(said));
+    }
+    return out;
+}
+
+}  // namespace crescent

@@ -1,0 +1,135 @@
+// Maps over the whole frame: how the means of two sides differ, where that is told, and where the noise moved.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/pixel_tests.h"
+#include "compare/plate_parts.h"
+#include "compare/plates.h"
+#include "meters/meters.h"
+#include "plates/words.h"
+#include "report/numbers.h"
+
+namespace crescent {
+
+using namespace plates;
+
+namespace {
+
+Box frame_of(const Readings& all) { return {0, 0, all.width - 1, all.height - 1}; }
+std::size_t pixel(const Readings& all, int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
+}
+
+Rect titled(Canvas& c, const Rect& slot, const std::string& title) {
+    c.text({slot.x, slot.y, slot.w, 30}, title, with(with_px(title_text, 18), Align::centre));
+    return {slot.x, slot.y + 40, slot.w, slot.h - 40};
+}
+
+Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {1, "≥ " + figures(top, 2)}}; }
+
+/// A value a tile, `told` ones in their colour, the others grey; in the left of two slots, or in one.
+Block tile_block(
+    const Readings& all, const Fit& f, const std::vector<double>& value, const std::vector<bool>& told, double top) {
+    return nearest_block(frame_of(all), f, [&](int x, int y) {
+        const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
+        return std::isnan(value[t]) ? ground_bytes : diverging(told[t] ? value[t] / top : 0.0);
+    });
+}
+
+/// The size below which 98 of 100 differences lie, at most a million of them being looked at.
+double scale_of(const Sides& s) {
+    std::vector<double> sizes;
+    const auto& pixels = s.all.regions.back().pixels;
+    const std::size_t step = pixels.size() / 1000000 + 1;
+    for (std::size_t k = 0; k < pixels.size(); k += step)
+        sizes.push_back(std::fabs(s.a.film.y[pixels[k]] - s.b.film.y[pixels[k]]));
+    const double top = quantile(std::move(sizes), 0.98);
+    return top > 0 ? top : 1;
+}
+
+}  // namespace
+
+Picture difference_plate(const Sides& s, const std::string& a, const std::string& b) {
+    Canvas c(sheet_width, sheet_height, ground);
+    header(c, true, fmt::format("mean <i>Y</i> of {} less that of {}", escaped(a), escaped(b)));
+    Rect band = content_band;
+    band.w -= bar_room;
+    const double top = scale_of(s);
+    const Fit f = fit(s.all.width, s.all.height, std::floor(band.w), std::floor(band.h));
+    const auto value = [&](int x, int y) {
+        const std::size_t i = pixel(s.all, x, y);
+        return s.all.bad[i] ? std::nan("") : (s.a.film.y[i] - s.b.film.y[i]) / top;
+    };
+    framed(c, diverging_block(frame_of(s.all), f, value), band);
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour, ends(top));
+    return finished(c,
+        fmt::format(
+            "Orange: {} is brighter. Blue: {} is brighter. Noise is in it: the bias map says what is told apart.",
+            escaped(a), escaped(b)),
+        fmt::format(
+            "means over {} and {} renders; the scale ends at the 98th percentile", s.a.files.size(), s.b.files.size()));
+}
+
+Picture bias_plate(const Sides& s, const BiasResult& found, double alpha) {
+    Canvas c(sheet_width, sheet_height, ground);
+    header(c, true, fmt::format("where mean <i>Y</i> of {} and {} differs", escaped(found.a), escaped(found.b)));
+    Rect band = content_band;
+    band.w -= bar_room;
+    double top = 0;
+    for (std::size_t t = 0; t < found.tiles.p.size(); ++t)
+        if (found.tiles.differs[t]) top = std::max(top, std::fabs(found.tiles.difference[t]));
+    for (const Found& f : found.pixels_found) top = std::max(top, std::fabs(f.a - f.b));
+    top = top > 0 ? top : 1;
+    const bool by_pixel = !found.pixel_p.empty();
+    const Rect left = titled(
+        c, column(band, by_pixel ? 2 : 1, 0), fmt::format("{} of {} tiles", found.tiles.different, found.tiles.tested));
+    const Fit f = fit(s.all.width, s.all.height, std::floor(left.w), std::floor(left.h));
+    framed(c, tile_block(s.all, f, found.tiles.difference, found.tiles.differs, top), left);
+    if (by_pixel) {
+        const Rect right =
+            titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", found.pixels_different, found.pixels_tested));
+        const double level = pixel_level(s, alpha);
+        framed(c,
+            nearest_block(frame_of(s.all), f,
+                [&](int x, int y) {
+                    const std::size_t i = pixel(s.all, x, y);
+                    if (s.all.bad[i]) return ground_bytes;
+                    const bool told = found.pixels_different && pixel_p(s, i, level) <= found.pixel_level;
+                    return diverging(told ? (s.a.film.y[i] - s.b.film.y[i]) / top : 0);
+                }),
+            right);
+    }
+    bar(c, {band.right() + gap, band.y + 40, 24, 360}, signed_colour, ends(top));
+    return finished(c,
+        fmt::format(
+            "Orange: {} is brighter. Blue: {} is brighter. Grey: not told apart.", escaped(found.a), escaped(found.b)),
+        fmt::format(
+            "Welch’s test over renders, false discoveries controlled after {}; tiles of {} × {} pixels, {} left out",
+            found.dependent ? "Benjamini and Yekutieli" : "Benjamini and Hochberg", s.all.tiles.size, s.all.tiles.size,
+            found.tiles.left_out));
+}
+
+Picture noise_plate(const Readings& all, const NoiseResult& n) {
+    Canvas c(sheet_width, sheet_height, ground);
+    header(c, true, fmt::format("log<sub>2</sub> of the variance of {} over that of {}", escaped(n.a), escaped(n.b)));
+    Rect band = content_band;
+    band.w -= bar_room;
+    double top = 1;
+    for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
+        if (n.told_apart[t]) top = std::max(top, std::ceil(std::fabs(n.log2_ratio[t])));
+    const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
+    framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top), band);
+    const auto ratio = [](double log2) {
+        return log2 < 0 ? fmt::format("1/{:.0f}", std::exp2(-log2)) : fmt::format("{:.0f}", std::exp2(log2));
+    };
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour, {{0, ratio(-top)}, {0.5, "1"}, {1, ratio(top)}});
+    return finished(c,
+        fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: not told apart from 1. Ground: one of them has "
+                    "no noise.",
+            escaped(n.a), escaped(n.b)),
+        fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
+}
+
+}  // namespace crescent

@@ -1,0 +1,99 @@
+// Every render twice: means first, then what each says of each region, mask and tile.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+
+#include "compare/first_pass.h"
+#include "compare/schema.h"
+#include "compare/second_pass.h"
+
+namespace crescent {
+
+namespace {
+
+void add_set(Readings& all, PixelSet set, const Place& at) {
+    const bool any = !set.pixels.empty();
+    std::erase_if(set.pixels, [&](std::uint32_t i) { return all.bad[i]; });
+    if (set.pixels.empty())
+        throw InputError(at,
+            fmt::format("{}: expected {}", set.name,
+                any ? "a pixel that is finite in every render" : "a pixel above 0, found none"));
+    all.regions.push_back(std::move(set));
+}
+
+PixelSet boxed(const std::string& name, const Box& box, int width) {
+    PixelSet set{name, box, {}};
+    for (int j = box.y0; j <= box.y1; ++j)
+        for (int i = box.x0; i <= box.x1; ++i) set.pixels.push_back(static_cast<std::uint32_t>(j * width + i));
+    return set;
+}
+
+PixelSet masked(const Readings& all, const MaskPlan& plan) {
+    const Render mask = all.source.read(plan.file, "");
+    if (mask.width != all.width || mask.height != all.height)
+        throw InputError({plan.file, 0, 0},
+            fmt::format("expected {} x {} pixels as the renders have, found {} x {}", all.width, all.height, mask.width,
+                mask.height));
+    PixelSet set{plan.name, {}, {}};
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        if (mask.y(i) > 0) set.pixels.push_back(static_cast<std::uint32_t>(i));
+    return set;
+}
+
+void regions(const ComparePlan& plan, Readings& all) {
+    for (const Region& r : plan.regions) {
+        if (r.box.x1 >= all.width || r.box.y1 >= all.height)
+            throw InputError(r.at,
+                fmt::format("regions.{}.box: expected a box on the image, x from 0 to {} and y from 0 to {}, found "
+                            "[{}, {}, {}, {}]",
+                    r.name, all.width - 1, all.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
+        add_set(all, boxed(r.name, r.box, all.width), r.at);
+    }
+    for (const MaskPlan& m : plan.masks) add_set(all, masked(all, m), m.at);
+    add_set(all, boxed(whole_frame, {0, 0, all.width - 1, all.height - 1}, all.width), {plan.file, 0, 0});
+}
+
+}  // namespace
+
+void each_render(const RenderSource& source, const std::vector<std::string>& paths, const std::string& layer,
+    Watch& watch, const std::function<void(const Render&)>& use) {
+    const auto start = [&](std::size_t k) {
+        return std::async(std::launch::async, [&source, &layer, path = paths[k]] { return source.read(path, layer); });
+    };
+    std::future<Render> next = start(0);
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+        const Render render = next.get();
+        watch.check();
+        if (k + 1 < paths.size()) next = start(k + 1);
+        use(render);
+        watch.advance(1);
+    }
+}
+
+Readings read_all(const ComparePlan& plan, Watch& watch, const RenderSource& source) {
+    Readings all;
+    all.source = source;
+    std::vector<std::vector<std::string>> files;
+    std::size_t total = 0;
+    for (const RenderArm& arm : plan.arms)
+        files.push_back(source.expand(arm.files, arm.at)), total += files.back().size();
+    std::vector<std::string> reference;
+    if (!plan.reference.empty()) reference = source.expand(plan.reference, {plan.file, 0, 0});
+    total += reference.size();
+    watch.begin("first pass: means", static_cast<double>(total));
+    FirstPass first(all, watch);
+    all.arms.resize(plan.arms.size());
+    for (std::size_t a = 0; a < plan.arms.size(); ++a)
+        first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name);
+    if (!reference.empty()) first.arm(all.reference.emplace(), reference, plan.reference_layer, "the reference");
+    all.tiles = Tiles(all.width, all.height);
+    all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
+    regions(plan, all);
+    watch.begin("second pass: what each render says", static_cast<double>(total));
+    for (std::size_t a = 0; a < plan.arms.size(); ++a) second_pass(plan, all, all.arms[a], plan.arms[a].layer, watch);
+    if (all.reference) second_pass(plan, all, *all.reference, plan.reference_layer, watch);
+    return all;
+}
+
+}  // namespace crescent

@@ -1,0 +1,163 @@
+// What compare reads: the forms that renderers write, and what it refuses.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfTiledOutputPart.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include "compare/render.h"
+#include "base/errors.h"
+
+namespace crescent {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A folder that goes with the test.
+class Renders : public ::testing::Test {
+protected:
+    Renders()
+        : folder_(
+              std::filesystem::temp_directory_path() / fmt::format("crescent-compare-{}-{}", ::getpid(), count_++)) {
+        std::filesystem::create_directories(folder_);
+    }
+    ~Renders() override { std::filesystem::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(path(name), std::ios::binary) << bytes;
+        return path(name);
+    }
+
+    std::filesystem::path folder_;
+    static inline int count_ = 0;
+};
+
+std::string bytes_of(const std::vector<float>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+/// Two by two, rows bottom-up: red and green below, blue and white above.
+const std::vector<float> four = {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+
+void expect_four(const Render& r) {
+    ASSERT_EQ(r.width, 2);
+    ASSERT_EQ(r.height, 2);
+    EXPECT_EQ(r.r, (std::vector<float>{1, 0, 0, 1}));
+    EXPECT_EQ(r.g, (std::vector<float>{0, 1, 0, 1}));
+    EXPECT_EQ(r.b, (std::vector<float>{0, 0, 1, 1}));
+}
+
+TEST_F(Renders, ReadPfmRowsFromTheBottom) {
+    expect_four(read_render(write("a.pfm", "PF\n2 2\n-1.0\n" + bytes_of(four))));
+}
+
+TEST_F(Renders, ReadNpyRowsFromTheTop) {
+    std::vector<float> top_down(four.begin() + 6, four.end());
+    top_down.insert(top_down.end(), four.begin(), four.begin() + 6);
+    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2, 3), }";
+    header.resize(117, ' ');
+    expect_four(read_render(
+        write("a.npy", std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header + "\n" + bytes_of(top_down))));
+}
+
+TEST_F(Renders, ReadRadianceHdr) {
+    const std::string one("\x80\0\0\x81", 4), two("\0\x80\0\x81", 4), three("\0\0\x80\x81", 4),
+        all("\x80\x80\x80\x81", 4);
+    expect_four(
+        read_render(write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + three + all + one + two)));
+}
+
+/// Writes planes "R", "G", "B" (prefix before them) of a 2 x 2 picture into a part, tiled or not, with a data window of
+/// its own.
+struct Part {
+    std::string name, prefix;
+    bool tiled = false;
+    Imath::Box2i display{{0, 0}, {1, 1}}, data{{0, 0}, {1, 1}};
+};
+void write_exr(const std::string& path, const std::vector<Part>& parts) {
+    std::vector<Imf::Header> headers;
+    for (const Part& p : parts) {
+        Imf::Header h(p.display, p.data);
+        h.setName(p.name);
+        h.setType(p.tiled ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+        if (p.tiled) h.setTileDescription(Imf::TileDescription(16, 16));
+        for (const char* c : {"R", "G", "B"}) h.channels().insert(p.prefix + c, Imf::Channel(Imf::FLOAT));
+        headers.push_back(h);
+    }
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const int w = parts[k].data.max.x - parts[k].data.min.x + 1;
+        std::vector<float> planes[3];
+        Imf::FrameBuffer buffer;
+        const char* names[] = {"R", "G", "B"};
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (int y = parts[k].data.min.y; y <= parts[k].data.max.y; ++y)
+                for (int x = parts[k].data.min.x; x <= parts[k].data.max.x; ++x)
+                    planes[c].push_back(four[static_cast<std::size_t>(((1 - y) * 2 + x) * 3) + c]);
+            char* base =
+                reinterpret_cast<char*>(planes[c].data()) - 4 * (parts[k].data.min.y * w + parts[k].data.min.x);
+            buffer.insert(parts[k].prefix + names[c], Imf::Slice(Imf::FLOAT, base, 4, static_cast<std::size_t>(4 * w)));
+        }
+        if (parts[k].tiled) {
+            Imf::TiledOutputPart part(file, static_cast<int>(k));
+            part.setFrameBuffer(buffer);
+            part.writeTiles(0, 0, 0, 0);
+        } else {
+            Imf::OutputPart part(file, static_cast<int>(k));
+            part.setFrameBuffer(buffer);
+            part.writePixels(parts[k].data.max.y - parts[k].data.min.y + 1);
+        }
+    }
+}
+
+TEST_F(Renders, ReadOpenExrAsRenderersWriteIt) {
+    write_exr(path("plain.exr"), {{"rgb", ""}});
+    write_exr(path("tiled.exr"), {{"rgb", "", true}});
+    write_exr(path("layers.exr"), {{"rgb", "RenderLayer.Combined."}});
+    write_exr(path("parts.exr"), {{"crypto00", "CryptoObject00."}, {"beauty", ""}, {"N", "normal."}});
+    for (const char* name : {"plain", "tiled", "layers", "parts"}) {
+        SCOPED_TRACE(name);
+        expect_four(read_render(path(std::string(name) + ".exr")));
+    }
+}
+
+TEST_F(Renders, FillTheDisplayWindowFromASmallerDataWindow) {
+    Part p{"rgb", ""};
+    p.data = {{0, 1}, {1, 1}};  // the lower row alone
+    write_exr(path("a.exr"), {p});
+    const Render r = read_render(path("a.exr"));
+    EXPECT_EQ(r.r, (std::vector<float>{1, 0, 0, 0}));
+    EXPECT_EQ(r.g, (std::vector<float>{0, 1, 0, 0}));
+}
+
+TEST_F(Renders, AskWhichLayerIsMeant) {
+    write_exr(path("a.exr"), {{"direct", ""}, {"indirect", ""}});
+    EXPECT_THROW((void)read_render(path("a.exr")), InputError);
+    expect_four(read_render(path("a.exr"), "indirect"));
+    try {
+        (void)read_render(path("a.exr"), "indirekt");
+        FAIL();
+    } catch (const InputError& e) { EXPECT_THAT(e.what(), HasSubstr("did you mean 'indirect'?")); }
+}
+
+TEST_F(Renders, RefusePicturesAndBrokenFiles) {
+    const std::string broken[] = {write("a.png", "\x89PNG\r\n\x1a\n"), write("b.exr", "\x76\x2f\x31\x01 cut off"),
+        write("c.pfm", "PF\n2 2\n-1.0\n12"), write("d.pfm", "PF\n-2 2\n-1.0\n"),
+        write("e.hdr", "#?RADIANCE\n\n-Y 2 +X 2\n"), write("f.npy", std::string("\x93NUMPY\x01\x00\x04\x00{}\n\n", 14)),
+        write("g.txt", "hello"), path("absent.exr")};
+    for (const std::string& file : broken) EXPECT_THROW((void)read_render(file), InputError) << file;
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,15 @@
+// Renders one after another, and what the second walk through them reads.
+#pragma once
+
+#include "compare/renders.h"
+
+namespace crescent {
+
+/// Reads each file in turn and hands it on, the next one being read meanwhile: two renders in memory at a time.
+void each_render(const RenderSource& source, const std::vector<std::string>& paths, const std::string& layer,
+    Watch& watch, const std::function<void(const Render&)>& use);
+
+/// What each render of an arm (or the reference) says of each region and tile; its means must be known.
+void second_pass(const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, Watch& watch);
+
+}  // namespace crescent
