@@ -193,7 +193,7 @@ std::string fault_of(const std::string& command) {
     limits.hello_seconds = limits.quiet_seconds = 0.5;
     try {
         const auto pipe = start_pipe(command, limits);
-        std::vector<Vec2d> u(100, {0.5, 0.5});
+        std::vector<Numbers> u(100, {0.5, 0.5});
         std::vector<Draw> out(100);
         pipe->sample(0, {0, 0, 1}, u, out);
     } catch (const SubjectFault& fault) { return fault.what(); }
@@ -201,8 +201,9 @@ std::string fault_of(const std::string& command) {
 }
 
 TEST(Verdicts, SayWhatAPipeDidWrongAndWhere) {
-    EXPECT_NE(
-        fault_of("sleep 20").find("request 1 ('hello 1'): expected 'hello 1 NAME', got nothing"), std::string::npos);
+    EXPECT_NE(fault_of("sleep 20")
+                  .find("request 1 ('hello 2'): expected 'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME', got nothing"),
+        std::string::npos);
     EXPECT_NE(fault_of("sleep 20 & exit 0").find("the program ended with exit code 0, and what it left running"),
         std::string::npos);
     EXPECT_NE(fault_of("echo hallo").find("got 'hallo'"), std::string::npos);

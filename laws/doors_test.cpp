@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "verdicts/gtest.h"
@@ -43,10 +44,58 @@ struct Throws : Own {
     Drawn sample(V3 wo, V2 u) const { return wo.z < 0.1f ? throw std::runtime_error("no grazing light") : cosine(u); }
 };
 
-static_assert(user::Callable<Own> && !user::TakesThree<Own>);
-static_assert(user::TakesThree<Three>);
-static_assert(!user::Callable<NotConst> && user::CallableIfNotConst<NotConst>);
-static_assert(!user::Callable<V3> && !user::CallableIfNotConst<V3>);
+struct ChooserFirst : Own {
+    Drawn sample(const V3&, float, const V2& u) const { return cosine(u); }
+};
+struct Written : Own {
+    bool sample(V3, const std::array<double, 4>& u, V3& wi, float& pdf) {
+        const Drawn d = cosine({static_cast<float>(u[0]), static_cast<float>(u[1])});
+        wi = d.wi, pdf = d.pdf;
+        return true;
+    }
+};
+struct Sky {
+    Drawn sample(std::span<const float, 2> u) const {
+        const float z = 1 - 2 * u[0], r = std::sqrt(std::max(1 - z * z, 0.0f)), phi = 6.2831853f * u[1];
+        return {{r * std::cos(phi), r * std::sin(phi), z}, 0.079577472f};
+    }
+    float pdf(const V3&) const { return 0.079577472f; }
+};
+/// Padded to four members, with a delta part and three channels, as pbrt's BSDFSample has them.
+struct Coat {
+    struct V4 {
+        float x, y, z, w;
+    };
+    struct Rgb {
+        float r, g, b;
+    };
+    struct Sample {
+        Rgb f;
+        V4 wi;
+        float pdf;
+        bool specular;
+        bool IsSpecular() const { return specular; }
+    };
+    std::optional<Sample> sample(V4 wo, float uc, V2 u) const {
+        if (uc < 0.25f) return Sample{{0.25f / wo.z, 0.25f / wo.z, 0.25f / wo.z}, {-wo.x, -wo.y, wo.z, 0}, 0.25f, true};
+        const Drawn d = cosine(u);
+        const V4 wi{d.wi.x, d.wi.y, d.wi.z, 0};
+        return Sample{f(wo, wi), wi, pdf(wo, wi), false};
+    }
+    float pdf(V4, V4 wi) const { return wi.z > 0 ? 0.75f * wi.z / 3.14159265f : 0; }
+    Rgb f(V4, V4 wi) const { return wi.z > 0 ? Rgb{0.1f, 0.2f, 0.05f} : Rgb{0, 0, 0}; }
+};
+struct NoPdf {
+    Drawn sample(V3, V2 u) const { return cosine(u); }
+};
+
+static_assert(user::Judgeable<Own> && user::numbers<Own>() == 2);
+static_assert(user::Judgeable<Three> && user::numbers<Three>() == 3);
+static_assert(user::numbers<ChooserFirst>() == 3 && user::shares<ChooserFirst>()[1].first == 2);
+static_assert(user::numbers<Written>() == 4 && !user::all_const<Written>() && user::all_const<Own>());
+static_assert(user::without_wo<Sky>() && !user::without_wo<Own>());
+static_assert(user::channels<Coat>() == 3 && user::numbers<Coat>() == 3);
+static_assert(!user::Judgeable<V3>);
 
 Rigour few() {
     Rigour r;
@@ -58,6 +107,13 @@ TEST(Doors, StructsOfOnesOwnAndOptionalDrawsAreTaken) {
     EXPECT_EQ(judge_sampler("own", Own{}, few()).state, State::right);
     EXPECT_THAT(Maybe{}, IsARightSamplerBy(few()));
     EXPECT_EQ(testing::PrintToString(Own{}), "a sampler");
+    EXPECT_THAT(Three{}, IsARightSamplerBy(few()));
+    EXPECT_THAT(NotConst{}, IsARightSamplerBy(few()));
+    EXPECT_THAT(ChooserFirst{}, IsARightSamplerBy(few()));
+    EXPECT_THAT(Written{}, IsARightSamplerBy(few()));
+    EXPECT_THAT(Sky{}, IsARightSamplerBy(few()));
+    EXPECT_THAT(Coat{}, IsARightSamplerBy(few()));
+    EXPECT_THAT(NoPdf{}, IsARightSamplerBy(few()));
 }
 
 TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {

@@ -46,7 +46,7 @@ public:
     };
     Logged(std::mutex& lock, std::vector<Call>& calls) : lock_(lock), calls_(calls) {}
     std::string name() const override { return "logged"; }
-    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         const auto start = std::chrono::steady_clock::now();
         for (std::size_t i = 0; i < u.size(); ++i) out[i] = cosine_.sample(wo, u[i]);
         note(start);
@@ -92,7 +92,7 @@ TEST(OwnSamplers, AreTimedInTurnsWhileNothingElseIsAsked) {
 class Delayed : public JudgedSampler {
 public:
     std::string name() const override { return "answers with its previous draw"; }
-    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = last_;
             last_ = cosine_.sample(wo, u[i]);
@@ -188,7 +188,7 @@ TEST(OwnSamplers, BehindAPipeThatBreaksTouchNoSignal) {
     const auto before = std::signal(SIGPIPE, SIG_DFL);
     try {
         const auto pipe = start_pipe("read hello; echo hello 1 x; read f; echo -; exec <&-; sleep 0.2");
-        std::vector<Vec2d> u(100000, {0.5, 0.5});
+        std::vector<Numbers> u(100000, {0.5, 0.5});
         std::vector<Draw> out(u.size());
         pipe->sample(0, {0, 0, 1}, u, out);
         ADD_FAILURE() << "it answered";

@@ -23,10 +23,10 @@ public:
     Bent(std::shared_ptr<const JudgedSampler> right, Bend bend) : right_(std::move(right)), bend_(std::move(bend)) {}
     std::string name() const override { return right_->name(); }
     int techniques() const override { return right_->techniques(); }
-    void sample(int t, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
-        std::vector<Vec2d> v(u.begin(), u.end());
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        std::vector<Numbers> v(u.begin(), u.end());
         if (bend_.u)
-            for (Vec2d& x : v) x = bend_.u(x);
+            for (Numbers& x : v) x = bend_.u(x);
         right_->sample(t, bend_.wo ? bend_.wo(wo) : wo, v, out);
         for (std::size_t i = 0; i < out.size(); ++i) {
             if (bend_.draw) bend_.draw(wo, v[i], out[i]);

@@ -14,7 +14,7 @@ class FromRecipe : public JudgedSampler {
 public:
     explicit FromRecipe(Recipe r) : recipe_(std::move(r)) {}
     std::string name() const override { return recipe_.family + " (" + recipe_.parameters + ")"; }
-    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) out[i] = recipe_.sample(wo, u[i]);
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {

@@ -15,7 +15,7 @@ namespace crescent {
 /// sample, pdf and f of one sampler; f is left out where the density has no BRDF that it is made for.
 struct Recipe {
     std::string family, parameters;
-    std::function<Draw(Vec3d wo, Vec2d u)> sample;
+    std::function<Draw(Vec3d wo, const Numbers& u)> sample;
     std::function<double(Vec3d wo, Vec3d wi)> pdf, f;
 };
 

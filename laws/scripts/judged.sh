@@ -8,9 +8,9 @@ expect 0 my_sampler/build/my_sampler
 [ ! -e my_sampler/build/my_sampler_test ] || expect 0 my_sampler/build/my_sampler_test
 
 printf '%s\n' '#include "verdicts/user.h"' 'struct V { double x, y, z; };' \
-    'struct S { struct D { V wi; double pdf; }; D sample(V, V) const; double pdf(V, V) const; };' 'auto j = crescent::judge_sampler("s", S{});' >three.cpp
-! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" three.cpp >said 2>&1 || die "a u of three members compiles"
-grep -q "the u of sample(wo, u) has three members" said && [ "$(grep -c 'error:' said)" -eq 1 ] || die "no sentence: $(grep error: said)"
+    'struct S { struct D { V wi; double pdf; }; D sample(V, int) const; double pdf(V, V) const; };' 'auto j = crescent::judge_sampler("s", S{});' >odd.cpp
+! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" odd.cpp >said 2>&1 || die "a u of int compiles"
+grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep -c 'error:' said)" -eq 1 ] || die "no sentence: $(grep error: said)"
 
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
@@ -22,6 +22,20 @@ expect 0 "${CC:-cc}" -O2 -o bright bright.c -lm
 expect 1 "$CRESCENT" check --quiet --exec ./bright
 grep -q "creates energy" printed || die "it does not say that energy is created: $(cat printed)"
 expect 2 "$CRESCENT" check --quiet --exec ./nowhere
+expect 0 "${CC:-cc}" -O2 -o coat "$pipes/coat.c" -lm
+expect 0 "$CRESCENT" check --quiet --exec ./coat --json coat.json
+grep -q '"delta_parts"' coat.json || die "nobody tells of the coat's delta part"
+sed 's/delta %a 1 1 1\\n", -ox, -oy, oz, mirrored/delta %a 1 1 1\\n", -ox, -oy, oz, 1.1 * mirrored/' "$pipes/coat.c" >often.c
+expect 0 "${CC:-cc}" -O2 -o often often.c -lm
+expect 1 "$CRESCENT" check --quiet --exec ./often
+grep -q "not drawn as often as they say" printed || die "a delta part drawn too seldom is not told: $(cat printed)"
+/usr/bin/python3 -c 'import numpy' || die "python3-numpy is missing"
+expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py"
+sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscaled.py
+expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py"
+grep -q "not 2.25 times that" printed || die "nobody says that eta^2 is missing: $(cat printed)"
+expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x colour=3'
+grep -q "unknown key 'colour'; the known ones are u, domain, wo" printed || die "an unknown key is not named: $(cat printed)"
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
 grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"
 

@@ -57,7 +57,7 @@ public:
         if constexpr (paired) return A<float>::techniques;
         else return 1;
     }
-    void sample(int technique, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
+    void sample(int technique, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         const Vec3<float> o = as<float>(wo);
         for (std::size_t i = 0; i < u.size(); ++i) {
             const Drawn<float> d = draw(technique, o, {static_cast<float>(u[i].x), static_cast<float>(u[i].y)});

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "math/distributions.h"
+#include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -121,9 +122,34 @@ std::string coordinates(const Density& d) {
     return d.about_n ? "cos theta x phi about n" : "rings x turns about the lobe";
 }
 
+/// Delta parts are few, and are drawn as often as they say.
+bool deltas_are_wrong(const Work& work, const DeltaParts& deltas, Verdict& v) {
+    if (deltas.parts.empty()) return false;
+    v.evidence["delta_parts"] = evidence_of(deltas);
+    if (deltas.scattered) {
+        v.state = State::wrong;
+        v.say = fmt::format(
+            "Draws that are said to be of delta parts go to more than {} directions or come with as many "
+            "probabilities: what has a density is no delta part.",
+            deltas.parts.size());
+        return true;
+    }
+    const double p = delta_share_p(deltas, work.first(0));
+    v.evidence["p_delta"] = p;
+    if (!work.fails(p, [&](int round) {
+            const Batchful fresh = work.draw(0, round);
+            return delta_share_p(delta_parts(work, fresh), fresh);
+        }))
+        return false;
+    v.state = State::wrong;
+    v.say = "Delta parts are not drawn as often as they say, and again on a fresh seed:" + told(deltas);
+    return true;
+}
+
 }  // namespace
 
 Verdict judge_normalised(const Work& work) {
+    if (!work.traits.has_pdf) return work.verdict("normalised", State::skipped, "There is no pdf(w) to integrate.");
     Verdict v = work.verdict("normalised", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
@@ -147,10 +173,13 @@ Verdict judge_normalised(const Work& work) {
         if (d.second) v.evidence["second_quadrature" + tag] = second ? d.mass.value : d.second->value;
         v.evidence["drawn_nothing" + tag] = d.nothing;
         v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
+        v.evidence["drawn_delta" + tag] = d.delta;
+        const char* rest = d.delta == 0 ? "draw nothing"
+            : d.delta == d.nothing      ? "are of delta parts"
+                                        : "draw nothing or a delta part";
         const std::string told = d.nothing > 0
-            ? fmt::format(
-                  "p integrates to {:.6f} over the sphere and {:.6f} of the samples draw nothing, together {:.6f}",
-                  mass.value, d.nothing, sum)
+            ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples {}, together {:.6f}",
+                  mass.value, d.nothing, rest, sum)
             : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
         const double excess = excess_of(mass);
         bool wrong =
@@ -190,8 +219,15 @@ Verdict judge_normalised(const Work& work) {
 
 Verdict judge_density(Work& work) {
     Verdict v = work.verdict("density", State::right, "");
+    const DeltaParts deltas = delta_parts(work, work.first(0));
+    if (deltas_are_wrong(work, deltas, v)) return v;
+    if (!work.traits.has_pdf) return implied_density(work, std::move(v));
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
+        if (d.mass.value == 0 && !deltas.parts.empty() && work.first(t).deltas == work.first(t).nothing) {
+            v.say = "Every draw is of a delta part, or none." + told(deltas);
+            return v;
+        }
         if (!(d.mass.value > 0) || !std::isfinite(d.mass.value))
             return work.verdict("density", State::skipped,
                 fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
@@ -240,6 +276,7 @@ Verdict judge_density(Work& work) {
             v.settle = "More draws, or a sampler that draws something more often.";
         }
     }
+    v.say += told(deltas);
     return v;
 }
 

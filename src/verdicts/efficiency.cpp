@@ -8,6 +8,7 @@
 #include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/judge.h"
+#include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -43,7 +44,8 @@ Efficiency measure_efficiency(const Work& work, std::size_t trial) {
 namespace {
 
 /// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
-std::optional<double> time_once(const Trial& trial, std::span<const Vec2d> u, std::vector<Draw>& draws, Efficiency& e) {
+std::optional<double> time_once(
+    const Trial& trial, std::span<const Numbers> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
         const auto start = std::chrono::steady_clock::now();
         for (int t = 0; t < trial.subject->techniques(); ++t) trial.subject->sample(t, trial.wo, u, draws);
@@ -58,11 +60,8 @@ std::optional<double> time_once(const Trial& trial, std::span<const Vec2d> u, st
 
 void measure_costs(std::span<const Trial> trials, const Rigour& rigour, std::span<Efficiency> all, const Watch& watch) {
     constexpr std::size_t turns = 7, n = 2048;
-    std::vector<Vec2d> u(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const Vec2<float> v = draw(seed_of(rigour.seed, 0), 0, i, 0);
-        u[i] = {v.x, v.y};
-    }
+    std::vector<Numbers> u(n);
+    for (std::size_t i = 0; i < n; ++i) u[i] = drawn_numbers(seed_of(rigour.seed, 0), 0, i, 0, Numbers::most);
     std::vector<std::vector<double>> times(all.size());
     std::vector<Draw> draws(n);
     for (std::size_t turn = 0; turn < turns; ++turn)

@@ -10,8 +10,7 @@
 
 /// In place of the bytes of a struct that has no operator<<.
 template <class S>
-    requires(std::is_class_v<S> && crescent::user::Callable<S> && !crescent::user::TakesThree<S> &&
-        !requires(std::ostream& out, const S s) { out << s; })
+    requires(crescent::user::Judgeable<S> && !requires(std::ostream& out, const S s) { out << s; })
 class testing::internal::UniversalPrinter<S> {
 public:
     static void Print(const S&, std::ostream* out) { *out << "a sampler"; }

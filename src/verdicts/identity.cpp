@@ -9,6 +9,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "verdicts/delta.h"
+#include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -78,6 +80,28 @@ Mismatch pdf_twice(const Work& work, int t) {
     return m;
 }
 
+double channel_of(Vec3d v, int c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
+
+/// The weight of one channel beside f cos / p of it.
+Mismatch channel_twice(const Work& work, const Batchful& b, int c) {
+    Mismatch m;
+    work.f_of_drawn(b);
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        const Draw& d = b.draws[i];
+        if (!(d.pdf > 0) || !d.weight || !work.counts(d.wi)) continue;
+        ++m.tried;
+        const double cos = std::fabs(d.wi.z), g = cos / d.pdf, f = channel_of(b.f_channels[i], c),
+                     said = channel_of(d.weights, c), asked = f * g;
+        if (close(said, asked)) continue;
+        if (m.count < 4096 &&
+            close(said, asked,
+                g * f_conditioning(work, work.trial.wo, d.wi, f, c) + 4 * work.grain() * std::fabs(asked) / cos))
+            continue;
+        m.add(said, asked, d.wi);
+    }
+    return m;
+}
+
 /// The sampler's own weight beside f cos / p, and f beside what it ought to be.
 Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
     Mismatch m;
@@ -106,26 +130,34 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
     return m;
 }
 
+std::size_t uneven_deltas(const Work& work, const Batchful& b) {
+    std::size_t out = 0;
+    for (const DeltaPart& p : delta_parts(work, b).parts) out += p.otherwise;
+    return out;
+}
+
 /// The same u in the opposite order: answers that differ come from something else than wo and u.
 struct Repeated {
     std::size_t tried = 0, other = 0;
-    Vec2d u{};
+    Numbers u{};
     Vec3d first{}, again{};
 };
 
 Repeated ask_again(const Work& work, int technique) {
     Repeated out;
-    if (!work.subject.draws_at_will() || work.subject.own_random()) return out;
+    if (!work.subject.draws_at_will() || work.traits.own_random) return out;
     const Batchful& b = work.first(technique);
     out.tried = std::min<std::size_t>(b.u.size(), 256);
-    std::vector<Vec2d> u(b.u.begin(), b.u.begin() + static_cast<std::ptrdiff_t>(out.tried));
+    std::vector<Numbers> u(b.u.begin(), b.u.begin() + static_cast<std::ptrdiff_t>(out.tried));
     std::reverse(u.begin(), u.end());
     std::vector<Draw> again(out.tried);
     work.subject.sample(technique, work.trial.wo, u, again);
     for (std::size_t i = 0; i < out.tried; ++i) {
         const Draw &x = b.draws[i], &y = again[out.tried - 1 - i];
         const bool nothing = !(x.pdf > 0) && !(y.pdf > 0);
-        if (nothing || (x.pdf == y.pdf && x.wi.x == y.wi.x && x.wi.y == y.wi.y && x.wi.z == y.wi.z)) continue;
+        if (nothing && x.delta == y.delta && (x.delta == 0 || length(x.wi - y.wi) == 0)) continue;
+        if ((x.pdf == y.pdf && x.delta == y.delta && x.wi.x == y.wi.x && x.wi.y == y.wi.y && x.wi.z == y.wi.z))
+            continue;
         if (out.other++ > 0) continue;
         out.u = b.u[i];
         out.first = x.wi;
@@ -169,16 +201,23 @@ double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p) {
     return 2 * largest_change(values, p);
 }
 
-double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f) {
+double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f, int channel) {
     const std::vector<Pair> at = nudged(wo, wi, std::max(work.grain(), 0x1p-24));
     std::vector<double> values(at.size());
-    work.subject.f(at, values);
+    if (work.traits.channels == 3) {
+        std::vector<Vec3d> by_channel(at.size());
+        work.subject.f_channels(at, by_channel);
+        for (std::size_t i = 0; i < at.size(); ++i) values[i] = channel_of(by_channel[i], channel);
+    } else {
+        work.subject.f(at, values);
+    }
     return 2 * largest_change(values, f);
 }
 
 Verdict judge_identity(const Work& work) {
     Verdict v = work.verdict("identity", State::right, "");
     double one_to_one = 1;
+    int choosers = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Batchful& b = work.first(t);
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
@@ -187,16 +226,32 @@ Verdict judge_identity(const Work& work) {
             v.evidence["asked_again"] = r.tried;
             v.evidence["answered_otherwise"] = r.other;
             v.say = fmt::format(
-                "The same u gives another answer when it is asked again, {} of {} times; at u = ({:.9g}, {:.9g}) first "
-                "({:.6g}, {:.6g}, {:.6g}), then ({:.6g}, {:.6g}, {:.6g}). "
-                "The sampler is no function of w_o and u: it keeps a state, or answers out of turn.",
-                r.other, r.tried, r.u.x, r.u.y, r.first.x, r.first.y, r.first.z, r.again.x, r.again.y, r.again.z);
+                "The same u gives another answer when it is asked again, {} of {} times; at {} first "
+                "({:.6g}, {:.6g}, {:.6g}), then ({:.6g}, {:.6g}, {:.6g}). The sampler is no function of w_o and u: it "
+                "keeps a "
+                "state, draws random numbers of its own (a sampler that says so, random=own, is judged without what "
+                "needs u), "
+                "or answers out of turn.",
+                r.other, r.tried, told(r.u, work.traits.numbers), r.first.x, r.first.y, r.first.z, r.again.x, r.again.y,
+                r.again.z);
             return v;
         }
-        if (const Mismatch m = pdf_twice(work, t); m.matters())
+        if (const Mismatch m = work.traits.has_pdf ? pdf_twice(work, t) : Mismatch{}; m.matters())
             return wrong(work, v, m, "The pdf that came with the draw", "pdf(w)");
+        if (const std::size_t uneven = uneven_deltas(work, b); uneven > 0) {
+            v.state = State::wrong;
+            v.evidence["uneven_deltas"] = uneven;
+            v.say =
+                fmt::format("{} draws of a delta part come with another weight than the first of that part.", uneven);
+            return v;
+        }
         if (work.subject.has_f()) {
-            if (const Mismatch m = weight_twice(work, b, false); m.matters())
+            for (int c = 0; c < 3 && work.traits.channels == 3 && work.traits.has_pdf; ++c)
+                if (const Mismatch m = channel_twice(work, b, c); m.matters())
+                    return wrong(work, v, m, fmt::format("The weight of channel {}", c + 1), "f cos / p of it");
+            if (const Mismatch m =
+                    work.traits.has_pdf && work.traits.channels == 1 ? weight_twice(work, b, false) : Mismatch{};
+                m.matters())
                 return wrong(work, v, m, "The weight", "f cos / p");
             if (const Mismatch m = work.subject.has_true_f() ? weight_twice(work, b, true) : Mismatch{}; m.matters())
                 return wrong(work, v, m, "f", "the BRDF it claims to be");
@@ -208,13 +263,16 @@ Verdict judge_identity(const Work& work) {
         v.evidence["warp_points" + tag] = warp.usable;
         v.evidence["p_jacobian_is_1" + tag] = warp.one_to_one;
         one_to_one = std::min(one_to_one, warp.one_to_one);
+        choosers = std::max(choosers, warp.choosers);
         if (warp.below >= 3 && static_cast<double>(warp.below) > 5e-3 * static_cast<double>(warp.usable)) {
             v.state = State::wrong;
             v.evidence["smallest_p_jacobian"] = warp.smallest;
             v.say = fmt::format(
-                "p |Jacobian of the warp| is below 1 at {} of {} points, least at u = ({:.4g}, {:.4g}): {:.6g}. The "
-                "sampler is denser there than p says.",
-                warp.below, warp.usable, warp.at.x, warp.at.y, warp.smallest);
+                "p |Jacobian of the warp| is below 1 at {} of {} points, least at {}: {:.6g}. The sampler is denser "
+                "there than p "
+                "says{}.",
+                warp.below, warp.usable, told(warp.at, work.traits.numbers, 4), warp.smallest,
+                work.traits.numbers > 2 ? "; what chooses was held, and its share counts" : "");
             return v;
         }
         v.evidence["steps_of_u" + tag] = warp.steps_tried;
@@ -228,11 +286,18 @@ Verdict judge_identity(const Work& work) {
             return v;
         }
     }
-    v.say = "The pdf with a draw equals pdf(w)";
-    if (work.subject.has_f()) v.say += ", the weight f cos / p";
+    v.say = work.traits.has_pdf ? "The pdf with a draw equals pdf(w)" : "The same u gives the same answer";
+    if (work.subject.has_f() && work.traits.has_pdf)
+        v.say += work.traits.channels == 3 ? ", the weight f cos / p in every channel" : ", the weight f cos / p";
     if (work.subject.techniques() > 1) v.say += ", the MIS weights sum to 1";
-    if (!work.subject.draws_at_will()) v.say += "; the warp itself is not at hand";
-    else if (one_to_one > 0.99) v.say += ", and p |Jacobian of the warp| is 1";
+    if (!work.traits.has_pdf) v.say += "; there is no pdf to hold the warp against";
+    else if (!work.subject.draws_at_will()) v.say += "; the warp itself is not at hand";
+    else if (work.traits.own_random)
+        v.say += "; the sampler draws random numbers of its own, so that the warp was not looked at";
+    else if (choosers > 1) v.say += "; several random numbers choose among lobes, so that the warp was not looked at";
+    else if (one_to_one > 0.99)
+        v.say += choosers > 0 ? ", and p |Jacobian of the warp| is 1 on every branch of the choosing number"
+                              : ", and p |Jacobian of the warp| is 1";
     else v.say += ", and p |Jacobian of the warp| is nowhere below 1";
     v.say += ".";
     return v;

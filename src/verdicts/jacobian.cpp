@@ -18,10 +18,18 @@ constexpr double step = 0x1p-8;
 constexpr double tiny_step = 0x1p-19;
 constexpr int stencil = 11;  // centre, +-h, +-h/2 along each side, and a tiny move along each
 
-std::array<Vec2d, stencil> stencil_at(Vec2d u, double h = step) {
+/// The other numbers are held: what chooses among lobes stays with its choice.
+std::array<Numbers, stencil> stencil_at(const Numbers& centre, double h = step) {
     const double k = h / 2;
-    return {{u, {u.x + h, u.y}, {u.x - h, u.y}, {u.x, u.y + h}, {u.x, u.y - h}, {u.x + k, u.y}, {u.x - k, u.y},
-        {u.x, u.y + k}, {u.x, u.y - k}, {u.x + tiny_step, u.y}, {u.x, u.y + tiny_step}}};
+    constexpr Vec2d none{0, 0};
+    const Vec2d moves[stencil] = {
+        none, {h, 0}, {-h, 0}, {0, h}, {0, -h}, {k, 0}, {-k, 0}, {0, k}, {0, -k}, {tiny_step, 0}, {0, tiny_step}};
+    std::array<Numbers, stencil> out;
+    for (std::size_t i = 0; i < stencil; ++i) {
+        out[i] = centre;
+        out[i].x += moves[i].x, out[i].y += moves[i].y;
+    }
+    return out;
 }
 
 struct Derivative {
@@ -80,7 +88,7 @@ Quadrants quadrants(std::span<const Draw> w, double grain, double h) {
 }
 
 struct Suspect {
-    Vec2d u;
+    Numbers u;
     double p, p_j;
     bool stands = true;
 };
@@ -89,9 +97,9 @@ struct Suspect {
 /// is let go.
 void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects) {
     for (double h = step; h >= 0x1p-18; h /= 4) {
-        std::vector<Vec2d> u;
+        std::vector<Numbers> u;
         for (const Suspect& s : suspects)
-            for (Vec2d v : stencil_at(s.u, h)) u.push_back(v);
+            for (const Numbers& v : stencil_at(s.u, h)) u.push_back(v);
         std::vector<Draw> w(u.size());
         work.subject.sample(technique, work.trial.wo, u, w);
         for (std::size_t i = 0; i < suspects.size(); ++i) {
@@ -104,38 +112,59 @@ void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects
     }
 }
 
+/// u well inside the square, with their stencils.
+std::vector<Numbers> stencils_of(const Work& work, const Batchful& b, std::size_t wanted) {
+    std::vector<Numbers> u;
+    for (std::size_t i = 0; i < b.u.size() && u.size() < wanted * stencil; ++i) {
+        const Numbers& c = b.u[i];
+        if (std::min({c.x, c.y, 1 - c.x, 1 - c.y}) < 2 * step) continue;
+        if (work.traits.numbers > 2 && !(b.draws[i].pdf > 0)) continue;
+        for (const Numbers& v : stencil_at(c)) u.push_back(v);
+    }
+    return u;
+}
+
+void count_steps(const Work& work, const Derivative& d, std::span<const Draw> w, WarpFinding& out) {
+    for (int axis = 0; axis < 2; ++axis) {
+        const double due = d.along[axis] * tiny_step;
+        if (due < 24 * work.grain()) continue;
+        ++out.steps_tried;
+        if (length(w[9 + static_cast<std::size_t>(axis)].wi - w[0].wi) < 0.2 * due) ++out.stuck;
+    }
+}
+
 }  // namespace
 
 WarpFinding study_warp(const Work& work, int technique) {
     WarpFinding out;
-    if (!work.subject.draws_at_will()) return out;
-    const Batchful& b = work.first(technique);
-    const std::size_t wanted = work.rigour.full ? 8192 : 1024;
-    std::vector<Vec2d> u;
-    for (std::size_t i = 0; i < b.u.size() && u.size() < wanted * stencil; ++i) {
-        const Vec2d c = b.u[i];
-        if (std::min({c.x, c.y, 1 - c.x, 1 - c.y}) < 2 * step) continue;
-        for (Vec2d v : stencil_at(c)) u.push_back(v);
-    }
+    if (!work.subject.draws_at_will() || work.traits.own_random) return out;
+    const bool several = work.traits.numbers > 2;
+    const std::vector<Numbers> u = stencils_of(work, work.first(technique), work.rigour.full ? 8192 : 1024);
     std::vector<Draw> w(u.size());
     work.subject.sample(technique, work.trial.wo, u, w);
-    std::size_t one = 0;
+    std::vector<Derivative> derivatives;
+    std::vector<Numbers> centres;
+    for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
+        derivatives.push_back(derivative(std::span(w).subspan(i, stencil), work.grain()));
+        if (derivatives.back().usable) centres.push_back(u[i]);
+    }
+    const Branches branches = several ? follow_branches(work, technique, centres) : Branches{};
+    out.choosers = branches.choosers;
+    std::size_t one = 0, next = 0;
     std::vector<Suspect> suspects;
     for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
-        const Derivative d = derivative(std::span(w).subspan(i, stencil), work.grain());
+        const Derivative& d = derivatives[i / stencil];
         if (!d.usable) continue;
+        const double share = several ? branches.share[next++] : 1;
+        count_steps(work, d, std::span(w).subspan(i, stencil), out);
+        if (!(share > 0)) continue;
         ++out.usable;
-        out.points.push_back({w[i].wi, d.j, d.error});
-        const double pj = w[i].pdf * d.j, allowed = 5e-4 + 2 * d.error;
-        if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf, pj});
+        out.points.push_back({w[i].wi, d.j / share, d.error});
+        const double pj = w[i].pdf * d.j / share, allowed = 5e-4 + 2 * d.error + branches.known_to / share;
+        if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf / share, pj});
         if (std::fabs(pj - 1) <= allowed) ++one;
-        for (int axis = 0; axis < 2; ++axis) {
-            const double due = d.along[axis] * tiny_step;
-            if (due < 24 * work.grain()) continue;
-            ++out.steps_tried;
-            if (length(w[i + 9 + static_cast<std::size_t>(axis)].wi - w[i].wi) < 0.2 * due) ++out.stuck;
-        }
     }
+    if (!work.traits.has_pdf) return out;
     look_closer(work, technique, suspects);
     for (const Suspect& s : suspects) {
         if (!s.stands) continue;

@@ -171,7 +171,8 @@ std::uint64_t count_tests(std::span<const Trial> trials) {
     std::uint64_t tests = 0;
     for (const Trial& t : trials)
         if (!t.yardstick)
-            tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0);
+            tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0) +
+                (t.subject->traits().delta ? 1 : 0);
     return tests;
 }
 

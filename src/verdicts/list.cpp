@@ -152,11 +152,29 @@ Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, doub
     return t;
 }
 
+namespace {
+
+/// The grid of w_o that a sampler answers for: one where it has none, mirrored under the surface too where it takes
+/// both sides.
+std::vector<std::pair<double, double>> grid_for(const Traits& traits, bool full) {
+    if (traits.wo == Traits::Asked::none) return {{0, 0}};
+    std::vector<std::pair<double, double>> grid = wo_grid(full);
+    if (traits.wo != Traits::Asked::both) return grid;
+    for (const auto& [theta, azimuth] : wo_grid(full))
+        if (full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
+    return grid;
+}
+
+}  // namespace
+
 std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full) {
     std::vector<Trial> trials;
-    for (const auto& [theta, azimuth] : wo_grid(full)) {
+    const Traits traits = subject->traits();
+    for (const auto& [theta, azimuth] : grid_for(traits, full)) {
         trials.push_back(trial_of_subject(subject, theta, azimuth));
-        if (!subject->has_f()) continue;
+        const bool can_be_ranked =
+            subject->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::Asked::none;
+        if (!can_be_ranked) continue;  // cosine and uniform reach neither delta parts nor the other side
         const Vec3d wo = tilt(theta, azimuth);
         for (const std::shared_ptr<const JudgedSampler>& peer :
             {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),

@@ -15,6 +15,16 @@ Verdict judge_physics(const Work& work);
 Verdict judge_tail(Work& work);
 Verdict judge_mean(const Work& work);
 
+/// What is wrong with the first of these draws that cannot be used, "" where all can.
+std::string first_fault(const Work& work, int technique, const Batchful& b);
+/// Faults at corners of u, and how often a generator of 24 bits comes upon such a u.
+struct CornerFaults {
+    std::string first;
+    std::size_t count = 0, tried = 0;
+    double chance = 0;  // of one sample
+};
+CornerFaults corner_faults(const Work& work, int technique);
+
 struct Spread {
     double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
 };
@@ -41,7 +51,13 @@ void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::s
 
 /// How far the sampler's p may move when wo and wi move by their own rounding: the largest change over twelve nudges.
 double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
-double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f);
+double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f, int channel = 0);
+
+/// What the draws of a sampler without pdf(w) imply of its density, as a map and a table; see implied.cpp.
+Verdict implied_density(Work& work, Verdict v);
+
+/// More than there is, granted what eta^2 may do to what comes through; says so. See energy.cpp.
+bool creates_energy(const Work& work, const Integral& albedo, Verdict& v);
 
 /// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See
 /// transmission.cpp.
@@ -59,11 +75,20 @@ struct WarpPoint {
 struct WarpFinding {
     std::size_t usable = 0, below = 0;  // points with a trusted |J|, and those with p |J| < 1
     double smallest = 1;                // p |J|
-    Vec2d at{};
+    Numbers at{};
     double one_to_one = 0;                   // share of usable points with p |J| = 1
-    std::vector<WarpPoint> points;           // the usable ones
     std::size_t steps_tried = 0, stuck = 0;  // moves of u by 2^-19 that ought to show, and those that do not
+    std::vector<WarpPoint> points;           // the usable ones
+    int choosers = 0;                        // numbers beside the first two that move the direction
 };
+/// How much of the choosing number leads from each of these u to the same direction; 0: not known, because the
+/// direction follows that number without a jump or several numbers choose. See branches.cpp.
+struct Branches {
+    std::vector<double> share;
+    double known_to = 0;
+    int choosers = 0;
+};
+Branches follow_branches(const Work& work, int technique, std::span<const Numbers> at);
 WarpFinding study_warp(const Work& work, int technique);
 
 }  // namespace crescent

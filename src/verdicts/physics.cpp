@@ -4,6 +4,7 @@
 
 #include "math/functions.h"
 #include "simd/random.h"
+#include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -11,76 +12,93 @@ namespace crescent {
 namespace {
 
 struct Reciprocity {
-    std::size_t tried = 0, broken = 0;
+    std::size_t tried = 0, broken = 0, across = 0;
     Pair worst{};
-    double one = 0, other = 0;
+    double one = 0, other = 0;  // f(a, b), and what f(b, a) makes of it
+    int channel = 0;
 };
 
-/// Pairs at large, and pairs of w_o with what the sampler draws, where a lobe is high.
+/// Directions at large above the surface; below it for odd i, where both sides are asked.
+Vec3d at_large(std::uint64_t i, std::uint32_t which, bool both) {
+    const Vec2<float> u = draw(17, 0, i, which);
+    const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z),
+                 phi = 2 * pi * static_cast<double>(u.y);
+    const bool below = both && (which == 0 ? i & 1 : i & 2);
+    return {sin * math::cos(phi), sin * math::sin(phi), below ? -z : z};
+}
+
+/// Pairs at large, and pairs of w_o with what the sampler draws, where a lobe is high. Those across the surface only
+/// where w_o below it is answered for.
 std::vector<Pair> pairs_of(const Work& work) {
+    const bool both = work.traits.wo == Traits::Asked::both;
     std::vector<Pair> pairs;
-    const auto direction = [](Vec2<float> u) {
-        const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z),
-                     phi = 2 * pi * static_cast<double>(u.y);
-        return Vec3d{sin * math::cos(phi), sin * math::sin(phi), z};
-    };
-    for (std::uint64_t i = 0; i < 256; ++i)
-        pairs.push_back({direction(draw(17, 0, i, 0)), direction(draw(17, 0, i, 1))});
+    for (std::uint64_t i = 0; i < 256; ++i) pairs.push_back({at_large(i, 0, both), at_large(i, 1, both)});
     for (const Draw& d : work.first(0).draws) {
         if (pairs.size() >= 768) break;
-        if (d.pdf > 0 && d.wi.z > 0.02) pairs.push_back({work.trial.wo, normalize(d.wi)});
+        if (d.pdf > 0 && (d.wi.z > 0.02 || (both && d.wi.z < -0.02))) pairs.push_back({work.trial.wo, normalize(d.wi)});
     }
+    if (both && !work.traits.eta)  // how f scales across the surface is not known
+        std::erase_if(pairs, [](const Pair& p) { return p.wo.z * p.wi.z < 0; });
     return pairs;
 }
 
-Reciprocity reciprocity(const Work& work) {
-    Reciprocity out;
-    std::vector<Pair> pairs = pairs_of(work), swapped;
-    for (const Pair& p : pairs) swapped.push_back({p.wi, p.wo});
-    std::vector<double> a(pairs.size()), b(pairs.size());
-    work.subject.f(pairs, a);
-    work.subject.f(swapped, b);
-    double worst = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        ++out.tried;
-        const double off = std::fabs(a[i] - b[i]), size = std::max(std::fabs(a[i]), std::fabs(b[i]));
-        if (off <= 1e-4 * size + 1e-30) continue;
-        const double loose =
-            f_conditioning(work, pairs[i].wo, pairs[i].wi, a[i]) + f_conditioning(work, pairs[i].wi, pairs[i].wo, b[i]);
-        if (off <= 1e-4 * size + loose) continue;
-        ++out.broken;
-        if (off / size <= worst) continue;
-        worst = off / size;
-        out.worst = pairs[i];
-        out.one = a[i];
-        out.other = b[i];
+/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 = (n_below / n_above)^2 from above to
+/// below, for radiance, and one over that for importance (Veach 1997, (5.14)).
+double due_ratio(const Work& work, const Pair& p, int channel) {
+    if (p.wo.z * p.wi.z > 0) return 1;
+    const Vec3d eta = *work.traits.eta;
+    const double eta2 = sqr(channel == 0 ? eta.x : channel == 1 ? eta.y : eta.z);
+    return (p.wo.z > 0) == !work.traits.importance ? eta2 : 1 / eta2;
+}
+
+std::vector<Vec3d> f_of(const Work& work, const std::vector<Pair>& pairs) {
+    std::vector<Vec3d> out(pairs.size());
+    if (work.traits.channels == 3) {
+        work.subject.f_channels(pairs, out);
+    } else {
+        std::vector<double> y(pairs.size());
+        work.subject.f(pairs, y);
+        for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
     return out;
 }
 
-/// More than there is, granted what eta^2 may do to what comes through (transmission.cpp).
-bool creates_energy(const Work& work, const Integral& albedo, Verdict& v) {
-    constexpr double allowed = 1 + 1e-4;
-    const double above = work.whole() ? albedo.bins[0] : albedo.value;
-    if (work.whole()) v.evidence["albedo_above"] = above, v.evidence["albedo_below"] = albedo.bins[1];
-    if (above - albedo.error > allowed) {
-        v.state = State::wrong;
-        v.say = fmt::format("The surface reflects {:.6f} of what it gets: f creates energy.", above);
-        return true;
+Reciprocity reciprocity(const Work& work) {
+    Reciprocity out;
+    if (!work.traits.reciprocal) return out;
+    std::vector<Pair> pairs = pairs_of(work), swapped;
+    for (const Pair& p : pairs) swapped.push_back({p.wi, p.wo});
+    const std::vector<Vec3d> one = f_of(work, pairs), two = f_of(work, swapped);
+    double worst = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        ++out.tried;
+        out.across += pairs[i].wo.z * pairs[i].wi.z < 0;
+        bool broken = false;
+        for (int c = 0; c < work.traits.channels; ++c) {
+            const double k = due_ratio(work, pairs[i], c);
+            const double a = k *
+                (c == 0          ? one[i].x
+                        : c == 1 ? one[i].y
+                                 : one[i].z),
+                         b = c == 0 ? two[i].x
+                : c == 1            ? two[i].y
+                                    : two[i].z;
+            const double off = std::fabs(a - b), size = std::max(std::fabs(a), std::fabs(b));
+            if (off <= 1e-4 * size + 1e-30) continue;
+            const double loose = k * f_conditioning(work, pairs[i].wo, pairs[i].wi, a / k, c) +
+                f_conditioning(work, pairs[i].wi, pairs[i].wo, b, c);
+            if (off <= 1e-4 * size + loose) continue;
+            broken = true;
+            if (off / size <= worst) continue;
+            worst = off / size;
+            out.worst = pairs[i];
+            out.one = a / k;
+            out.other = b;
+            out.channel = c;
+        }
+        out.broken += broken;
     }
-    if (!work.whole() || albedo.value - albedo.error <= allowed) return false;
-    for (Vec3d b : drawn_below(work)) {
-        const Integral through = from_below(work, b);
-        v.evidence["from_below"] = through.value;
-        if (through.value - through.error <= allowed) continue;
-        v.state = State::wrong;
-        v.say = fmt::format(
-            "The surface gives {:.6f} of an even light from both sides, and light from ({:.4g}, {:.4g}, {:.4g}) below "
-            "comes up as {:.6f} of itself: f creates energy, whatever the indices are.",
-            albedo.value, b.x, b.y, b.z, through.value);
-        return true;
-    }
-    return false;
+    return out;
 }
 
 }  // namespace
@@ -96,11 +114,14 @@ Verdict judge_physics(const Work& work) {
     v.evidence["albedo_error"] = albedo.error;
     if (r.broken > 0) {
         v.state = State::wrong;
+        const bool across = r.worst.wo.z * r.worst.wi.z < 0;
         v.say = fmt::format(
-            "f is not reciprocal: f(a, b) = {:.6g} but f(b, a) = {:.6g}, with a = ({:.4g}, {:.4g}, {:.4g}), b = "
+            "f is not reciprocal{}: f(a, b) = {:.6g} but f(b, a) = {:.6g}{}, with a = ({:.4g}, {:.4g}, {:.4g}), b = "
             "({:.4g}, {:.4g}, {:.4g}), and for {} of {} pairs.",
-            r.one, r.other, r.worst.wo.x, r.worst.wo.y, r.worst.wo.z, r.worst.wi.x, r.worst.wi.y, r.worst.wi.z,
-            r.broken, r.tried);
+            work.traits.channels == 3 ? fmt::format(" in channel {}", r.channel + 1) : "", r.one, r.other,
+            across ? fmt::format(" and not {:.6g} times that, as the index has it", due_ratio(work, r.worst, r.channel))
+                   : "",
+            r.worst.wo.x, r.worst.wo.y, r.worst.wo.z, r.worst.wi.x, r.worst.wi.y, r.worst.wi.z, r.broken, r.tried);
         return v;
     }
     if (creates_energy(work, albedo, v)) return v;
@@ -108,19 +129,28 @@ Verdict judge_physics(const Work& work) {
     const Spread s = spread(x);
     v.evidence["furnace_mean"] = s.mean;
     v.evidence["furnace_standard_error"] = s.sd / std::sqrt(s.n);
-    v.say = fmt::format("f is reciprocal over {} pairs and reflects {:.6f} of an even light", r.tried,
-        work.whole() ? albedo.bins[0] : albedo.value);
-    if (work.whole())
-        v.say += fmt::format(
-            ", {:.6f} of one from below (reciprocity across the surface is not looked at: the index is not known)",
-            albedo.bins[1]);
+    v.say = work.traits.reciprocal ? fmt::format("f is reciprocal over {} pairs", r.tried)
+                                   : "f is said not to be reciprocal, which was not looked at";
+    const Vec3d mirrored = delta_parts(work, work.first(0)).energy(work.trial.wo.z > 0 ? 1 : -1);
+    if (!work.whole()) {
+        v.say += fmt::format(" and reflects {:.6f} of an even light", albedo.value + luminance(mirrored));
+    } else {
+        const bool over = work.trial.wo.z > 0;
+        v.say += fmt::format(" and reflects {:.6f} of an even light, and lets {:.6f} of one from {} through",
+            albedo.bins[over ? 0 : 1] + luminance(mirrored), albedo.bins[over ? 1 : 0], over ? "below" : "above");
+        if (r.across > 0) v.say += fmt::format(" ({} pairs across the surface, with eta^2)", r.across);
+        else if (work.traits.reciprocal)
+            v.say += work.traits.eta
+                ? " (reciprocity across the surface is not looked at: w_o below it is not answered for)"
+                : " (reciprocity across the surface is not looked at: the index is not known)";
+    }
     const bool even = work.trial.light.fill > 0;  // an arm that aims at disks alone is not asked for an even light
     if (!even || !mean_is_testable(s, tail_of(x), work.trial.theory)) {
         v.say += even ? fmt::format("; the arm's white furnace reads {:.4g}, with too heavy a tail for a test.", s.mean)
                       : ".";
         return v;
     }
-    const Integral reached = work.incoming(Work::Where::reached, true);
+    const Integral reached = due_mean(work, true);
     const double p = mean_p(s, reached);
     v.evidence["furnace_expected"] = reached.value;
     v.evidence["furnace_p"] = p;

@@ -1,10 +1,6 @@
-// A sampler in another process, over its stdin and stdout, one request a line, one answer a line, in order:
-//   hello 1                          -> hello 1 NAME
-//   sample wox woy woz u1 u2         -> wix wiy wiz pdf      (pdf 0: nothing drawn)
-//   pdf wox woy woz wix wiy wiz      -> p
-//   f wox woy woz wix wiy wiz        -> f, without the cosine, or - where the program has no BRDF
-// Local frame, n = +z; decimal or hexadecimal floats, separated by blanks; end of input ends it. Requests run far ahead
-// of the answers, both ways without blocking, so that neither side waits for the other.
+// A sampler in another process, over its stdin and stdout. It is greeted with `hello 2` and says what it is; one that
+// answers `hello 1 NAME` is spoken to in protocol 1, which is protocol 2 without keys. Text lines, or blocks of doubles
+// where it asks for them; docs/verdicts.md has the grammar. Local frame, n = +z; end of input ends it.
 #pragma once
 
 #include <atomic>

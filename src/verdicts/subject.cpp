@@ -32,7 +32,8 @@ double TrialLight::operator()(Vec3d wi) const {
 }
 
 std::string Trial::text() const {
-    std::string s = fmt::format("w_o {:g} deg", theta_deg);
+    const bool any = subject && subject->traits().wo == Traits::Asked::none;
+    std::string s = any ? "no w_o" : fmt::format("w_o {:g} deg", theta_deg);
     if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
     for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
     for (const std::string& part : {brdf, lighting})

@@ -3,6 +3,7 @@
 // Calls come in batches, so that a pipe can be kept full.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,12 +17,43 @@ namespace crescent {
 
 using Vec2d = Vec2<double>;
 
+/// The random numbers of one sample, each in [0, 1): radius and angle first, then as many more as it takes.
+struct Numbers {
+    static constexpr int most = 8;
+    double x = 0, y = 0;
+    std::array<double, most - 2> more{};
+    Numbers() = default;
+    Numbers(double u1, double u2) : x(u1), y(u2) {}
+    Numbers(Vec2d u) : x(u.x), y(u.y) {}
+    double operator[](int k) const { return k == 0 ? x : k == 1 ? y : more[static_cast<std::size_t>(k) - 2]; }
+    double& operator[](int k) { return k == 0 ? x : k == 1 ? y : more[static_cast<std::size_t>(k) - 2]; }
+    operator Vec2d() const { return {x, y}; }
+};
+
+/// What a sampler is, apart from its answers: what it takes, what it gives, and what is known of its surface.
+struct Traits {
+    enum class Asked { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
+    int numbers = 2;                         // random numbers of a sample
+    int channels = 1;                        // of f and of the weight, 1 or 3
+    Asked wo = Asked::upper;
+    bool has_pdf = true;         // false: no pdf(w), and the pdf of a draw is 1 or 0
+    bool own_random = false;     // it draws random numbers of its own: the same u may give another answer
+    bool delta = false;          // some of its draws are of delta parts
+    bool reciprocal = true;      // false: f is known not to be
+    std::optional<Vec3d> eta{};  // index below over above, by channel
+    bool importance = false;     // f is not scaled by eta^2 as radiance is, but the other way
+    int bits = 0;                // of what it computes in: 24, 53; 0: read off the answers
+};
+
 /// A direction and the density it came with; pdf 0: nothing drawn. weight: f cos / p where the sampler itself says it.
 struct Draw {
     Vec3d wi{};
     double pdf = 0;
-    std::optional<double> weight{};
-    std::optional<double> f{};  // where it is known at the draws alone
+    std::optional<double> weight{};  // of three channels: their luminance
+    std::optional<double> f{};       // where it is known at the draws alone
+    /// Not 0: a draw of a delta part, with the probability that it was chosen with; pdf is 0 then, and weight is there.
+    double delta = 0;
+    Vec3d weights{};  // by channel, where there are three and weight is there
 };
 
 /// How much of p's mass about a direction is not known, where p was tabulated.
@@ -46,8 +78,9 @@ class JudgedSampler {
 public:
     virtual ~JudgedSampler() = default;
     virtual std::string name() const = 0;
+    virtual Traits traits() const { return {}; }
     virtual int techniques() const { return 1; }
-    virtual void sample(int technique, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const = 0;
+    virtual void sample(int technique, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const = 0;
     virtual void pdf(int technique, std::span<const Pair> at, std::span<double> out) const = 0;
     /// The same density in double where the sampler has one, for quadrature.
     virtual void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const {
@@ -60,6 +93,12 @@ public:
     virtual bool has_f() const { return false; }
     virtual void f(std::span<const Pair> /*at*/, std::span<double> out) const {
         for (double& v : out) v = 0;
+    }
+    /// f by channel, where there are three; f is their luminance.
+    virtual void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const {
+        std::vector<double> y(out.size());
+        f(at, y);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
     /// What f ought to be where that is known apart from f; the same as f elsewhere.
     virtual bool has_true_f() const { return false; }
@@ -75,8 +114,6 @@ public:
     virtual bool draws_at_will() const { return true; }
     /// What was asked of a program so far, and how long that took.
     virtual Spending spending() const { return {}; }
-    /// It draws random numbers of its own: the same u may give another answer.
-    virtual bool own_random() const { return false; }
     /// Only one thread may call.
     virtual bool serial() const { return false; }
 };
@@ -89,6 +126,9 @@ struct TrialDisk {
     /// How far wi goes until it meets the emitting side.
     std::optional<double> distance(Vec3d wi) const;
 };
+
+/// Rec. 709, linear.
+inline double luminance(Vec3d c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 /// What shines on the surface: an even fill of the upper hemisphere, and disks that hide it and one another.
 struct TrialLight {

@@ -38,8 +38,11 @@ void Work::look_below() {
     for (const Batchful& b : first_)
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
             const Draw& d = b.draws[i];
-            if (!(d.wi.z < 0) || !is_finite(d.wi) || is_nothing(d, b.pdf[i])) continue;
-            if (!subject.has_f() && d.f.value_or(0) > 0) below_ = {true, true, d.wi, *d.f};
+            if (!(d.wi.z < 0) || !is_finite(d.wi)) continue;
+            if (d.delta > 0 && d.weight.value_or(0) > 0) below_ = {true, true, d.wi, 0};
+            if (is_nothing(d, b.pdf[i])) continue;
+            const double told = d.f ? *d.f : d.weight.value_or(0);
+            if (!subject.has_f() && told > 0) below_ = {true, true, d.wi, told};
             if (drawn.size() < 64) drawn.push_back(d.wi);
         }
     if (!subject.has_f()) return;
@@ -52,10 +55,11 @@ void Work::look_below() {
         carrying.push_back(at[i]);
         if (value[i] > below_.f) below_.f = value[i], below_.at = at[i];
     }
-    below_.transmits = !carrying.empty();
-    if (!below_.transmits) return;
+    if (carrying.empty()) return;
+    below_.transmits = true;
     const std::vector<double> p = any_pdf(carrying);
-    below_.reached = !drawn.empty() || std::any_of(p.begin(), p.end(), [](double v) { return v > 0; });
+    below_.reached =
+        below_.reached || !drawn.empty() || std::any_of(p.begin(), p.end(), [](double v) { return v > 0; });
 }
 
 Integral from_below(const Work& work, Vec3d b) {

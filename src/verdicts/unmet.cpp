@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -67,7 +68,7 @@ double bernstein_p(double off, double n, double variance, double range) {
 
 Unmet look_for_unmet(const Work& work, std::span<const double> x, bool even) {
     const Spread s = spread(x);
-    const Integral& expected = work.incoming(Work::Where::reached, even);
+    const Integral expected = due_mean(work, even);
     Unmet out;
     out.largest = s.largest;
     const double threshold = s.largest * (1 + alike);
@@ -109,8 +110,9 @@ const Unmet& Work::unmet(bool even) const {
 }
 
 bool has_unmet_tail(const Work& work, bool even) {
+    if (!work.traits.has_pdf) return false;  // which weights a direction would have is not known
     const Spread s = spread(first_weights(work, even));
-    return mean_p(s, work.incoming(Work::Where::reached, even)) < work.rigour.screen && work.unmet(even).heavy;
+    return mean_p(s, due_mean(work, even)) < work.rigour.screen && work.unmet(even).heavy;
 }
 
 void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::size_t draws) {

@@ -1,166 +1,121 @@
 // Your own sampler, judged. A struct with
 //
-//   sample(wo, u)   -> something with .wi and .pdf (and .weight, if it says f cos / p itself)
-//   pdf(wo, wi)     -> a number, 1/sr
-//   f(wo, wi)       -> a number, 1/sr, without the cosine; optional
+//   sample(wo, u)   -> something with .wi and .pdf (and .weight, if it says f cos / p itself; and .delta: true, or the
+//   probability with
+//                      which a delta part was chosen, for a draw of one, whose .pdf is that probability and whose
+//                      .weight is there)
+//   pdf(wo, wi)     -> a number, 1/sr; left out: the sampler is judged by what is left
+//   f(wo, wi)       -> a number, 1/sr, or three, without the cosine; optional
+//   traits()        -> crescent::Traits: w_o on both sides, the index, random numbers of its own; optional
 //
-// in plain floats or doubles: directions may be std::array<T, 3>, const T*, or a struct {x, y, z}; u std::array<T, 2>,
-// const T* or {x, y}. n = +z; both directions leave the surface. No SIMD, no base class:
+// in plain floats or doubles: directions and u may be arrays, spans, const T* or structs that braces fill. u holds one
+// to eight numbers, in one parameter or several: (wo, u), (wo, uc, u). wi and pdf may be written through references. An
+// environment light has sample(u) and pdf(wi). n = +z; both directions leave the surface. No SIMD, no base class:
 //
 //   crescent::Judgement j = crescent::judge_sampler("mine", MySampler{});
 //
-// It is called from many threads at once, so its members must be const or without state. What it throws is an error,
-// not a fault of the sampler; a std::optional that is empty is nothing drawn.
+// Members that are const are called from many threads at once, others by one. What a sampler throws is an error, not a
+// fault of it; a std::optional that is empty, and false where wi and pdf are written through, is nothing drawn.
 #pragma once
 
-#include <array>
-#include <concepts>
 #include <fmt/format.h>
-#include <utility>
 
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
+#include "verdicts/user_call.h"
 
 namespace crescent {
 
 namespace user {
 
-template <class V> Vec3d direction(const V& v) {
-    if constexpr (requires {
-                      v.x;
-                      v.y;
-                      v.z;
-                  })
-        return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-    else return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-template <class P> double number_of(const P& p) {
-    if constexpr (requires { p.v; }) return static_cast<double>(p.v);
-    else return static_cast<double>(p);
-}
-
-/// The ways in which a direction and a pair of u may be handed over, tried in this order.
-template <class T> struct Arrays {
-    using Direction = std::array<T, 3>;
-    using U = std::array<T, 2>;
-    static Direction give(Vec3d v) { return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)}; }
-    static U give(Vec2d v) { return {static_cast<T>(v.x), static_cast<T>(v.y)}; }
-};
-template <class T> struct Structs {
-    using Direction = Vec3<T>;
-    using U = Vec2<T>;
-    static Direction give(Vec3d v) { return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)}; }
-    static U give(Vec2d v) { return {static_cast<T>(v.x), static_cast<T>(v.y)}; }
-};
-/// Hands over as const T*, which the array below turns into.
-template <class T> struct Pointers {
-    struct Direction {
-        T v[3];
-        operator const T*() const { return v; }
-    };
-    struct U {
-        T v[2];
-        operator const T*() const { return v; }
-    };
-    static Direction give(Vec3d v) { return {{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)}}; }
-    static U give(Vec2d v) { return {{static_cast<T>(v.x), static_cast<T>(v.y)}}; }
-};
-/// Turns into whichever number a struct {x, y, z} of the sampler's own is built from with braces.
-struct Anything {
-    double v;
-    template <std::floating_point T> operator T() const { return static_cast<T>(v); }
-};
-struct Braces {};
-template <class S, class G>
-concept Takes = requires(const S s, typename G::Direction w, typename G::U u) {
-    s.sample(w, u);
-    s.pdf(w, w);
-};
-template <class S> auto way() {
-    if constexpr (Takes<S, Structs<double>>) return Structs<double>{};
-    else if constexpr (Takes<S, Arrays<double>>) return Arrays<double>{};
-    else if constexpr (Takes<S, Pointers<double>>) return Pointers<double>{};
-    else if constexpr (Takes<S, Structs<float>>) return Structs<float>{};
-    else if constexpr (Takes<S, Arrays<float>>) return Arrays<float>{};
-    else if constexpr (Takes<S, Pointers<float>>) return Pointers<float>{};
-    else return Braces{};
-}
-template <class S> using Way = decltype(way<S>());
-
-template <class S> auto sample(const S& s, Vec3d wo, Vec2d u) {
-    using G = Way<S>;
-    if constexpr (std::same_as<G, Braces>)
-        return s.sample({Anything{wo.x}, Anything{wo.y}, Anything{wo.z}}, {Anything{u.x}, Anything{u.y}});
-    else return s.sample(G::give(wo), G::give(u));
-}
-template <class S> double pdf(const S& s, const Pair& p) {
-    using G = Way<S>;
-    if constexpr (std::same_as<G, Braces>)
-        return number_of(s.pdf({Anything{p.wo.x}, Anything{p.wo.y}, Anything{p.wo.z}},
-            {Anything{p.wi.x}, Anything{p.wi.y}, Anything{p.wi.z}}));
-    else return number_of(s.pdf(G::give(p.wo), G::give(p.wi)));
-}
-template <class S> constexpr bool has_f() {
-    if constexpr (std::same_as<Way<S>, Braces>) return requires(const S s, Anything a) { s.f({a, a, a}, {a, a, a}); };
-    else return requires(const S s, typename Way<S>::Direction w) { s.f(w, w); };
-}
-template <class S> double f(const S& s, const Pair& p) {
-    using G = Way<S>;
-    if constexpr (std::same_as<G, Braces>)
-        return number_of(s.f({Anything{p.wo.x}, Anything{p.wo.y}, Anything{p.wo.z}},
-            {Anything{p.wi.x}, Anything{p.wi.y}, Anything{p.wi.z}}));
-    else return number_of(s.f(G::give(p.wo), G::give(p.wi)));
-}
-
-// What a struct lacks to be judged, each said in a sentence when it does not compile.
-
-template <class S>
-concept Callable = !std::same_as<Way<S>, Braces> || requires(const S s, Anything a) {
-    s.sample({a, a, a}, {a, a});
-    s.pdf({a, a, a}, {a, a, a});
-};
-/// {x, y, z} where {x, y} is meant would be filled up with 0 without a word.
-template <class S>
-concept TakesThree =
-    requires(const S s, Anything a) { s.sample({a, a, a}, {a, a, a}); } && std::same_as<Way<S>, Braces>;
-template <class S>
-concept CallableIfNotConst = requires(S s, Anything a) { s.sample({a, a, a}, {a, a}); } ||
-    requires(S s, std::array<double, 3> w, std::array<double, 2> u) { s.sample(w, u); } ||
-    requires(S s, std::array<float, 3> w, std::array<float, 2> u) { s.sample(w, u); } ||
-    requires(S s, Vec3d w, Vec2d u) { s.sample(w, u); };
-template <class D>
-concept Optional = requires(const D d) {
-    d.has_value();
-    *d;
-};
-template <class D>
-concept Drawn = requires(const D d) {
-    direction(d.wi);
-    { number_of(d.pdf) } -> std::convertible_to<double>;
-};
-template <class S> consteval void must_be_judgeable() {
-    static_assert(!TakesThree<S>,
-        "the u of sample(wo, u) has three members: a sampler on trial takes two random numbers, std::array<T, 2>, "
-        "const T* or {x, y}; make the third of them, or of one of its own");
-    static_assert(Callable<S> || !CallableIfNotConst<S>,
-        "sample(wo, u) and pdf(wo, wi) must be const: they are called from many threads at once");
-    static_assert(Callable<S> || CallableIfNotConst<S>,
-        "a sampler has sample(wo, u) and pdf(wo, wi), const, in floats or doubles: directions are std::array<T, 3>, "
-        "const T* or a struct {x, y, z}, u is std::array<T, 2>, const T* or {x, y}");
-}
-
-/// Calls; what is thrown becomes a fault with the place at which it was thrown.
-template <class Call> auto guarded(const char* what, Vec3d wo, Vec3d at, Call&& call) {
-    const auto told = [&](const char* why) {
-        return SubjectFault(fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {} = ({:.9g}, {:.9g}{})",
-            what, why, wo.x, wo.y, wo.z, what[0] == 's' ? "u" : "w_i", at.x, at.y,
-            what[0] == 's' ? "" : fmt::format(", {:.9g}", at.z)));
-    };
-    try {
-        return call();
-    } catch (const std::exception& e) { throw told(e.what()); } catch (...) {
-        throw told("something");
+template <class S> consteval bool takes_directions() {
+    if constexpr (!HasPdf<S>) return true;
+    else {
+        using T = typename OfPdf<S>::Parameters;
+        return []<std::size_t... i>(std::index_sequence<i...>) { return (Direction<At<T, i>> && ...); }(
+                   std::make_index_sequence<count_of<T>>{}) &&
+            count_of<T> == (without_wo<S>() ? 1 : 2);
     }
+}
+template <class S> consteval bool takes_numbers() {
+    using T = SampleParameters<S>;
+    if constexpr (read_of<T>() < 1 || written_of<T>() == 1 || written_of<T>() > 3) return false;
+    else {
+        constexpr bool known = []<std::size_t... i>(std::index_sequence<i...>) {
+            return ((Written<At<T, i>> || size_of<At<T, i>>() >= 0) && ...);
+        }(std::make_index_sequence<count_of<T>>{});
+        if constexpr (!known) return false;
+        else return numbers<S>() >= 1 && numbers<S>() <= Numbers::most && (without_wo<S>() || Direction<At<T, 0>>);
+    }
+}
+template <class S> consteval bool gives_draws() {
+    if constexpr (written_of<SampleParameters<S>>() > 0) return true;
+    else
+        return requires(const Result<S> d) { direction(d.wi); } &&
+            (!HasPdf<S> || requires(const Result<S> d) { number_of(d.pdf); });
+}
+template <class S> consteval bool judgeable() {
+    if constexpr (!HasSample<S>) return false;
+    else if constexpr (!takes_numbers<S>()) return false;
+    else return takes_directions<S>() && gives_draws<S>();
+}
+template <class S>
+concept Judgeable = std::is_class_v<S> && judgeable<S>();
+
+/// What a struct lacks to be judged, said in a sentence when it does not compile.
+template <class S> consteval bool must_be_judgeable() {
+    static_assert(HasSample<S>,
+        "a sampler has sample(wo, u), one member of that name that is no template: give it a wrapper with one");
+    if constexpr (HasSample<S>) {
+        static_assert(takes_numbers<S>(),
+            "sample takes wo and then one to eight random numbers, sample(wo, u), sample(wo, uc, u) or sample(u): "
+            "directions and u are arrays, spans, const T* or structs of floats or doubles that braces fill; wi and pdf "
+            "may be written through references behind them");
+        if constexpr (takes_numbers<S>()) {
+            static_assert(takes_directions<S>(),
+                "pdf takes (wo, wi), directions in floats or doubles, or (wi) where sample takes no wo");
+            static_assert(gives_draws<S>(),
+                "sample returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional of "
+                "that), or writes wi and pdf through references");
+        }
+    }
+    return judgeable<S>();
+}
+
+template <class S> consteval int channels() {
+    bool three = false;
+    if constexpr (HasF<S>) three = Coloured<Bare<typename OfF<S>::Result>>;
+    if constexpr (written_of<SampleParameters<S>>() == 0) {
+        using D = Result<S>;
+        if constexpr (requires(const D d) { d.weight; })
+            three = three || Coloured<Bare<decltype(std::declval<D>().weight)>>;
+        else if constexpr (requires(const D d) { colour(d.f); })
+            three = three || Coloured<Bare<decltype(std::declval<D>().f)>>;
+    }
+    return three ? 3 : 1;
+}
+template <class S> consteval bool all_const() {
+    bool out = OfSample<S>::is_const;
+    if constexpr (HasPdf<S>) out = out && OfPdf<S>::is_const;
+    if constexpr (HasF<S>) out = out && OfF<S>::is_const;
+    return out;
+}
+template <class S> consteval bool says_weights() {
+    if constexpr (written_of<SampleParameters<S>>() > 0) return written_of<SampleParameters<S>>() > 2;
+    else return TellsWeight<Result<S>>;
+}
+template <class S> Traits traits_of(const S& s) {
+    Traits t;
+    if constexpr (requires {
+                      { s.traits() } -> std::convertible_to<Traits>;
+                  })
+        t = s.traits();
+    t.numbers = numbers<S>();
+    t.channels = channels<S>();
+    t.has_pdf = HasPdf<S>;
+    if constexpr (without_wo<S>()) t.wo = Traits::Asked::none;
+    if constexpr (written_of<SampleParameters<S>>() == 0) t.delta = TellsDelta<Result<S>>;
+    return t;
 }
 
 }  // namespace user
@@ -169,46 +124,67 @@ template <class S> class UserSubject : public JudgedSampler {
 public:
     UserSubject(std::string name, S sampler) : name_(std::move(name)), sampler_(std::move(sampler)) {}
     std::string name() const override { return name_; }
-    void sample(int, Vec3d wo, std::span<const Vec2d> u, std::span<Draw> out) const override {
-        for (std::size_t i = 0; i < u.size(); ++i)
-            out[i] = user::guarded(
-                "sample(wo, u)", wo, {u[i].x, u[i].y, 0}, [&] { return drawn(user::sample(sampler_, wo, u[i])); });
+    Traits traits() const override { return user::traits_of(sampler_); }
+    bool serial() const override { return !user::all_const<S>(); }
+    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            out[i] = called(
+                "sample(wo, u)", wo, [&] { return told(u[i]); }, [&] { return user::sample(sampler_, wo, u[i]); });
+            if (!user::HasPdf<S> && out[i].pdf > 0) out[i].pdf = 1;
+        }
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i)
-            out[i] = user::guarded("pdf(wo, wi)", at[i].wo, at[i].wi, [&] { return user::pdf(sampler_, at[i]); });
-    }
-    bool has_f() const override { return user::has_f<S>(); }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        if constexpr (user::has_f<S>())
+        if constexpr (user::HasPdf<S>)
             for (std::size_t i = 0; i < at.size(); ++i)
-                out[i] = user::guarded("f(wo, wi)", at[i].wo, at[i].wi, [&] { return user::f(sampler_, at[i]); });
-        else JudgedSampler::f(at, out);
+                out[i] = called(
+                    "pdf(wo, wi)", at[i].wo, [&] { return told(at[i].wi); },
+                    [&] { return user::pdf(sampler_, at[i]); });
+        else
+            for (double& p : out) p = 1;
+    }
+    bool has_f() const override { return user::HasF<S>; }
+    bool has_drawn_f() const override { return user::HasF<S> || user::says_weights<S>(); }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        if constexpr (user::HasF<S>)
+            for (std::size_t i = 0; i < at.size(); ++i)
+                out[i] = called(
+                    "f(wo, wi)", at[i].wo, [&] { return told(at[i].wi); }, [&] { return user::f(sampler_, at[i]); });
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        std::vector<Vec3d> by_channel(out.size());
+        f_channels(at, by_channel);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = user::channels<S>() == 3 ? luminance(by_channel[i]) : by_channel[i].x;
     }
 
 private:
-    template <class D> static Draw drawn(const D& d) {
-        if constexpr (user::Optional<D>) {
-            return d.has_value() ? drawn(*d) : Draw{{0, 0, 1}, 0, {}, {}};
-        } else {
-            static_assert(user::Drawn<D>,
-                "sample(wo, u) returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional "
-                "of that)");
-            Draw out{user::direction(d.wi), user::number_of(d.pdf), {}, {}};
-            if constexpr (requires { d.weight; }) out.weight = user::number_of(d.weight);
-            return out;
+    std::string name_;
+    mutable S sampler_;  // called by one thread where a member is not const
+
+    static std::string told(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
+    static std::string told(const Numbers& u) {
+        std::string out = "u = (";
+        for (int k = 0; k < user::numbers<S>(); ++k) out += fmt::format("{}{:.9g}", k ? ", " : "", u[k]);
+        return out + ")";
+    }
+    template <class Where, class Call> static auto called(const char* what, Vec3d wo, Where&& where, Call&& call) {
+        try {
+            return call();
+        } catch (const std::exception& e) { throw fault(what, e.what(), wo, where()); } catch (...) {
+            throw fault(what, "something", wo, where());
         }
     }
-    std::string name_;
-    S sampler_;
+    static SubjectFault fault(const char* what, const char* why, Vec3d wo, const std::string& where) {
+        return SubjectFault(
+            fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {}", what, why, wo.x, wo.y, wo.z, where));
+    }
 };
 
 /// Judges a sampler over a grid of w_o under an even light. Rigour::thorough() looks harder, and takes minutes. Where
 /// `watch` says stop, Interrupted is thrown.
 template <class S>
 Judgement judge_sampler(std::string name, S sampler, const Rigour& rigour = Rigour::quick(), Watch* watch = nullptr) {
-    user::must_be_judgeable<S>();
-    if constexpr (user::Callable<S> && !user::TakesThree<S>) {
+    if constexpr (user::must_be_judgeable<S>()) {
         const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));
         Watch alone;
         return judge(trials_of_subject(subject, rigour.full), rigour, watch ? *watch : alone);

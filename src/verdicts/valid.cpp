@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "math/functions.h"
+#include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -11,21 +12,23 @@ namespace crescent {
 namespace {
 
 std::string told(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
-std::string told(Vec2d u) { return fmt::format("u = ({:.9g}, {:.9g})", u.x, u.y); }
 
 /// What is wrong with one draw, "" if nothing.
 std::string fault_of(const Draw& d, double pdf_there) {
     if (std::isnan(d.pdf)) return "pdf is NaN";
     if (d.pdf < 0) return fmt::format("pdf is {:.9g}, negative", d.pdf);
-    if (std::isinf(d.pdf)) return "pdf is infinite";
+    if (std::isinf(d.pdf)) return "pdf is infinite (a delta part is told apart: see docs/verdicts.md)";
     if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
-    if (d.pdf == 0) return "";
+    if (d.pdf == 0 && d.delta == 0) return "";
+    if (!(d.delta >= 0 && d.delta <= 1)) return fmt::format("a delta part is chosen with probability {:.9g}", d.delta);
+    if (d.delta > 0 && !d.weight) return "a draw of a delta part comes without its weight";
     const double length2 = dot(d.wi, d.wi);
     if (!std::isfinite(length2)) return "the direction is infinite";
     if (std::fabs(std::sqrt(length2) - 1) > 1e-5)
         return fmt::format("the direction {} has length {:.9g}, not 1", told(d.wi), std::sqrt(length2));
     if (!std::isfinite(pdf_there) || pdf_there < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(d.wi), pdf_there);
-    if (d.weight && !std::isfinite(*d.weight)) return fmt::format("the weight at {} is not finite", told(d.wi));
+    if (d.weight && !(std::isfinite(*d.weight) && is_finite(d.weights)))
+        return fmt::format("the weight at {} is not finite", told(d.wi));
     return "";
 }
 
@@ -35,11 +38,13 @@ std::string at_place(const Work& work, const Batchful& b, std::size_t i) {
     return place.empty() ? "" : place + ", ";
 }
 
-std::string fault_of(const Work& work, int technique, const Batchful& b) {
+}  // namespace
+
+std::string first_fault(const Work& work, int technique, const Batchful& b) {
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const std::string fault = fault_of(b.draws[i], b.pdf[i]);
         if (!fault.empty())
-            return fmt::format("{}at {}{}: {}", at_place(work, b, i), told(b.u[i]),
+            return fmt::format("{}at {}{}: {}", at_place(work, b, i), told(b.u[i], work.traits.numbers),
                 work.subject.techniques() > 1 ? fmt::format(" of technique {}", technique + 1) : "", fault);
     }
     if (!work.subject.has_drawn_f()) return "";
@@ -55,48 +60,7 @@ std::string fault_of(const Work& work, int technique, const Batchful& b) {
     return "";
 }
 
-/// The corners of the unit square and a few lines through it, where samplers divide by 0.
-Batchful corners(const Work& work, int technique) {
-    Batchful b;
-    const double ends[] = {0, 0x1p-24, 0.25, 0.5, 0.75, 1 - 0x1p-24};
-    for (double x : ends)
-        for (double y : ends) b.u.push_back({x, y});
-    b.draws.resize(b.u.size());
-    work.subject.sample(technique, work.trial.wo, b.u, b.draws);
-    b.pdf = work.pdf_of_drawn(technique, b.draws);
-    return b;
-}
-
-/// Faults at corners of u, and how often a generator of 24 bits comes upon such a u.
-struct CornerFaults {
-    std::string first;
-    std::size_t count = 0, tried = 0;
-    double chance = 0;  // of one sample
-};
-
-CornerFaults corner_faults(const Work& work, int technique) {
-    CornerFaults out;
-    if (!work.subject.draws_at_will()) return out;
-    const Batchful all = corners(work, technique);
-    const std::size_t side = static_cast<std::size_t>(std::sqrt(static_cast<double>(all.u.size())));
-    std::vector<std::size_t> rows(side), columns(side);
-    for (std::size_t i = 0; i < all.u.size(); ++i) {
-        Batchful one;
-        one.u = {all.u[i]};
-        one.draws = {all.draws[i]};
-        one.pdf = {all.pdf[i]};
-        const std::string fault = fault_of(work, technique, one);
-        if (fault.empty()) continue;
-        if (out.count++ == 0) out.first = fault;
-        ++rows[i / side];
-        ++columns[i % side];
-    }
-    out.tried = all.u.size();
-    for (const auto& lines : {rows, columns})  // a whole side or line of the square, or single points of it
-        for (std::size_t n : lines) out.chance += n == side ? 0x1p-24 : 0;
-    if (out.chance == 0) out.chance = static_cast<double>(out.count) * 0x1p-48;
-    return out;
-}
+namespace {
 
 /// pdf(w) and f(w) all over the sphere, near the horizon on both sides and near the normal, whether drawn or not.
 std::string fault_all_over(const Work& work, int technique) {
@@ -119,6 +83,11 @@ std::string fault_all_over(const Work& work, int technique) {
     return "";
 }
 
+/// Seen from below, a surface that is opaque there.
+bool reflects_nothing(const Work& work) {
+    return work.trial.wo.z < 0 && work.subject.has_f() && work.incoming(Work::Where::everywhere, false).value == 0;
+}
+
 /// What is wrong at corners of u or for a few draws alone leaves the rest to be judged.
 std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
     const CornerFaults at = corner_faults(work, technique);
@@ -136,7 +105,8 @@ std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
         v.evidence["chance_of_a_sample"] = at.chance;
     }
     if (!b.dropped.empty()) {
-        const std::string fault = fmt::format("at {}: {}", told(b.dropped[0].first), fault_of(b.dropped[0].second, 0));
+        const std::string fault =
+            fmt::format("at {}: {}", told(b.dropped[0].first, work.traits.numbers), fault_of(b.dropped[0].second, 0));
         v.say += fmt::format(
             "{}{} of {} draws cannot be used, first {}.", at.count ? " " : "", b.dropped.size(), b.draws.size(), fault);
         if (at.count == 0) v.evidence["first_fault"] = fault;
@@ -151,8 +121,8 @@ std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
 Verdict judge_valid(const Work& work) {
     std::uint64_t draws = 0, drawn = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
-        std::string fault = fault_of(work, t, work.first(t));
-        if (fault.empty() && !work.subject.draws_at_will()) fault = fault_of(work, t, work.draw(t, 1));
+        std::string fault = first_fault(work, t, work.first(t));
+        if (fault.empty() && !work.subject.draws_at_will()) fault = first_fault(work, t, work.draw(t, 1));
         if (fault.empty()) fault = fault_all_over(work, t);
         if (!fault.empty()) {
             Verdict v = work.verdict("valid", State::wrong, "What the sampler returns cannot be used: " + fault + ".");
@@ -161,11 +131,13 @@ Verdict judge_valid(const Work& work) {
         }
         if (std::optional<Verdict> rare = judge_rare_faults(work, t)) return *rare;
         draws += work.first(t).draws.size();
-        for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0;
+        for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0 || d.delta > 0;
     }
-    if (drawn == 0)
+    if (drawn == 0 && !reflects_nothing(work))
         return work.verdict(
             "valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws));
+    if (drawn == 0)
+        return work.verdict("valid", State::right, "No sample draws anything here, and f is 0: nothing to draw.");
     Verdict v = work.verdict("valid", State::right,
         fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of "
                     "u, over {} draws and all over the sphere.",
@@ -176,6 +148,8 @@ Verdict judge_valid(const Work& work) {
 }
 
 Verdict judge_support(const Work& work) {
+    if (!work.traits.has_pdf)
+        return work.verdict("support", State::skipped, "There is no pdf(w) to tell where it is 0.");
     if (!work.subject.has_f())
         return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
     const Work::Below& below = work.below();

@@ -6,6 +6,7 @@
 
 #include "math/functions.h"
 #include "meters/tail.h"
+#include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
 namespace crescent {
@@ -168,7 +169,7 @@ Verdict judge_tail(Work& work) {
             fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", x.size(), s.largest / s.mean);
     if (!infinite && work.subject.has_f() && mean_is_testable(s, tail, theory) && has_unmet_tail(work, false)) {
         v.evidence["samples_for_1_percent"] = "not known";
-        tell_unmet(v, work.unmet(false), work.incoming(Work::Where::reached, false), x.size());
+        tell_unmet(v, work.unmet(false), due_mean(work, false), x.size());
     } else if (!bounded && (infinite || (tail && tail->k - 2 * tail->se >= 0.5))) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
@@ -197,7 +198,7 @@ Verdict judge_mean(const Work& work) {
             work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with."
                                        : "There is no BRDF, hence no integral to compare the mean with.");
     Verdict v = work.verdict("mean", State::right, "");
-    const Integral expected = work.incoming(Work::Where::reached, false);
+    const Integral expected = due_mean(work, false);
     const std::vector<double> x = first_weights(work, false);
     const Spread s = spread(x);
     v.evidence["mean"] = s.mean;

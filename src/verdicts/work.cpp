@@ -6,6 +6,7 @@
 #include "math/distributions.h"
 #include "math/functions.h"
 #include "simd/random.h"
+#include "verdicts/numbers.h"
 #include "verdicts/recorded.h"
 
 namespace crescent {
@@ -19,8 +20,13 @@ bool multiples_of(std::span<const Draw> draws, double unit) {
     return true;
 }
 
-double grain_of(std::span<const Draw> all) {
-    const std::span<const Draw> draws = all.first(std::min<std::size_t>(all.size(), 256));
+double grain_of(std::span<const Draw> all, int bits) {
+    if (bits > 0) return bits <= 24 ? 0x1p-24 : 0x1p-50;
+    std::vector<Draw> draws;
+    for (const Draw& d : all) {
+        if (draws.size() == 256) break;
+        if (d.pdf > 0 || d.delta > 0) draws.push_back(d);
+    }
     for (int digits = 3; digits <= 8; ++digits)
         if (multiples_of(draws, math::pow(10.0, -digits))) return 0.5 * math::pow(10.0, -digits);
     for (const Draw& d : draws)
@@ -34,7 +40,7 @@ double grain_of(std::span<const Draw> all) {
 
 bool is_usable(const Draw& d) {
     return std::isfinite(d.pdf) && d.pdf >= 0 && (d.pdf == 0 || is_finite(d.wi)) &&
-        (!d.weight || std::isfinite(*d.weight));
+        (!d.weight || (std::isfinite(*d.weight) && is_finite(d.weights)));
 }
 
 /// Up to one draw in ten thousand hides no other fault: it is put aside, and `valid` tells of it.
@@ -74,9 +80,15 @@ void Rigour::share(std::uint64_t tests) {
 }
 
 Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index)
-    : trial(t), rigour(r), tally(counts), subject(*t.subject), index_(index), seed_(r.seed) {
+    : trial(t),
+      rigour(r),
+      tally(counts),
+      subject(*t.subject),
+      traits(t.subject->traits()),
+      index_(index),
+      seed_(r.seed) {
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
-    grain_ = grain_of(first_[0].draws);
+    grain_ = grain_of(first_[0].draws, traits.bits);
     look_below();
 }
 
@@ -95,16 +107,14 @@ Batchful Work::draw(int technique, int round) const {
         const std::uint32_t seed = seed_of(seed_, static_cast<std::uint32_t>(round) * 7919u);
         b.u.resize(n);
         b.draws.resize(n);
-        for (std::uint64_t i = 0; i < n; ++i) {
-            const Vec2<float> u = crescent::draw(seed, index_, i, static_cast<std::uint32_t>(technique));
-            b.u[i] = {u.x, u.y};
-        }
+        for (std::uint64_t i = 0; i < n; ++i)
+            b.u[i] = drawn_numbers(seed, index_, i, static_cast<std::uint32_t>(technique), traits.numbers);
         subject.sample(technique, trial.wo, b.u, b.draws);
     }
     drop_unusable(b);
     b.pdf = pdf_of_drawn(technique, b.draws);
     for (std::size_t i = 0; i < b.draws.size(); ++i)
-        if (is_nothing(b.draws[i], b.pdf[i])) ++b.nothing;
+        if (is_nothing(b.draws[i], b.pdf[i])) ++b.nothing, b.deltas += b.draws[i].delta > 0;
     return b;
 }
 
@@ -117,11 +127,18 @@ const std::vector<double>& Work::f_of_drawn(const Batchful& b) const {
     }
     for (const Draw& d : b.draws)
         if (d.pdf > 0 && counts(d.wi) && is_finite(d.wi)) wi.push_back(d.wi);
-    const std::vector<double> value = f(wi);
+    const bool coloured = traits.channels == 3;
+    const std::vector<Vec3d> by_channel = coloured ? f_channels(wi) : std::vector<Vec3d>{};
+    const std::vector<double> value = coloured ? std::vector<double>{} : f(wi);
     b.f.assign(b.draws.size(), 0);
+    b.f_channels.assign(coloured ? b.draws.size() : 0, Vec3d{});
     std::size_t next = 0;
-    for (std::size_t i = 0; i < b.draws.size(); ++i)
-        if (b.draws[i].pdf > 0 && counts(b.draws[i].wi) && is_finite(b.draws[i].wi)) b.f[i] = value[next++];
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        if (!(b.draws[i].pdf > 0) || !counts(b.draws[i].wi) || !is_finite(b.draws[i].wi)) continue;
+        if (coloured) b.f_channels[i] = by_channel[next];
+        b.f[i] = coloured ? luminance(by_channel[next]) : value[next];
+        ++next;
+    }
     return b.f;
 }
 
@@ -141,7 +158,8 @@ std::vector<double> Work::pdf_of_drawn(int technique, std::span<const Draw> draw
 std::vector<double> Work::pdf(int technique, std::span<const Vec3d> wi, bool exact) const {
     std::vector<Pair> at(wi.size());
     for (std::size_t i = 0; i < wi.size(); ++i) at[i] = {trial.wo, wi[i]};
-    std::vector<double> out(wi.size());
+    std::vector<double> out(wi.size(), 1.0);
+    if (!traits.has_pdf) return out;  // not known; a draw has 1
     if (exact) subject.exact_pdf(technique, at, out);
     else subject.pdf(technique, at, out);
     return out;
@@ -165,6 +183,20 @@ std::vector<double> Work::f(std::span<const Vec3d> wi, bool truth) const {
     return out;
 }
 
+std::vector<Vec3d> Work::f_channels(std::span<const Vec3d> wi) const {
+    std::vector<Pair> at(wi.size());
+    for (std::size_t i = 0; i < wi.size(); ++i) at[i] = {trial.wo, wi[i]};
+    std::vector<Vec3d> out(wi.size());
+    subject.f_channels(at, out);
+    return out;
+}
+
+std::vector<double> Work::f_of_channel(std::span<const Vec3d> wi, int channel) const {
+    std::vector<double> out;
+    for (Vec3d v : f_channels(wi)) out.push_back(channel == 0 ? v.x : channel == 1 ? v.y : v.z);
+    return out;
+}
+
 std::vector<double> Work::weights(std::span<const Batchful> techniques, bool even) const {
     std::vector<double> x(techniques[0].draws.size());
     for (std::size_t t = 0; t < techniques.size(); ++t) {
@@ -176,7 +208,7 @@ std::vector<double> Work::weights(std::span<const Batchful> techniques, bool eve
         const std::vector<double>& value = f_of_drawn(b);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Draw& d = b.draws[i];
-            if (!(d.pdf > 0) || !counts(d.wi)) continue;
+            if (!(d.pdf > 0 || d.delta > 0) || !counts(d.wi)) continue;
             const double of_one = d.weight ? *d.weight : value[i] * std::fabs(d.wi.z) / d.pdf;
             x[i] += mis[i] * of_one * (even ? 1 : light(d.wi));
         }

@@ -42,18 +42,20 @@ struct Tally {
 
 /// Draws of one technique on one seed.
 struct Batchful {
-    std::vector<Vec2d> u;
+    std::vector<Numbers> u;
     std::vector<Draw> draws;
     std::vector<double> pdf;        // pdf(w) asked afterwards, as the sampler's own arithmetic says it
     mutable std::vector<double> f;  // f of every draw above the horizon, once asked for
     std::vector<std::pair<Vec2d, Draw>>
-        dropped;                // draws that cannot be used, too few to matter; a neighbour stands in for each
-    std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0
+        dropped;  // draws that cannot be used, too few to matter; a neighbour stands in for each
+    mutable std::vector<Vec3d> f_channels;  // the same by channel, where there are three
+    std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0; draws of delta parts among them
+    std::uint64_t deltas = 0;   // draws of delta parts
 };
 
 inline bool is_finite(Vec3d w) { return std::isfinite(w.x + w.y + w.z); }
 
-/// Nothing drawn: pdf 0, or a direction under the horizon at which pdf(w) is 0.
+/// Nothing drawn as a density: pdf 0, or a direction under the horizon at which pdf(w) is 0.
 inline bool is_nothing(const Draw& d, double pdf_there) { return !(d.pdf > 0) || (d.wi.z <= 0 && !(pdf_there > 0)); }
 
 /// The bins of one technique's density and their expected mass.
@@ -66,7 +68,8 @@ struct Density {
     std::optional<Integral> second;      // in other coordinates, where the first does not come to one
     std::vector<double> doubt;           // by bin, where p was tabulated; else empty
     double doubts = 0;                   // their sum
-    double nothing = 0, nothing_se = 0;  // share of draws that draw nothing, randomised lattice
+    double nothing = 0, nothing_se = 0;  // share of draws that draw nothing or a delta part, randomised lattice
+    double delta = 0;                    // of these a delta part
     std::size_t bin_of(Vec2d at) const;
 };
 
@@ -87,6 +90,7 @@ public:
     const Rigour& rigour;
     Tally& tally;
     const JudgedSampler& subject;
+    const Traits traits;
 
     /// Fresh draws for another seed; bins and integrals stay.
     void redraw(std::uint32_t seed);
@@ -105,7 +109,7 @@ public:
     };
     const Below& below() const { return below_; }
     /// The whole sphere is judged, not its upper half alone.
-    bool whole() const { return below_.transmits && below_.reached; }
+    bool whole() const { return trial.wo.z < 0 || (below_.transmits && below_.reached); }
     /// Light from wi counts.
     bool counts(Vec3d wi) const { return wi.z > 0 || (wi.z < 0 && whole()); }
     /// Radiance from wi; the fill shines from below too where that counts.
@@ -118,6 +122,8 @@ public:
     /// Sum over techniques.
     std::vector<double> any_pdf(std::span<const Vec3d> wi) const;
     std::vector<double> f(std::span<const Vec3d> wi, bool truth = false) const;
+    std::vector<Vec3d> f_channels(std::span<const Vec3d> wi) const;
+    std::vector<double> f_of_channel(std::span<const Vec3d> wi, int channel) const;
 
     /// X = sum over techniques of w f L cos / p, sample by sample; even: L = 1 in place of the light.
     std::vector<double> weights(std::span<const Batchful> pair, bool even) const;
@@ -130,6 +136,8 @@ public:
     Integral integrate_light(const OfLight& g, bool even) const;
     /// What the screening draws did not meet of the light; looked for once.
     const Unmet& unmet(bool even) const;
+    /// int f |cos| of one channel over what counts.
+    Integral albedo_of(int channel) const;
 
     Verdict verdict(std::string_view name, State state, std::string say) const;
     /// Both stages of a statistical test: p(round) is its p-value on that round's draws.
@@ -151,11 +159,12 @@ private:
     std::vector<Batchful> first_;
     std::vector<Density> density_;
     std::vector<Vec3d> guides_, rims_;
-    std::optional<Vec3d> circle_;  // the axis of a rim that is a circle
+    std::size_t drawn_guides_ = 0;  // the first of the guides
+    std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
     double grain_ = 0;
     mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
     mutable std::array<std::optional<Unmet>, 2> unmet_;        // by even
-    Integral integrate_incoming(Where where, bool even) const;
+    Integral integrate_incoming(Where where, bool even, int channel = -1) const;
     Below below_;
     void look_below();
     void find_guides();

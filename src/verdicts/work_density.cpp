@@ -1,89 +1,22 @@
-// Guides, densities and integrals of a trial: where its lobes stand, what mass each bin should hold, what arrives.
+// Densities of a trial: what mass each bin should hold.
 #include <algorithm>
 #include <cmath>
 
 #include "math/functions.h"
-#include "simd/random.h"
 #include "verdicts/mesh.h"
 #include "verdicts/recorded.h"
 #include "verdicts/work.h"
 
 namespace crescent {
 
-namespace {
-
-constexpr std::size_t fixed_guides = 768;
-
-/// Roberts' R2 sequence: even cover of the unit square, the same for every seed.
-Vec2d r2(std::uint64_t i, Vec2d shift) {
-    const double x = shift.x + 0.7548776662466927 * static_cast<double>(i + 1), y = shift.y + 0.5698402909980532 * static_cast<double>(i + 1);
-    const double top = 1 - 0x1p-24;
-    return {std::min(x - std::floor(x), top), std::min(y - std::floor(y), top)};
-}
-
-/// The axis of the circle on which directions lie: the rim of a cone or a ring, whose jump is then a coordinate line.
-std::optional<Vec3d> axis_of_circle(std::span<const Vec3d> rim) {
-    const Vec3d p = rim[0], normal = cross(rim[rim.size() / 3] - p, rim[2 * rim.size() / 3] - p);
-    if (!(dot(normal, normal) > 1e-12)) return {};
-    const Vec3d axis = normalize(normal);
-    for (Vec3d w : rim)
-        if (std::fabs(dot(w - p, axis)) > 1e-7) return {};
-    return axis;
-}
-
-}  // namespace
-
-/// Where the sampler draws, by an even cover of u, and where a mirror lobe would be, at every scale.
-void Work::find_guides() {
-    for (int t = 0; t < subject.techniques(); ++t) {
-        std::vector<Draw> pilot;
-        if (subject.draws_at_will()) {
-            std::vector<Vec2d> u;
-            for (std::uint64_t i = 0; i < 2048; ++i) u.push_back(r2(i, {0.5, 0.5}));
-            pilot.resize(u.size());
-            subject.sample(t, trial.wo, u, pilot);
-        } else {
-            const auto& all = first_[0].draws;
-            pilot.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(all.size(), 2048)));
-        }
-        for (const Draw& d : pilot)
-            if (d.pdf > 0 && is_finite(d.wi)) guides_.push_back(d.wi);
-        if (subject.draws_at_will()) find_rims(t);
-    }
-    // About the mirror, where lobes stand, and about w_o, where 1 / (w_o.h) has a pole for half vectors along the surface.
-    for (const SphereMap& about : {SphereMap(mirror(trial.wo)), SphereMap(-trial.wo)})
-        for (std::uint64_t i = 0; i < fixed_guides / 2; ++i) {
-            const Vec2d v = r2(i, {0.1, 0.7});
-            guides_.push_back(about.direction({0.5 * math::pow(10.0, -7 * v.x), v.y}));
-        }
-}
-
-/// Where the sides of the unit square go: for most warps the rim of what is drawn, to the last digit.
-void Work::find_rims(int technique) {
-    constexpr int along = 32;
-    std::vector<Vec2d> u;
-    for (double side : {0.0, 1 - 0x1p-24})
-        for (int i = 0; i < along; ++i) {
-            const double v = (i + 0.5) / along;
-            u.push_back({side, v});
-            u.push_back({v, side});
-        }
-    std::vector<Draw> drawn(u.size());
-    subject.sample(technique, trial.wo, u, drawn);
-    for (const Draw& d : drawn)
-        if (d.pdf > 0 && is_finite(d.wi)) rims_.push_back(d.wi);
-    for (std::size_t side = 0; side < 4 && !circle_; ++side) {
-        std::vector<Vec3d> rim;
-        for (std::size_t i = 0; i < along; ++i) {
-            const Draw& d = drawn[(side / 2) * 2 * along + 2 * i + side % 2];
-            if (d.pdf > 0 && is_finite(d.wi)) rim.push_back(d.wi);
-        }
-        if (rim.size() == along) circle_ = axis_of_circle(rim);
-    }
-}
-
 void Work::measure_density() {
     find_guides();
+    if (!traits.has_pdf) {  // bins alone
+        density_.push_back(bins_about({0, 0, 1}, true));
+        density_.back().mass.bins.assign(
+            (density_.back().rings.size() - 1) * static_cast<std::size_t>(rigour.sectors), 0.0);
+        return;
+    }
     for (int t = 0; t < subject.techniques(); ++t) {
         const Batchful& b = first(t);
         Vec3d mean{};
@@ -108,7 +41,8 @@ void Work::measure_density() {
             const Witnesses seen = witnesses_of(t, d);
             const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
             const Effort effort{2.5e-6, 6 * rigour.evaluations, 5e-5};
-            if (std::optional<Integral> mass = integrate_mesh(*mesh, d.rings, d.sectors, about_n, effort, crowd, &seen)) {
+            if (std::optional<Integral> mass =
+                    integrate_mesh(*mesh, d.rings, d.sectors, about_n, effort, crowd, &seen)) {
                 d.mass = std::move(*mass);
                 grant_doubts(t, d);
                 share_nothing(t, d);
@@ -116,13 +50,15 @@ void Work::measure_density() {
                 continue;
             }
         }
-        Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations) : density_about(t, n, true, rigour.evaluations);
+        Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations)
+                          : density_about(t, n, true, rigour.evaluations);
         if (d.mass.error > 5e-5 && circle_) {
             Density other = density_about(t, *circle_, false, rigour.evaluations);
             if (other.mass.error < d.mass.error) d = std::move(other);
         }
         if (d.mass.error > 5e-5) {
-            Density other = sharp ? density_about(t, n, true, rigour.evaluations) : density_about(t, normalize(peak), false, rigour.evaluations);
+            Density other = sharp ? density_about(t, n, true, rigour.evaluations)
+                                  : density_about(t, normalize(peak), false, rigour.evaluations);
             if (other.mass.error < d.mass.error) d = std::move(other);
             if (d.mass.error > 1e-4) d = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations);
         }
@@ -131,14 +67,6 @@ void Work::measure_density() {
             d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
-}
-
-void Work::share_nothing(int technique, Density& d) const {
-    const Batchful& b = first(technique);
-    if (b.nothing > 0 && subject.draws_at_will()) find_nothing(technique, d, rigour.full ? 16384 : 2048);
-    else d.nothing = static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
-    // Too rare to have been met: half a million draws show a share of 5e-5 twenty times over.
-    if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 && d.mass.value < 1 && subject.draws_at_will()) find_nothing(technique, d, 32768);
 }
 
 /// 2 pi p over coordinates about an axis.
@@ -176,14 +104,15 @@ Witnesses Work::witnesses_of(int technique, const Density& d) const {
 
 std::size_t Density::bin_of(Vec2d at) const {
     const auto edge = std::upper_bound(rings.begin(), rings.end(), at.x);
-    const auto ring = std::clamp<std::ptrdiff_t>(edge - rings.begin() - 1, 0, static_cast<std::ptrdiff_t>(rings.size()) - 2);
+    const auto ring =
+        std::clamp<std::ptrdiff_t>(edge - rings.begin() - 1, 0, static_cast<std::ptrdiff_t>(rings.size()) - 2);
     const int sector = at.y > 0 ? std::min(static_cast<int>(at.y * sectors), sectors - 1) : 0;
     return static_cast<std::size_t>(ring * sectors + sector);
 }
 
-/// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral / p's. The bin is
-/// set right by that, as far as its doubt reaches, and is then known to the spread of table / p: twice the standard error of its
-/// mean, and a tenth for draws that do not follow p.
+/// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral /
+/// p's. The bin is set right by that, as far as its doubt reaches, and is then known to the spread of table / p: twice
+/// the standard error of its mean, and a tenth for draws that do not follow p.
 void Work::sharpen(int technique, Density& d) const {
     struct Ratio {
         double n = 0, sum = 0, squares = 0;
@@ -201,7 +130,8 @@ void Work::sharpen(int technique, Density& d) const {
     for (std::size_t k = 0; k < d.doubt.size(); ++k) {
         const Ratio& r = ratio[k];
         if (r.n < 8 || !(d.mass.bins[k] > 0)) continue;
-        const double mean = r.sum / r.n, sd = std::sqrt(std::max(r.squares / r.n - mean * mean, 0.0)), reach = d.doubt[k] / d.mass.bins[k];
+        const double mean = r.sum / r.n, sd = std::sqrt(std::max(r.squares / r.n - mean * mean, 0.0)),
+                     reach = d.doubt[k] / d.mass.bins[k];
         const double right = d.mass.bins[k] / std::clamp(mean, std::max(1 - reach, 0.1), 1 + reach);
         d.mass.value += right - d.mass.bins[k];
         d.mass.bins[k] = right;
@@ -221,7 +151,8 @@ void Work::add_rims(Density& d) const {
     for (double edge : {least, most})
         if (edge > 1e-12 && edge < 2 - 1e-9) d.rings.push_back(edge);
     std::sort(d.rings.begin(), d.rings.end());
-    d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-13; }), d.rings.end());
+    d.rings.erase(
+        std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-13; }), d.rings.end());
 }
 
 /// Rings and sectors about an axis, narrow where draws crowd and where samplers go wrong.
@@ -231,7 +162,7 @@ Density Work::bins_about(Vec3d axis, bool about_n) const {
     d.about_n = about_n;
     d.sectors = rigour.sectors;
     std::vector<double> a;
-    for (Vec3d w : std::span(guides_).first(guides_.size() - fixed_guides)) a.push_back(d.map.coordinates(w).x);
+    for (Vec3d w : std::span(guides_).first(drawn_guides_)) a.push_back(d.map.coordinates(w).x);
     std::sort(a.begin(), a.end());
     d.rings = {0};
     if (!a.empty()) {
@@ -249,7 +180,8 @@ Density Work::bins_about(Vec3d axis, bool about_n) const {
     if (about_n) {
         for (double rim : {0.9, 0.95, 0.99, 1.0}) d.rings.push_back(rim);  // where n.w is small, samplers stop short
         std::sort(d.rings.begin(), d.rings.end());
-        d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-12; }), d.rings.end());
+        d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-12; }),
+            d.rings.end());
     }
     for (double extra : {2 * d.rings.back(), 8 * d.rings.back(), 64 * d.rings.back()})
         if (!about_n && extra < 1.9) d.rings.push_back(extra);
@@ -264,33 +196,13 @@ Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t
     const int rings = static_cast<int>(d.rings.size()) - 1;
     for (int i = 0; i < rings; ++i)
         for (int k = 0; k < d.sectors; ++k)
-            cells.push_back({d.rings[static_cast<std::size_t>(i)], d.rings[static_cast<std::size_t>(i) + 1], double(k) / d.sectors, double(k + 1) / d.sectors,
-                             i * d.sectors + k});
+            cells.push_back({d.rings[static_cast<std::size_t>(i)], d.rings[static_cast<std::size_t>(i) + 1],
+                double(k) / d.sectors, double(k + 1) / d.sectors, i * d.sectors + k});
     const Witnesses witnesses = witnesses_of(technique, d);
-    d.mass = integrate(guided(std::move(cells), d.map, guides_), rings * d.sectors, batch_of(technique, d.map), {edge_mass / 20, evaluations, edge_mass}, &witnesses);
+    d.mass = integrate(guided(std::move(cells), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
+        {edge_mass / 20, evaluations, edge_mass}, &witnesses);
     grant_doubts(technique, d);
     return d;
-}
-
-/// Sixteen random shifts of an even cover give the share of u that draws nothing and its standard error.
-void Work::find_nothing(int technique, Density& d, std::uint64_t n) const {
-    constexpr int shifts = 16;
-    double sum = 0, square = 0;
-    std::vector<Vec2d> u(n);
-    std::vector<Draw> draws(n);
-    for (int k = 0; k < shifts; ++k) {
-        const Vec2<float> shift = crescent::draw(seed_of(rigour.seed, 0x51f7u), index_, static_cast<std::uint64_t>(k), 8u + static_cast<std::uint32_t>(technique));
-        for (std::uint64_t i = 0; i < n; ++i) u[i] = r2(i, {shift.x, shift.y});
-        subject.sample(technique, trial.wo, u, draws);
-        const std::vector<double> p = pdf_of_drawn(technique, draws);
-        double none = 0;
-        for (std::size_t i = 0; i < n; ++i)
-            if (is_nothing(draws[i], p[i])) ++none;
-        sum += none / static_cast<double>(n);
-        square += sqr(none / static_cast<double>(n));
-    }
-    d.nothing = sum / shifts;
-    d.nothing_se = std::sqrt(std::max(square / shifts - sqr(d.nothing), 0.0) / (shifts - 1));
 }
 
 }  // namespace crescent

@@ -60,10 +60,12 @@ void add_disk(
 
 }  // namespace
 
-Integral Work::integrate_incoming(Where where, bool even) const {
+Integral Work::albedo_of(int channel) const { return integrate_incoming(Where::everywhere, true, channel); }
+
+Integral Work::integrate_incoming(Where where, bool even, int channel) const {
     return integrate_light(
         [&](std::span<const Vec3d> wi, std::span<double> out) {
-            const std::vector<double> value = f(wi, true);
+            const std::vector<double> value = channel < 0 ? f(wi, true) : f_of_channel(wi, channel);
             const std::vector<double> p =
                 where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
             for (std::size_t i = 0; i < out.size(); ++i) {

@@ -1,0 +1,103 @@
+// Whether f creates energy: what it reflects and lets through of an even light, by channel. Where the index is told,
+// what comes through is counted as power: radiance scales by (n_o / n_i)^2 across the surface, importance not at all
+// (Veach 1997, section 5.2; Walter et al. 2007, section 5.2). Where it is not, an albedo over the whole sphere may
+// exceed 1 and be right (transmission.cpp).
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/delta.h"
+#include "verdicts/ordered.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr double allowed = 1 + 1e-4;
+
+double channel_of(Vec3d v, int c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
+
+/// What one channel gives to the upper and the lower half, and what that is known to.
+struct Given {
+    double above = 0, below = 0, error = 0;
+};
+
+struct Scales {
+    double through = 1;  // what comes through, as power
+    bool known = false;
+};
+
+Scales scales_of(const Work& work, int channel) {
+    if (!work.traits.eta) return {};
+    const double eta2 = sqr(channel_of(*work.traits.eta, channel));
+    if (work.traits.importance) return {1, true};
+    return {work.trial.wo.z > 0 ? eta2 : 1 / eta2, true};
+}
+
+bool too_much(const Work& work, const Given& g, int channel, const char* tag, Verdict& v) {
+    const bool over = work.trial.wo.z > 0;
+    const double back = over ? g.above : g.below, through = over ? g.below : g.above;
+    if (back - g.error > allowed) {
+        v.state = State::wrong;
+        v.say = fmt::format("The surface reflects {:.6f} of what it gets{}: f creates energy.", back, tag);
+        return true;
+    }
+    const Scales scale = scales_of(work, channel);
+    if (!scale.known || !work.whole()) return false;
+    const double power = back + scale.through * through;
+    v.evidence[fmt::format(
+        "power{}", channel < 0 || work.traits.channels == 1 ? "" : fmt::format("_{}", channel + 1))] = power;
+    if (power - (1 + scale.through) * g.error <= allowed) return false;
+    v.state = State::wrong;
+    v.say = fmt::format(
+        "Of the power that arrives the surface reflects {:.6f} and lets {:.6f} through{}, by the index that is told: f "
+        "creates energy, or scales by eta^2 the wrong way.",
+        back, scale.through * through, tag);
+    return true;
+}
+
+/// Where the index is not known: more than there is, in both ways of counting.
+bool too_much_either_way(const Work& work, const Given& g, Verdict& v) {
+    if (!work.whole() || work.trial.wo.z < 0 || work.traits.eta || g.above + g.below - g.error <= allowed) return false;
+    for (Vec3d b : drawn_below(work)) {
+        const Integral through = from_below(work, b);
+        v.evidence["from_below"] = through.value;
+        if (through.value - through.error <= allowed) continue;
+        v.state = State::wrong;
+        v.say = fmt::format(
+            "The surface gives {:.6f} of an even light from both sides, and light from ({:.4g}, {:.4g}, {:.4g}) below "
+            "comes up as {:.6f} of itself: f creates energy, whatever the indices are.",
+            g.above + g.below, b.x, b.y, b.z, through.value);
+        return true;
+    }
+    return false;
+}
+
+Given given(const Work& work, const Integral& albedo, const DeltaParts& deltas, int channel) {
+    const auto of = [&](Vec3d v) { return channel < 0 ? luminance(v) : channel_of(v, channel); };
+    Given out{work.whole() ? albedo.bins[0] : albedo.value, work.whole() ? albedo.bins[1] : 0, albedo.error};
+    out.above += of(deltas.energy(1));
+    if (work.whole()) out.below += of(deltas.energy(-1));
+    return out;
+}
+
+}  // namespace
+
+bool creates_energy(const Work& work, const Integral& albedo, Verdict& v) {
+    const DeltaParts deltas = delta_parts(work, work.first(0));
+    const Given all = given(work, albedo, deltas, -1);
+    if (work.whole()) v.evidence["albedo_above"] = all.above, v.evidence["albedo_below"] = all.below;
+    if (!deltas.parts.empty()) v.evidence["albedo_of_delta_parts"] = luminance(deltas.energy(0));
+    if (work.traits.channels == 3) {
+        const char* names[] = {" in the first channel", " in the second channel", " in the third channel"};
+        for (int c = 0; c < 3; ++c) {
+            const Integral one = work.albedo_of(c);
+            v.evidence[fmt::format("albedo_{}", c + 1)] = one.value;
+            if (too_much(work, given(work, one, deltas, c), c, names[c], v)) return true;
+        }
+    } else if (too_much(work, all, 0, "", v)) {
+        return true;
+    }
+    return too_much_either_way(work, all, v);
+}
+
+}  // namespace crescent
