@@ -26,10 +26,11 @@ struct RunFlags {
     std::vector<std::string> overrides;  // PATH=VALUE
     std::string out, isa;                // "": the default
     std::string instrument = "cpu";
-    std::string gl_context;      // "": EGL
-    int gl_device = -1;          // -1: a GPU where there is one
-    int seeds = 0, threads = 0;  // 0: the file's; as many as the machine has
-    double keep_after = 10;      // s
+    std::string only, seed_range;  // "metrics,report", "1:8"; "": all
+    std::string gl_context;        // "": EGL
+    int gl_device = -1;            // -1: a GPU where there is one
+    int seeds = 0, threads = 0;    // 0: the file's; as many as the machine has
+    double keep_after = 10;        // s
     bool quiet = false;
 };
 int run(const RunFlags& flags);

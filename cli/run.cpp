@@ -1,4 +1,5 @@
 // crescent run: an experiment file -> films, meters, plates, report.
+#include <cstdio>
 #include <filesystem>
 
 #include "commands.h"
@@ -17,6 +18,7 @@ std::string command_of(const RunFlags& flags) {
     std::string command = "crescent run " + shell_word(flags.file);
     for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
+    if (!flags.seed_range.empty()) command += " --seed-range " + flags.seed_range;
     if (flags.instrument != "cpu") command += " --instrument " + flags.instrument;
     if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;
     if (flags.gl_device >= 0) command += " --gl-device " + std::to_string(flags.gl_device);
@@ -28,9 +30,12 @@ std::string command_of(const RunFlags& flags) {
 int run(const RunFlags& flags) {
     std::vector<std::string> overrides = flags.overrides;
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
+    RunOptions options;
+    if (!flags.only.empty()) options.parts = output_parts(flags.only);
+    if (!flags.seed_range.empty())
+        std::sscanf(flags.seed_range.c_str(), "%d:%d", &options.seeds.first, &options.seeds.last);
     const Experiment experiment = load(flags.file, overrides);
 
-    RunOptions options;
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
     options.threads = flags.threads;
     options.isa = flags.isa;

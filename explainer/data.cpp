@@ -83,6 +83,7 @@ Data collect(const Experiment& experiment, const RunOptions& options, Watch& wat
     data.experiment = experiment;
     data.experiment_hash = fmt::format("{:016x}", hash(experiment));
     data.cast = cast_of(data.experiment);
+    data.experiment.note_evidence = true;  // two shots tell of it where it can be measured
     Measured measured = measure_in_memory(data.experiment, options, watch);
     data.metrics = std::move(measured.metrics);
     data.evidence = std::move(measured.evidence);

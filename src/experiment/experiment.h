@@ -42,9 +42,10 @@ struct Region {
 
 enum class ReferenceKind { quadrature, note };
 
-/// What the meters compare with. Both are computed; `kind` is the one the meters use.
+/// What the meters compare with. The quadrature is always computed.
 struct ReferencePlan {
-    ReferenceKind kind = ReferenceKind::quadrature;
+    ReferenceKind kind = ReferenceKind::quadrature;  // the one that the meters use
+    bool monte_carlo = false;     // whether the note's is computed too where the meters do not use it
     std::uint32_t seed = 0;       // of the note's Monte Carlo reference
     std::uint64_t lobe_spp = 32;  // Phong-sampled lobe x fill
     std::uint64_t disk_spp = 96;  // samples on each disk
@@ -99,6 +100,7 @@ struct Experiment : SceneData {
     int seeds = 1;        // how many seeds the bands are made of; the first is `seed`
     double exposure = 1;
     double firefly_k = 4;
+    bool note_evidence = false;  // whether the note's explanations are put to measurements of their own
     std::vector<ArmPlan> arms;
     std::optional<ExponentControl> exponent;
     std::vector<Region> regions;

@@ -136,6 +136,7 @@ const Shape* subject_shape(const Experiment& experiment) {
 
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, Watch& watch) {
     Evidence out;
+    if (!experiment.note_evidence) return out;
     const bool phong = std::any_of(
         experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
     const Shape* shape = subject_shape(experiment);

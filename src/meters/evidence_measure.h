@@ -8,7 +8,8 @@
 
 namespace crescent {
 
-/// Nothing (empty vectors) where the experiment has no Phong arm or no shape with a Phong lobe.
+/// Nothing (empty vectors) where the experiment does not ask for it, and where it has no Phong arm or no shape with a
+/// Phong lobe.
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, Watch& watch);
 
 }  // namespace crescent

@@ -69,20 +69,24 @@ double rms(const std::vector<float>& a, int width, const Box& box) {
     return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at])); }));
 }
 
-ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm& note, const Region& region,
+ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
     ReferenceMeter m;
     m.s = q.s, m.region = region.name;
-    m.rms_difference = rms_difference(q.y, note.y, q.width, region.box);
-    m.rms_standard_error = rms(note.error, q.width, region.box);
     m.quadrature_error = rms(q.error, q.width, region.box);
+    if (note) {
+        m.rms_difference = rms_difference(q.y, note->y, q.width, region.box);
+        m.rms_standard_error = rms(note->error, q.width, region.box);
+        m.rmse_unlike = 0;
+    }
+    const bool quadrature = used == ReferenceKind::quadrature;
+    ensure(quadrature || note, "the reference that the meters use was computed");
     for (const auto& [key, film] : films) {
         if (key.s != q.s) continue;
-        const double a = rms_difference(film.y, q.y, q.width, region.box),
-                     b = rms_difference(film.y, note.y, q.width, region.box);
-        if (a > 0) m.rmse_unlike = std::max(m.rmse_unlike, std::fabs(b - a) / a);
-        const bool quadrature = used == ReferenceKind::quadrature;
-        const double error = quadrature ? m.quadrature_error : m.rms_standard_error, rmse = quadrature ? a : b;
+        const double a = rms_difference(film.y, q.y, q.width, region.box);
+        const double b = note ? rms_difference(film.y, note->y, q.width, region.box) : a;
+        if (note && a > 0) m.rmse_unlike = std::max(*m.rmse_unlike, std::fabs(b - a) / a);
+        const double error = quadrature ? m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
         if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
     }
     return m;

@@ -20,8 +20,8 @@ double rms_difference(const std::vector<float>& a, const std::vector<float>& b, 
 double rms(const std::vector<float>& a, int width, const Box& box);
 
 /// How far two references of one exponent are apart in a region, and what that does to the RMSE of any of the films;
-/// `used` is the one that the meters use.
-ReferenceMeter compare(const ReferenceFilm& quadrature, const ReferenceFilm& note, const Region& region,
+/// the quadrature's part alone where there is no note's. `used` is the one that the meters use.
+ReferenceMeter compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
 
 /// The value of a meter by its name: rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame.

@@ -88,15 +88,16 @@ struct AssertionResult {
     bool failed() const { return !pass && skipped.empty(); }
 };
 
-/// How far the note's Monte Carlo reference is from the quadrature, per region and exponent.
+/// How good the references are in a region at an exponent, and how far the note's is from the quadrature.
 struct ReferenceMeter {
     double s = 0;
     std::string region;
-    double rms_difference = 0;      // of Y
-    double rms_standard_error = 0;  // what the note's reference says of itself
-    double quadrature_error = 0;    // rms of the quadrature's own stated error
-    double rmse_unlike = 0;         // largest relative change of any arm's RMSE here if the note's reference is used
-    double error_share = 0;         // of the reference that the meters use: its own error over the smallest RMSE here
+    std::optional<double> rms_difference;      // of Y; here and below: none where the note's was not computed
+    std::optional<double> rms_standard_error;  // what the note's reference says of itself
+    double quadrature_error = 0;               // rms of the quadrature's own stated error
+    std::optional<double>
+        rmse_unlike;         // largest relative change of any arm's RMSE here if the note's reference is used
+    double error_share = 0;  // of the reference that the meters use: its own error over the smallest RMSE here
 };
 
 /// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares

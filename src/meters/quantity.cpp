@@ -66,7 +66,7 @@ bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, c
     const bool quadrature = experiment.reference.kind == ReferenceKind::quadrature;
     for (const ReferenceMeter& r : metrics.references)
         if (r.s == s && r.region == q.region &&
-            (quadrature ? r.quadrature_error : r.rms_standard_error) > most_error_share * value)
+            (quadrature ? r.quadrature_error : r.rms_standard_error.value_or(0)) > most_error_share * value)
             return false;
     return true;
 }

@@ -1,5 +1,6 @@
 // metrics.csv: every run in long form, one number a row, in RFC 4180 (CRLF, quotes doubled). The region is empty for
-// the meters of the whole frame. Units are those of meters/metrics.h.
+// the meters of the whole frame; a column follows for each key that --set gave. Units are those of meters/metrics.h.
+#include <algorithm>
 #include <string_view>
 
 #include "report/csv.h"
@@ -12,9 +13,10 @@ namespace {
 struct Rows {
     std::string out;
     std::string run;  // "arm,n,s,seed,", the same for all rows of a run
+    std::string set;  // ",64": a value for each key that --set gave, the same for all rows
 
     void add(std::string_view meter, std::string_view region, const std::string& value) {
-        out += run + csv_field(meter) + "," + csv_field(region) + "," + value + "\r\n";
+        out += run + csv_field(meter) + "," + csv_field(region) + "," + value + set + "\r\n";
     }
     void add(std::string_view meter, std::string_view region, double value) { add(meter, region, shortest(value)); }
 };
@@ -29,11 +31,31 @@ void add_region(Rows& rows, const RegionMeter& r) {
     rows.add("tail_exceedances", r.region, std::to_string(r.tail->exceedances));
 }
 
+/// What --set gave, key by key in the order of first mention; of a key that was given twice the last value, which
+/// holds. The number of seeds is left out: each row is of one seed.
+std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& experiment) {
+    std::vector<std::pair<std::string, std::string>> out;
+    for (const std::string& text : experiment.overrides) {
+        const std::size_t equals = text.find('=');
+        const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
+        if (path == "seeds") continue;
+        const auto known = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);
+        if (known == out.end()) out.emplace_back(path, value);
+        else known->second = value;
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string metrics_csv(const ReportInputs& in) {
     Rows rows;
-    rows.out = "arm,n,s,seed,meter,region,value\r\n";
+    rows.out = "arm,n,s,seed,meter,region,value";
+    for (const auto& [path, value] : overrides_of(in.experiment)) {
+        rows.out += "," + csv_field(path);
+        rows.set += "," + csv_field(value);
+    }
+    rows.out += "\r\n";
     for (const RunMeter& run : in.metrics.runs) {
         rows.run = csv_field(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
             std::to_string(run.key.seed) + ",";

@@ -59,9 +59,9 @@ Json furnace_json(const FurnaceMeter& f) {
 }
 
 Json reference_json(const ReferenceMeter& r) {
-    return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", number(r.rms_difference)},
-        {"rms_standard_error", number(r.rms_standard_error)}, {"quadrature_error", number(r.quadrature_error)},
-        {"rmse_unlike", number(r.rmse_unlike)}, {"error_share", number(r.error_share)}};
+    return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", optional_number(r.rms_difference)},
+        {"rms_standard_error", optional_number(r.rms_standard_error)}, {"quadrature_error", number(r.quadrature_error)},
+        {"rmse_unlike", optional_number(r.rmse_unlike)}, {"error_share", number(r.error_share)}};
 }
 
 Json assertion_json(const AssertionResult& a) {

@@ -74,8 +74,8 @@ void add_summaries(Measured& out) {
         metrics.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
     for (std::size_t e = 0; e < out.quadrature.size(); ++e)
         for (const Region& region : experiment.regions)
-            metrics.references.push_back(
-                compare(out.quadrature[e], out.monte_carlo[e], region, out.films, experiment.reference.kind));
+            metrics.references.push_back(compare(out.quadrature[e],
+                out.monte_carlo.empty() ? nullptr : &out.monte_carlo[e], region, out.films, experiment.reference.kind));
 }
 
 void add_view(Prepared& prepared, Measured& out) {

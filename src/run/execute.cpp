@@ -92,6 +92,8 @@ void add_references(
         watch.begin("reference by quadrature", pixels);
         const std::unique_ptr<TileKeeper> quadrature = keeper("quadrature"), note = keeper("note");
         prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, watch, quadrature.get());
+        const ReferencePlan& asked = plan.experiment.reference;
+        if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
         watch.begin("the note's reference", pixels);
         prepared.monte_carlo =
             note_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, watch, note.get());

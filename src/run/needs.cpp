@@ -39,9 +39,11 @@ std::uint64_t memory_needed(const Experiment& experiment) {
         exponents.insert(job.s);
     }
     const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
+    const ReferencePlan& asked = experiment.reference;
+    const double references = asked.monte_carlo || asked.kind == ReferenceKind::note ? 2 : 1;
     const double again = experiment.seeds > 1 ? most : 0;
     const double a_pixel =
-        film * (rungs + again) + 2 * reference * static_cast<double>(exponents.size()) + working_bytes;
+        film * (rungs + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
     return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + std::min(pixels, primaries_kept) * sizeof(Hit));
 }
 

@@ -8,7 +8,7 @@
 
 namespace crescent {
 
-/// Bytes that a run holds at its largest: the films of its first seed and of one pass more, both references at each
+/// Bytes that a run holds at its largest: the films of its first seed and of one pass more, the references at each
 /// exponent, what the camera sees, and what the program takes for itself.
 std::uint64_t memory_needed(const Experiment& experiment);
 

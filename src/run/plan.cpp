@@ -38,8 +38,8 @@ RunPlan plan(const Experiment& experiment, SeedRange range) {
     out.series = experiment.seeds;
     if (range.last == 0) range.last = experiment.seeds;
     if (range.first < 1 || range.first > range.last || range.last > experiment.seeds)
-        throw InputError({"seed range", 0, 0},
-            fmt::format("expected first:last within 1:{}, the experiment's series, not {}:{}", experiment.seeds,
+        throw InputError({"--seed-range", 0, 0},
+            fmt::format("expected seeds within 1:{}, the series of the experiment, not {}:{}", experiment.seeds,
                 range.first, range.last));
     out.range = range;
     const std::vector<std::uint32_t> series = seeds_of(experiment);

@@ -1,0 +1,35 @@
+// What the files of the command line's grammar share: a command is added to the parser together with what performs it.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+
+namespace crescent::cli {
+
+using Work = std::function<int()>;
+
+/// A command that fills in Flags and then runs `perform`.
+template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* name, const char* means,
+    int (*perform)(const Flags&), std::shared_ptr<Flags>& flags) {
+    flags = std::make_shared<Flags>();
+    CLI::App* sub = app.add_subcommand(name, means);
+    sub->callback([&work, flags, perform] { work = [flags, perform] { return perform(*flags); }; });
+    return sub;
+}
+
+/// What is wrong with the text of a flag, "" where nothing: it is empty; it is no number of seconds from 0 to 1e9.
+std::string told(const std::string& text);
+std::string seconds(const std::string& text);
+
+// Each adds one command; `work` receives what performs it once the parser met it.
+void add_run(CLI::App& app, Work& work);
+void add_film(CLI::App& app, Work& work);
+void add_check(CLI::App& app, Work& work);
+void add_compare(CLI::App& app, Work& work);
+
+}  // namespace crescent::cli

@@ -1,0 +1,74 @@
+// The flags of `crescent check`.
+#include "crescent.h"
+#include "grammar.h"
+
+namespace crescent::cli {
+
+namespace {
+
+constexpr const char* check_footer = R"(Nine verdicts, in order: valid, support, normalised, density, identity, physics,
+tail, mean, efficiency. Without ARM the whole list is judged, and 0 means that every
+arm gets what the list expects of it. Else: 0 right, 1 wrong, 3 error (the sampler
+crashed, fell silent or spoke another language), 4 inconclusive: something could not
+be told, or was not looked at. Wrong comes before error, error before inconclusive.
+docs/verdicts.md says what each verdict means and how --exec is spoken to.)";
+
+}  // namespace
+
+void add_check(CLI::App& app, Work& work) {
+    std::shared_ptr<CheckFlags> f;
+    CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
+    c->footer(check_footer);
+    auto* arm = c->add_option("ARM", f->arm, "a sampler of the list; without it, all")->type_name("");
+    auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
+                    ->type_name("KEY=VALUE")
+                    ->take_all()
+                    ->expected(1)
+                    ->allow_extra_args(false);
+    auto* quick = c->add_flag("--quick", f->quick, "seconds an arm (the default)");
+    c->add_flag("--full", f->full, "minutes: more directions, more draws")->excludes(quick);
+    c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")->type_name("P");
+    c->add_option("--seed", f->seed, "default 1")->type_name("N");
+    auto* planted = c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which")
+                        ->excludes(arm)
+                        ->excludes(set);
+    auto* rates = c->add_option("--error-rates", f->error_rates, "measure the bench itself on so many seeds")
+                      ->type_name("SEEDS")
+                      ->check(CLI::Range(1, 100000))
+                      ->excludes(arm)
+                      ->excludes(set)
+                      ->excludes(planted);
+    auto* exec = c->add_option("--exec", f->exec, "judge a program that answers over a pipe")
+                     ->type_name("'PROGRAM ARGS'")
+                     ->check(told);
+    auto* samples =
+        c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told);
+    c->add_option("--patience", f->patience, "s that --exec may take in all; default 120, with --full 3600")
+        ->type_name("SECONDS")
+        ->needs(exec)
+        ->check(CLI::Range(0.01, 1e6));
+    c->add_flag("--accept-few", f->accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
+    auto* right =
+        c->add_option("--right", f->right,
+             "judge so many right samplers at random parameters; with --error-rates in quick and in full mode")
+            ->type_name("N")
+            ->check(CLI::Range(1, 1000000));
+    for (auto* other : {arm, set, planted}) right->excludes(other);
+    c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
+    for (auto* other : {arm, set, planted, rates, right}) exec->excludes(other), samples->excludes(other);
+    exec->excludes(samples);
+    c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
+        ->type_name("FILE")
+        ->needs(samples)
+        ->check(told);
+    c->add_option("--wo", f->wo, "the w_o of --samples")->type_name("x,y,z")->needs(samples);
+    for (auto* file :
+        {c->add_option("--json", f->json, "write every verdict with its evidence; equal calls give equal bytes"),
+            c->add_option("--timing", f->timing, "write what each verdict and each sample took"),
+            c->add_option("--junit", f->junit, "write for a build server"),
+            c->add_option("--html", f->html, "write one page with maps, histograms and roses")})
+        file->type_name("FILE")->excludes(rates);
+    c->add_flag("--quiet", f->quiet, "no progress; the table stays");
+}
+
+}  // namespace crescent::cli
