@@ -53,7 +53,7 @@
 #include "plates/raster.h"
 #include "plates/style.h"
 #include "plates/words.h"
-#include "report/charts.h"
+#include "pages/charts.h"
 #include "report/report.h"
 #include "run/run.h"
 #include "scene/scene.h"

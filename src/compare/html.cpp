@@ -4,49 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/base64.h"
+#include "pages/base64.h"
 #include "compare/outputs.h"
 #include "compare/page.h"
-#include "report/html.h"
-#include "report/numbers.h"
-#include "report/style.h"
+#include "pages/html.h"
+#include "pages/numbers.h"
+#include "pages/page.h"
 
 namespace crescent {
 
 namespace {
 
 using html::words;
-
-constexpr const char* frame = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8" />
-<meta name="viewport" content="width=device-width, initial-scale=1" />
-<meta name="color-scheme" content="light dark" />
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<header>
-<p class="kicker">crescent · renders compared</p>
-<h1>{title}</h1>
-{lead}
-</header>
-<main id="main">
-{sections}</main>
-<footer>
-<p class="footnote">Made by crescent {version}: <code>{command}</code></p>
-</footer>
-</body>
-</html>
-)";
-
-std::string section(const std::string& id, const std::string& title, const std::string& html) {
-    if (html.empty()) return {};
-    return fmt::format(
-        "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n", id, title,
-        html);
-}
 
 std::string lead(const CompareResult& result) {
     std::string out;
@@ -84,18 +53,21 @@ std::string assertions(const CompareResult& result) {
 
 std::string compare_html(const ComparePlan& plan, const Readings& all, const CompareResult& result,
     const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates) {
-    const std::string sections = section("numbers", "How large the error is", numbers_section(plan, all, result)) +
-        section("rankings", "Which is better?", rankings_section(result)) +
-        section("bias", "Do they agree on the mean?", means_section(result)) +
-        section("pictures", "Where", pictures(plates)) +
-        section("noise", "Where did the noise move?", noise_section(result)) +
-        section("ladders", "Over samples a pixel", ladders_section(result)) +
-        section("spectra", "What the noise is like", spectra_section(all, result)) +
-        section("assertions", "Assertions", assertions(result)) +
-        section("files", "What was read", files_section(all, result));
-    return fmt::format(frame, fmt::arg("title", escape(plan.title)), fmt::arg("style", style_sheet),
-        fmt::arg("lead", lead(result)), fmt::arg("sections", sections), fmt::arg("version", escape(provenance.version)),
-        fmt::arg("command", escape(provenance.command)));
+    PageFrame frame;
+    frame.title_text = plan.title;
+    frame.kicker_text = "renders compared";
+    frame.version_text = provenance.version;
+    frame.lead_html = lead(result);
+    frame.footer_html =
+        fmt::format("Made by crescent {}: {}", escape(provenance.version), html::code(provenance.command));
+    return page_html(frame,
+        {{"numbers", "How large the error is", numbers_section(plan, all, result)},
+            {"rankings", "Which is better?", rankings_section(result)},
+            {"bias", "Do they agree on the mean?", means_section(result)}, {"pictures", "Where", pictures(plates)},
+            {"noise", "Where did the noise move?", noise_section(result)},
+            {"ladders", "Over samples a pixel", ladders_section(result)},
+            {"spectra", "What the noise is like", spectra_section(all, result)},
+            {"assertions", "Assertions", assertions(result)}, {"files", "What was read", files_section(all, result)}});
 }
 
 }  // namespace crescent

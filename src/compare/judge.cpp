@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "compare/schema.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

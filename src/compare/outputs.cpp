@@ -8,9 +8,10 @@
 
 #include "compare/schema.h"
 #include "base/text.h"
-#include "report/csv.h"
-#include "report/json_number.h"
-#include "report/numbers.h"
+#include "pages/csv.h"
+#include "pages/json_number.h"
+#include "pages/junit.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 
@@ -157,32 +158,17 @@ std::string compare_csv(const CompareResult& result) {
 }
 
 std::string compare_junit(const ComparePlan& plan, const CompareResult& result) {
-    struct Case {
-        std::string name, failure;
+    JunitSuite suite{plan.title, {}, {}};
+    const auto add = [&](const std::string& name, bool holds, const std::string& message) {
+        suite.cases.push_back(
+            {plan.file, name, holds ? JunitCase::State::passed : JunitCase::State::failed, message, "", {}});
     };
-    std::vector<Case> cases;
     for (const AssertionResult& a : result.assertions)
-        cases.push_back({a.name,
-            a.pass ? ""
-                   : fmt::format(
-                         "{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound))});
+        add(a.name, a.pass,
+            fmt::format("{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound)));
     if (plan.expect == Expectation::same)
-        cases.push_back({"the arms are the same", result.state == CompareResult::State::holds ? "" : result.say});
-    const auto failed = std::count_if(cases.begin(), cases.end(), [](const Case& c) { return !c.failure.empty(); });
-    const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\"", cases.size(), failed);
-    std::string out = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent\" {0}>\n  <testsuite name=\"{1}\" {0} "
-        "skipped=\"0\">\n",
-        counts, escape(plan.title));
-    for (const Case& c : cases) {
-        const std::string head =
-            fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escape(plan.file), escape(c.name));
-        out += c.failure.empty()
-            ? head + " />\n"
-            : fmt::format("{}>\n      <failure type=\"assertion\" message=\"{}\" />\n    </testcase>\n", head,
-                  escape(c.failure));
-    }
-    return out + "  </testsuite>\n</testsuites>\n";
+        add("the arms are the same", result.state == CompareResult::State::holds, result.say);
+    return junit_text(suite);
 }
 
 std::string compare_summary(

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "compare/page.h"
-#include "report/charts.h"
-#include "report/html.h"
-#include "report/numbers.h"
+#include "pages/charts.h"
+#include "pages/html.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

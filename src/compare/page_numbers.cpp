@@ -5,9 +5,9 @@
 
 #include "compare/page.h"
 #include "compare/schema.h"
-#include "report/charts.h"
-#include "report/html.h"
-#include "report/numbers.h"
+#include "pages/charts.h"
+#include "pages/html.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

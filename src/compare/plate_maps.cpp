@@ -9,7 +9,7 @@
 #include "compare/plates.h"
 #include "meters/meters.h"
 #include "plates/words.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

@@ -13,7 +13,7 @@
 #include "color/turbo.h"
 #include "meters/meters.h"
 #include "plates/words.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

@@ -9,7 +9,7 @@
 
 #include "compare/judge.h"
 #include "math/functions.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compare/judge.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/charts.h"
+#include "pages/charts.h"
 #include "report/sample_test.h"
 #include "report/wellformed_test.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "report/csv.h"
-#include "report/numbers.h"
+#include "pages/csv.h"
+#include "pages/numbers.h"
 #include "report/report.h"
 
 namespace crescent {

@@ -2,7 +2,7 @@
 // The same run gives the same bytes: keys in a fixed order, doubles in the shortest form that reads back the same.
 #include <cmath>
 
-#include "report/json_number.h"
+#include "report/provenance_json.h"
 #include "report/report.h"
 
 namespace crescent {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "report/json_number.h"
+#include "pages/json_number.h"
 #include "report/sample_test.h"
 #include "report/schema_check_test.h"
 #include "report/wellformed_test.h"

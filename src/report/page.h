@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "report/charts.h"
+#include "pages/charts.h"
 #include "report/findings.h"
-#include "report/html.h"
+#include "pages/html.h"
 #include "report/mathml.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
+#include "pages/page.h"
 #include "report/report.h"
 
 namespace crescent {
@@ -50,10 +51,6 @@ struct Page {
     std::string seed_name() const { return in.metrics.published_seed == in.experiment.seed ? "published" : "first"; }
     /// Class of an arm's colour, the same in every chart.
     std::string colour(const std::string& arm) const;
-};
-
-struct PageSection {
-    std::string id, title, html;
 };
 
 // Theory.

@@ -5,50 +5,15 @@
 #include <fmt/format.h>
 
 #include "report/page.h"
-#include "report/style.h"
 
 namespace crescent {
 namespace {
 
-constexpr const char* page_frame = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8" />
-<meta name="viewport" content="width=device-width, initial-scale=1" />
-<meta name="color-scheme" content="light dark" />
-<meta name="generator" content="crescent {version}" />
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<a class="skip" href="#main">Skip to the text</a>
-<header>
-<p class="kicker">crescent · a bench for importance samplers</p>
-<h1>{title}</h1>
-{lead}
-{hero}
-<nav aria-label="Contents">
-<h2>Contents</h2>
-<ol>
-{contents}</ol>
-</nav>
-</header>
-<main id="main">
-{sections}</main>
-<footer>
-<p class="footnote">Made by crescent {version} from <code>{file}</code>, hash <code>{hash}</code>.</p>
-</footer>
-</body>
-</html>
-)";
-
 std::vector<PageSection> all_sections(Page& page) {
-    std::vector<PageSection> all{question(page), estimator(page), scene(page), densities(page), results(page),
-        failure_a(page), failure_b(page), ladders(page), exponent(page), furnaces(page), published(page),
-        reference(page), where_wrong(page), disagreements(page), what_ifs(page), limits(page), more_plates(page),
-        assertions(page), provenance(page)};
-    std::erase_if(all, [](const PageSection& s) { return s.html.empty(); });
-    return all;
+    return {question(page), estimator(page), scene(page), densities(page), results(page), failure_a(page),
+        failure_b(page), ladders(page), exponent(page), furnaces(page), published(page), reference(page),
+        where_wrong(page), disagreements(page), what_ifs(page), limits(page), more_plates(page), assertions(page),
+        provenance(page)};
 }
 
 std::string verdict(const std::vector<AssertionResult>& all) {
@@ -91,22 +56,15 @@ std::string lead(const Page& page) {
 
 std::string report_html(const ReportInputs& in) {
     Page page(in);
-    const std::string hero = page.figures.plates(PlateKind::hero);
-    std::string contents, sections;
-    std::size_t number = 0;
-    for (const PageSection& s : all_sections(page)) {
-        ++number;
-        contents += fmt::format("<li>{}</li>\n", html::link(s.id, s.title));
-        sections += fmt::format(
-            "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\"><span class=\"number\">{1}</span>"
-            "<a href=\"#{0}\">{2}</a></h2>\n{3}</section>\n",
-            s.id, number, s.title, s.html);
-    }
-    return fmt::format(page_frame, fmt::arg("version", escape(in.provenance.version)),
-        fmt::arg("title", escape(in.experiment.title)), fmt::arg("style", style_sheet), fmt::arg("lead", lead(page)),
-        fmt::arg("hero", hero), fmt::arg("contents", contents), fmt::arg("sections", sections),
-        fmt::arg("file", escape(in.provenance.experiment_file)),
-        fmt::arg("hash", escape(in.provenance.experiment_hash)));
+    PageFrame frame;
+    frame.title_text = in.experiment.title;
+    frame.kicker_text = "a bench for importance samplers";
+    frame.version_text = in.provenance.version;
+    frame.lead_html = lead(page) + page.figures.plates(PlateKind::hero) + "\n";  // the first figure
+    frame.footer_html = fmt::format("Made by crescent {} from <code>{}</code>, hash <code>{}</code>.",
+        escape(in.provenance.version), escape(in.provenance.experiment_file), escape(in.provenance.experiment_hash));
+    frame.contents = true;
+    return page_html(frame, all_sections(page));
 }
 
 }  // namespace crescent

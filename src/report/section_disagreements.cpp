@@ -166,7 +166,8 @@ std::string remarks(const Page& page) {
     if (all.empty()) return {};
     return html::p("What can be said about them, medians over seeds against published values:") + html::list(all) +
         html::p(
-            "The scene was not refitted to meet them. The geometry was inferred (<code>docs/scene.md</code>), and no geometry was "
+            "The scene was not refitted to meet them. The geometry was inferred (<code>docs/scene.md</code>), and no "
+            "geometry was "
             "found that meets every published figure.");
 }
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "report/findings.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 #include "report/report.h"
 
 namespace crescent {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "report/numbers.h"
+#include "pages/numbers.h"
 #include "report/sample_test.h"
 
 namespace crescent::testing {

@@ -1,5 +1,5 @@
 // timing.json: what varies between equal runs (seconds, threads, instruction set, date), apart from the numbers.
-#include "report/json_number.h"
+#include "report/provenance_json.h"
 #include "report/report.h"
 
 namespace crescent {

@@ -4,6 +4,8 @@
 
 #include "base/text.h"
 #include "math/functions.h"
+#include "pages/charts.h"
+#include "pages/page.h"
 #include "verdicts/print.h"
 #include "verdicts/summary.h"
 
@@ -27,42 +29,38 @@ std::string maps(const BinMap& m) {
     return out;
 }
 
+/// Counts of X over its size, both logarithmic, with the fitted tail where there is one.
 std::string histogram(const WeightPicture& w) {
     if (w.counts.empty()) return "";
-    double top = 1;
-    for (double c : w.counts) top = std::max(top, math::log10(1 + c));
-    std::string out = "<figure><svg viewBox='0 0 480 200' width='400' height='170'>";
-    const double width = 480.0 / static_cast<double>(w.counts.size());
-    for (std::size_t i = 0; i < w.counts.size(); ++i) {
-        const double h = 180 * math::log10(1 + w.counts[i]) / top;
-        out += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class=bar />",
-            static_cast<double>(i) * width, 190 - h, width - 0.5, h);
-    }
-    if (w.exceedances > 0 &&
-        w.sigma > 0) {  // what the fitted generalised Pareto law expects in each bin above its threshold
-        const auto survival = [&](double x) {
-            return x <= w.threshold     ? 1.0
-                : std::fabs(w.k) < 1e-6 ? math::exp(-(x - w.threshold) / w.sigma)
-                                        : math::pow(std::max(1 + w.k * (x - w.threshold) / w.sigma, 0.0), -1 / w.k);
+    std::vector<double> seen;
+    std::ranges::copy_if(w.counts, std::back_inserter(seen), [](double c) { return c > 0; });
+    seen.push_back(0.5);
+    Axis x = linear_axis("log10 of X = f L cos / p", {w.log10_edges.front(), w.log10_edges.back()});
+    x.low = w.log10_edges.front(), x.high = w.log10_edges.back();
+    Chart chart(420, 220, x, log_axis("draws", seen), "Histogram of the samples X");
+    for (std::size_t i = 0; i < w.counts.size(); ++i)
+        if (w.counts[i] > 0)
+            chart.band({w.log10_edges[i], w.log10_edges[i + 1]}, {0.5, 0.5}, {w.counts[i], w.counts[i]}, "c1");
+    if (w.exceedances > 0 && w.sigma > 0) {  // what the fitted generalised Pareto law expects above its threshold
+        const auto survival = [&](double v) {
+            return v <= w.threshold     ? 1.0
+                : std::fabs(w.k) < 1e-6 ? math::exp(-(v - w.threshold) / w.sigma)
+                                        : math::pow(std::max(1 + w.k * (v - w.threshold) / w.sigma, 0.0), -1 / w.k);
         };
-        out += "<polyline fill='none' stroke='#d33' stroke-width='2' points='";
+        std::vector<Point> tail;
         for (std::size_t i = 0; i < w.counts.size(); ++i) {
             const double low = math::pow(10.0, w.log10_edges[i]), high = math::pow(10.0, w.log10_edges[i + 1]);
             if (low < w.threshold) continue;
-            const double c = w.exceedances * (survival(low) - survival(high));
-            out += fmt::format(
-                "{:.1f},{:.1f} ", (static_cast<double>(i) + 0.5) * width, 190 - 180 * math::log10(1 + c) / top);
+            const double due = w.exceedances * (survival(low) - survival(high));
+            if (due >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, due});
         }
-        out += "'/>";
+        if (tail.size() > 1) chart.line(tail, "c2");
     }
-    return out +
-        fmt::format(
-            "</svg><figcaption>X = f L cos / p, log10 from {:.2f} to {:.2f}, counts logarithmic; {:.0f} zeros; "
-            "{}</figcaption></figure>",
-            w.log10_edges.front(), w.log10_edges.back(), w.zeros,
-            w.exceedances > 0
-                ? fmt::format("the tail fitted to the {:.0f} largest in red, k = {:.3f}", w.exceedances, w.k)
-                : std::string("no tail: the largest are all alike"));
+    const std::string fitted = w.exceedances > 0
+        ? fmt::format("the tail fitted to the {:.0f} largest is the line, k = {:.3f}", w.exceedances, w.k)
+        : std::string("no tail: the largest are all alike");
+    return fmt::format("<figure class=narrow>{}<figcaption>{:.0f} zeros are left out; {}</figcaption></figure>",
+        chart.str(), w.zeros, fitted);
 }
 
 std::string curve(const std::vector<double>& v, std::string_view colour) {
@@ -84,23 +82,13 @@ std::string rose(const WeightPicture& w) {
         "value</figcaption></figure>";
 }
 
+/// What this page needs beside the style sheet of all.
 constexpr const char* head =
-    "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport "
-    "content=\"width=device-width\"><title>{}</title>";
-
-constexpr const char* style =
-    "<style>body{font:15px/1.5 Inter,system-ui,sans-serif;margin:2em auto;max-width:64em;padding:0 1em}"
-    "table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #ddd;padding:.2em "
-    ".5em;text-align:left;vertical-align:top}.wrong{color:#b00020;font-weight:600}"
-    ".inconclusive{color:#8a5a00}.right{color:#1a6b2a}.skipped{color:#666}.row{display:flex;flex-wrap:wrap;gap:1em}"
-    "figure{margin:0}figcaption{font-size:12px;max-width:30em}"
-    "summary{cursor:pointer}.error{color:#b00020}.matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em "
-    ".6em}.row,figure,tr{break-inside:avoid}@media "
-    "print{body{margin:0;max-width:none}}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid "
-    "#ddd}:root{color-scheme:light "
-    "dark}.bar{fill:#446}@media(prefers-color-scheme:dark){body{background:#15171a;color:#ddd}td,th{border-color:#333}."
-    "wrong,.error{color:#ff6b7d}.inconclusive{color:#e0b050}.right{color:#6fcf8a}"
-    ".skipped{color:#999}.bar{fill:#9ab}canvas{border-color:#444}}</style><script>"
+    "<style>.right{color:var(--good)}.inconclusive{color:var(--accent)}.wrong,.error{color:var(--bad);font-weight:600}"
+    ".skipped{color:var(--soft)}.row{display:flex;flex-wrap:wrap;gap:1em}.row figure{margin:0;width:auto}"
+    ".matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .6em}details{margin-bottom:.6em}"
+    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid var(--line)}"
+    "@media (min-width:64rem){.wide{overflow-x:auto}}</style><script>"
     "function paint(w,top,seen,due){const "
     "c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const "
     "night=matchMedia('(prefers-color-scheme:dark)').matches;"
@@ -118,7 +106,7 @@ std::string names_of(const Judgement& j) {
     std::vector<std::string> names;
     for (const Verdict& v : j.verdicts)
         if (std::find(names.begin(), names.end(), v.arm) == names.end()) names.push_back(v.arm);
-    return names.size() == 1 ? escape(names[0]) : fmt::format("{} samplers", names.size());
+    return names.size() == 1 ? names[0] : fmt::format("{} samplers", names.size());
 }
 
 /// One line a finding, then every case with its nine verdicts.
@@ -146,15 +134,20 @@ std::string overview(const Judgement& j) {
 }  // namespace
 
 std::string verdict_html(const Judgement& j, const JudgementSource& source) {
-    const std::string title = fmt::format("{}: {} - crescent check", names_of(j), word(j.state));
-    std::string out = fmt::format(fmt::runtime(head), title) + style +
-        fmt::format("<h1>{}: <span class={}>{}</span></h1>", names_of(j), word(j.state), word(j.state)) + overview(j);
-    out += fmt::format(
-        "<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed.</p>",
-        j.tests, j.alpha, j.screened, j.confirmed);
+    PageFrame frame;
+    frame.title_text = fmt::format("{}: {}", names_of(j), word(j.state));
+    frame.kicker_text = "samplers judged by themselves";
+    frame.version_text = source.version;
+    frame.head_html = head;
+    frame.lead_html = fmt::format("<p class=\"verdict {0}\">{0}</p>\n", word(j.state)) + overview(j) +
+        fmt::format(
+            "<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh "
+            "seed.</p>\n",
+            j.tests, j.alpha, j.screened, j.confirmed);
     if (!source.version.empty())
-        out += fmt::format("<p>crescent {}, commit {}: <code>{}</code></p>", escape(source.version),
+        frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
             escape(source.commit), escape(source.command));
+    std::string out;
     std::size_t map = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
         const std::string arm = j.verdicts[i].arm, trial = j.verdicts[i].trial;
@@ -177,7 +170,7 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
         }
         out += "</div></details>";
     }
-    return out + "</html>\n";
+    return page_html(frame, {{"cases", "Case by case", out}});
 }
 
 }  // namespace crescent

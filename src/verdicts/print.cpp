@@ -1,3 +1,4 @@
+#include "pages/junit.h"
 #include "verdicts/print.h"
 
 #include <fmt/format.h>
@@ -134,34 +135,20 @@ std::string verdict_timing(const Judgement& judgement, const JudgementSource& so
 }
 
 std::string verdict_junit(const Judgement& judgement) {
-    std::size_t failures = 0, errors = 0, skipped = 0;
-    double seconds = 0;
-    std::string cases;
+    using Case = JunitCase::State;
+    JunitSuite suite{"crescent check", {}, {}};
     for (const Verdict& v : judgement.verdicts) {
-        seconds += v.seconds;
-        cases += fmt::format("  <testcase classname=\"{}\" name=\"{} [{}]\" time=\"{:.3f}\">", escape(v.arm), v.name,
-            escape(v.trial), v.seconds);
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
-        const std::string message = escape(fmt::format("{}: {}", word(v.state), first_sentence(v.say)));
-        if (v.state == State::error) {
-            ++errors;
-            cases += fmt::format("<error message=\"{}\">{}</error>", message, escape(v.say));
-        } else if (fails) {
-            ++failures;
-            cases += fmt::format("<failure message=\"{}\">{}</failure>", message, escape(v.say));
-        } else if (v.state == State::skipped || v.state == State::inconclusive) {
-            ++skipped;
-            cases += fmt::format("<skipped message=\"{}: {}\"/>", word(v.state),
-                escape(v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle)));
-        }
-        cases += "</testcase>\n";
+        const bool open = v.state == State::skipped || v.state == State::inconclusive;
+        const Case state = v.state == State::error ? Case::error
+            : fails                                ? Case::failed
+            : open                                 ? Case::skipped
+                                                   : Case::passed;
+        suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.trial), state,
+            fmt::format("{}: {}", word(v.state), first_sentence(v.say)),
+            v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle), v.seconds});
     }
-    const std::string counts = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
-        judgement.verdicts.size(), failures, errors, skipped, seconds);
-    return fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"crescent check\" {}>\n <testsuite "
-        "name=\"crescent check\" {}>\n{} </testsuite>\n</testsuites>\n",
-        counts, counts, cases);
+    return junit_text(suite);
 }
 
 }  // namespace crescent

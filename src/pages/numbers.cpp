@@ -1,4 +1,4 @@
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 #include <algorithm>
 #include <charconv>

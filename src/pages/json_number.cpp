@@ -1,8 +1,8 @@
-#include "report/json_number.h"
+#include "pages/json_number.h"
 
 #include <cmath>
 
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 

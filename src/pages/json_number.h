@@ -7,8 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/report.h"
-
 namespace crescent {
 
 using Json = nlohmann::ordered_json;
@@ -22,7 +20,5 @@ Json numbers(const std::vector<double>& all);
 
 /// Two blanks of indent and a newline at the end; invalid UTF-8 in a name becomes U+FFFD.
 std::string text(const Json& json);
-
-Json provenance_json(const Provenance& provenance);
 
 }  // namespace crescent

@@ -1,4 +1,4 @@
-#include "report/charts.h"
+#include "pages/charts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "math/functions.h"
-#include "report/numbers.h"
+#include "pages/numbers.h"
 
 namespace crescent {
 namespace {

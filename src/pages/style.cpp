@@ -1,4 +1,4 @@
-#include "report/style.h"
+#include "pages/style.h"
 
 namespace crescent {
 

@@ -1,0 +1,29 @@
+// junit.xml for build servers: one suite, of a run, a judgement or a comparison.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crescent {
+
+struct JunitCase {
+    enum class State { passed, failed, error, skipped };
+
+    std::string group, name;
+    State state = State::passed;
+    std::string message, text;      // of all but what passed; text: in full, "" where the message is all
+    std::optional<double> seconds;  // where it varies from run to run and is asked for all the same
+};
+
+struct JunitSuite {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> properties;
+    std::vector<JunitCase> cases;
+};
+
+/// The file. Any text may stand in it: it is escaped here. Equal suites give equal bytes.
+std::string junit_text(const JunitSuite& suite);
+
+}  // namespace crescent

@@ -1,0 +1,11 @@
+// Where an output came from, as the JSON files of a run state it.
+#pragma once
+
+#include "pages/json_number.h"
+#include "report/report.h"
+
+namespace crescent {
+
+Json provenance_json(const Provenance& provenance);
+
+}  // namespace crescent
