@@ -3,7 +3,6 @@
 FROM debian:12 AS build
 COPY . /crescent
 WORKDIR /crescent
-# clang 19 comes from Debian's own backports of LLVM where tools/packages.txt names it.
 RUN apt-get update && ./run --help && cmake --install build --prefix /opt/crescent --strip
 
 FROM debian:12-slim

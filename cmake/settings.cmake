@@ -3,11 +3,13 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release)
-endif()
-if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")  # CMake's own; what somebody chose stays
-  set(CMAKE_CXX_FLAGS_RELEASE "-O2")
+if(PROJECT_IS_TOP_LEVEL)  # as a part of another project, its choice
+  if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+  endif()
+  if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")  # CMake's own; what somebody chose stays
+    set(CMAKE_CXX_FLAGS_RELEASE "-O2")
+  endif()
 endif()
 
 find_program(CCACHE ccache)
@@ -75,6 +77,7 @@ macro(crescent_folder name)
     add_library(crescent_${name} STATIC ${folder_sources})
     target_include_directories(crescent_${name} PUBLIC
       $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
+    add_library(crescent::${name} ALIAS crescent_${name})
     target_compile_features(crescent_${name} PUBLIC cxx_std_20)
     target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
     if(${name} IN_LIST crescent_fuzzed)

@@ -46,7 +46,7 @@
 #include "meters/meters.h"
 #include "meters/metrics.h"
 #include "meters/quantity.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 #include "plates/canvas.h"
 #include "plates/density.h"
 #include "plates/plates.h"

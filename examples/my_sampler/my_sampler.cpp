@@ -1,9 +1,11 @@
 // A sampler of one's own, judged: a struct with sample(wo, u) and pdf(wo, wi) in plain floats. Prints what is not
 // right.
+#include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "crescent.h"
+#include "verdicts/print.h"
+#include "verdicts/user.h"
 
 struct MySampler {
     struct Drawn {

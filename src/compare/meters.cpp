@@ -8,7 +8,7 @@
 #include "compare/judge.h"
 #include "compare/sides.h"
 #include "math/functions.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 
 namespace crescent {
 

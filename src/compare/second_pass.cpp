@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "compare/spectrum.h"
 #include "compare/statistics.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 
 namespace crescent {
 

@@ -9,7 +9,7 @@
 #include "estimator/estimator.h"
 #include "estimator/furnace_sites.h"
 #include "estimator/lobe_albedo.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 
 namespace crescent {
 

@@ -10,7 +10,7 @@
 #include "estimator/reference.h"
 #include "estimator/test_scene.h"
 #include "meters/evidence_measure.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 #include "simd/random.h"
 
 namespace crescent {

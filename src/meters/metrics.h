@@ -8,15 +8,9 @@
 #include <vector>
 
 #include "films/film.h"
+#include "stats/tail.h"
 
 namespace crescent {
-
-/// Pareto tail of a set of samples. Zhang & Stephens 2009; k >= 0.5: the variance is infinite, k >= 1: the mean.
-struct Tail {
-    double k = 0, se = 0;           // estimate and its standard error
-    std::uint64_t exceedances = 0;  // how many of the largest samples it was fitted to
-    bool heavy() const { return k >= 0.5; }
-};
 
 struct RegionMeter {
     std::string region;

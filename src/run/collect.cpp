@@ -10,7 +10,7 @@
 #include "meters/furnace.h"
 #include "meters/meters.h"
 #include "meters/quantity.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 #include "run/stopping.h"
 #include "run/version.h"
 

@@ -1,7 +1,7 @@
 // The verdicts in their order, each from one trial's work; a verdict that builds on one that failed is skipped.
 #pragma once
 
-#include "meters/tail.h"
+#include "stats/tail.h"
 #include "verdicts/work.h"
 
 namespace crescent {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "meters/tail.h"
+#include "stats/tail.h"
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 

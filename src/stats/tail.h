@@ -8,9 +8,14 @@
 #include <optional>
 #include <span>
 
-#include "meters/metrics.h"
-
 namespace crescent {
+
+/// Pareto tail of a set of samples. Zhang & Stephens 2009; k >= 0.5: the variance is infinite, k >= 1: the mean.
+struct Tail {
+    double k = 0, se = 0;           // estimate and its standard error
+    std::uint64_t exceedances = 0;  // how many of the largest samples it was fitted to
+    bool heavy() const { return k >= 0.5; }
+};
 
 /// How many of n samples count as tail: min(n/5, 3 sqrt(n)); 0 where fewer than 5 would.
 std::size_t tail_length(std::uint64_t n);

@@ -1,4 +1,4 @@
-#include "meters/tail.h"
+#include "stats/tail.h"
 
 #include <algorithm>
 #include <cmath>
