@@ -171,6 +171,16 @@ TEST(Plates, ARunThatWasNotMadeIsNamedOnThePlate) {
     EXPECT_TRUE(has(world.settings(plan), "cosine n=1024 s=32 was not run"));
 }
 
+TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
+    World world(96, 54);
+    const char* say = "reference not good enough in H";
+    world.metrics.references = {{32, "H", {}, {}, 0.1, {}, most_error_share}};
+    EXPECT_FALSE(has(world.settings(world.plan(PlateKind::heat, 2)), say));
+    world.metrics.references[0].error_share = 2 * most_error_share;
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::heat, 2)), say));
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), say));
+}
+
 TEST(Heat, PrintsThe98thPercentileOfAllPixelsShown) {
     World world(96, 54);
     PlatePlan plan = world.plan(PlateKind::heat, 2);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "experiment/arm_facts.h"
 #include "plates/facts.h"
 
 namespace crescent::plates {
@@ -54,7 +55,9 @@ void draw_reference(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
     View v = view(sheet.in.reference(s));
-    instrument_header(sheet, "REFERENCE", "not a sampling arm / s=" + number(s), reference_stream(e), false);
+    instrument_header(sheet, "REFERENCE",
+        "not a sampling arm" + (any_tells_s(e) || e.exponent ? " / s=" + number(s) : std::string()),
+        reference_stream(e), false);
     if (v.width > 0) {
         Fit f = fit(v.width, v.height, picture_slot.w, picture_slot.h);
         Rect slot = picture_slot;

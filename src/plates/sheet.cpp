@@ -45,6 +45,13 @@ void photograph_header(Sheet& sheet, const std::string& what, const std::string&
 void instrument_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
     header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what, stream);
+    if (of_films)
+        for (const ReferenceMeter& r : sheet.in.metrics.references)
+            if (r.error_share > most_error_share) {
+                sheet.notes.push_back(
+                    "reference not good enough in " + escaped(r.region) + ": errors there are too large");
+                break;
+            }
     const std::string& on = sheet.in.instrument;
     if (!on.empty())
         sheet.notes.push_back(

@@ -7,6 +7,7 @@
 
 #include "arms/info.h"
 #include "base/formula.h"
+#include "experiment/arm_facts.h"
 #include "math/functions.h"
 #include "plates/canvas.h"
 
@@ -88,8 +89,14 @@ std::string density_formula_at(const std::string& arm, double s, const Experimen
 
 std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n) {
     std::string label = distinct(runs, [&](const RunKey& r) { return arm_name(r.arm, e); });
-    if (with_n) label += " N=" + distinct(runs, [](const RunKey& r) { return fmt::format("{}", r.n); });
-    return label + " s=" + distinct(runs, [](const RunKey& r) { return number(r.s); });
+    const auto n_of = [&](const RunKey& r) {
+        const ArmPlan* arm = e.find_arm(r.arm);
+        return fmt::format("{}{}", r.n, arm && techniques_of(*arm) > 1 ? " pairs" : "");
+    };
+    if (with_n) label += " N=" + distinct(runs, n_of);
+    std::vector<RunKey> telling;
+    std::ranges::copy_if(runs, std::back_inserter(telling), [&](const RunKey& r) { return tells_s(r.arm, r.s, e); });
+    return telling.empty() ? label : label + " s=" + distinct(telling, [](const RunKey& r) { return number(r.s); });
 }
 
 std::string reference_words(const Experiment& e) {

@@ -27,7 +27,8 @@ std::string density_formula(const std::string& arm, const Experiment& e);
 /// The same density after `s` has been put in.
 std::string density_formula_at(const std::string& arm, double s, const Experiment& e);
 
-/// "phong N=256 s=32", or with several runs "uniform | cosine | phong N=64 s=32": what they share is said once.
+/// "phong N=256 s=32", or with several runs "uniform | cosine | phong N=64 s=32": what they share is said once,
+/// and s where it says something of a run. Of an arm that joins two techniques N counts pairs.
 std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, bool with_n = true);
 
 /// How the reference was computed: "by quadrature, no samples" or its sample counts and seed.

@@ -1,5 +1,6 @@
 #include "plates/words.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +13,12 @@ namespace {
 TEST(Words, ALabelSaysOnceWhatTheRunsShare) {
     World world(8, 8);
     EXPECT_EQ(runs_label({{"phong", 256, 32, 7}}, world.e), "phong N=256 s=32");
-    EXPECT_EQ(runs_label({{"uniform", 64, 32, 7}, {"cosine", 64, 32, 7}}, world.e), "uniform | cosine N=64 s=32");
-    EXPECT_EQ(runs_label({{"cosine", 4, 32, 7}, {"cosine", 16, 32, 7}}, world.e), "cosine N=4 | 16 s=32");
+    EXPECT_EQ(runs_label({{"uniform", 64, 32, 7}, {"cosine", 64, 32, 7}}, world.e), "uniform | cosine N=64")
+        << "neither aims by s";
+    EXPECT_EQ(runs_label({{"cosine", 4, 32, 7}, {"cosine", 16, 32, 7}}, world.e), "cosine N=4 | 16");
+    EXPECT_EQ(runs_label({{"cosine", 4, 8, 7}}, world.e), "cosine N=4 s=8") << "not the experiment's own s";
+    world.add_arm("mis-balance", "mis-balance");
+    EXPECT_THAT(runs_label({{"mis-balance", 64, 32, 7}}, world.e), testing::HasSubstr("N=64 pairs"));
 }
 
 TEST(Words, NumbersAreSetWithTrueMinusAndPowers) {

@@ -1,5 +1,7 @@
 #include "report/evidence_charts.h"
 
+#include "report/arm_words.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,9 +36,9 @@ std::vector<Series> series_of(const Evidence& evidence) {
 }
 
 const FurnaceMeter* combined_furnace(const Page& page) {
-    const ArmPlan* phong = page.find.arm_with("phong");
+    const ArmPlan* arm = arm_about_mirror(page.in.experiment);
     for (const FurnaceMeter& f : page.in.metrics.furnaces)
-        if (phong && f.arm == phong->name && f.part == "combined") return &f;
+        if (arm && f.arm == arm->name && f.part == "combined") return &f;
     return nullptr;
 }
 

@@ -17,12 +17,6 @@ RatioOfErrors compare(const std::string& a, double value_a, const std::string& b
     return c;
 }
 
-const ArmPlan* Findings::arm_with(const std::string& sampler) const {
-    for (const ArmPlan& arm : in_.experiment.arms)
-        if (arm.sampler == sampler) return &arm;
-    return nullptr;
-}
-
 std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const {
     if (arms.empty()) return 0;
     const auto has = [](const ArmPlan* arm, std::uint64_t n) {

@@ -29,9 +29,6 @@ class Findings {
 public:
     explicit Findings(const ReportInputs& in) : in_(in) {}
 
-    /// First arm of the experiment that draws with this sampler ("cosine"); nullptr: none.
-    const ArmPlan* arm_with(const std::string& sampler) const;
-
     /// The largest n that every arm of `arms` has, 0 where they share none.
     std::uint64_t common_n(const std::vector<const ArmPlan*>& arms) const;
     /// The n at which arms are set side by side: the experiment's own where one ran it, else common to all, else the

@@ -109,6 +109,56 @@ TEST(ReportHtml, SentencesTurnRoundWithTheOrder) {
     EXPECT_THAT(s.html(), HasSubstr("phong’s RMSE<sub>H</sub> is <b>2.0 times</b> cosine’s"));
     EXPECT_THAT(s.html(), HasSubstr("The order is the same in 1 of 3 seeds"));
     EXPECT_THAT(s.html(), HasSubstr("In this run the failure does not show"));
+    EXPECT_FALSE(has_section(s.html(), "failure-a")) << "a heading claims what was not measured";
+}
+
+TEST(ReportHtml, TellsOfTwoTechniquesAndOfLightThatAnArmCannotReach) {
+    Sample s;
+    EXPECT_THAT(s.html(), Not(HasSubstr("counts pairs")));
+    EXPECT_THAT(s.html(), Not(HasSubstr("is biased in this scene")));
+    s.experiment.arms.push_back({"both", "mis-balance", {64}, {}});
+    s.experiment.arms.push_back({"lamp", "light-area", {64}, {}});
+    EXPECT_THAT(s.html(), HasSubstr("<b>both</b> joins two techniques: its <i>N</i> counts pairs"));
+    EXPECT_THAT(s.html(), Not(HasSubstr("is biased in this scene"))) << "no fill: it reaches all light";
+    s.experiment.fill = {1, 1, 1};
+    EXPECT_THAT(
+        s.html(), HasSubstr("<b>lamp</b> is biased in this scene: it cannot reach light that comes from no disk"));
+    EXPECT_EQ(xml_complaint(s.html()), "");
+}
+
+TEST(ReportHtml, NamesTheExponentWhereItSaysSomething) {
+    Sample s;
+    EXPECT_THAT(s.html(), HasSubstr("phong, <i>N</i> = 64, <i>s</i> = 32"));
+    EXPECT_THAT(s.html(), Not(HasSubstr("cosine, <i>N</i> = 64, <i>s</i>")));
+}
+
+TEST(ReportHtml, WarnsOfASurfaceThatReflectsMoreThanItReceives) {
+    Sample s;
+    EXPECT_THAT(s.html(), Not(HasSubstr("above 1")));
+    s.experiment.shapes[0].material.rho_d = {0.2, 0.95, 0.2};
+    EXPECT_THAT(s.html(), HasSubstr("ball: rho_d + rho_s is 1.05, above 1"));
+    EXPECT_THAT(terminal_summary(s.inputs(), s.timing, "out"), HasSubstr("warning: ball: rho_d + rho_s is 1.05"));
+}
+
+TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
+    Sample s;
+    EXPECT_THAT(s.html(), Not(HasSubstr("<th>GGX")));
+    Shape other = s.experiment.shapes[0];
+    other.name = "metal", other.material.brdf = lobe_named("ggx"), other.material.alpha = 0.2;
+    s.experiment.shapes.push_back(other);
+    const std::string html = s.html();
+    const std::size_t lobes = html.find("Lobes of this scene");
+    ASSERT_NE(lobes, std::string::npos);
+    for (const char* label : {"Phong", "GGX"}) EXPECT_NE(html.find(label, lobes), std::string::npos) << label;
+}
+
+TEST(ReportHtml, MarksAssertionsThatCannotFailAndThoseThatWereNotJudged) {
+    Sample s;
+    s.metrics.assertions[0].cannot_fail = true;
+    s.metrics.assertions[1].pass = false, s.metrics.assertions[1].skipped = "no plates were drawn";
+    EXPECT_THAT(s.html(), HasSubstr("whatever the run measures"));
+    EXPECT_THAT(s.html(), HasSubstr("not judged: no plates were drawn"));
+    EXPECT_TRUE(s.metrics.all_hold());
 }
 
 TEST(ReportHtml, OverlappingBandsAreNotRanked) {

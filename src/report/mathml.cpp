@@ -43,11 +43,6 @@ M estimator() {
         frac(row({f_r("k"), space(), L_i("k"), space(), n_dot_omega("k")}), row({mi("p"), paren({omega("k")})}))});
 }
 
-M brdf_phong() {
-    return row({sub(mi("f"), mi("r")), mo("="), frac(sub(mi("ρ"), mi("d")), mi("π")), mo("+"), sub(mi("ρ"), mi("s")),
-        space(), frac(row({mi("s"), mo("+"), mn("2")}), two_pi()), space(), subsup(omega_dot_R(), mo("+"), mi("s"))});
-}
-
 M mirror() {
     return row(
         {mi("R"), mo("="), mn("2"), paren({mi("n"), mo("⋅"), omega("o")}), space(), mi("n"), mo("−"), omega("o")});

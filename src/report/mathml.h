@@ -51,7 +51,6 @@ M omega(std::string_view index = "");
 M rmse(std::string_view region = "");
 M integral();      // L_o, over the upper hemisphere
 M estimator();     // its estimate from N samples
-M brdf_phong();    // Lambert + normalised Phong lobe
 M mirror();        // R
 M rmse_region();   // root mean square over a region
 M variance();      // of the mean of N samples

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "report/page.h"
+#include "report/arm_words.h"
 
 namespace crescent {
 namespace {
@@ -19,17 +19,21 @@ std::vector<PageSection> all_sections(Page& page) {
 std::string verdict(const std::vector<AssertionResult>& all) {
     if (all.empty()) return {};
     const auto failed = std::count_if(all.begin(), all.end(), [](const AssertionResult& a) { return a.failed(); });
+    const auto empty = std::ranges::count_if(all, [](const AssertionResult& a) { return a.cannot_fail; });
+    const std::string without = empty > 0 ? fmt::format(", {} of them whatever it measures", empty) : "";
     if (failed == 0)
-        return fmt::format("<p class=\"verdict good\">All {} assertions of this run hold.</p>\n", all.size());
+        return fmt::format(
+            "<p class=\"verdict good\">All {} assertions of this run hold{}.</p>\n", all.size(), without);
     return fmt::format("<p class=\"verdict bad\">{} of {} assertions of this run FAIL. See {}.</p>\n", failed,
         all.size(), html::link("assertions", "which"));
 }
 
-/// What the arms with a cosine and a Phong density read in each region, in one sentence.
+/// What an arm about the normal and one about the mirror direction read in each region, in one sentence.
 std::string story(const Page& page) {
-    const ArmPlan *broad = page.find.arm_with("cosine"), *narrow = page.find.arm_with("phong");
-    if (!broad || !narrow) return {};
-    const std::uint64_t n = page.find.headline_n();
+    const ArmPair pair = arm_pair(page);
+    if (!pair) return {};
+    const ArmPlan *broad = pair.broad, *narrow = pair.narrow;
+    const std::uint64_t n = pair.n;
     std::string out;
     for (const Region& region : page.in.experiment.regions) {
         const auto a = page.find.rmse(broad->name, n, region.name), b = page.find.rmse(narrow->name, n, region.name);

@@ -5,7 +5,7 @@
 
 #include "arms/info.h"
 #include "base/text.h"
-#include "report/page.h"
+#include "report/arm_words.h"
 
 namespace crescent {
 namespace {
@@ -113,8 +113,10 @@ std::string claims(const Page& page) {
     std::vector<std::string> cannot{
         "One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a "
         "renderer.",
-        "Arms are compared at equal <i>N</i>. Nothing here says which is faster, or which belongs in production.",
+        "Arms are compared at equal <i>N</i>." + ray_words(e) +
+            " Nothing here says which is faster, or which belongs in production.",
         "Photographs are tone-mapped and cut off at white. Read no error off them."};
+    if (const std::string bias = bias_words(e); !bias.empty()) cannot.push_back(bias.substr(1));
     if (!remedies(e))
         cannot.push_back(
             "No arm aims at the lights and none is combined with another; how well either remedy works is not asked.");

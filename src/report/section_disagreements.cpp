@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "report/page.h"
+#include "report/arm_words.h"
 
 namespace crescent {
 namespace {
@@ -23,10 +23,6 @@ std::optional<double> relative(const BandMeter* b) {
     return b->band.median / *b->published - 1;
 }
 
-std::string run_html(const RunKey& key) {
-    return fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(key.arm), key.n, shortest(key.s));
-}
-
 /// "18 to 22 % below", for deviations of one sign; empty where the signs differ or nothing was published.
 std::string spread(const std::vector<double>& all) {
     if (all.empty()) return {};
@@ -40,15 +36,14 @@ std::string spread(const std::vector<double>& all) {
 }
 
 /// The broad arms in the highlight, and why the geometry cannot simply be changed to meet them.
-std::string highlight_remark(const Page& page, const ArmPlan& broad, const std::string& region) {
+std::string highlight_remark(const Page& page, const std::string& region) {
     std::string parts;
     bool below = true;
     for (const char* kind : {"rmse.", "var."}) {
         std::vector<double> all;
-        for (const ArmPlan* arm : {page.find.arm_with("uniform"), &broad})
-            if (arm)
-                if (const auto r = relative(page.find.band(arm->name, page.find.headline_n(), kind + region)))
-                    all.push_back(*r);
+        for (const ArmPlan* arm : arms_about_normal(page.in.experiment))
+            if (const auto r = relative(page.find.band(arm->name, page.find.headline_n(), kind + region)))
+                all.push_back(*r);
         const std::string range = spread(all);
         if (range.empty()) continue;
         below = below && all.front() < 0;
@@ -149,11 +144,12 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
 
 std::string remarks(const Page& page) {
     std::vector<std::string> all;
-    const ArmPlan *broad = page.find.arm_with("cosine"), *narrow = page.find.arm_with("phong");
-    if (broad && narrow) {
+    const ArmPair pair = arm_pair(page);
+    const ArmPlan *broad = pair.broad, *narrow = pair.narrow;
+    if (pair) {
         const std::string hot = page.find.region_where_worst(broad->name, narrow->name, page.find.headline_n());
         const std::string cold = page.find.region_where_worst(narrow->name, broad->name, page.find.headline_n());
-        if (!hot.empty()) all.push_back(highlight_remark(page, *broad, hot));
+        if (!hot.empty()) all.push_back(highlight_remark(page, hot));
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
                 all.push_back(fmt::format(
@@ -185,7 +181,7 @@ PageSection disagreements(Page& page) {
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
         ++outside;
         const auto off = relative(&b);
-        table.row({html::heading(meter_html(b.meter)), words(run_html(b.key)),
+        table.row({html::heading(meter_html(b.meter)), words(run_html(b.key, page.in.experiment)),
             html::figure(figures_of(b.meter, *b.published)), html::figure(figures_of(b.meter, b.band.median)),
             {interval_html(b.meter, b.band), true}, {off ? signed_percent(*off) : "–", true}});
     }

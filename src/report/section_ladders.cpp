@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "experiment/arm_facts.h"
 #include "report/page.h"
 
 namespace crescent {
@@ -82,12 +83,20 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     return chart.str();
 }
 
+std::string arm_of(const Ladder& l, const Page& page) {
+    const ArmPlan* arm = page.in.experiment.find_arm(l.arm);
+    const bool biased = arm && !missed_light(*arm, page.in.experiment).empty();
+    return escape(l.arm) + (biased ? "<small>biased: it stops falling</small>" : "");
+}
+
 std::string slope_table(const Page& page) {
-    html::Table table("Fitted slopes of log RMSE on log <i>N</i>; −0.5 where the variance is finite",
+    html::Table table(
+        "Fitted slopes of log RMSE on log <i>N</i>; −0.5 where the variance is finite and no light is missed",
         {words("Region"), words("Arm"), {"<i>s</i>", true}, {"Slope", true}, {"5–95 %", true}});
     for (const Ladder& l : page.in.metrics.ladders)
         if (l.n.size() > 1)
-            table.row({html::heading(escape(l.region)), words(escape(l.arm)), html::figure(shortest(l.s)),
+            table.row({html::heading(escape(l.region)), words(arm_of(l, page)),
+                html::figure(tells_s(l.arm, l.s, page.in.experiment) ? shortest(l.s) : ""),
                 html::figure(std::isfinite(l.slope) ? fmt::format("{:.3f}", l.slope) : "–"),
                 {slope_interval(l), true}});
     return table.str();

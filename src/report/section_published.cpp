@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "report/page.h"
+#include "report/arm_words.h"
 
 namespace crescent {
 namespace {
@@ -34,8 +34,7 @@ std::string fallen(const BandMeter& b) {
 std::vector<html::Cell> band_row(const Page& page, const BandMeter& b, bool published) {
     Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
         b.published.has_value(), b.published.value_or(0)};
-    std::vector<html::Cell> row{
-        html::heading(fmt::format("{}, <i>N</i> = {}, <i>s</i> = {}", escape(b.key.arm), b.key.n, shortest(b.key.s)))};
+    std::vector<html::Cell> row{html::heading(run_html(b.key, page.in.experiment))};
     if (published) row.push_back(html::figure(b.published ? figures_of(b.meter, *b.published) : ""));
     row.push_back(html::figure(figures_of(b.meter, b.measured)));
     row.push_back(html::figure(figures_of(b.meter, b.band.median)));

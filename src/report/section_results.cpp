@@ -2,37 +2,31 @@
 // one on a broad integrand. Which region shows which is found from the numbers.
 #include <fmt/format.h>
 
-#include "report/page.h"
+#include "experiment/arm_facts.h"
+#include "report/arm_words.h"
 
 namespace crescent {
 namespace {
 
-/// The arms that tell the story: broad (cosine) and narrow (phong), where both ran at one N.
-struct Pair {
-    const ArmPlan *broad = nullptr, *narrow = nullptr;
-    std::uint64_t n = 0;
-    explicit operator bool() const { return broad && narrow && n > 0; }
-};
-Pair pair_of(const Page& page) {
-    Pair pair{page.find.arm_with("cosine"), page.find.arm_with("phong"), 0};
-    if (!pair.broad || !pair.narrow) return {};
-    const std::uint64_t shared = page.find.headline_n();
-    const auto ran = [&](std::uint64_t n) {
-        return page.find.run(pair.broad->name, n) && page.find.run(pair.narrow->name, n);
-    };
-    pair.n = ran(shared) ? shared : page.find.common_n({pair.broad, pair.narrow});
-    return ran(pair.n) ? pair : Pair{};
+/// The arm's name, and what is to be known of it beside its numbers.
+std::string column_title(const ArmPlan& arm, const Experiment& e) {
+    std::string out = escape(arm.name);
+    if (techniques_of(arm) > 1) out += fmt::format("<small>{} rays a sample</small>", techniques_of(arm));
+    if (!missed_light(arm, e).empty()) out += "<small>biased here</small>";
+    return out;
 }
 
 std::string headline_table(const Page& page, std::uint64_t n) {
     const Experiment& e = page.in.experiment;
     std::vector<Column> columns;
     for (const ArmPlan& arm : e.arms)
-        if (page.find.run(arm.name, n)) columns.push_back({escape(arm.name), arm.name, n, page.find.s()});
+        if (page.find.run(arm.name, n)) columns.push_back({column_title(arm, e), arm.name, n, page.find.s()});
     return meters_table(page,
-        fmt::format("All arms at <i>N</i> = {}, <i>s</i> = {}. Large: at the {} seed, {}. Small: median over {}, "
-                    "its 5–95 % band, and the tail index of the region’s samples",
-            n, shortest(page.find.s()), page.seed_name(), e.seed, plural(static_cast<std::uint64_t>(e.seeds), "seed")),
+        fmt::format(
+            "All arms at <i>N</i> = {}{}. Large: at the {} seed, {}. Small: median over {}, its 5–95 % band, and the "
+            "tail index of the region’s samples",
+            n, any_tells_s(e) ? ", <i>s</i> = " + shortest(page.find.s()) : "", page.seed_name(), e.seed,
+            plural(static_cast<std::uint64_t>(e.seeds), "seed")),
         columns);
 }
 
@@ -48,14 +42,18 @@ std::string frame_footnote(const Page& page, std::uint64_t n) {
         "\n";
 }
 
-std::string broad_arms_sentence(const Page& page, const Pair& pair, const std::string& region) {
-    const ArmPlan* uniform = page.find.arm_with("uniform");
-    if (!uniform) return {};
-    const std::string sentence = ordering_sentence(page, uniform->name, pair.broad->name, pair.n, region);
-    return sentence.empty() ? "" : html::p("The uniform arm shows what aiming at nothing costs. " + sentence);
+/// The other arms about the normal, beside the better one.
+std::string broad_arms_sentence(const Page& page, const ArmPair& pair, const std::string& region) {
+    std::string out;
+    for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
+        if (arm == pair.broad) continue;
+        const std::string sentence = ordering_sentence(page, arm->name, pair.broad->name, pair.n, region);
+        if (!sentence.empty()) out += html::p("Of the arms about the normal: " + sentence);
+    }
+    return out;
 }
 
-std::string not_seen(const Pair& pair, const std::string& loser, const std::string& winner) {
+std::string not_seen(const ArmPair& pair, const std::string& loser, const std::string& winner) {
     return html::p(
         fmt::format("In this run the failure does not show: at <i>N</i> = {} there is no region in which {}’s RMSE is "
                     "larger than {}’s.",
@@ -86,6 +84,18 @@ of the frame tells it at a glance: for the same scene at <i>N</i> = {n}, <i>Y</i
 the material.</p>
 )";
 
+/// Of the two failures, those that this run does not show.
+std::string failures_not_seen(const Page& page, const ArmPair& pair) {
+    const std::string broad = pair.broad->name, narrow = pair.narrow->name;
+    std::string out;
+    if (!larger_in(page, broad, narrow, pair.n, page.find.region_where_worst(broad, narrow, pair.n)) &&
+        !page.in.experiment.disks.empty())
+        out += not_seen(pair, broad, narrow);
+    if (!larger_in(page, narrow, broad, pair.n, page.find.region_where_worst(narrow, broad, pair.n)))
+        out += not_seen(pair, narrow, broad);
+    return out;
+}
+
 std::string lost_words(const Page& page) {
     if (page.in.evidence.lost.empty()) return {};
     return " Off the normal there is also light that it " + html::link("wrong-support", "can never find") + ".";
@@ -97,11 +107,14 @@ PageSection results(Page& page) {
     const std::uint64_t n = page.find.headline_n();
     if (n == 0) return {};
     std::string out = page.figures.plates(PlateKind::columns) + headline_table(page, n);
-    const Pair pair = pair_of(page);
+    const ArmPair pair = arm_pair(page);
     std::vector<std::string> items;
     for (const Region& region : page.in.experiment.regions)
         if (pair) items.push_back(ordering_sentence(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
     if (!items.empty()) out += html::p("Region by region:") + html::list(items);
+    const std::string beside = ray_words(page.in.experiment) + bias_words(page.in.experiment);
+    if (!beside.empty()) out += html::p(beside.substr(1));
+    if (pair && !page.in.experiment.regions.empty()) out += failures_not_seen(page, pair);
     if (const std::uint64_t bad = page.find.bad_samples())
         out += html::p(
             fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
@@ -111,17 +124,15 @@ PageSection results(Page& page) {
 }
 
 PageSection failure_a(Page& page) {
-    const Pair pair = pair_of(page);
+    const ArmPair pair = arm_pair(page);
     if (!pair || page.in.experiment.regions.empty() || page.in.experiment.disks.empty()) return {};
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
     const std::string region = page.find.region_where_worst(broad, narrow, pair.n);
     const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
-    std::string out;
-    if (larger_in(page, broad, narrow, pair.n, region))
-        out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
-                  ordering_sentence(page, broad, narrow, pair.n, region)) +
-            broad_arms_sentence(page, pair, region);
-    else out = not_seen(pair, broad, narrow);
+    if (!larger_in(page, broad, narrow, pair.n, region)) return {};
+    std::string out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
+                          ordering_sentence(page, broad, narrow, pair.n, region)) +
+        broad_arms_sentence(page, pair, region);
     out += fmt::format(a_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)),
         fmt::arg("n", pair.n), fmt::arg("largest", html::value(figures(of_broad->largest))),
         fmt::arg("mean", html::value(figures(of_broad->y_mean))), fmt::arg("fireflies_broad", of_broad->fireflies),
@@ -130,25 +141,23 @@ PageSection failure_a(Page& page) {
         return [arm](const PlatePlan& plan) { return !plan.runs.empty() && plan.runs.front().arm == arm; };
     };
     for (const std::string& arm : {broad, narrow}) out += page.figures.plates(PlateKind::ladder, shows(arm));
-    return {"failure-a", "Failure A: " + escape(broad) + " fireflies the highlight", out};
+    return {"failure-a", fmt::format("Failure A: {} misses the light in {}", escape(broad), escape(region)), out};
 }
 
 PageSection failure_b(Page& page) {
-    const Pair pair = pair_of(page);
+    const ArmPair pair = arm_pair(page);
     if (!pair || page.in.experiment.regions.empty()) return {};
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
     const std::string region = page.find.region_where_worst(narrow, broad, pair.n);
     const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);
-    std::string out;
-    if (larger_in(page, narrow, broad, pair.n, region))
-        out = html::p("It shows in region <b>" + escape(region) + "</b>. " +
-            ordering_sentence(page, narrow, broad, pair.n, region));
-    else out = not_seen(pair, narrow, broad);
+    if (!larger_in(page, narrow, broad, pair.n, region)) return {};
+    std::string out = html::p(
+        "It shows in region <b>" + escape(region) + "</b>. " + ordering_sentence(page, narrow, broad, pair.n, region));
     out += fmt::format(b_prose, fmt::arg("broad", escape(broad)), fmt::arg("narrow", escape(narrow)),
         fmt::arg("n", pair.n), fmt::arg("mean_broad", html::value(figures(of_broad->y_mean))),
         fmt::arg("mean_narrow", html::value(figures(of_narrow->y_mean))),
         fmt::arg("largest", html::value(figures(of_narrow->largest))), fmt::arg("lost", lost_words(page)));
-    return {"failure-b", "Failure B: " + escape(narrow) + " starves the surround",
+    return {"failure-b", fmt::format("Failure B: {} starves {}", escape(narrow), escape(region)),
         out + page.figures.plates(PlateKind::surround)};
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "experiment/warnings.h"
 #include "report/page.h"
 
 namespace crescent {
@@ -86,6 +87,10 @@ PageSection scene(Page& page) {
                             "once, at that surface: one bounce, no more.",
             vec(e.camera.eye), vec(e.camera.target), shortest(e.camera.vfov_deg), e.image.width, e.image.height,
             page.in.metrics.geometry_pixels));
+    std::vector<std::string> warnings;
+    for (const std::string& warning : warnings_of(e))
+        warnings.push_back("<b class=\"bad\">Warning</b>: " + escape(warning));
+    if (!warnings.empty()) out += html::list(warnings);
     out += page.figures.plates(PlateKind::gallery) + shapes_table(page) + lights_table(e);
     return {"scene", "The scene", out};
 }

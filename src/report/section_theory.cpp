@@ -1,7 +1,11 @@
 // The question, and the estimator with its meters.
+#include <algorithm>
+
 #include <fmt/format.h>
 
-#include "report/page.h"
+#include "base/formula.h"
+#include "lobes/info.h"
+#include "report/arm_words.h"
 
 namespace crescent {
 namespace {
@@ -13,9 +17,9 @@ constexpr const char* question_prose = R"(
 brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives the
 right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the picture
 the noise sits.</p>
-<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, takes the same number of
-samples and is fed the same random numbers, pixel by pixel and sample by sample. The density
-<math><mi>p</mi></math> is all that differs, so whatever differs in the films is its doing.{regions}</p>
+<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, is compared at equal <i>N</i>
+and is fed the same random numbers, pixel by pixel and sample by sample. What differs is the density
+<math><mi>p</mi></math>, so whatever differs in the films is its doing.{rays}{bias}{regions}</p>
 <p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out of
 many; the band beside it shows what other seeds give, and where the samples are too heavy-tailed for a band the
 words {heavy} stand in its place.</p>
@@ -31,12 +35,15 @@ nothing and still counts in <i>N</i>; no density is rescaled to make up for it. 
 of the arm that drew it, never by another’s.</p>
 )";
 
-constexpr const char* lobe_prose = R"(
-<p>A glossy surface adds a normalised Phong lobe to its Lambert part:</p>
-{brdf}{mirror}
-<p>The constants look alike and mean different things. The BRDF’s <i>s</i> + 2 makes the lobe reflect the share {rho_s} of
-the light at normal incidence; the density’s <i>s</i> + 1, below, makes it integrate to one. Exchanging them is an error of
-{slip} at <i>s</i> = {s}.</p>
+constexpr const char* brdf_prose = R"(
+<p>A glossy surface adds a lobe to its Lambert part, <i>f</i> = <i>ρ</i><sub>d</sub>/π + <i>ρ</i><sub>s</sub> · lobe. The lobes of
+this scene, in 1/sr:</p>
+)";
+
+constexpr const char* constants_prose = R"(
+<p>Constants that look alike mean different things. This BRDF’s <i>s</i> + 2 makes its lobe reflect the share
+<i>ρ</i><sub>s</sub> of the light at normal incidence; the <i>s</i> + 1 of a density about <i>R</i> makes that integrate to one.
+Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
 )";
 
 constexpr const char* meters_prose = R"(
@@ -64,10 +71,30 @@ std::string regions_sentence(const Experiment& e) {
         e.regions.size() == 1 ? "one region" : "regions that behave differently", html::join(names));
 }
 
-bool any_phong_lobe(const Experiment& e) {
-    for (const Shape& shape : e.shapes)
-        if (shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong")) return true;
-    return false;
+/// The lobes of the scene's glossy surfaces, in the list's order.
+std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
+    std::vector<const LobeInfo*> out;
+    for (const LobeInfo& lobe : lobe_infos())
+        if (std::ranges::any_of(
+                e.shapes, [&](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe.kind; }))
+            out.push_back(&lobe);
+    return out;
+}
+
+std::string brdf_words(const Page& page) {
+    const std::vector<const LobeInfo*> lobes = lobes_of(page.in.experiment);
+    if (lobes.empty()) return {};
+    html::Table table("Lobes of this scene", {html::words("Lobe"), html::words("Value, 1/sr"), html::words("")});
+    for (const LobeInfo* lobe : lobes)
+        table.row({html::heading(escape(std::string(lobe->label))),
+            html::words(in_cell(formula::mathml(lobe->formula))), html::words(formula::html(lobe->summary))});
+    std::string out = brdf_prose + table.str();
+    const bool about_mirror = std::ranges::any_of(lobes, [](const LobeInfo* l) { return l->about_mirror; });
+    if (about_mirror && page.find.s() > 0)
+        out += display(mirror(), "R is the outgoing direction mirrored at the normal") +
+            fmt::format(constants_prose, fmt::arg("slip", percent(1 / (page.find.s() + 1), 2)),
+                fmt::arg("s", shortest(page.find.s())));
+    return out;
 }
 
 }  // namespace
@@ -78,7 +105,8 @@ PageSection question(Page& page) {
     return {"question", "The question",
         fmt::format(question_prose, fmt::arg("arms", spelled(names.size())), fmt::arg("names", html::join(names)),
             fmt::arg("regions", regions_sentence(page.in.experiment)), fmt::arg("heavy", html::heavy_tail()),
-            fmt::arg("seed", page.seed_name()))};
+            fmt::arg("seed", page.seed_name()), fmt::arg("rays", ray_words(page.in.experiment)),
+            fmt::arg("bias", bias_words(page.in.experiment)))};
 }
 
 PageSection estimator(Page& page) {
@@ -88,13 +116,7 @@ PageSection estimator(Page& page) {
         fmt::arg(
             "estimator", display(mathml::estimator(), "one over N times the sum of f times L times cosine over p")),
         fmt::arg("p", in_line(mi("p"))), fmt::arg("cosine", in_line(row({mi("n"), mo("⋅"), omega()}))));
-    if (any_phong_lobe(e)) {
-        const double s = page.find.s();
-        out += fmt::format(lobe_prose, fmt::arg("brdf", display(brdf_phong(), "Lambert plus normalised Phong lobe")),
-            fmt::arg("mirror", display(mirror(), "R is the outgoing direction mirrored at the normal")),
-            fmt::arg("rho_s", in_line(sub(mi("ρ"), mi("s")))), fmt::arg("slip", percent(1 / (s + 1), 2)),
-            fmt::arg("s", shortest(s)));
-    }
+    out += brdf_words(page);
     out +=
         fmt::format(meters_prose, fmt::arg("rmse", display(rmse_region(), "root mean square of Y minus Y ref over A")),
             fmt::arg("variance", display(variance(), "sample variance over N")),

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "experiment/arm_facts.h"
+#include "experiment/warnings.h"
 #include "report/findings.h"
 #include "pages/numbers.h"
 #include "report/report.h"
@@ -73,8 +75,8 @@ std::string table(const ReportInputs& in, const Paint& paint) {
                 seeds = std::max(seeds, band->band.seeds);
             }
     if (rows.empty()) return {};
-    std::string head =
-        fmt::format("  {}", left(fmt::format("N = {}, s = {}", n, shortest(find.s())), published ? 23 : 34));
+    const std::string s = any_tells_s(in.experiment) ? ", s = " + shortest(find.s()) : "";
+    std::string head = fmt::format("  {}", left(fmt::format("N = {}{}", n, s), published ? 23 : 34));
     if (published) head += "  published";
     head += "   measured";
     if (seeds > 1) head += fmt::format("     median  5-95 % of {} seeds", seeds);
@@ -132,6 +134,8 @@ std::string terminal_summary(
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format(
             "\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));
+    for (const std::string& warning : warnings_of(in.experiment))
+        out += "\n" + clip("  warning: " + warning, columns) + "\n";
     return out + "\n" + speed(timing) + where(in, out_dir, parts);
 }
 

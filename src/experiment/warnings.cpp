@@ -1,0 +1,20 @@
+#include "experiment/warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crescent {
+
+std::vector<std::string> warnings_of(const Experiment& experiment) {
+    std::vector<std::string> out;
+    for (const Shape& shape : experiment.shapes) {
+        const double albedo = std::ranges::max(shape.material.rho_d) + shape.material.rho_s;
+        if (albedo > 1)
+            out.push_back(fmt::format(
+                "{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives", shape.name, albedo));
+    }
+    return out;
+}
+
+}  // namespace crescent
