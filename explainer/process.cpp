@@ -50,14 +50,14 @@ Process::Process(const std::vector<std::string>& words, const std::string& stdin
     Descriptors streams;
     int feed[2] = {-1, -1}, tell[2];
     if (stdin_file.empty()) {
-        if (::pipe2(feed, O_CLOEXEC) != 0) throw OutputError("no pipe to be had");
+        if (!make_pipe(feed)) throw OutputError("no pipe to be had");
         streams.in = feed[0], pipe_ = feed[1];
     } else {
         streams.in = opened(stdin_file, O_RDONLY);
     }
     streams.out = opened(stdout_file, O_WRONLY | O_CREAT | O_TRUNC);
     streams.err = opened(stderr_file, O_WRONLY | O_CREAT | O_TRUNC);
-    if (::pipe2(tell, O_CLOEXEC) != 0) throw OutputError("no pipe to be had");
+    if (!make_pipe(tell)) throw OutputError("no pipe to be had");
     pid_ = ::fork();
     if (pid_ == 0) become(argv, streams, tell[1]);
     ::close(tell[1]);

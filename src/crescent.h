@@ -25,6 +25,7 @@
 #include "base/text.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "base/pipe.h"
 #include "base/polled_watch.h"
 #include "base/watch.h"
 #include "compare/compare.h"

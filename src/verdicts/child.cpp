@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "base/pipe.h"
 #include "verdicts/judge.h"
 
 namespace crescent {
@@ -21,7 +22,7 @@ struct Ends {
     int read = -1, write = -1;
     Ends() {
         int fd[2];
-        if (pipe2(fd, O_CLOEXEC) != 0) throw SubjectFault(fmt::format("no pipe: {}", std::strerror(errno)));
+        if (!make_pipe(fd)) throw SubjectFault(fmt::format("no pipe: {}", std::strerror(errno)));
         read = fd[0];
         write = fd[1];
     }
