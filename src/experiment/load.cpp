@@ -50,6 +50,12 @@ Experiment parse(std::string_view text, const std::string& name, const std::vect
 }
 
 Experiment load(const std::string& path, const std::vector<std::string>& overrides) {
+    for (const char* foreign : {".pbrt", ".xml", ".obj", ".ply", ".gltf", ".glb", ".usd", ".usda", ".usdz", ".blend"})
+        if (path.ends_with(foreign))
+            throw InputError({path, 0, 0},
+                "expected an experiment, a TOML file: scenes of other programs cannot be read; README.md says what a "
+                "scene "
+                "can be");
     Draft draft = draft_of(read_text(path, "an experiment file"), path, overrides);
     if (draft.e.published) {
         try {

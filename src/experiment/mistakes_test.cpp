@@ -115,6 +115,7 @@ const Mistake keys_and_types[] = {
     {"eye = [0, 1, 5]", "eye = []", 7, 7, "found a list of 0"},
     {"[exponent]", "[[exponent]]", 38, 1, "expected a table [exponent], found a list of 1"},
     {"kind = \"sphere\"", "kind = \"spere\"", 12, 8, "did you mean 'sphere'?"},
+    {"kind = \"box\"", "kind = \"mesh\"", 19, 8, "README.md says what a scene can be"},
     {"kind = \"box\"", "kind = 3", 19, 8, "expected one of sphere, box"},
     {"min = [-1, 0, -1]", "min = [-1, 0, -1]\nradius = 1", 21, 1, "a box has no key 'radius'"},
     {"runs = [{", "runs = [3, {", 50, 9, "plates.pair.runs.0: expected a table, found 3"},

@@ -171,11 +171,20 @@ private:
     Value& value_;
 };
 
+/// What other renderers' scenes have and these have not yet.
+bool is_beyond(std::string_view word) {
+    constexpr std::string_view words[] = {"mesh", "triangle", "ply", "obj", "texture", "bitmap", "envmap",
+        "environment", "hdri", "infinite", "glass", "dielectric", "conductor", "mirror", "plastic", "ior", "eta",
+        "roughness", "transmission", "volume", "medium", "curve", "instance", "lens", "emission"};
+    return std::ranges::any_of(words, [&](std::string_view w) { return word.starts_with(w); });
+}
+
 }  // namespace
 
 std::string hint(std::string_view word, const std::vector<std::string>& valid) {
     const std::string near = word.size() > 64 ? "" : nearest(word, valid);
-    return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+    if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
+    return is_beyond(word) ? "; README.md says what a scene can be" : "";
 }
 
 bool read_value(Draft& draft, const Key& key, const Node& node, const std::string& path, Value& value) {
