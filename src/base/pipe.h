@@ -1,5 +1,5 @@
-// A pipe whose ends are not inherited by programs that are started: in one call where the system has it (Linux), else in
-// two, between which another thread's child may inherit them.
+// A pipe whose ends are not inherited by programs that are started: in one call where the system has it (Linux), else
+// in two, between which another thread's child may inherit them.
 #pragma once
 
 #include <fcntl.h>
