@@ -13,11 +13,13 @@ for threads in 1 2 3 16; do
     turn=$((turn + 1))
 done
 
-# And the evidence on the tail of an arm that is Phong alone.
+# And what a file may ask for beside: the evidence on the tail of an arm that is Phong alone, the Monte Carlo reference.
 {
     cat "$tiny"
     printf '[arms.phong]\nn = [4, 16]\n'
 } >evidence.toml
-expect 0 "$CRESCENT" run evidence.toml --quiet --out evidence --threads 1 --isa scalar
-expect 0 "$CRESCENT" run evidence.toml --quiet --out evidence-16 --threads 16
+beside=(--set note_evidence=true --set reference.monte_carlo=true)
+expect 0 "$CRESCENT" run evidence.toml "${beside[@]}" --quiet --out evidence --threads 1 --isa scalar
+expect 0 "$CRESCENT" run evidence.toml "${beside[@]}" --quiet --out evidence-16 --threads 16
+grep -q '"rejected"' evidence/metrics.json && grep -q 'note reference' evidence/metrics.json || die "they were not measured"
 same_outputs evidence evidence-16
