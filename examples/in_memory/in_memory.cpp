@@ -10,11 +10,10 @@ namespace {
 crescent::Shape ball() {
     crescent::Shape shape;
     shape.name = "ball";
-    shape.kind = crescent::ShapeKind::sphere;
-    shape.center = {0, 1, 0};
-    shape.radius = 1;
+    shape.form = crescent::shapes::Sphere{{0, 1, 0}, 1};
     shape.material.rho_d = {0.2, 0.2, 0.2};
     shape.material.rho_s = 0.1;
+    shape.material.brdf = crescent::lobe_named("phong");
     shape.material.s = 40;
     shape.occludes = true;
     return shape;
