@@ -8,15 +8,17 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "color/rgb.h"
+#include "estimator/outside.h"
 
 namespace crescent {
 
 namespace {
 
-Kernel kernel_of(const std::string& isa, std::string_view sampler, int lobe) {
-    const int arm = arm_index(sampler);
-    ensure(arm >= 0, "the parser lets only known samplers through");
-    return kernels_for(isa).kernels[static_cast<std::size_t>(arm)][static_cast<std::size_t>(lobe + 1)];
+void run_kernel(const std::string& isa, const ArmInUse& arm, const KernelCall& call) {
+    if (arm.outside) return estimate_outside(*arm.outside, call);
+    const int index = arm_index(arm.sampler);
+    ensure(index >= 0, "the parser lets only known samplers through");
+    kernels_for(isa).kernels[static_cast<std::size_t>(index)][static_cast<std::size_t>(call.sites->lobe + 1)](call);
 }
 
 /// Sums of one site over its film's n samples -> the film's pixel.
@@ -87,14 +89,14 @@ void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* 
     watch.check();
 }
 
-std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n,
+std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, const std::string& isa, Watch& watch, TileKeeper* keeper) {
     const Image& image = scene.image();
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
     parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
         films[r] = Film(image.width, image.height, n[r]);
-        films[r].directions = directions_per_sample(sampler);
+        films[r].directions = directions_per_sample(arm.sampler);
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     if (keeper) keeper->begin(tiles, outputs_of(films, bad));
@@ -105,7 +107,7 @@ std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, c
         double samples = 0;
         for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.disks.size());
-            kernel_of(isa, sampler, sites.lobe)({&sites, n, seed, moments, &watch.stop, nullptr});
+            run_kernel(isa, arm, {&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 develop(scene, sites, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
@@ -133,16 +135,16 @@ ShapeMap shape_map(const Scene& scene) {
     return map;
 }
 
-Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed,
+Moments estimate_sites(const Sites& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
     moments[0].resize(sites.pixel.size(), sites.disks.size());
     const std::array<std::uint64_t, 1> rungs = {n};
-    kernel_of(isa, sampler, sites.lobe)({&sites, rungs, seed, moments, stop, samples});
+    run_kernel(isa, arm, {&sites, rungs, seed, moments, stop, samples});
     return std::move(moments[0]);
 }
 
-std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed,
+std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const Box& box, std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn) {
     std::vector<float> all;
     Mutex lock;
@@ -154,7 +156,7 @@ std::vector<float> largest_samples(const Scene& scene, std::string_view sampler,
         for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
             if (watch.stop.load(std::memory_order_relaxed)) return;
             std::vector<float> samples(sites.count * n);
-            estimate_sites(sites, sampler, n, seed, isa, &watch.stop, samples.data());
+            estimate_sites(sites, arm, n, seed, isa, &watch.stop, samples.data());
             const std::uint64_t here = samples.size();
             std::erase_if(samples, [](float x) { return std::isnan(x); });  // counted by the kernels; not a size
             if (samples.size() > count) {

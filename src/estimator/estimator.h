@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/outside.h"
 #include "base/watch.h"
 #include "estimator/kernel.h"
 #include "estimator/tile_keeper.h"
@@ -14,7 +15,7 @@
 namespace crescent {
 
 /// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best. `keeper`: keeps finished tiles.
-std::vector<Film> estimate_films(const Scene& scene, std::string_view sampler, const std::vector<std::uint64_t>& n,
+std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
 
 /// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.
@@ -25,11 +26,11 @@ ShapeMap shape_map(const Scene& scene);
 
 /// The `count` largest samples X of one arm over the geometry pixels of a box, n samples each, in falling order.
 /// `drawn` receives how many samples there were.
-std::vector<float> largest_samples(const Scene& scene, std::string_view sampler, std::uint64_t n, std::uint32_t seed,
+std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const Box& box, std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn);
 
 /// Runs a kernel over sites that the caller made; moments of the last rung only.
-Moments estimate_sites(const Sites& sites, std::string_view sampler, std::uint64_t n, std::uint32_t seed,
+Moments estimate_sites(const Sites& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples = nullptr);
 
 /// Calls work(k) for every tile k on all cores, except for those that the keeper holds; it returns what the tile was

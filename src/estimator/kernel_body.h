@@ -192,13 +192,14 @@ template <class F> [[gnu::noinline]] void write_rung(
     store(p.bad, out.bad.data() + at);
 }
 
-/// One pack of pixels through all its samples.
-template <class A, class L, class F> void estimate_pack(const KernelCall& call, std::size_t at) {
+/// One pack of pixels through all its samples; make(site) gives the arm.
+template <class A, class L, class F, class Make>
+void estimate_pack(const KernelCall& call, std::size_t at, const Make& make) {
     using U = UintOf<F>;
     Lane<A, L, F> lane(*call.sites, at);
     Gathered<F> gathered;
     Totals<F> totals(lane.disk_count);
-    const A arm(lane.site);
+    const A arm = make(lane.site);
     const L brdf(lane.site.s, lane.site.alpha);
     const Constants<F> c = lane.constants();
     const std::uint64_t n = call.rungs.back();
@@ -235,7 +236,8 @@ template <class A, class L, class F> void estimate_pack(const KernelCall& call, 
 }
 
 template <class A, class L, class F> void estimate(const KernelCall& call) {
-    for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count) estimate_pack<A, L, F>(call, at);
+    for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
+        estimate_pack<A, L, F>(call, at, [](const Site<F>& site) { return A(site); });
 }
 
 template <class F, template <class> class A, template <class> class... L>

@@ -90,6 +90,17 @@ void check_light(Draft& draft) {
         draft.complain("fill.radiance", "no light: expected a disk or the fill with a radiance above 0");
 }
 
+void check_outside_arms(Draft& draft) {
+    for (const ArmPlan& arm : draft.e.arms) {
+        const std::string path = "arms." + arm.name;
+        if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
+            draft.complain(path, fmt::format("{}: expected one of sampler, exec and plugin, found several", path));
+        for (const auto& [key, text] : {std::pair("exec", arm.exec), std::pair("plugin", arm.plugin)})
+            if (text && text->empty())
+                draft.complain(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
+    }
+}
+
 /// No two arms may write their films into one file.
 void check_film_files(Draft& draft) {
     const Experiment& e = draft.e;
@@ -130,6 +141,7 @@ void check_names(Draft& draft) {
                 hint(r.name, valid)));
     }
     check_film_files(draft);
+    check_outside_arms(draft);
     for (const DiskLight& disk : draft.e.disks)
         if (const Shape* shape = draft.e.find_shape(disk.name))
             draft.complain("disks." + disk.name,

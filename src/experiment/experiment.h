@@ -20,9 +20,10 @@ namespace crescent {
 /// One sampler with its ladder: rungs are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
-    std::string sampler;           // a word of arms/all.h
+    std::string sampler;           // a word of arms/all.h; "": what exec or plugin names
     std::vector<std::uint64_t> n;  // ascending samples per pixel
     Place at;
+    std::optional<std::string> exec = {}, plugin = {};  // a command, the file of a shared library
 };
 
 /// The exponent control: `arm` again at each s, which changes the pdf, the BRDF and the reference.

@@ -52,6 +52,7 @@ std::string toml(const Key& key, const Value& value) {
 
 /// A number of 0 and an empty list stand for an optional key that was not given.
 bool is_given(const Key& key, const Value& value) {
+    if (key.type == Type::sampler) return !value.text.empty();
     if (key.need != Need::optional) return true;
     if (key.type == Type::integers || key.type == Type::numbers) return !value.numbers.empty();
     return (key.type != Type::integer && key.type != Type::number) || value.number != 0;

@@ -27,7 +27,10 @@ Draft draft_of(std::string_view text, const std::string& name, const std::vector
     resolve_runs(draft);
     resolve_assertions(draft);
     Experiment& e = draft.e;
-    if (e.published) e.published = (std::filesystem::path(name).parent_path() / *e.published).string();
+    const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+    if (e.published) e.published = (folder / *e.published).string();
+    for (ArmPlan& arm : e.arms)
+        if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
     return draft;
 }
 

@@ -100,7 +100,9 @@ private:
     }
 
     void fallback(const Key& key, const std::string& path, void* object) {
-        if (key.type == Type::sampler) {  // the arm's own name
+        if (key.type == Type::sampler) {  // the arm's own name, where nothing stands in its place
+            const auto& arm = *static_cast<const ArmPlan*>(object);
+            if (arm.exec || arm.plugin) return;
             Node name;
             name.kind = Node::Kind::text;
             name.text = static_cast<const ArmPlan*>(object)->name;

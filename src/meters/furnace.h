@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/outside.h"
 #include "base/watch.h"
 #include "experiment/experiment.h"
 #include "experiment/published.h"
@@ -13,6 +14,7 @@
 namespace crescent {
 
 std::vector<FurnaceMeter> furnaces(
-    const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch);
+    const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch,
+    const OutsideSamplers& outside = {});
 
 }  // namespace crescent

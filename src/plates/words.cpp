@@ -17,7 +17,7 @@ namespace {
 
 std::string formula_of(const std::string& arm, const Experiment& e, const crescent::formula::Value& value = {}) {
     const ArmInfo* info = find_arm_info(sampler_of(arm, e));
-    if (!info) return "sampler " + escaped(arm);
+    if (!info) return "p(ω) of a sampler from outside";
     const std::string line = crescent::formula::pango(info->formula, value);
     return info->techniques > 1 ? line : "p(ω) = " + line;
 }

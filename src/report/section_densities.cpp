@@ -29,6 +29,12 @@ std::string rungs(const ArmPlan& arm) {
     return html::join(all);
 }
 
+/// What draws in place of an arm of the list.
+std::string source_of(const ArmPlan& arm) {
+    if (arm.plugin) return "that of the plugin " + html::code(*arm.plugin);
+    return "that of the program " + html::code(arm.exec.value_or(""));
+}
+
 /// One density about one direction: a polar angle is all that there is to it.
 bool plain(const ArmPlan& arm) {
     const ArmInfo* info = find_arm_info(arm.sampler);
@@ -53,7 +59,10 @@ PageSection densities(Page& page) {
     const Rgb& fill = page.in.experiment.fill;
     for (const ArmPlan& arm : arms) {
         const ArmInfo* info = find_arm_info(arm.sampler);
-        if (!info) continue;
+        if (!info) {
+            table.row({html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""), words(rungs(arm))});
+            continue;
+        }
         table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),
             words(mathml::in_cell(formula::mathml(info->density))), words(formula::html(info->draw)),
             words(formula::html(info->axis)), words(rungs(arm))});

@@ -12,6 +12,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "run/outside.h"
 #include "run/version.h"
 
 namespace crescent {
@@ -54,7 +55,8 @@ bool are_of(const Experiment& experiment, const std::vector<RegionMeter>& meters
 }
 
 std::string key_of(const Experiment& experiment, const std::string& instrument) {
-    return fmt::format("{} {} {} {:016x} {}", version(), commit(), build_mark(), hash(experiment), instrument);
+    return fmt::format("{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), instrument,
+        marks_of(experiment));
 }
 
 /// A folder of the run's own: a link that stands there leads elsewhere, and nothing is kept.

@@ -48,9 +48,10 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
 
 /// The tail index of each region's samples at the first seed. It belongs to an arm and exponent, not to N, and stands
 /// beside every rung.
-void add_tails(const RunPlan& plan, const Scene& base, const std::string& isa, Watch& watch, Metrics& metrics) {
-    for (const Job& job : jobs_of(plan.experiment, plan.seeds.front())) {
-        const Scene scene = base.with_s(job.s);
+void add_tails(const RunPlan& plan, const Prepared& prepared, const std::string& isa, Watch& watch, Metrics& metrics) {
+    for (Job job : jobs_of(plan.experiment, plan.seeds.front())) {
+        if (const auto own = prepared.outside.find(job.arm); own != prepared.outside.end()) job.outside = own->second;
+        const Scene scene = prepared.scene.with_s(job.s);
         for (std::size_t r = 0; r < plan.experiment.regions.size(); ++r) {
             const std::optional<Tail> tail = region_tail(scene, job, plan.experiment.regions[r].box, isa, watch);
             for (RunMeter& run : metrics.runs)
@@ -105,7 +106,7 @@ std::optional<Tail> region_tail(
     const std::size_t length = tail_length(pixels * n);
     std::uint64_t drawn = 0;
     if (length == 0) return std::nullopt;
-    return fit_pooled_tail(largest_samples(scene, job.sampler, n, job.seed, box, length + 1, isa, watch, drawn));
+    return fit_pooled_tail(largest_samples(scene, {job.sampler, job.outside.get()}, n, job.seed, box, length + 1, isa, watch, drawn));
 }
 
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
@@ -138,9 +139,12 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         out.timing.stages.emplace_back(name, took.count());
     };
     if (options.studies) {
-        stage("tails", [&] { add_tails(plan, prepared.scene, with.isa, watch, out.metrics); });
+        stage("tails", [&] { add_tails(plan, prepared, with.isa, watch, out.metrics); });
         stage("furnaces",
-            [&] { out.metrics.furnaces = furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch); });
+            [&] {
+                out.metrics.furnaces =
+                    furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch, prepared.outside);
+            });
         stage("evidence", [&] { out.evidence = measure_evidence(plan.experiment, with.isa, watch); });
     }
     add_view(prepared, out);

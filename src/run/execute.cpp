@@ -12,6 +12,7 @@
 #include "meters/meters.h"
 #include "run/checkpoint.h"
 #include "run/needs.h"
+#include "run/outside.h"
 #include "run/stopping.h"
 
 namespace crescent {
@@ -78,6 +79,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
     if (out.geometry_pixels == 0)
         throw InputError(experiment.place_of("camera"),
             "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
+    out.outside = open_outside(experiment);
     return out;
 }
 
@@ -112,6 +114,7 @@ JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job,
     const auto start = std::chrono::steady_clock::now();
     JobResult out;
     out.job = job;
+    if (const auto own = prepared.outside.find(job.arm); own != prepared.outside.end()) out.job.outside = own->second;
     out.stopped = !unless_stopped(
         with.threads, watch, [&] { compute(plan, prepared, with, watch, keep_films, checkpoint, out); });
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -36,6 +36,7 @@ struct Prepared {
     explicit Prepared(const Experiment& experiment) : scene(experiment) {}
 
     Scene scene;  // at the experiment's own s
+    OutsideSamplers outside;
     ShapeMap shapes;
     std::vector<std::uint64_t> shape_pixels;  // of each shape, in the experiment's order
     std::uint64_t geometry_pixels = 0;
@@ -43,7 +44,8 @@ struct Prepared {
     bool stopped = false;
 };
 
-/// What the camera sees. Throws InputError where it sees nothing, and OutputError where the machine has not the memory.
+/// What the camera sees, and the samplers that are none of the list. Throws InputError where it sees nothing, OutputError
+/// where the machine has not the memory or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
 /// Adds the references that the experiment asks for. A checkpoint keeps what is finished.
 void add_references(

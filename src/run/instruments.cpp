@@ -11,7 +11,7 @@ public:
     explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
     std::string name() const override { return "CPU"; }
     std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch, TileKeeper* keeper) override {
-        return estimate_films(scene, job.sampler, job.n, job.seed, isa_, watch, keeper);
+        return estimate_films(scene, {job.sampler, job.outside.get()}, job.n, job.seed, isa_, watch, keeper);
     }
 
 private:

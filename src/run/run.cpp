@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "run/checkpoint.h"
 #include "run/needs.h"
+#include "run/outside.h"
 
 namespace crescent {
 
@@ -76,12 +77,15 @@ RunResult run(const Experiment& experiment, const RunOptions& options, Watch& wa
     if (options.parts.draws()) check_font(plan.experiment);
     Prepared prepared = look(plan, engine);
     Staging staging(options.out);
-    Checkpoint checkpoint(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);
-    Measured all = measured(plan, std::move(prepared), engine, options, watch, &checkpoint);
+    std::optional<Checkpoint> checkpoint;  // what a program drew yesterday it may not draw today
+    if (!may_change(plan.experiment))
+        checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);
+    Measured all =
+        measured(plan, std::move(prepared), engine, options, watch, checkpoint ? &*checkpoint : nullptr);
     all.timing.total_s = seconds_since(start);
     on_threads(engine.threads, [&] { write(all, staging, watch, options.parts); });
     staging.commit(watch);
-    checkpoint.forget();
+    if (checkpoint) checkpoint->forget();
     std::string summary = terminal_summary(report_inputs(all), all.timing, options.out, options.parts);
     return {std::move(all.metrics), std::move(all.timing), std::move(all.provenance), std::move(summary)};
 }

@@ -1,0 +1,65 @@
+// A sampler that is no arm of the list: a program, or a shared library, that an experiment names in its place. It draws
+// in the local frame (n = +z, wo given, wi drawn), in double precision; pdf in 1/sr.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace crescent {
+
+/// What a sampler may know of the surface point, beside wo. Files and C read its rows as they stand here.
+struct OutsideSurface {
+    double s;        // Phong exponent
+    double alpha;    // GGX roughness
+    double diffuse;  // Y(rho_d)
+    double lobe;     // rho_s
+};
+
+/// A batch of draws at one surface point. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
+struct OutsideBatch {
+    Vec3<double> wo;
+    OutsideSurface surface;
+    std::span<const double> u;
+};
+
+/// pdf 0: nothing was drawn.
+struct OutsideDraw {
+    Vec3<double> wi;
+    double pdf;
+};
+
+class OutsideSampler {
+public:
+    virtual ~OutsideSampler() = default;
+    /// Its own name for itself.
+    virtual std::string name() const = 0;
+    /// Random numbers that a sample takes, 1 to 8.
+    virtual int numbers() const = 0;
+    /// One draw a row of u. May be called by many threads at once. Throws OutputError where it does not answer.
+    virtual void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const = 0;
+};
+
+/// The samplers from outside that an experiment's arms name, by arm.
+using OutsideSamplers = std::map<std::string, std::shared_ptr<const OutsideSampler>, std::less<>>;
+/// Null where the arm is one of the list.
+inline const OutsideSampler* outside_of(const OutsideSamplers& all, std::string_view arm) {
+    const auto found = all.find(arm);
+    return found == all.end() ? nullptr : found->second.get();
+}
+
+/// An arm as the kernels take it: a word of the list in all.h, or a sampler from outside, which goes before the word.
+struct ArmInUse {
+    std::string_view sampler;
+    const OutsideSampler* outside = nullptr;
+    ArmInUse(std::string_view word, const OutsideSampler* from = nullptr) : sampler(word), outside(from) {}
+    ArmInUse(const std::string& word) : sampler(word) {}
+    ArmInUse(const char* word) : sampler(word) {}
+};
+
+}  // namespace crescent

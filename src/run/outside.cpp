@@ -1,0 +1,102 @@
+#include "run/outside.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+
+#include "base/errors.h"
+#include "verdicts/pipe.h"
+#include "verdicts/plugin.h"
+
+namespace crescent {
+
+namespace {
+
+/// A program answers one question after another.
+class Program : public OutsideSampler {
+public:
+    explicit Program(std::shared_ptr<const JudgedSampler> program) : program_(std::move(program)) {}
+    std::string name() const override { return program_->name(); }
+    int numbers() const override { return program_->traits().numbers; }
+    void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const override {
+        const auto count = static_cast<std::size_t>(numbers());
+        std::vector<Numbers> u(out.size());
+        for (std::size_t i = 0; i < u.size(); ++i)
+            for (std::size_t k = 0; k < count; ++k) u[i][static_cast<int>(k)] = batch.u[i * count + k];
+        std::vector<Draw> draws(out.size());
+        const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        program_->sample(0, batch.wo, u, draws);
+        std::ranges::transform(draws, out.begin(), [](const Draw& d) { return OutsideDraw{d.wi, d.pdf}; });
+    }
+
+private:
+    std::shared_ptr<const JudgedSampler> program_;
+    mutable std::mutex lock_;
+};
+
+/// What it throws names the arm.
+class Named : public OutsideSampler {
+public:
+    Named(std::string arm, std::shared_ptr<const OutsideSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
+    std::string name() const override { return of_->name(); }
+    int numbers() const override { return of_->numbers(); }
+    void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const override {
+        try {
+            of_->draw(batch, out);
+        } catch (const SubjectFault& fault) {
+            throw OutputError(fmt::format("the arm '{}' broke off: {}", arm_, fault.what()));
+        }
+    }
+
+private:
+    std::string arm_;
+    std::shared_ptr<const OutsideSampler> of_;
+};
+
+std::shared_ptr<const JudgedSampler> program_of(const std::string& command) {
+    PipeLimits limits;
+    limits.total_seconds = std::numeric_limits<double>::infinity();
+    return start_pipe(command, limits);
+}
+
+/// An estimate divides f cos by the density of the draw: what has none cannot be an arm.
+void refuse(const ArmPlan& arm, const Traits& traits) {
+    if (!traits.has_pdf || traits.delta)
+        throw OutputError(fmt::format("the arm '{}' cannot be estimated with: its sampler {}", arm.name,
+            traits.delta ? "has delta parts" : "has no pdf"));
+}
+
+std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm) {
+    try {
+        if (arm.plugin) return open_plugin(*arm.plugin);
+        std::shared_ptr<const JudgedSampler> program = program_of(*arm.exec);
+        refuse(arm, program->traits());
+        return std::make_shared<Program>(std::move(program));
+    } catch (const SubjectFault& fault) {
+        throw OutputError(fmt::format("the arm '{}' does not start: {}", arm.name, fault.what()));
+    }
+}
+
+}  // namespace
+
+OutsideSamplers open_outside(const Experiment& experiment) {
+    OutsideSamplers all;
+    for (const ArmPlan& arm : experiment.arms)
+        if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm));
+    return all;
+}
+
+std::string marks_of(const Experiment& experiment) {
+    std::string all;
+    for (const ArmPlan& arm : experiment.arms)
+        if (arm.plugin) all += fmt::format(" {}={:016x}", arm.name, plugin_mark(*arm.plugin));
+    return all;
+}
+
+bool may_change(const Experiment& experiment) {
+    return std::ranges::any_of(experiment.arms, [](const ArmPlan& arm) { return arm.exec.has_value(); });
+}
+
+}  // namespace crescent

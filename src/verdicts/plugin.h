@@ -1,0 +1,27 @@
+// A sampler in a shared library with the C interface of sampler_plugin.h: judged by itself, or an arm of an experiment.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "arms/outside.h"
+#include "verdicts/subject.h"
+
+namespace crescent {
+
+/// Drawn for any surface point as an arm; judged on one surface.
+class PluginSampler : public OutsideSampler, public JudgedSampler {
+public:
+    std::string name() const override = 0;
+};
+
+/// Opens the library at `path`; as a JudgedSampler it is asked on `surface`. Throws OutputError where the file is no such
+/// library, with what is missing.
+std::shared_ptr<const PluginSampler> open_plugin(
+    const std::string& path, const OutsideSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
+
+/// XXH3 of the file: films of another library are other films.
+std::uint64_t plugin_mark(const std::string& path);
+
+}  // namespace crescent
