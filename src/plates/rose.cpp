@@ -158,7 +158,10 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
     double y = draw_words(sheet, parts, i, col, narrow);
     Rect dome{col.x, y, col.w, content_band.y + 294 - y};
     if (!(part.peak > 0)) {
-        paint_missing(sheet, dome, arm_name(part.key.arm, e) + " has no density that is independent of the lights");
+        const bool outside = sampler_of(part.key.arm, e).empty();
+        paint_missing(sheet, dome,
+            arm_name(part.key.arm, e) + (outside ? " comes from outside: its density is not known here"
+                                                 : " has no density that is independent of the lights"));
         return;
     }
     draw_dome(sheet, part, dome, tilt);
