@@ -1,5 +1,6 @@
 // crescent film: an experiment -> its film. The door registers itself in the program that links it.
 #include <fmt/format.h>
+#include <oneapi/tbb/info.h>
 
 #include <algorithm>
 #include <chrono>
@@ -184,7 +185,8 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Watch
 
 const bool registered = [] {
     film_maker() = [](const Experiment& experiment, const FilmOptions& options, Watch& watch) {
-        const int threads = options.threads > 0 ? options.threads : usable_threads();
+        const int asked = options.threads > 0 ? options.threads : usable_threads();
+        const int threads = std::min(asked, oneapi::tbb::info::default_concurrency());
         return on_threads(threads, [&] { return make(experiment, options, watch); });
     };
     return true;

@@ -9,7 +9,8 @@ namespace {
 
 Experiment tiny(int width, int height) {
     return load(std::string(CRESCENT_SOURCE_DIR) + "/laws/scripts/tiny.toml",
-        {"image.width=" + std::to_string(width), "image.height=" + std::to_string(height)});
+        {"image.width=" + std::to_string(width), "image.height=" + std::to_string(height),
+            "reference.monte_carlo=true"});
 }
 
 TEST(Needs, GrowWithThePixelsAndTheRungs) {

@@ -38,7 +38,7 @@ TEST(Experiments, TheGalleryHoldsTheNote) {
     EXPECT_THAT(e.find_arm("phong")->n, ElementsAre(4u, 16u, 64u, 256u));
     EXPECT_THAT(e.exponent->s, ElementsAre(8, 32, 128));
     EXPECT_EQ(e.exponent->n, 64u);
-    EXPECT_EQ(to_string(e.place_of("shapes.sphere.radius")).substr(folder.size()), "gallery.toml:38:10");
+    EXPECT_EQ(to_string(e.place_of("shapes.sphere.radius")).substr(folder.size()), "gallery.toml:39:10");
 }
 
 TEST(Experiments, AllOfThemAreGood) {

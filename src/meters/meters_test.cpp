@@ -196,7 +196,7 @@ double out_of_reach(const Evidence& e, const FurnaceQuantiles& q) {
 
 TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
     Watch watch;
-    const Evidence e = measure_evidence(test::small_scene(), "", watch);
+    const Evidence e = measure_evidence(test::small_scene({"note_evidence=true"}), "", watch);
     ASSERT_FALSE(e.lost.empty());
     for (const LostSupport& l : e.lost) EXPECT_NEAR(l.measured, l.theory, 4 * l.se + 1e-9) << l.theta_R_deg;
     for (const FalseRejection& r : e.rejections) {

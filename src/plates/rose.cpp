@@ -111,7 +111,7 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
     draw_arrow(sheet.canvas, dome, {math::sin(tilt), 0, math::cos(tilt)}, "R", 1);
     Rect bar{slot.right() - bar_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
-    sheet.canvas.text({bar.x, slot.y - 2, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
+    sheet.canvas.text({bar.x, slot.y + 4, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
     colour_bar(sheet, bar, part.peak, false);
 }
 
@@ -160,8 +160,9 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
     if (!(part.peak > 0)) {
         const bool outside = sampler_of(part.key.arm, e).empty();
         paint_missing(sheet, dome,
-            arm_name(part.key.arm, e) + (outside ? " comes from outside: its density is not known here"
-                                                 : " has no density that is independent of the lights"));
+            arm_name(part.key.arm, e) +
+                (outside ? " comes from outside: its density is not known here"
+                         : " has no density that is independent of the lights"));
         return;
     }
     draw_dome(sheet, part, dome, tilt);

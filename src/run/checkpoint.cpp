@@ -55,8 +55,8 @@ bool are_of(const Experiment& experiment, const std::vector<RegionMeter>& meters
 }
 
 std::string key_of(const Experiment& experiment, const std::string& instrument) {
-    return fmt::format("{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), instrument,
-        marks_of(experiment));
+    return fmt::format(
+        "{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), instrument, marks_of(experiment));
 }
 
 /// A folder of the run's own: a link that stands there leads elsewhere, and nothing is kept.

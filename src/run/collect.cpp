@@ -106,7 +106,8 @@ std::optional<Tail> region_tail(
     const std::size_t length = tail_length(pixels * n);
     std::uint64_t drawn = 0;
     if (length == 0) return std::nullopt;
-    return fit_pooled_tail(largest_samples(scene, {job.sampler, job.outside.get()}, n, job.seed, box, length + 1, isa, watch, drawn));
+    return fit_pooled_tail(
+        largest_samples(scene, {job.sampler, job.outside.get()}, n, job.seed, box, length + 1, isa, watch, drawn));
 }
 
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
@@ -140,11 +141,10 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     };
     if (options.studies) {
         stage("tails", [&] { add_tails(plan, prepared, with.isa, watch, out.metrics); });
-        stage("furnaces",
-            [&] {
-                out.metrics.furnaces =
-                    furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch, prepared.outside);
-            });
+        stage("furnaces", [&] {
+            out.metrics.furnaces =
+                furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch, prepared.outside);
+        });
         stage("evidence", [&] { out.evidence = measure_evidence(plan.experiment, with.isa, watch); });
     }
     add_view(prepared, out);

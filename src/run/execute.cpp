@@ -69,7 +69,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
     const Experiment& experiment = plan.experiment;
     check_memory(experiment);
     Prepared out(experiment);
-    on_threads(settled(engine).threads, [&] {
+    on_threads(threads_to_be_had(settled(engine).threads), [&] {
         out.scene.remember_primaries();
         out.shapes = shape_map(out.scene);
     });

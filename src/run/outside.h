@@ -1,4 +1,5 @@
-// The samplers from outside that an experiment's arms name: opened before any work, so that what is missing is told first.
+// The samplers from outside that an experiment's arms name: opened before any work, so that what is missing is told
+// first.
 #pragma once
 
 #include "arms/outside.h"
@@ -6,8 +7,8 @@
 
 namespace crescent {
 
-/// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name, where
-/// one does not start, is no sampler, or cannot be estimated with (no pdf, delta parts).
+/// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name,
+/// where one does not start, is no sampler, or cannot be estimated with (no pdf, delta parts).
 OutsideSamplers open_outside(const Experiment& experiment);
 
 /// What the libraries are, apart from their names; "" where there are none. Films of other libraries are other films.

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "run/checkpoint.h"
 #include "run/needs.h"
+#include "run/stopping.h"
 #include "run/outside.h"
 
 namespace crescent {
@@ -80,10 +81,9 @@ RunResult run(const Experiment& experiment, const RunOptions& options, Watch& wa
     std::optional<Checkpoint> checkpoint;  // what a program drew yesterday it may not draw today
     if (!may_change(plan.experiment))
         checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);
-    Measured all =
-        measured(plan, std::move(prepared), engine, options, watch, checkpoint ? &*checkpoint : nullptr);
+    Measured all = measured(plan, std::move(prepared), engine, options, watch, checkpoint ? &*checkpoint : nullptr);
     all.timing.total_s = seconds_since(start);
-    on_threads(engine.threads, [&] { write(all, staging, watch, options.parts); });
+    on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, watch, options.parts); });
     staging.commit(watch);
     if (checkpoint) checkpoint->forget();
     std::string summary = terminal_summary(report_inputs(all), all.timing, options.out, options.parts);

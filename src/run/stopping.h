@@ -1,15 +1,22 @@
 // Inside the steps of a run a stop is an exception; outside it is an answer.
 #pragma once
 
+#include <oneapi/tbb/info.h>
+
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "base/watch.h"
 
 namespace crescent {
 
+/// As many of these as oneTBB has: it complains on stderr of more.
+inline int threads_to_be_had(int threads) { return std::min(threads, oneapi::tbb::info::default_concurrency()); }
+
 /// Does the work on so many threads; false where the watch stopped it, on the way or before its end.
 template <class Work> bool unless_stopped(int threads, const Watch& watch, const Work& work) {
     try {
-        on_threads(threads, work);
+        on_threads(threads_to_be_had(threads), work);
         watch.check();
         return true;
     } catch (const Interrupted&) { return false; }
