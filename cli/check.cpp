@@ -86,6 +86,7 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
         if (flags.patience > 0) limits.total_seconds = flags.patience;
         return trials_of_subject(start_pipe(flags.exec, limits), flags.full);
     }
+    if (!flags.plugin.empty()) return trials_of_subject(open_plugin(flags.plugin), flags.full);
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full);
     if (flags.wo.empty() || flags.table.empty())
         throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
@@ -108,8 +109,8 @@ std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
-    for (const auto& [flag, value] :
-        {std::pair("--exec", &f.exec), {"--samples", &f.samples}, {"--pdf-table", &f.table}, {"--wo", &f.wo}})
+    for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
+             {"--pdf-table", &f.table}, {"--wo", &f.wo}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
     for (const auto& [flag, given] :
         {std::pair("--full", f.full), {"--planted", f.planted}, {"--accept-few", f.accept_few}})
@@ -251,7 +252,7 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
     j.state = dynamic_cast<const SubjectTooSlow*>(&fault) ? State::inconclusive : State::error;
     for (std::string_view name : verdict_names) {
         Verdict v;
-        v.arm = printable(flags.exec, 60);
+        v.arm = printable(flags.exec.empty() ? flags.plugin : flags.exec, 60);
         v.trial = "start";
         v.name = name;
         v.state = j.state;
@@ -279,7 +280,7 @@ int check(const CheckFlags& flags) {
         j = judge(trials, rigour_of(flags), watch);
     } catch (const SubjectFault& fault) { j = complaint(fault, flags); }
     watch.clear();
-    const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.samples.empty();
+    const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
     if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
     print(verdict_table(j));
     if (whole_list)

@@ -58,7 +58,7 @@ int schema(const SchemaFlags& flags);
 struct CheckFlags {
     std::string arm;                    // "": all of the list
     std::vector<std::string> settings;  // s=128
-    std::string exec, samples, table, wo;
+    std::string exec, plugin, samples, table, wo;
     std::string json, timing, junit, html;  // files to write
     double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
     unsigned seed = 1, error_rates = 0;     // error_rates: how many seeds; 0: not asked for

@@ -41,6 +41,9 @@ void add_check(CLI::App& app, Work& work) {
     auto* exec = c->add_option("--exec", f->exec, "judge a program that answers over a pipe")
                      ->type_name("'PROGRAM ARGS'")
                      ->check(told);
+    auto* plugin = c->add_option("--plugin", f->plugin, "judge a shared library, see docs/plugins.md")
+                       ->type_name("FILE")
+                       ->check(told);
     auto* samples =
         c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told);
     c->add_option("--patience", f->patience, "s that --exec may take in all; default 120, with --full 3600")
@@ -56,6 +59,7 @@ void add_check(CLI::App& app, Work& work) {
     for (auto* other : {arm, set, planted}) right->excludes(other);
     c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
     for (auto* other : {arm, set, planted, rates, right}) exec->excludes(other), samples->excludes(other);
+    for (auto* other : {arm, set, planted, rates, right, exec, samples}) plugin->excludes(other);
     exec->excludes(samples);
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
         ->type_name("FILE")

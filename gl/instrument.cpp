@@ -75,7 +75,8 @@ std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch&
         claimed_film_ = true;
     }
     if (job.outside)
-        throw OutputError("the GL instrument has no copy of the arm '" + job.arm + "', which is a program or a plugin: use the cpu");
+        throw OutputError(
+            "the GL instrument has no copy of the arm '" + job.arm + "', which is a program or a plugin: use the cpu");
     return estimator_.films(scene, job.sampler, job.n, job.seed, watch);
 }
 

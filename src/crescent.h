@@ -64,6 +64,7 @@
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
 #include "verdicts/pipe.h"
+#include "verdicts/plugin.h"
 #include "verdicts/print.h"
 #include "verdicts/samples.h"
 #include "verdicts/user.h"

@@ -8,7 +8,7 @@ expect 0 "${CC:-cc}" -O2 -o cosine "$CRESCENT_SOURCE/examples/pipe_samplers/cosi
 {
     sed 's/^\[arms.uniform\]/[arms.mine]\nplugin = "libcosine.so"/; s/^seeds = 1/seeds = 2/' "$tiny"
     printf '%s\n' '[plates.rose]' 'kind = "rose"' 'runs = [{arm = "mine", n = 16}, {arm = "cosine", n = 16}]' \
-        '[furnaces.mine]' 'arm = "mine"' 'shape = "ball"' '[furnaces.built_in]' 'arm = "cosine"' 'shape = "ball"'
+        '[furnaces.mine]' 'arm = "mine"' 'shape = "ball"' 'n = 4096' '[furnaces.built_in]' 'arm = "cosine"' 'shape = "ball"' 'n = 4096'
 } >mine.toml
 expect 0 "$CRESCENT" run mine.toml --out out --quiet
 expect 0 python3 - <<'PY'
@@ -22,8 +22,10 @@ pairs = [(a, runs[("cosine",) + key[1:]]) for key, a in runs.items() if key[0] =
 assert len(pairs) == 4, runs.keys()
 for a, b in pairs:
     assert a.keys() == b.keys() and len(a) > 8, a
-    for key in a: assert math.isclose(a[key], b[key], rel_tol=1e-6, abs_tol=1e-9), (key, a[key], b[key])
-f = {x["name"]: x for x in m["furnaces"]}
+    for key in a:  # a tail is a fit to the largest samples, whose order is that of their last bits
+        tol = 1e-2 if "/tail/" in key else 1e-6
+        assert math.isclose(a[key], b[key], rel_tol=tol, abs_tol=1e-9), (key, a[key], b[key])
+f = {x["name"]: x for x in m["furnace"]}
 assert math.isclose(f["mine"]["measured"], f["built_in"]["measured"], rel_tol=1e-6), f
 PY
 expect 0 "$CRESCENT" run mine.toml --out again --quiet --threads 1 --isa scalar
@@ -46,7 +48,7 @@ told() {
 }
 told 'plugin = "libnowhere.so"' 3 "the arm 'mine' does not start: cannot open the plugin"
 told 'plugin = "mine.toml"' 3 "cannot open the plugin"
-told 'exec = "./nowhere"' 3 "the arm 'mine'"
+told 'exec = "./nowhere"' 2 "arms.mine.exec: the shell cannot start"
 told 'exec = "read hello; echo hello 1 x; exit 3"' 3 "exit code 3"
 told 'exec = ""' 2 "arms.mine.exec"
 told 'sampler = "cosine"\nplugin = "libcosine.so"' 2 "one of sampler, exec and plugin"

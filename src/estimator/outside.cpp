@@ -30,8 +30,8 @@ Drawn<float> usable(const OutsideDraw& d) {
     return {{static_cast<float>(d.wi.x), static_cast<float>(d.wi.y), static_cast<float>(d.wi.z)}, {pdf}};
 }
 
-/// The random numbers of `n` samples of a pixel from `first` on, `count` a sample: the first two are those of every arm,
-/// the rest come from blocks that no arm uses.
+/// The random numbers of `n` samples of a pixel from `first` on, `count` a sample: the first two are those of every
+/// arm, the rest come from blocks that no arm uses.
 void numbers_of(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, std::uint64_t n, std::size_t count,
     std::vector<double>& u) {
     u.resize(n * count);

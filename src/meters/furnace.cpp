@@ -23,7 +23,8 @@ std::optional<Tail> tail_of(std::vector<float> x) {
     return fit_tail(std::span<const float>(x.data(), length + 1));
 }
 
-FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa, Watch& watch, const OutsideSamplers& outside) {
+FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa, Watch& watch,
+    const OutsideSamplers& outside) {
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
@@ -33,7 +34,8 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
     const Surface surface = furnace_surface(experiment, *shape, lobe_only);
     const Sites sites = furnace_sites(surface, 1);
     std::vector<float> samples(plan.n);
-    const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed, isa, &watch.stop, samples.data());
+    const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed,
+        isa, &watch.stop, samples.data());
     const double n = static_cast<double>(plan.n);
     FurnaceMeter out;
     out.name = plan.name, out.arm = plan.arm, out.part = lobe_only ? "lobe" : "combined", out.n = plan.n;
@@ -49,9 +51,8 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
 
 }  // namespace
 
-std::vector<FurnaceMeter> furnaces(
-    const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch,
-    const OutsideSamplers& outside) {
+std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
+    Watch& watch, const OutsideSamplers& outside) {
     std::vector<FurnaceMeter> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
         out.push_back(measure_one(experiment, plan, isa, watch, outside));

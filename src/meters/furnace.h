@@ -13,8 +13,7 @@
 
 namespace crescent {
 
-std::vector<FurnaceMeter> furnaces(
-    const Experiment& experiment, const Published* published, const std::string& isa, Watch& watch,
-    const OutsideSamplers& outside = {});
+std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
+    Watch& watch, const OutsideSamplers& outside = {});
 
 }  // namespace crescent

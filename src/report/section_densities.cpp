@@ -60,7 +60,8 @@ PageSection densities(Page& page) {
     for (const ArmPlan& arm : arms) {
         const ArmInfo* info = find_arm_info(arm.sampler);
         if (!info) {
-            table.row({html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""), words(rungs(arm))});
+            table.row(
+                {html::heading(escape(arm.name)), words(source_of(arm)), words(""), words(""), words(rungs(arm))});
             continue;
         }
         table.row({html::heading(name_of(arm, *info, fill[0] + fill[1] + fill[2] > 0)),

@@ -62,19 +62,21 @@ std::shared_ptr<const JudgedSampler> program_of(const std::string& command) {
 }
 
 /// An estimate divides f cos by the density of the draw: what has none cannot be an arm.
-void refuse(const ArmPlan& arm, const Traits& traits) {
-    if (!traits.has_pdf || traits.delta)
-        throw OutputError(fmt::format("the arm '{}' cannot be estimated with: its sampler {}", arm.name,
-            traits.delta ? "has delta parts" : "has no pdf"));
+void refuse(const Traits& traits) {
+    if (traits.delta) throw OutputError("it has delta parts, which have no density to divide by");
+    if (!traits.has_pdf) throw OutputError("it has no pdf to divide by");
 }
 
-std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm) {
+std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm, const Experiment& experiment) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin);
         std::shared_ptr<const JudgedSampler> program = program_of(*arm.exec);
-        refuse(arm, program->traits());
+        refuse(program->traits());
         return std::make_shared<Program>(std::move(program));
-    } catch (const SubjectFault& fault) {
+    } catch (const InputError&) {
+        const std::string key = fmt::format("arms.{}.exec", arm.name);
+        throw InputError(experiment.place_of(key), fmt::format("{}: the shell cannot start '{}'", key, *arm.exec));
+    } catch (const std::runtime_error& fault) {  // OutputError, SubjectFault
         throw OutputError(fmt::format("the arm '{}' does not start: {}", arm.name, fault.what()));
     }
 }
@@ -84,7 +86,7 @@ std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm) {
 OutsideSamplers open_outside(const Experiment& experiment) {
     OutsideSamplers all;
     for (const ArmPlan& arm : experiment.arms)
-        if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm));
+        if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment));
     return all;
 }
 

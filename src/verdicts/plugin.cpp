@@ -77,7 +77,9 @@ public:
         if (!u.empty()) draw({wo, surface_, numbers}, draws);
         std::ranges::transform(draws, out.begin(), [](const OutsideDraw& d) { return Draw{d.wi, d.pdf}; });
     }
-    void pdf(int /*technique*/, std::span<const Pair> at, std::span<double> out) const override { ask("pdf", pdf_, at, out); }
+    void pdf(int /*technique*/, std::span<const Pair> at, std::span<double> out) const override {
+        ask("pdf", pdf_, at, out);
+    }
     void f(std::span<const Pair> at, std::span<double> out) const override { ask("f", f_, at, out); }
 
 private:
@@ -93,7 +95,8 @@ private:
         std::unique_lock<std::mutex> one_at_a_time(lock_, std::defer_lock);
         if (serial_) one_at_a_time.lock();
         if (const int code = ask_it(); code != 0)
-            throw SubjectFault(fmt::format("the plugin {}: crescent_sampler_{} gave {}: expected 0", path_, what, code));
+            throw SubjectFault(
+                fmt::format("the plugin {}: crescent_sampler_{} gave {}: expected 0", path_, what, code));
     }
 
     void ask(const char* what, Answer answer, std::span<const Pair> at, std::span<double> out) const {

@@ -16,8 +16,8 @@ public:
     std::string name() const override = 0;
 };
 
-/// Opens the library at `path`; as a JudgedSampler it is asked on `surface`. Throws OutputError where the file is no such
-/// library, with what is missing.
+/// Opens the library at `path`; as a JudgedSampler it is asked on `surface`. Throws OutputError where the file is no
+/// such library, with what is missing.
 std::shared_ptr<const PluginSampler> open_plugin(
     const std::string& path, const OutsideSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
 

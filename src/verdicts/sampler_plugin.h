@@ -22,9 +22,9 @@ unsigned crescent_sampler_numbers(void);
 /* Not 0: one call at a time; default 0. */
 int crescent_sampler_serial(void);
 
-/* Draws `count` directions. Rows: wo 3; u crescent_sampler_numbers() numbers in [0, 1); surface 4: Phong exponent s, GGX
- * roughness alpha, luminance of the diffuse albedo, specular albedo. Writes rows of wi (3) and of pdf (1); pdf 0: nothing
- * was drawn. Returns 0, or a number that is told and ends the run. */
+/* Draws `count` directions. Rows: wo 3; u crescent_sampler_numbers() numbers in [0, 1); surface 4: Phong exponent s,
+ * GGX roughness alpha, luminance of the diffuse albedo, specular albedo. Writes rows of wi (3) and of pdf (1); pdf 0:
+ * nothing was drawn. Returns 0, or a number that is told and ends the run. */
 int crescent_sampler_sample(
     size_t count, const double* wo, const double* u, const double* surface, double* wi, double* pdf);
 /* The density of each wi, 0 where it is never drawn. `crescent check` needs it, a run does not. */
