@@ -57,7 +57,8 @@ Rect Canvas::text(const Rect& box, const std::string& markup, const Text& how) {
         pango_layout_set_height(l, -how.lines);
         cut = true;
     }
-    pango_layout_set_width(l, static_cast<int>(std::ceil(box.w * PANGO_SCALE)));
+    // What fits within half a pixel must not be wrapped for that half.
+    pango_layout_set_width(l, static_cast<int>(std::ceil((cut ? box.w : std::max(box.w, e.w)) * PANGO_SCALE)));
     PangoRectangle r;
     pango_layout_get_extents(l, nullptr, &r);
     double h = double(r.height) / PANGO_SCALE;

@@ -111,7 +111,7 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
     draw_arrow(sheet.canvas, dome, {math::sin(tilt), 0, math::cos(tilt)}, "R", 1);
     Rect bar{slot.right() - bar_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
-    sheet.canvas.text({bar.x, slot.y + 4, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
+    sheet.canvas.text({bar.x, slot.y - 2, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
     colour_bar(sheet, bar, part.peak, false);
 }
 
