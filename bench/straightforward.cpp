@@ -62,7 +62,8 @@ bool blocks(const Occluder& body, Vec3d x, Vec3d y) {
 Rgb incident(const Scene& scene, const Point& at, Vec3d wi) {
     double nearest = 1e30;
     Rgb radiance = scene.fill();
-    for (const DiskLight& disk : scene.disks()) {
+    for (const Light& light : scene.lights()) {
+        const lights::Disk& disk = std::get<lights::Disk>(light.form);
         const double v = dot(wi, disk.normal);
         if (v >= 0 && !disk.two_sided) continue;
         const double t = dot(disk.center - at.hit.x, disk.normal) / v;
@@ -71,7 +72,7 @@ Rgb incident(const Scene& scene, const Point& at, Vec3d wi) {
         const auto hides = [&](const Occluder& o) { return o.shape != at.hit.shape && blocks(o, at.hit.x, y); };
         nearest = t;
         const bool hidden = std::any_of(scene.occluders().begin(), scene.occluders().end(), hides);
-        radiance = hidden ? scene.fill() : disk.radiance;
+        radiance = hidden ? scene.fill() : light.radiance;
     }
     return radiance;
 }

@@ -100,7 +100,7 @@ void set_scene(const Program& program, const Sites& lights, const Bodies& bodies
 
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
     std::vector<Film>& films, Watch& watch) {
-    const std::size_t disks = scene.disks().size();
+    const std::size_t disks = scene.disk_count();
     const SiteTexture& here = sites(scene, box, watch);
     if (here.groups().empty()) return;
     const Sites lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
@@ -133,11 +133,15 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
     if (!(find_arm_info(sampler)->gl.relative > 0))
         throw OutputError("the GL instrument has no copy of the sampler '" + sampler + "': use the cpu");
+    for (const Light& light : scene.lights())
+        if (!light.is_disk())
+            throw OutputError(fmt::format(
+                "the GL instrument has disk lights alone; '{}' is a {}: use the cpu", light.name, light.kind()));
     const Image& image = scene.image();
     std::vector<Film> out;
     for (const std::uint64_t rung : n)
         out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
-    for (const TileBox& box : rectangles_of(image.width, image.height, scene.disks().size(), largest_texture_))
+    for (const TileBox& box : rectangles_of(image.width, image.height, scene.disk_count(), largest_texture_))
         estimate(scene, box, sampler, seed, out, watch);
     return out;
 }

@@ -158,7 +158,7 @@ TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
             std::to_string(20 - k) + "]\n";
     const Experiment experiment = parse(text, "lights.toml", {"image.width=48", "image.height=32"});
     const Scene scene(experiment);
-    ASSERT_EQ(scene.disks().size(), 15u);
+    ASSERT_EQ(scene.disk_count(), 15u);
     Estimator gl(test::context());
     Watch watch;
     const Film a = estimate_films(scene, "light-area", {32}, 2, "", watch)[0],

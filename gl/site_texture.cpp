@@ -32,7 +32,7 @@ SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileB
         for (Sites& group : groups) groups_.push_back(std::move(group));
 
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
-                      layer_count = site_layers(scene.disks().size());
+                      layer_count = site_layers(scene.disk_count());
     std::vector<float> layers(4 * texels * layer_count, 0.0f);
     for (std::size_t k = 0; k < texels; ++k) layers[4 * (layer_of_lobe * texels + k) + 3] = -1;
     tbb::parallel_for(std::size_t{0}, groups_.size(), [&](std::size_t g) {
@@ -122,6 +122,10 @@ std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int
 Bodies bodies_of(const std::vector<OccluderF>& occluders) {
     constexpr std::array<std::string_view, 5> order = {"sphere", "box", "quad", "disk", "plane"};
     Bodies out;
+    for (const OccluderF& o : occluders)
+        if (const std::string_view kind = crescent::Bodies::names[o.kind];
+            std::find(order.begin(), order.end(), kind) == order.end())
+            throw OutputError("the GL instrument has no shadow of a " + std::string(kind) + ": use the cpu");
     for (std::size_t k = 0; k < order.size(); ++k) {
         for (const OccluderF& o : occluders) {
             if (crescent::Bodies::names[o.kind] != order[k]) continue;

@@ -1,7 +1,7 @@
 // What scripts/extending.sh asks of something that was added by the steps of docs/extending.md.
 //   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
-//   it is
-//                             other than the list expects, and that both say what they are
+//                             it is other than the list expects, and that both say what they are
+//   extending --scene TOML    that with these tables added to the scene arms have the reference's mean
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -52,9 +52,10 @@ n = [256]
 box = [0, 0, 31, 19]
 )";
 
-bool has_the_references_mean(const std::string& sampler, const std::string& brdf) {
-    const Experiment e =
-        parse(scene_text, "extending", {"arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
+bool has_the_references_mean(const std::string& sampler, const std::string& brdf, const std::string& added = "",
+    const std::string& fill = "[0.5, 0.6, 0.7]") {
+    const Experiment e = parse(std::string(scene_text) + added, "extending",
+        {"fill.radiance=" + fill, "arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
     const Scene scene(e);
     Watch watch;
     const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", watch)[0];
@@ -81,6 +82,13 @@ bool is_judged_as_expected(const std::string& sampler) {
 
 int main(int argc, char** argv) try {
     if (argc != 3) return 2;
+    if (std::string(argv[1]) == "--scene")
+        return has_the_references_mean("cosine", "phong", argv[2]) &&
+                has_the_references_mean("mis-balance", "ggx", argv[2]) &&
+                has_the_references_mean("light-area", "phong", argv[2], "[0, 0, 0]") &&
+                has_the_references_mean("light-solid-angle", "phong", argv[2], "[0, 0, 0]")
+            ? 0
+            : 1;
     const ArmInfo* arm = find_arm_info(argv[1]);
     const LobeInfo& lobe = lobe_info(lobe_named(argv[2]));
     if (!arm) return 2;

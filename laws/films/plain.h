@@ -61,10 +61,10 @@ template <class V, class T> void visit(V& v, std::vector<T>& x) {
 }
 template <class V, class... T> void each(V& v, T&... x) { (visit(v, x), ...); }
 
-template <class V> void visit(V& v, Shapes::Any& form) {
+template <class V, class List> void visit_form(V& v, typename List::Any& form) {
     std::size_t kind = form.index();
     v.item(kind);
-    if (V::reads) form = Shapes::make(kind);
+    if (V::reads) form = List::make(kind);
     std::visit(
         [&]<class Kind>(Kind& k) {
             for (const Parameter<Kind>& parameter : Kind::parameters())
@@ -72,9 +72,12 @@ template <class V> void visit(V& v, Shapes::Any& form) {
         },
         form);
 }
+template <class V> void visit(V& v, Shapes::Any& form) { visit_form<V, Shapes>(v, form); }
+template <class V> void visit(V& v, LightKinds::Any& form) { visit_form<V, LightKinds>(v, form); }
+template <class V> void visit(V& v, Light& l) { each(v, l.name, l.form, l.radiance); }
 template <class V> void visit(V& v, Shape& s) {
     Material& m = s.material;
-    each(v, s.name, s.form, m.rho_d, m.rho_s, m.brdf, m.s, m.alpha, m.inherits_s, s.occludes);
+    each(v, s.name, s.form, m.rho_d, m.rho_s, m.brdf, m.s, m.alpha, m.inherits_s, m.specular, s.occludes);
 }
 template <class V> void visit(V& v, DiskLight& d) {
     each(v, d.name, d.center, d.normal, d.radius, d.radiance, d.two_sided);
@@ -84,7 +87,7 @@ template <class V> void visit(V& v, ExponentControl& c) { each(v, c.arm, c.n, c.
 
 template <class V> void visit(V& v, Experiment& e) {
     each(v, e.file, e.seed, e.n, e.image.width, e.image.height);
-    each(v, e.camera.eye, e.camera.target, e.camera.up, e.camera.vfov_deg, e.shapes, e.disks, e.fill, e.arms,
+    each(v, e.camera.eye, e.camera.target, e.camera.up, e.camera.vfov_deg, e.shapes, e.disks, e.lights, e.fill, e.arms,
         e.exponent);
     each(v, e.reference.seed, e.reference.lobe_spp, e.reference.disk_spp);
 }

@@ -8,6 +8,8 @@
 {
     sed '/^\[arms/,/^n = /d' "$tiny"
     "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'
+    printf '[lights.bulb]\nkind = "sphere"\ncenter = [1.2, 1.8, 1.0]\nradius = 0.3\nradiance = [6, 5, 4]\n'
+    printf '[lights.window]\nkind = "rectangle"\ncorner = [-1, 2.6, -0.4]\nedge_u = [1.2, 0, 0]\nedge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'
 } >every-arm.toml
 cp "$CRESCENT_SOURCE"/experiments/*.toml "$CRESCENT_SOURCE"/experiments/published.json .
 experiments=(every-arm.toml)

@@ -26,7 +26,7 @@ add_section() { # TITLE
 }
 
 touched=0
-for title in "An arm" "A lobe"; do
+for title in "An arm" "A lobe" "A shape" "A light"; do
     add_section "$title"
     diff -rq plain fresh | sort >differences || true
     count=$(wc -l <differences)
@@ -47,3 +47,17 @@ expect 0 cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}
 expect 0 cmake --build "$build" --target extending
 expect 0 "$build/laws/extending" tent half-power
 expect 0 "$build/laws/extending" blinn half-power
+expect 0 "$build/laws/extending" --scene '
+[shapes.it]
+kind = "triangle"
+corner = [-0.9, 0.9, 0.2]
+edge_u = [0.8, 0.1, 0.3]
+edge_v = [0.2, 0.7, 0.1]
+rho_d = [0.4, 0.3, 0.2]
+occludes = true
+[lights.it]
+kind = "square"
+center = [0.4, 2.0, 0.9]
+side = 0.6
+radiance = [6.0, 5.0, 4.0]
+'

@@ -1,6 +1,8 @@
-// light-area: next-event estimation (NEE), a disk light by area, the disk chosen by its power Y(L) pi r^2.
+// light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times the largest area
+// that it shows, pi r^2 of a disk. Of a disk:
 //   y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2);  p_A = 1/(pi r^2);  p = p_A |y - x|^2 / cos(light).
-// It reaches nothing but the disks: under a fill it is wrong by the fill, unless another technique adds that.
+// Other kinds of light: scene/lights/. It reaches nothing but the lights: under a fill it is wrong by the fill, unless
+// another technique adds that.
 #pragma once
 
 #include "arms/sampler.h"
@@ -23,6 +25,8 @@ template <class F> struct LightArea {
     static Theory theory(const TrialPoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
     int count;
+    const LocalLight<F>* others;  // after the disks
+    int other_count;
 
     /// A disk with what does not change from sample to sample.
     struct Aim {
@@ -40,13 +44,14 @@ template <class F> struct LightArea {
     };
     Aim first;  // most scenes have but one
 
-    explicit LightArea(const Site<F>& site) : disks(site.disks), count(site.disk_count) {
+    explicit LightArea(const Site<F>& site)
+        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
         if (count > 0) first = Aim(disks[0]);
     }
 
     [[gnu::always_inline]] DrawnToDisk<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
-        if (count == 1) {
+        if (count == 1 && other_count == 0) {
             const Drawn<F> drawn = on_disk(first, u);
             return {drawn, zero, drawn.pdf.v > zero};
         }
@@ -54,13 +59,23 @@ template <class F> struct LightArea {
         F below = zero, own = zero;
         for (int k = 0; k < count;
             ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
-            const F above = k + 1 < count ? below + disks[k].power : one;
+            const F above = k + 1 < count + other_count ? below + disks[k].power : one;
             const auto chosen = (u.x >= below) & (u.x < above);
             const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - below) / (above - below), u.y});
             drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y),
                 select(chosen, one_disk.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
             own = select(chosen, number<F>(k), own);
+            below = above;
+        }
+        for (int k = 0; k < other_count; ++k) {
+            const F above = k + 1 < other_count ? below + others[k].power : one;
+            const auto chosen = (u.x >= below) & (u.x < above);
+            const Aimed<F> aimed = on_other(others[k], {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
+            drawn.wi = {select(chosen, aimed.wi.x, drawn.wi.x), select(chosen, aimed.wi.y, drawn.wi.y),
+                select(chosen, aimed.wi.z, drawn.wi.z)};
+            drawn.pdf.v = select(chosen, (above - below) * aimed.pdf, drawn.pdf.v);
+            own = select(chosen, number<F>(count + k), own);
             below = above;
         }
         const auto some = drawn.pdf.v > zero;
@@ -88,7 +103,22 @@ private:
             const F t = c / select(met, v, number<F>(1));
             sum = sum + select(met, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));
         }
+        for (int k = 0; k < other_count; ++k) {
+            const F one_light = density_of(others[k], wi);
+            sum = sum + select(but == number<F>(count + k), number<F>(0), others[k].power * one_light);
+        }
         return sum;
+    }
+
+    [[gnu::noinline]] static Aimed<F> on_other(const LocalLight<F>& light, Vec2<F> u) {
+        Aimed<F> out = {{number<F>(0), number<F>(0), number<F>(1)}, number<F>(0)};
+        with_light_kind(light.kind, [&]<class Kind>() { out = Kind::by_area(light, u); });
+        return out;
+    }
+    [[gnu::noinline]] static F density_of(const LocalLight<F>& light, Vec3<F> wi) {
+        F out = number<F>(0);
+        with_light_kind(light.kind, [&]<class Kind>() { out = Kind::area_pdf(light, wi); });
+        return out;
     }
 
     [[gnu::always_inline]] static PerSr<F> density(const LocalDisk<F>& d, F r2, F cos_light) {

@@ -1,4 +1,5 @@
-// light-solid-angle: next-event estimation (NEE), a disk light by solid angle: uniform over the smallest cap of
+// light-solid-angle: next-event estimation (NEE), a light by solid angle: other kinds of light as scene/lights/ has it,
+// a disk uniform over the smallest cap of
 // directions about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
 //   p = 1 / (2 pi (1 - cos b)),  cos = 1 - u1 (1 - cos b), phi = 2 pi u2, about the ellipse's centre a.
 // The ellipse (Guillen et al. 2017, "Area-Preserving Parameterizations for Spherical Ellipses", section 3): with t the
@@ -31,6 +32,8 @@ template <class F> struct LightSolidAngle {
     static Theory theory(const TrialPoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
     int count;
+    const LocalLight<F>* others;  // after the disks
+    int other_count;
 
     struct Cap {
         Vec3<F> axis;
@@ -40,18 +43,19 @@ template <class F> struct LightSolidAngle {
     };
     Cap first;  // most scenes have but one
 
-    explicit LightSolidAngle(const Site<F>& site) : disks(site.disks), count(site.disk_count) {
+    explicit LightSolidAngle(const Site<F>& site)
+        : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
         if (count > 0) first = cap_of(disks[0]);
     }
 
     DrawnToDisk<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
-        if (count == 1) return towards(0, first, u);
+        if (count == 1 && other_count == 0) return towards(0, first, u);
         DrawnToDisk<F> drawn = {{{zero, zero, one}, {zero}}, zero, zero > zero};
         F below = zero;
         for (int k = 0; k < count;
             ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
-            const F above = k + 1 < count ? below + disks[k].power : one;
+            const F above = k + 1 < count + other_count ? below + disks[k].power : one;
             const auto chosen = (u.x >= below) & (u.x < above);
             const DrawnToDisk<F> w =
                 towards(k, cap_of(disks[k]), {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
@@ -60,6 +64,17 @@ template <class F> struct LightSolidAngle {
             drawn.pdf.v = select(chosen, (above - below) * w.pdf.v, drawn.pdf.v);
             drawn.disk = select(chosen, w.disk, drawn.disk);
             drawn.met = (chosen & w.met) | (drawn.met & !chosen);
+            below = above;
+        }
+        for (int k = 0; k < other_count; ++k) {
+            const F above = k + 1 < other_count ? below + others[k].power : one;
+            const auto chosen = (u.x >= below) & (u.x < above);
+            const Aimed<F> w = on_other(others[k], {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
+            drawn.wi = {select(chosen, w.wi.x, drawn.wi.x), select(chosen, w.wi.y, drawn.wi.y),
+                select(chosen, w.wi.z, drawn.wi.z)};
+            drawn.pdf.v = select(chosen, (above - below) * w.pdf, drawn.pdf.v);
+            drawn.disk = select(chosen, number<F>(count + k), drawn.disk);
+            drawn.met = (chosen & (w.pdf > zero)) | (drawn.met & !chosen);
             below = above;
         }
         // Caps may overlap: every one that holds wi could have drawn it.
@@ -74,14 +89,31 @@ private:
     F density_of_others(Vec3<F> wi, F but) const {
         F sum = number<F>(0), below = number<F>(0);
         for (int k = 0; k < count; ++k) {
-            const F share = k + 1 < count ? disks[k].power : number<F>(1) - below;
+            const F share = k + 1 < count + other_count ? disks[k].power : number<F>(1) - below;
             const Cap cap = count == 1 ? first : cap_of(disks[k]);
             const Vec3<F> off = wi - cap.axis;
             const auto held = (number<F>(0.5) * dot(off, off) <= cap.height) & !(but == number<F>(k));
             sum = sum + select(held, share * cap.density, number<F>(0));
             below = below + share;
         }
+        for (int k = 0; k < other_count; ++k) {
+            const F share = k + 1 < other_count ? others[k].power : number<F>(1) - below;
+            const F one_light = density_of(others[k], wi);
+            sum = sum + select(but == number<F>(count + k), number<F>(0), share * one_light);
+            below = below + share;
+        }
         return sum;
+    }
+
+    [[gnu::noinline]] static Aimed<F> on_other(const LocalLight<F>& light, Vec2<F> u) {
+        Aimed<F> out = {{number<F>(0), number<F>(0), number<F>(1)}, number<F>(0)};
+        with_light_kind(light.kind, [&]<class Kind>() { out = Kind::by_angle(light, u); });
+        return out;
+    }
+    [[gnu::noinline]] static F density_of(const LocalLight<F>& light, Vec3<F> wi) {
+        F out = number<F>(0);
+        with_light_kind(light.kind, [&]<class Kind>() { out = Kind::angle_pdf(light, wi); });
+        return out;
     }
 
     static Cap cap_of(const LocalDisk<F>& d) {

@@ -7,6 +7,7 @@
 
 #include "arms/info.h"
 #include "base/vec.h"
+#include "scene/lights/all.h"
 #include "simd/frame.h"
 
 namespace crescent {
@@ -31,7 +32,7 @@ template <class F> struct Drawn {
 /// A direction that was drawn towards a disk light. Who drew it knows better whether it meets that disk than a test of
 /// the rounded direction: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
 template <class F> struct DrawnToDisk : Drawn<F> {
-    F disk;         // its index
+    F disk;         // its index, disks first
     MaskOf<F> met;  // wi meets it; it may still be behind another disk, or hidden
 };
 
@@ -65,6 +66,8 @@ template <class F> struct Site {
     F lobe;     // rho_s
     const LocalDisk<F>* disks = nullptr;
     int disk_count = 0;
+    const LocalLight<F>* others = nullptr;  // lights that are no disks
+    int other_count = 0;
 };
 
 /// What holds of the arms that aim at disk lights alone.

@@ -47,6 +47,20 @@ CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, 
     }
 }
 
+/// As meets_disk for a light that is no disk, at index k of all; t: how far it is.
+template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, const D& drawn, std::size_t k, F& t) {
+    MaskOf<F> met = drawn.wi.x > drawn.wi.x, shines = met;
+    with_light_kind(light.kind, [&]<class Kind>() {
+        met = Kind::meets(light, drawn.wi, t);
+        shines = Kind::shines(light);
+    });
+    if constexpr (requires { drawn.met; }) {
+        const auto own = drawn.disk == number<F>(static_cast<double>(k));
+        return (own & drawn.met & shines) | (met & !own);
+    }
+    return met;
+}
+
 /// Disks on one ray: the nearer is met, and of two as near as rounding can tell the one that stands first in the file.
 template <class F> CRESCENT_INLINE MaskOf<F> is_nearer(F t, F than) { return t < than * number<F>(1 - 1e-5); }
 
@@ -57,13 +71,15 @@ template <class F> struct DiskCone {
     F cos;  // of its half-angle, less what rounding can do; 2 where no emitting side faces the surface
 
     DiskCone() = default;
-    explicit DiskCone(const FacingDisk<F>& disk) {
-        const F one = number<F>(1), d2 = dot(disk.c, disk.c);
-        const auto outside = d2 > disk.r2;
-        axis = disk.c * (one / sqrt(larger(d2, number<F>(1e-30))));
-        cos = select(outside, sqrt(larger(one - disk.r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5),
-            number<F>(-2));
-        cos = select(disk.r2 < number<F>(0), number<F>(2), cos);
+    explicit DiskCone(const FacingDisk<F>& disk) { *this = DiskCone(disk.c, disk.r2, !(disk.r2 < number<F>(0))); }
+    /// Of a ball about c.
+    DiskCone(Vec3<F> c, F r2, MaskOf<F> shines) {
+        const F one = number<F>(1), d2 = dot(c, c);
+        const auto outside = d2 > r2;
+        axis = c * (one / sqrt(larger(d2, number<F>(1e-30))));
+        cos = select(
+            outside, sqrt(larger(one - r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5), number<F>(-2));
+        cos = select(shines, cos, number<F>(2));
     }
     CRESCENT_INLINE MaskOf<F> holds(Vec3<F> w) const { return dot(w, axis) > cos; }
 };

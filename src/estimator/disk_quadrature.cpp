@@ -38,13 +38,41 @@ bool is_soft(const DiskPoint& point, const Figure& figure, double height) {
     return height > 0 && radius < nearest && point.sharpness(radius / nearest) < 2;
 }
 
+/// May the body reach into the ball about c? Never false where it does.
+bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
+    return std::visit(
+        [&](const auto& b) {
+            const Vec3d d = b.middle() - c;
+            const auto beyond = [&](Vec3d axis) {
+                return dot(axis, d) - b.half_extent(axis) >= radius * std::sqrt(dot(axis, axis));
+            };
+            if (beyond(d)) return false;
+            for (const Vec3d& axis : b.faces())
+                if (beyond(axis) || beyond(-axis)) return false;
+            return true;
+        },
+        body.body);
+}
+
+/// The integral over the directions of a figure, what stands before it hidden.
+DiskIntegral over(const Figure& figure, const DiskPoint& point, Vec3d normal, const std::vector<const Blocker*>& near) {
+    const double height = dot(middle_of(figure) - point.x, normal), reach = half_extent_of(figure, normal);
+    for (const Blocker* blocker : near)
+        if (hides_all(*blocker, point.x, figure)) return {};
+    const bool soft = is_soft(point, figure, height);
+    const bool at_horizon = !(height - reach > 0);
+    const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure);
+    if (disk && near.empty() && soft && !at_horizon) return whole_disk(point, *disk, frame_about(disk->normal));
+    return fan_by_fan(point, figure, near, !soft, at_horizon);
+}
+
 }  // namespace
 
-DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene.disks()[k]) {
+DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene.lights()[k]) {
     for (const Occluder& body : scene.occluders()) blockers_.push_back({body});
-    for (std::size_t other = 0; other < scene.disks().size(); ++other) {
+    for (std::size_t other = 0; other < scene.lights().size(); ++other) {
         if (other == k) continue;
-        const DiskLight& light = scene.disks()[other];  // of two in one place the first is met
+        const Light& light = scene.lights()[other];  // of two in one place the first is met
         blockers_.push_back({{light.body(), -1}, {0, other < k ? 1 + at_an_end : 1 - at_an_end}, &light});
     }
 }
@@ -63,18 +91,22 @@ std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Fig
 DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) const {
     if (!light_.shines_on(hit.x)) return {};
     const Figure figure = light_.seen_from(hit.x);
-    const double height = dot(middle_of(figure) - hit.x, hit.n), reach = half_extent_of(figure, hit.n);
-    if (height + reach <= 0) return {};
+    if (dot(middle_of(figure) - hit.x, hit.n) + half_extent_of(figure, hit.n) <= 0) return {};
     const Frame<double> local = frame_about(hit.n);
     const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, normal_of(figure)};
     const std::vector<const Blocker*> near = in_the_way(hit, figure);
-    for (const Blocker* blocker : near)
-        if (hides_all(*blocker, hit.x, figure)) return {};
-    const bool soft = is_soft(point, figure, height);
-    const bool at_horizon = !(height - reach > 0);
-    const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure);
-    if (disk && near.empty() && soft && !at_horizon) return whole_disk(point, *disk, frame_about(disk->normal));
-    return fan_by_fan(point, figure, near, !soft, at_horizon);
+    DiskIntegral out = over(figure, point, hit.n, near);
+    const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
+    const auto reaches_in = [&](const Blocker* b) { return may_reach_into(b->body, ball->center, ball->radius); };
+    if (!ball || std::none_of(near.begin(), near.end(), reaches_in)) return out;
+    // The ball's surface bulges before the figure: what stands between them hides as much as it does of the figure, or
+    // nothing, as of the same figure where it touches the ball.
+    const Vec3d d = ball->center - hit.x;
+    const double far = std::sqrt(dot(d, d));
+    const DiskIntegral least = over(moved(figure, hit.x, far / (far + ball->radius)), point, hit.n, near);
+    out.diffuse_error += std::fabs(least.diffuse - out.diffuse) + least.diffuse_error;
+    out.lobe_error += std::fabs(least.lobe - out.lobe) + least.lobe_error;
+    return out;
 }
 
 }  // namespace crescent

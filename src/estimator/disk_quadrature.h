@@ -21,7 +21,7 @@ struct DiskIntegral {
 struct Blocker {
     Occluder body;
     Between between = before_light;
-    const DiskLight* light = nullptr;  // which is not there from behind where it shines from one side alone
+    const Light* light = nullptr;  // which is not there from behind where it shines from one side alone
 };
 
 class DiskQuadrature {
@@ -33,7 +33,7 @@ public:
 private:
     std::vector<const Blocker*> in_the_way(const Hit& hit, const Figure& figure) const;
 
-    const DiskLight& light_;
+    const Light& light_;
     std::vector<Blocker> blockers_;
 };
 

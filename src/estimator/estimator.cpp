@@ -14,7 +14,9 @@ namespace crescent {
 
 namespace {
 
-void run_kernel(const std::string& isa, const ArmInUse& arm, const KernelCall& call) {
+void run_kernel(const std::string& isa, const ArmInUse& arm, KernelCall call) {
+    std::vector<std::byte> memory(memory_of_light * call.sites->light_count());
+    call.memory = memory.data();
     if (arm.outside) return estimate_outside(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
@@ -51,15 +53,15 @@ private:
             fill_g -= m_.disk_g[k][i];
             fill_lobe -= m_.disk_g_lobe[k][i];
             for (std::size_t c = 0; c < 3; ++c) {
-                diffuse[c] += scene_.disks()[k].radiance[c] * m_.disk_g[k][i];
-                lobe[c] += scene_.disks()[k].radiance[c] * m_.disk_g_lobe[k][i];
+                diffuse[c] += scene_.lights()[k].radiance[c] * m_.disk_g[k][i];
+                lobe[c] += scene_.lights()[k].radiance[c] * m_.disk_g_lobe[k][i];
             }
         }
         Rgb out{};
         for (std::size_t c = 0; c < 3; ++c) {
             diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
             lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
-            out[c] = (sites_.rho_d[i][c] / pi * diffuse[c] + sites_.rho_s_exact[i] * lobe[c]) / n;
+            out[c] = (sites_.rho_d[i][c] / pi * diffuse[c] + sites_.rho_s_exact[i] * (sites_.tint[i][c] * lobe[c])) / n;
         }
         return out;
     }
@@ -106,7 +108,7 @@ std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const 
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
         for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
-            for (Moments& m : moments) m.resize(sites.pixel.size(), sites.disks.size());
+            for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
             run_kernel(isa, arm, {&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 develop(scene, sites, moments[r], films[r]);
@@ -138,7 +140,7 @@ ShapeMap shape_map(const Scene& scene) {
 Moments estimate_sites(const Sites& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
-    moments[0].resize(sites.pixel.size(), sites.disks.size());
+    moments[0].resize(sites.pixel.size(), sites.light_count());
     const std::array<std::uint64_t, 1> rungs = {n};
     run_kernel(isa, arm, {&sites, rungs, seed, moments, stop, samples});
     return std::move(moments[0]);

@@ -30,6 +30,7 @@ Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
     fill(sites.fill_s, surface.rho_s);
     sites.rho_d.assign(count, surface.rho_d);
     sites.rho_s_exact.assign(count, surface.rho_s);
+    sites.tint.assign(count, surface.tint);
     sites.pad();
     return sites;
 }

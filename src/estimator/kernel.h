@@ -7,6 +7,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -22,7 +23,7 @@ namespace crescent {
 /// Moments of n samples, one entry a site; sums are kept in double.
 struct Moments {
     std::vector<double> g, g_lobe;                         // sum of g and of g * lobe over all samples
-    std::vector<std::vector<double>> disk_g, disk_g_lobe;  // over the samples that met disk k
+    std::vector<std::vector<double>> disk_g, disk_g_lobe;  // over the samples that met light k, disks first
     std::vector<double> spread;                            // sum of (X - mean X)^2
     std::vector<float> largest;                            // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
@@ -30,13 +31,17 @@ struct Moments {
     void resize(std::size_t sites, std::size_t disks);
 };
 
+/// What a kernel needs for each light of a scene, in bytes.
+inline constexpr std::size_t memory_of_light = 4096;
+
 struct KernelCall {
     const Sites* sites = nullptr;
     std::span<const std::uint64_t> rungs;  // ascending
     std::uint32_t seed = 0;
     std::span<Moments> out;  // one a rung, sized to the padded count
     const std::atomic<bool>* stop = nullptr;
-    float* samples = nullptr;  // where not null: every X, sample k of site i at i * n + k
+    float* samples = nullptr;     // where not null: every X, sample k of site i at i * n + k
+    std::byte* memory = nullptr;  // memory_of_light bytes for each of the sites' lights
 };
 
 using Kernel = void (*)(const KernelCall&);

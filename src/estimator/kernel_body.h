@@ -32,24 +32,25 @@ template <class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s;
     UintOf<F> pixel;
-    DiskCone<F> first;  // round the first disk; most scenes have but one
+    DiskCone<F> first;  // round the first light; most scenes have but one
 };
 
 /// One pack of pixels: its lights and the step that takes one sample.
 template <class A, class L, class F> struct Lane : Lights<F> {
     using U = UintOf<F>;
-    using Lights<F>::sites, Lights<F>::at, Lights<F>::disk_count, Lights<F>::disks, Lights<F>::cones, Lights<F>::meet;
+    using Lights<F>::sites, Lights<F>::at, Lights<F>::disk_count, Lights<F>::light_count, Lights<F>::disks,
+        Lights<F>::others, Lights<F>::cones, Lights<F>::meet;
     Site<F> site;
 
-    Lane(const Sites& all, std::size_t first) : Lights<F>(all, first) {
+    Lane(const Sites& all, std::size_t first, LightRoom<F>& room) : Lights<F>(all, first, room) {
         site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
             load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks,
-            static_cast<int>(disk_count)};
+            static_cast<int>(disk_count), others, static_cast<int>(light_count - disk_count)};
     }
 
     Constants<F> constants() const {
         return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at),
-            load_lanes<F>(sites.pixel, at), disk_count > 0 ? cones[0] : DiskCone<F>{}};
+            load_lanes<F>(sites.pixel, at), light_count > 0 ? cones[0] : DiskCone<F>{}};
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
@@ -68,12 +69,12 @@ template <class A, class L, class F> struct Lane : Lights<F> {
             to.g_lobe = to.g_lobe + g * lobe;
             x = g * (c.fill_d + lobe * c.fill_s);
         }
-        if (disk_count == 0) return x;
+        if (light_count == 0) return x;
         if constexpr (requires { drawn.met; }) {
             if (any(up)) x = meet(drawn, g, lobe, x, up);
         } else {
             auto near = c.first.holds(drawn.wi);
-            for (std::size_t k = 1; k < disk_count; ++k) near = near | cones[k].holds(drawn.wi);
+            for (std::size_t k = 1; k < light_count; ++k) near = near | cones[k].holds(drawn.wi);
             if (any(near & up)) [[unlikely]]
                 x = meet(drawn, g, lobe, x, up);
         }
@@ -126,27 +127,26 @@ template <class F> CRESCENT_INLINE void add_lanes(F partial, const double* __res
     for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
 }
 
-/// Double totals of one pack; only the first `disks` of the disk sums are in use.
+/// Double totals of one pack.
 template <class F> struct Totals {
     static constexpr std::size_t count = Lanes<F>::count;
     double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
-    double disk_g[most_disks][count], disk_g_lobe[most_disks][count];
+    double *light_g, *light_g_lobe;  // lane l of light k at k * count + l
 
-    explicit Totals(std::size_t disks) {
-        for (std::size_t k = 0; k < disks; ++k)
-            for (std::size_t l = 0; l < count; ++l) disk_g[k][l] = disk_g_lobe[k][l] = 0;
+    explicit Totals(LightRoom<F>& room) : light_g(room.total_g), light_g_lobe(room.total_g_lobe) {
+        for (std::size_t at = 0; at < room.count * count; ++at) light_g[at] = light_g_lobe[at] = 0;
     }
     /// Takes the block's sums over and clears them.
-    void take(Gathered<F>& p, Met<F>& met, std::size_t disks) {
+    void take(Gathered<F>& p, Met<F>& met, std::size_t lights) {
         add_lanes(p.g, g);
         add_lanes(p.g_lobe, g_lobe);
         add_lanes(p.off, off);
         add_lanes(p.square, square);
         p.g = p.g_lobe = p.off = p.square = number<F>(0);
-        for (std::size_t k = 0; met.any && k < disks; ++k) {
-            add_lanes(met.disk_g[k], disk_g[k]);
-            add_lanes(met.disk_g_lobe[k], disk_g_lobe[k]);
-            met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
+        for (std::size_t k = 0; met.any && k < lights; ++k) {
+            add_lanes(met.light_g[k], light_g + k * count);
+            add_lanes(met.light_g_lobe[k], light_g_lobe + k * count);
+            met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
         }
         met.any = false;
     }
@@ -182,9 +182,10 @@ template <class F> [[gnu::noinline]] void write_rung(
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
     totals.spread(p, static_cast<double>(n), out.spread.data() + at);
-    for (std::size_t k = 0; k < lane.disk_count; ++k) {
-        add_lanes(lane.met.disk_g[k], totals.disk_g[k], out.disk_g[k].data() + at);
-        add_lanes(lane.met.disk_g_lobe[k], totals.disk_g_lobe[k], out.disk_g_lobe[k].data() + at);
+    for (std::size_t k = 0; k < lane.light_count; ++k) {
+        const std::size_t first = k * Lanes<F>::count;
+        add_lanes(lane.met.light_g[k], totals.light_g + first, out.disk_g[k].data() + at);
+        add_lanes(lane.met.light_g_lobe[k], totals.light_g_lobe + first, out.disk_g_lobe[k].data() + at);
     }
     store(p.largest, out.largest.data() + at);
     store(p.horizon, out.horizon.data() + at);
@@ -194,11 +195,11 @@ template <class F> [[gnu::noinline]] void write_rung(
 
 /// One pack of pixels through all its samples; make(site) gives the arm.
 template <class A, class L, class F, class Make>
-void estimate_pack(const KernelCall& call, std::size_t at, const Make& make) {
+void estimate_pack(const KernelCall& call, std::size_t at, LightRoom<F>& room, const Make& make) {
     using U = UintOf<F>;
-    Lane<A, L, F> lane(*call.sites, at);
+    Lane<A, L, F> lane(*call.sites, at, room);
     Gathered<F> gathered;
-    Totals<F> totals(lane.disk_count);
+    Totals<F> totals(room);
     const A arm = make(lane.site);
     const L brdf(lane.site.s, lane.site.alpha);
     const Constants<F> c = lane.constants();
@@ -226,7 +227,7 @@ void estimate_pack(const KernelCall& call, std::size_t at, const Make& make) {
             ++j;
         }
         if (j == block_end) {
-            totals.take(gathered, lane.met, lane.disk_count);
+            totals.take(gathered, lane.met, lane.light_count);
             if (j < n && (j & (j - 1)) == 0 && (j & 0x5555555555555555u))
                 gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
@@ -236,8 +237,9 @@ void estimate_pack(const KernelCall& call, std::size_t at, const Make& make) {
 }
 
 template <class A, class L, class F> void estimate(const KernelCall& call) {
+    LightRoom<F> room(*call.sites, call.memory);
     for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
-        estimate_pack<A, L, F>(call, at, [](const Site<F>& site) { return A(site); });
+        estimate_pack<A, L, F>(call, at, room, [](const Site<F>& site) { return A(site); });
 }
 
 template <class F, template <class> class A, template <class> class... L>

@@ -1,6 +1,8 @@
-// One pack of pixels before the disk lights: what a sample that may meet one finds, and what is gathered from those
+// One pack of pixels before the lights: what a sample that may meet one finds, and what is gathered from those
 // that do. Included by kernel_body.h alone.
 #pragma once
+
+#include <new>
 
 #include "estimator/disk_hit.h"
 #include "estimator/kernel.h"
@@ -17,37 +19,101 @@ template <class F> Vec3<F> load_lanes(
     return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
 }
 
-/// The part that samples which meet a disk add to.
+/// The part that samples which meet a light add to.
 template <class F> struct Met {
-    F disk_g[most_disks], disk_g_lobe[most_disks];
+    F* light_g;
+    F* light_g_lobe;
     UintOf<F> hits{0u};
     bool any = false;  // in the current block
 };
 
-/// The disk lights as one pack of pixels sees them.
+/// Room for the lights of one pack of pixels, in the memory that a kernel is called with.
+template <class F> struct LightRoom {
+    std::size_t count;
+    LocalDisk<F>* disks;
+    FacingDisk<F>* facing;
+    LocalLight<F>* others;
+    DiskCone<F>* cones;
+    F *met_g, *met_g_lobe;
+    double *total_g, *total_g_lobe;  // lane l of light k at k * lanes + l
+
+    LightRoom(const Sites& sites, std::byte* at)
+        : count(sites.light_count()),
+          disks(take<LocalDisk<F>>(at, sites.disks.size())),
+          facing(take<FacingDisk<F>>(at, sites.disks.size())),
+          others(take<LocalLight<F>>(at, sites.others.size())),
+          cones(take<DiskCone<F>>(at, count)),
+          met_g(take<F>(at, count)),
+          met_g_lobe(take<F>(at, count)),
+          total_g(take<double>(at, count * Lanes<F>::count)),
+          total_g_lobe(take<double>(at, count * Lanes<F>::count)) {
+        constexpr std::size_t of_disk = sizeof(LocalDisk<F>) + sizeof(FacingDisk<F>), of_other = sizeof(LocalLight<F>);
+        static_assert((of_disk > of_other ? of_disk : of_other) + sizeof(DiskCone<F>) + 2 * sizeof(F) +
+                    2 * sizeof(double) * Lanes<F>::count + 128 <=
+                memory_of_light,
+            "a kernel's memory holds each light, and what alignment takes");
+    }
+
+private:
+    template <class T> static T* take(std::byte*& at, std::size_t elements) {
+        const std::size_t past = reinterpret_cast<std::uintptr_t>(at) % alignof(T);
+        at += past ? alignof(T) - past : 0;
+        T* const first = reinterpret_cast<T*>(at);
+        for (std::size_t k = 0; k < elements; ++k) ::new (static_cast<void*>(first + k)) T;
+        at += elements * sizeof(T);
+        return first;
+    }
+};
+
+/// The lights as one pack of pixels sees them: disks first.
 template <class F> struct Lights {
     using U = UintOf<F>;
     const Sites& sites;
     std::size_t at;
-    std::size_t disk_count;
-    LocalDisk<F> disks[most_disks];
-    FacingDisk<F> facing[most_disks];
-    DiskCone<F> cones[most_disks];
+    std::size_t disk_count, light_count;
+    LocalDisk<F>* disks;
+    FacingDisk<F>* facing;
+    LocalLight<F>* others;
+    DiskCone<F>* cones;
     Met<F> met;
 
-    [[gnu::noinline]] Lights(const Sites& all, std::size_t first)
-        : sites(all), at(first), disk_count(all.disks.size()) {
+    [[gnu::noinline]] Lights(const Sites& all, std::size_t first, LightRoom<F>& room)
+        : sites(all),
+          at(first),
+          disk_count(all.disks.size()),
+          light_count(all.light_count()),
+          disks(room.disks),
+          facing(room.facing),
+          others(room.others),
+          cones(room.cones),
+          met{room.met_g, room.met_g_lobe} {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const DiskArrays& d = sites.disks[k];
             disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at),
                 F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
             facing[k] = FacingDisk<F>(disks[k]);
             cones[k] = DiskCone<F>(facing[k]);
-            met.disk_g[k] = met.disk_g_lobe[k] = number<F>(0);
         }
+        for (std::size_t k = disk_count; k < light_count; ++k) {
+            LocalLight<F>& light = others[k - disk_count];
+            light = light_at(sites.others[k - disk_count]);
+            with_light_kind(light.kind,
+                [&]<class Kind>() { cones[k] = DiskCone<F>(light.a, Kind::radius2(light), Kind::shines(light)); });
+        }
+        for (std::size_t k = 0; k < light_count; ++k) met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
     }
 
-    /// Samples that may have met a disk: nearest disk first, then what stands before it. Returns X where one was met.
+    LocalLight<F> light_at(const LightArrays& from) const {
+        const auto& n = from.numbers;
+        LocalLight<F> out;
+        out.kind = from.kind, out.power = F(from.power);
+        out.a = load_lanes<F>(n[0], n[1], n[2], at), out.b = load_lanes<F>(n[3], n[4], n[5], at);
+        out.c = load_lanes<F>(n[6], n[7], n[8], at);
+        for (std::size_t k = 0; k < out.number.size(); ++k) out.number[k] = load_lanes<F>(n[9 + k], at);
+        return out;
+    }
+
+    /// Samples that may have met a light: nearest light first, then what stands before it. Returns X where one was met.
     template <class D> [[gnu::noinline]] F meet(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
         const Vec3<F> wi = drawn.wi;
         const F far = number<F>(1e30);
@@ -55,9 +121,16 @@ template <class F> struct Lights {
         F index = number<F>(-1);
         for (std::size_t k = 0; k < disk_count; ++k) {
             F v;
-            const auto hit = meets_disk(facing[k], drawn, k, disk_count == 1, v);
+            const auto hit = meets_disk(facing[k], drawn, k, light_count == 1, v);
             const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), far);
             const auto nearer = is_nearer(t, nearest);
+            index = select(nearer, F(static_cast<float>(k)), index);
+            nearest = select(nearer, t, nearest);
+        }
+        for (std::size_t k = disk_count; k < light_count; ++k) {
+            F t;
+            const auto hit = meets_light(others[k - disk_count], drawn, k, t);
+            const auto nearer = hit & is_nearer(t, nearest);
             index = select(nearer, F(static_cast<float>(k)), index);
             nearest = select(nearer, t, nearest);
         }
@@ -71,12 +144,15 @@ template <class F> struct Lights {
             const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
             seen = select(other & blocked_by(body, o, d, nearest), number<F>(0), seen);
         }
-        for (std::size_t k = 0; k < disk_count; ++k) {
+        for (std::size_t k = 0; k < light_count; ++k) {
             const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
             const F gk = select(this_one, g, number<F>(0));
-            met.disk_g[k] = met.disk_g[k] + gk;
-            met.disk_g_lobe[k] = met.disk_g_lobe[k] + gk * lobe;
-            const F xk = g * (load_lanes<F>(sites.disks[k].d, at) + lobe * load_lanes<F>(sites.disks[k].s, at));
+            met.light_g[k] = met.light_g[k] + gk;
+            met.light_g_lobe[k] = met.light_g_lobe[k] + gk * lobe;
+            const bool disk = k < disk_count;
+            const std::vector<float>& d_of = disk ? sites.disks[k].d : sites.others[k - disk_count].d;
+            const std::vector<float>& s_of = disk ? sites.disks[k].s : sites.others[k - disk_count].s;
+            const F xk = g * (load_lanes<F>(d_of, at) + lobe * load_lanes<F>(s_of, at));
             x = select(this_one, xk, x);
         }
         met.hits = plus_one_where(seen > number<F>(0), met.hits);

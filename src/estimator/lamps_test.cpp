@@ -98,7 +98,7 @@ TEST(Lamps, SixtyFourAreAllCounted) {
         disk.center = {0.4 * (k % 8) - 1.4, 3.5, 0.4 * (k / 8) - 1};
         e.disks.push_back(disk);
     }
-    ASSERT_EQ(e.disks.size(), most_disks);
+    ASSERT_EQ(e.disks.size(), most_lights);
     expect_means(e, aiming, 256, "64 lamps");
 }
 

@@ -69,7 +69,7 @@ public:
 
     /// `n` draws of each technique. Lambert under the fill is known; all else is drawn.
     Opinion operator()(int n) {
-        const std::size_t techniques = 2 + scene_.disks().size();
+        const std::size_t techniques = 2 + scene_.lights().size();
         Opinion out;
         double known = 0;
         for (std::size_t c = 0; c < 3; ++c) known += luminance_weights[c] * surface_.rho_d[c] * scene_.fill()[c];
@@ -77,8 +77,8 @@ public:
             if (k == 1 && !(surface_.rho_s > 0)) continue;
             double mean = 0, square = 0;
             for (int j = 0; j < n; ++j) {
-                const Vec3d wi = k == 0 ? cosine() : k == 1 ? lobe() : on_disk(k - 2);
-                const double x = k < 2 || meets(scene_.disks()[k - 2], frame_.to_world(wi)) < 1e300
+                const Vec3d wi = k == 0 ? cosine() : k == 1 ? lobe() : on_light(k - 2);
+                const double x = k < 2 || lit(scene_.lights()[k - 2], frame_.to_world(wi)).t < 1e300
                     ? worth(wi)
                     : 0;  // a lamp's back is not aimed at
                 mean += x / n, square += x * x / n;
@@ -130,31 +130,66 @@ private:
             return pdf_of_half(Beckmann<double>{surface_.alpha}.D(m) * m.z, wo_, m);
         return pdf_of_half(Ggx<double>{surface_.alpha}.D(m) * m.z, wo_, m);
     }
-    Vec3d on_disk(std::size_t k) {
-        const DiskLight& disk = scene_.disks()[k];
-        const Vec3d p = polar(0, disk.radius * std::sqrt(u()));
-        const Vec3d d = disk.center + frame_about(disk.normal).to_world(p) - hit_.x;
-        return frame_.to_local((1 / std::sqrt(dot(d, d))) * d);
+    Vec3d towards(Vec3d y) const {
+        return frame_.to_local((1 / std::sqrt(dot(y - hit_.x, y - hit_.x))) * (y - hit_.x));
     }
-    /// t where d meets the disk, or none.
-    double meets(const DiskLight& disk, Vec3d d) const {
-        const Vec3d c = disk.center - hit_.x;
-        const double along = dot(c, disk.normal), v = dot(d, disk.normal), t = along / v;
-        if (std::fabs(along) <= 1e-6 * (std::sqrt(dot(c, c)) + disk.radius) || !(t > 0)) return 1e300;
-        if (along > 0 && !disk.two_sided) return 1e300;
-        const Vec3d p = t * d - c;
-        return dot(p, p) <= sqr(disk.radius) * (1 + 1e-12) ? t : 1e300;
+    Vec3d on(const lights::Disk& disk) {
+        const Vec3d p = polar(0, disk.radius * std::sqrt(u()));
+        return towards(disk.center + frame_about(disk.normal).to_world(p));
+    }
+    Vec3d on(const lights::Sphere& ball) {  // anywhere on it
+        const double z = 2 * u() - 1;
+        return towards(ball.center + ball.radius * polar(z, std::sqrt(1 - z * z)));
+    }
+    Vec3d on(const lights::Rectangle& r) { return towards(r.corner + u() * r.edge_u + u() * r.edge_v); }
+    Vec3d on_light(std::size_t k) {
+        return std::visit([&](const auto& light) { return on(light); }, scene_.lights()[k].form);
+    }
+
+    /// Where a direction meets a light first, and with which density in 1/sr points drawn on it would lie there.
+    struct Lit {
+        double t = 1e300, pdf = 0;
+    };
+    /// A flat one.
+    Lit flat(Vec3d d, Vec3d center, Vec3d normal, double radius, bool two_sided, double area, auto&& holds_it) const {
+        const Vec3d c = center - hit_.x;
+        const double along = dot(c, normal), v = dot(d, normal), t = along / v;
+        if (std::fabs(along) <= 1e-6 * (std::sqrt(dot(c, c)) + radius) || !(t > 0)) return {};
+        if ((along > 0 && !two_sided) || !holds_it(t * d - c)) return {};
+        return {t, t * t / (std::fabs(v) * area)};
+    }
+    Lit lit(const lights::Disk& l, Vec3d d) const {
+        return flat(d, l.center, l.normal, l.radius, l.two_sided, pi * sqr(l.radius),
+            [&](Vec3d p) { return dot(p, p) <= sqr(l.radius) * (1 + 1e-12); });
+    }
+    Lit lit(const lights::Rectangle& l, Vec3d d) const {
+        const double u2 = dot(l.edge_u, l.edge_u), v2 = dot(l.edge_v, l.edge_v);
+        return flat(d, l.corner + 0.5 * (l.edge_u + l.edge_v), normalize(cross(l.edge_u, l.edge_v)),
+            0.5 * std::sqrt(u2 + v2), l.two_sided, std::sqrt(u2 * v2), [&](Vec3d p) {
+                return std::fabs(dot(p, l.edge_u)) <= 0.5 * u2 && std::fabs(dot(p, l.edge_v)) <= 0.5 * v2;
+            });
+    }
+    Lit lit(const lights::Sphere& l, Vec3d d) const {
+        const Vec3d c = l.center - hit_.x;
+        const double foot = dot(c, d);
+        const Vec3d off = c - foot * d;
+        const double half2 = sqr(l.radius) - dot(off, off);
+        if (!(half2 > 0) || !(foot > 0) || dot(c, c) <= sqr(l.radius)) return {};
+        const double half = std::sqrt(half2), cos = half / l.radius, area = 4 * pi * sqr(l.radius);
+        return {foot - half, (sqr(foot - half) + sqr(foot + half)) / (cos * area)};  // both of its sides are drawn
+    }
+    Lit lit(const Light& light, Vec3d d) const {
+        return std::visit([&](const auto& form) { return lit(form, d); }, light.form);
     }
     double worth(Vec3d wi) const {
         if (!(wi.z > 0)) return 0;
         const Vec3d d = frame_.to_world(wi);
         double pdf = wi.z / pi + lobe_pdf(wi), nearest = 1e300;
-        const DiskLight* met = nullptr;
-        for (const DiskLight& disk : scene_.disks()) {
-            const double t = meets(disk, d);
-            if (!(t < 1e300)) continue;
-            pdf += t * t / (std::fabs(dot(d, disk.normal)) * pi * sqr(disk.radius));
-            if (t < nearest * (1 - 1e-5)) nearest = t, met = &disk;
+        const Light* met = nullptr;
+        for (const Light& light : scene_.lights()) {
+            const auto [t, density] = lit(light, d);
+            pdf += density;
+            if (t < nearest * (1 - 1e-5)) nearest = t, met = &light;
         }
         for (const Occluder& o : scene_.occluders())
             if (met && o.shape != hit_.shape &&
@@ -164,7 +199,8 @@ private:
         double x = 0;
         for (std::size_t c = 0; c < 3; ++c) {
             const double fill = scene_.fill()[c], over = met ? met->radiance[c] - fill : 0;
-            x += luminance_weights[c] * (surface_.rho_d[c] / pi * over + surface_.rho_s * lobe * (over + fill));
+            x += luminance_weights[c] *
+                (surface_.rho_d[c] / pi * over + surface_.rho_s * surface_.tint[c] * lobe * (over + fill));
         }
         return x * wi.z / pdf;
     }

@@ -47,8 +47,9 @@ void numbers_of(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, st
 using SiteKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float>* drawn);
 
 template <class L> void estimate_site(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
+    scalar::LightRoom<float> room(*call.sites, call.memory);
     scalar::estimate_pack<Prefetched<float>, L, float>(
-        call, at, [&](const Site<float>&) { return Prefetched<float>(drawn); });
+        call, at, room, [&](const Site<float>&) { return Prefetched<float>(drawn); });
 }
 
 /// [lobe + 1]

@@ -6,6 +6,7 @@
 #include "arms/all.h"
 #include "base/errors.h"
 #include "estimator/disk_hit.h"
+#include "estimator/figure.h"
 #include "color/rgb.h"
 #include "math/functions.h"
 #include "lobes/all.h"
@@ -37,16 +38,40 @@ std::vector<LocalDisk<float>> local_disks(const Sites& sites) {
     return out;
 }
 
+std::vector<LocalLight<float>> local_others(const Sites& sites) {
+    std::vector<LocalLight<float>> out;
+    for (const LightArrays& from : sites.others) {
+        LocalLight<float>& light = out.emplace_back();
+        const auto& n = from.numbers;
+        light.kind = from.kind, light.power = from.power;
+        light.a = at(n[0], n[1], n[2]), light.b = at(n[3], n[4], n[5]), light.c = at(n[6], n[7], n[8]);
+        for (std::size_t k = 0; k < light.number.size(); ++k) light.number[k] = n[9 + k][0];
+    }
+    return out;
+}
+
 /// As the kernels ask it of what an arm drew: the nearest disk first, then what stands before it.
-template <class D> int met_by(const Sites& sites, const std::vector<LocalDisk<float>>& disks, const D& drawn) {
+/// The lights of a site, disks first.
+struct Locals {
+    const std::vector<LocalDisk<float>>& disks;
+    const std::vector<LocalLight<float>>& others;
+};
+
+template <class D> int met_by(const Sites& sites, const Locals& locals, const D& drawn) {
+    const auto& [disks, others] = locals;
     const Vec3f wi = drawn.wi;
     float nearest = 1e30f;
     int met = -1;
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const FacingDisk<float> facing(disks[k]);
         float v;
-        if (!meets_disk(facing, drawn, k, disks.size() == 1, v) || !is_nearer(facing.k / v, nearest)) continue;
+        if (!meets_disk(facing, drawn, k, sites.light_count() == 1, v) || !is_nearer(facing.k / v, nearest)) continue;
         nearest = facing.k / v, met = static_cast<int>(k);
+    }
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        float t;
+        if (!meets_light(others[k], drawn, disks.size() + k, t) || !is_nearer(t, nearest)) continue;
+        nearest = t, met = static_cast<int>(disks.size() + k);
     }
     if (met < 0) return -1;
     const Vec3f t = at(sites.tx, sites.ty, sites.tz), b = at(sites.bx, sites.by, sites.bz);
@@ -63,8 +88,10 @@ struct Worth {
 };
 Worth worth(const Sites& sites, int disk) {
     if (disk < 0) return {sites.fill_d[0], sites.fill_s[0]};
-    const DiskArrays& k = sites.disks[static_cast<std::size_t>(disk)];
-    return {k.d[0], k.s[0]};
+    const std::size_t k = static_cast<std::size_t>(disk);
+    if (k < sites.disks.size()) return {sites.disks[k].d[0], sites.disks[k].s[0]};
+    const LightArrays& other = sites.others[k - sites.disks.size()];
+    return {other.d[0], other.s[0]};
 }
 
 /// f, per sr, of light that is `light` bright; where there is none, of grey light.
@@ -76,7 +103,6 @@ double reflected(const Sites& sites, const Worth& w, float lobe, double light) {
 /// Makes X of a direction, in the kernels' own order of operations.
 class Carrier {
 public:
-    using Locals = std::vector<LocalDisk<float>>;
     Carrier(const Sites& sites, const Locals& disks, const std::vector<PixelDisk>& seen, double fill)
         : sites_(sites), disks_(disks), seen_(seen), fill_(fill) {}
 
@@ -96,7 +122,7 @@ public:
 
 private:
     const Sites& sites_;
-    const Locals& disks_;
+    const Locals disks_;
     const std::vector<PixelDisk>& seen_;
     double fill_;
 };
@@ -112,18 +138,22 @@ template <class Work> void with_arm(std::string_view sampler, Work&& work) {
     ensure(found, "a sampler is a word of arms/all.h");
 }
 
-PixelDisk seen_disk(const DiskLight& light, const LocalDisk<float>& local) {
-    const Vec3d c = wide(local.to_center), n = wide(local.normal);
-    const double distance = length(c);
-    const double half = math::atan2(light.radius, distance) * 180 / pi;
-    PixelDisk out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, false};
-    out.faces = local.faces();
-    const Frame<double> frame = frame_about(normalize(n));
-    constexpr int corners = 96;
-    for (int k = 0; k <= corners; ++k) {
-        const double a = 2 * pi * k / corners;
-        const Vec3d across = frame.t * math::cos(a) + frame.b * math::sin(a);
-        out.rim.push_back(normalize(c + across * light.radius));
+PixelDisk seen_light(const Light& light, const Hit& hit) {
+    const Frame<double> frame = frame_about(hit.n);
+    const Figure figure = light.seen_from(hit.x);
+    const Vec3d c = frame.to_local(middle_of(figure) - hit.x);
+    const double distance = length(c), half = math::atan2(radius_of(figure), distance) * 180 / pi;
+    PixelDisk out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, light.shines_on(hit.x)};
+    constexpr int points = 96;
+    const auto disk = std::get_if<shapes::Disk>(&figure);
+    const std::array<Vec3d, 4> corners = corners_about(figure);
+    const Frame<double> about = frame_about(normal_of(figure));
+    for (int k = 0; k <= points; ++k) {
+        const double a = 2 * pi * k / points, side = 4.0 * (k % points) / points;
+        const std::size_t first = static_cast<std::size_t>(side);
+        const Vec3d edge = corners[first] + (side - std::floor(side)) * (corners[(first + 1) % 4] - corners[first]);
+        const Vec3d y = disk ? disk->center + disk->radius * (about.t * math::cos(a) + about.b * math::sin(a)) : edge;
+        out.rim.push_back(normalize(frame.to_local(y - hit.x)));
     }
     return out;
 }
@@ -144,19 +174,20 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
       surface_(scene.surface(hit_)),
       wo_(wide(at(sites_.wox, sites_.woy, sites_.woz))),
       fill_(luminance(scene.fill())),
-      local_(local_disks(sites_)) {
-    for (std::size_t k = 0; k < local_.size(); ++k) disks_.push_back(seen_disk(scene.disks()[k], local_[k]));
+      local_(local_disks(sites_)),
+      others_(local_others(sites_)) {
+    for (const Light& light : scene.lights()) disks_.push_back(seen_light(light, hit_));
 }
 
 Site<float> OpenPixel::aimed_from() const {
     return {at(sites_.wox, sites_.woy, sites_.woz), sites_.s[0], sites_.alpha[0], sites_.diffuse[0], sites_.rho_s[0],
-        local_.data(), static_cast<int>(local_.size())};
+        local_.data(), static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
 }
 
 Vec3d OpenPixel::mirror() const { return crescent::mirror(wo_); }
 
 int OpenPixel::disk_met(Vec3d wi) const {
-    return wi.z > 0 ? met_by(sites_, local_, Drawn<float>{as<float>(wi), {1}}) : -1;
+    return wi.z > 0 ? met_by(sites_, {local_, others_}, Drawn<float>{as<float>(wi), {1}}) : -1;
 }
 
 double OpenPixel::light(Vec3d wi) const {
@@ -185,7 +216,7 @@ double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
 
 std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
     const Site<float> site = aimed_from();
-    const Carrier carry(sites_, local_, disks_, fill_);
+    const Carrier carry(sites_, {local_, others_}, disks_, fill_);
     std::vector<PixelSample> out;
     with_arm(sampler, [&]<template <class> class A>() {
         const A<float> arm(site);

@@ -76,6 +76,7 @@ private:
     std::vector<PixelDisk> disks_;
     double fill_ = 0;
     std::vector<LocalDisk<float>> local_;
+    std::vector<LocalLight<float>> others_;
 };
 
 /// Mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.

@@ -22,7 +22,7 @@ bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
 }
 
 /// The same integral by a million points, with no cleverness at all.
-DiskIntegral brute_force(const Scene& scene, const DiskLight& disk, const Hit& hit, const Surface& surface) {
+DiskIntegral brute_force(const Scene& scene, const lights::Disk& disk, const Hit& hit, const Surface& surface) {
     const Frame<double> light = frame_about(disk.normal), local = frame_about(hit.n);
     constexpr int rings = 400, spokes = 400;
     DiskIntegral sum;
@@ -45,7 +45,7 @@ DiskIntegral brute_force(const Scene& scene, const DiskLight& disk, const Hit& h
 TEST(DiskQuadrature, AgreesWithBruteForceInLightPenumbraAndShadow) {
     const Scene scene(test::small_scene());
     int lit = 0;
-    for (std::size_t k = 0; k < scene.disks().size(); ++k) {
+    for (std::size_t k = 0; k < scene.lights().size(); ++k) {
         const DiskQuadrature quadrature(scene, k);
         for (std::uint32_t n = 0; n < 60; ++n) {
             const Vec2<float> u = draw(3, n, 0);
@@ -53,7 +53,7 @@ TEST(DiskQuadrature, AgreesWithBruteForceInLightPenumbraAndShadow) {
             if (!hit) continue;
             const Surface surface = scene.surface(*hit);
             const DiskIntegral got = quadrature(*hit, surface),
-                               want = brute_force(scene, scene.disks()[k], *hit, surface);
+                               want = brute_force(scene, std::get<lights::Disk>(scene.lights()[k].form), *hit, surface);
             EXPECT_NEAR(got.diffuse, want.diffuse, 2e-3 * want.diffuse + 2e-6);
             EXPECT_NEAR(got.lobe, want.lobe, 3e-3 * want.lobe + 2e-5);
             lit += got.diffuse > 0;

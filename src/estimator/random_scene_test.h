@@ -16,7 +16,8 @@ namespace crescent::test {
 
 class RandomScene {
 public:
-    explicit RandomScene(std::uint32_t seed) : next_(seed) {}
+    /// `newcomers`: the first lamp is a ball or a rectangle of about its size instead of a disk.
+    explicit RandomScene(std::uint32_t seed, bool newcomers = false) : next_(seed), newcomers_(newcomers) {}
 
     Experiment operator()() {
         Experiment e;
@@ -29,6 +30,7 @@ public:
         lamps(e, {-view.x, view.y, -view.z});
         const int bodies = static_cast<int>(between(0, 3.5));
         for (int k = 0; k < bodies; ++k) body(e);
+        if (newcomers_) newcomer(e);
         return e;
     }
     std::string what;  // of the last scene, for messages
@@ -56,6 +58,7 @@ private:
         const int lobe = static_cast<int>(between(0, lobes + 1));
         m.rho_s = lobe < lobes ? between(0.1, 0.4) : 0;
         m.brdf = static_cast<LobeKind>(lobe % lobes);
+        if (newcomers_ && m.rho_s > 0) m.set_specular({m.rho_s, 0.5 * m.rho_s, 0.1 * m.rho_s});
         what += std::string(lobe < lobes ? lobe_info(m.brdf).name : "lambert") + " s " + std::to_string(*m.s) +
             " alpha " + std::to_string(*m.alpha);
         return m;
@@ -129,7 +132,24 @@ private:
         what += ", body " + std::to_string(kind) + " size " + std::to_string(size);
     }
 
+    void newcomer(Experiment& e) {
+        const DiskLight lamp = e.disks[0];
+        e.disks.erase(e.disks.begin());
+        Light light = lamp.light();
+        if (once_in(2)) {
+            light.form =
+                lights::Sphere{lamp.center, std::min(lamp.radius, 0.9 * std::sqrt(dot(lamp.center, lamp.center)))};
+        } else {
+            const Frame<double> frame = frame_about(lamp.normal);
+            const Vec3d u = 2 * lamp.radius * frame.t, v = scale(0.1, 2) * lamp.radius * frame.b;
+            light.form = lights::Rectangle{lamp.center - 0.5 * (u + v), u, v, lamp.two_sided};
+        }
+        e.lights.push_back(light);
+        what += ", which is a " + std::string(light.kind());
+    }
+
     std::mt19937_64 next_;
+    bool newcomers_;
 };
 
 }  // namespace crescent::test

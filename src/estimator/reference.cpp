@@ -47,7 +47,7 @@ void store(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double erro
 class Quadrature {
 public:
     explicit Quadrature(const Scene& scene) : scene_(scene), albedos_(scene) {
-        for (std::size_t k = 0; k < scene.disks().size(); ++k) disks_.emplace_back(scene, k);
+        for (std::size_t k = 0; k < scene.lights().size(); ++k) disks_.emplace_back(scene, k);
     }
 
     std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) const {
@@ -56,17 +56,19 @@ public:
         if (surface.rho_s > 0) {
             const LobeAlbedo& table = albedos_.of(surface);
             albedo = table(dot(hit.n, hit.wo));
-            error = surface.rho_s * luminance(fill) * table.error(dot(hit.n, hit.wo));
+            error = surface.rho_s * surface.tinted(fill) * table.error(dot(hit.n, hit.wo));
         }
         Rgb out{};
-        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * albedo);
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * surface.tint[c] * albedo);
         for (std::size_t k = 0; k < disks_.size(); ++k) {
             const DiskIntegral d = disks_[k](hit, surface);
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
-                const double step = scene_.disks()[k].radiance[c] - fill[c];
-                out[c] += step * (surface.rho_d[c] * d.diffuse + surface.rho_s * d.lobe);
-                part[c] = std::fabs(step) * (surface.rho_d[c] * d.diffuse_error + surface.rho_s * d.lobe_error);
+                const double step = scene_.lights()[k].radiance[c] - fill[c];
+                out[c] += step * (surface.rho_d[c] * d.diffuse + surface.rho_s * surface.tint[c] * d.lobe);
+                part[c] = std::fabs(step) *
+                    (surface.rho_d[c] * d.diffuse_error + surface.rho_s * surface.tint[c] * d.lobe_error);
             }
             error += luminance(part);
         }
@@ -85,43 +87,63 @@ std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& expo
     return scenes;
 }
 
-/// The same sites with lights that turn X into the wanted part: disk k by itself, or the fill on the lobe alone. The
-/// other disks still stand before it, but carry nothing and are never aimed at.
-Sites only_disk(const Scene& scene, const Sites& all, std::size_t k) {
+/// The same sites with lights that turn X into the wanted part: light k by itself, or the fill on the lobe alone. The
+/// other lights still stand before it, but carry nothing and are never aimed at.
+Sites only_light(const Scene& scene, const Sites& all, std::size_t k) {
     Sites sites = all;
-    const double over = luminance(scene.disks()[k].radiance) - luminance(scene.fill());
-    const double full = luminance(scene.disks()[k].radiance);
-    for (DiskArrays& other : sites.disks) {
-        other.power = 0;
-        for (auto* array : {&other.d, &other.s}) std::fill(array->begin(), array->end(), 0.0f);
-    }
-    DiskArrays& disk = sites.disks[k];
-    disk.power = 1;
-    for (std::size_t i = 0; i < sites.pixel.size(); ++i) {
-        disk.d[i] = all.disks[k].d[i] - sites.fill_d[i];  // L_key - L_fill: the disk stands in for the fill behind it
-        disk.s[i] =
-            full > 0 ? static_cast<float>(static_cast<double>(all.disks[k].s[i]) * over / full) : -sites.fill_s[i];
-    }
+    const auto tinted = [&](const Rgb& light, std::size_t i) {
+        const Rgb& tint = all.tint[i];
+        return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
+    };
+    const auto alone = [&](auto& light, const auto& as_it_was, bool this_one) {
+        light.power = this_one ? 1 : 0;
+        for (auto* array : {&light.d, &light.s}) std::fill(array->begin(), array->end(), 0.0f);
+        for (std::size_t i = 0; this_one && i < sites.pixel.size(); ++i) {
+            light.d[i] =
+                as_it_was.d[i] - sites.fill_d[i];  // L_key - L_fill: the light stands in for the fill behind it
+            const double full = tinted(scene.lights()[k].radiance, i), over = full - tinted(scene.fill(), i);
+            light.s[i] =
+                full > 0 ? static_cast<float>(static_cast<double>(as_it_was.s[i]) * over / full) : -sites.fill_s[i];
+        }
+    };
+    for (std::size_t j = 0; j < sites.disks.size(); ++j) alone(sites.disks[j], all.disks[j], j == k);
+    for (std::size_t j = 0; j < sites.others.size(); ++j)
+        alone(sites.others[j], all.others[j], sites.disks.size() + j == k);
     for (auto* array : {&sites.fill_d, &sites.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
     return sites;
 }
 
 Sites only_lobe(const Sites& all) {
     Sites sites = all;
-    sites.disks.clear();
+    sites.disks.clear(), sites.others.clear();
     std::fill(sites.fill_d.begin(), sites.fill_d.end(), 0.0f);
     return sites;
 }
 
 double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0; }
 
-/// May the lobe of site i peak in the disk, and be so narrow against it that fewer than ten of n samples would meet it?
-bool may_be_missed(const Sites& sites, std::size_t i, const DiskArrays& disk, double n) {
-    const Vec3d c = {disk.cx[i], disk.cy[i], disk.cz[i]}, wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
+/// The centre of light k from site i, in its local frame, and the radius of a ball that holds it.
+std::pair<Vec3d, double> ball_of(const Sites& sites, std::size_t i, std::size_t k) {
+    if (k < sites.disks.size()) {
+        const DiskArrays& disk = sites.disks[k];
+        return {{disk.cx[i], disk.cy[i], disk.cz[i]}, static_cast<double>(disk.radius)};
+    }
+    const LightArrays& from = sites.others[k - sites.disks.size()];
+    LocalLight<double> light;
+    light.a = {from.numbers[0][i], from.numbers[1][i], from.numbers[2][i]};
+    for (std::size_t n = 0; n < light.number.size(); ++n) light.number[n] = static_cast<double>(from.numbers[9 + n][i]);
+    double radius = 0;
+    with_light_kind(from.kind, [&]<class Kind>() { radius = std::sqrt(Kind::radius2(light)); });
+    return {light.a, radius};
+}
+
+/// May the lobe of site i peak in light k, and be so narrow against it that fewer than ten of n samples would meet it?
+bool may_be_missed(const Sites& sites, std::size_t i, std::size_t k, double n) {
+    const auto [c, radius] = ball_of(sites, i, k);
+    const Vec3d wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
     const LobeInfo& lobe = lobe_info(static_cast<LobeKind>(sites.lobe));
     const double s = lobe.exponent(static_cast<double>(sites.s[i]), static_cast<double>(sites.alpha[i]));
-    const double across = lobe.about_mirror ? 1 : wo.z, far = std::sqrt(dot(c, c)),
-                 radius = static_cast<double>(disk.radius);
+    const double across = lobe.about_mirror ? 1 : wo.z, far = std::sqrt(dot(c, c));
     const double off = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
     const bool peak_is_near = off < math::atan2(radius, far) + 8 / std::sqrt(s);
     return peak_is_near &&
@@ -141,8 +163,8 @@ public:
                 plan.lobe_spp, seed(0), isa, &watch.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         disk_n_ = static_cast<double>(plan.disk_spp);
-        for (std::size_t k = 0; k < scene.disks().size(); ++k)
-            disks_.push_back(estimate_sites(only_disk(scene, sites, k), "light-area", plan.disk_spp,
+        for (std::size_t k = 0; k < scene.lights().size(); ++k)
+            disks_.push_back(estimate_sites(only_light(scene, sites, k), "light-area", plan.disk_spp,
                 seed(static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
     }
 
@@ -150,19 +172,23 @@ public:
         const Rgb& fill = scene_.fill();
         const double lobe = sites_.lobe >= 0 ? lobe_.g_lobe[i] / lobe_n_ : 0;
         const double rho_s = sites_.rho_s_exact[i];
+        const Rgb& tint = sites_.tint[i];
+        const auto tinted = [&](const Rgb& light) {
+            return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
+        };
         Rgb out{};
         double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.spread[i], lobe_n_) : 0;
-        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (sites_.rho_d[i][c] + rho_s * lobe);
+        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (sites_.rho_d[i][c] + rho_s * tint[c] * lobe);
         for (std::size_t k = 0; k < disks_.size(); ++k) {
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
-                part[c] = (scene_.disks()[k].radiance[c] - fill[c]) *
-                    (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * disks_[k].disk_g_lobe[k][i]);
+                part[c] = (scene_.lights()[k].radiance[c] - fill[c]) *
+                    (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * tint[c] * disks_[k].disk_g_lobe[k][i]);
                 out[c] += part[c] / disk_n_;
             }
             variance += variance_of_mean(disks_[k].spread[i], disk_n_);
-            if (sites_.lobe >= 0 && may_be_missed(sites_, i, sites_.disks[k], disk_n_))
-                variance += sqr(rho_s * (luminance(scene_.disks()[k].radiance) - luminance(fill)));
+            if (sites_.lobe >= 0 && may_be_missed(sites_, i, k, disk_n_))
+                variance += sqr(rho_s * (tinted(scene_.lights()[k].radiance) - tinted(fill)));
         }
         store(film, sites_.pixel[i], out, std::sqrt(variance));
     }

@@ -51,10 +51,11 @@ Comparison compare_pixel(
 
 class ReferenceOfRandomScenes : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(ReferenceOfRandomScenes, IsTheTruthWithinItsStatedError) {
+/// Scenes of one shard, `newcomers` as RandomScene has it.
+void compare_scenes(std::uint32_t shard, std::uint32_t count, bool newcomers) {
     Watch watch;
-    for (std::uint32_t seed = 1000 * GetParam(); seed < 1000 * GetParam() + scenes_a_shard; ++seed) {
-        test::RandomScene draw(seed);
+    for (std::uint32_t seed = 1000 * shard; seed < 1000 * shard + count; ++seed) {
+        test::RandomScene draw(seed, newcomers);
         const Scene scene(draw());
         const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, watch)[0];
         Comparison all;
@@ -74,6 +75,12 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthWithinItsStatedError) {
         EXPECT_TRUE(off.empty() && all.agree()) << "scene " << seed << off << " all: " << all.apart << "\n"
                                                 << draw.what;
     }
+}
+
+TEST_P(ReferenceOfRandomScenes, IsTheTruthWithinItsStatedError) { compare_scenes(GetParam(), scenes_a_shard, false); }
+
+TEST_P(ReferenceOfRandomScenes, IsTheTruthOfBallsAndRectanglesToo) {
+    compare_scenes(GetParam(), scenes_a_shard / 2, true);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shards, ReferenceOfRandomScenes, testing::Range(0u, shards));

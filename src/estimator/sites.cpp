@@ -25,6 +25,17 @@ std::array<float, 3> single(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+/// Numbers of a light that is no disk, in the order of LocalLight.
+void put_light(LightArrays& to, std::size_t i, const Light& light, Vec3d x, const Frame<double>& frame) {
+    with_light_kind(to.kind, [&]<class Kind>() {
+        const LightNumbers n = std::get<Kind>(light.form).numbers(x, frame);
+        const std::array vectors = {n.a, n.b, n.c};
+        for (std::size_t k = 0; k < 3; ++k)
+            put(to.numbers[3 * k], to.numbers[3 * k + 1], to.numbers[3 * k + 2], i, vectors[k]);
+        for (std::size_t k = 0; k < n.number.size(); ++k) to.numbers[9 + k][i] = static_cast<float>(n.number[k]);
+    });
+}
+
 /// What light of a colour is worth, never -0, so that no X is.
 float worth(double y) { return static_cast<float>(y + 0.0); }
 
@@ -48,15 +59,20 @@ std::vector<TileBox> tiles_of(int width, int height) {
 Sites empty_sites(const Scene& scene, int lobe) {
     Sites sites;
     sites.lobe = lobe;
-    ensure(scene.disks().size() <= most_disks, "the parser lets no more disk lights through than kernels hold");
     double total = 0;
-    for (const DiskLight& disk : scene.disks()) total += luminance(disk.radiance) * sqr(disk.radius);
-    for (const DiskLight& disk : scene.disks()) {
-        DiskArrays arrays;
-        arrays.radius = static_cast<float>(disk.radius);
-        arrays.two_sided = disk.two_sided;
-        arrays.power = total > 0 ? static_cast<float>(luminance(disk.radiance) * sqr(disk.radius) / total) : 0.0f;
-        sites.disks.push_back(std::move(arrays));
+    for (const Light& light : scene.lights()) total += light.power();
+    const auto share = [&](const Light& light) { return total > 0 ? static_cast<float>(light.power() / total) : 0.0f; };
+    for (const Light& light : scene.lights()) {
+        if (const auto* disk = std::get_if<lights::Disk>(&light.form)) {
+            DiskArrays& arrays = sites.disks.emplace_back();
+            arrays.radius = static_cast<float>(disk->radius);
+            arrays.two_sided = disk->two_sided;
+            arrays.power = share(light);
+        } else {
+            LightArrays& arrays = sites.others.emplace_back();
+            arrays.kind = light.form.index();
+            arrays.power = share(light);
+        }
     }
     for (const Occluder& o : scene.occluders()) sites.occluders.push_back(occluder_about(o, scene.origin()));
     return sites;
@@ -65,10 +81,10 @@ Sites empty_sites(const Scene& scene, int lobe) {
 Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
     const double fill = reflected(scene.fill(), surface.rho_d);
     fill_d = worth(fill / pi);
-    fill_s = worth(luminance(scene.fill()) * surface.rho_s);
-    for (const DiskLight& light : scene.disks()) {
+    fill_s = worth(surface.tinted(scene.fill()) * surface.rho_s);
+    for (const Light& light : scene.lights()) {
         disk_d.push_back(worth(reflected(light.radiance, surface.rho_d) / pi));
-        disk_s.push_back(worth(luminance(light.radiance) * surface.rho_s));
+        disk_s.push_back(worth(surface.tinted(light.radiance) * surface.rho_s));
     }
 }
 
@@ -89,21 +105,32 @@ void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, c
     fill_d[i] = shading.fill_d;
     fill_s[i] = shading.fill_s;
     for (std::size_t k = 0; k < disks.size(); ++k) {
-        const DiskLight& light = scene.disks()[k];
+        const lights::Disk& light = std::get<lights::Disk>(scene.lights()[k].form);
         put(disks[k].cx, disks[k].cy, disks[k].cz, i, frame.to_local(light.center - hit.x));
         put(disks[k].nx, disks[k].ny, disks[k].nz, i, frame.to_local(light.normal));
         disks[k].d[i] = shading.disk_d[k];
         disks[k].s[i] = shading.disk_s[k];
     }
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        const std::size_t light = disks.size() + k;
+        put_light(others[k], i, scene.lights()[light], hit.x, frame);
+        others[k].d[i] = shading.disk_d[light];
+        others[k].s[i] = shading.disk_s[light];
+    }
     rho_d[i] = shading.surface.rho_d;
     rho_s_exact[i] = shading.surface.rho_s;
+    tint[i] = shading.surface.tint;
 }
 
 template <class Work> void Sites::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
     all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
-        fill_s, rho_d, rho_s_exact);
+        fill_s, rho_d, rho_s_exact, tint);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
+    for (LightArrays& k : others) {
+        for (std::vector<float>& numbers : k.numbers) all(numbers);
+        all(k.d, k.s);
+    }
 }
 
 void Sites::reserve(std::size_t sites) {
@@ -135,8 +162,8 @@ void Sites::prune(const Scene& scene) {
         scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
     std::size_t kept = 0;
     for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
-        const bool clear = std::all_of(scene.disks().begin(), scene.disks().end(),
-            [&](const DiskLight& disk) { return stands_clear(scene.occluders()[k], extent, disk.body()); });
+        const bool clear = std::all_of(scene.lights().begin(), scene.lights().end(),
+            [&](const Light& light) { return stands_clear(scene.occluders()[k], extent, light.body()); });
         if (!clear) occluders[kept++] = occluders[k];
     }
     occluders.resize(kept);

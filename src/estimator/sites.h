@@ -28,6 +28,14 @@ struct DiskArrays {
     float power = 0;  // Y(L) pi r^2, relative to all disks
 };
 
+/// A light that is no disk as each pixel sees it (scene/lights/light_kind.h), and what a sample that meets it is worth.
+struct LightArrays {
+    std::size_t kind = 0;  // index in LightKinds
+    std::array<std::vector<float>, local_numbers> numbers;
+    std::vector<float> d, s;  // as DiskArrays::d, s
+    float power = 0;
+};
+
 /// Constants of one surface: luminance of f L for the fill and for each disk light.
 struct Shading {
     Surface surface;
@@ -58,9 +66,12 @@ struct Sites {
     std::vector<float> tx, ty, tz, bx, by, bz, nx, ny, nz;  // the local frame, world
     std::vector<float> fill_d, fill_s;                      // as DiskArrays::d, s for the fill
     std::vector<DiskArrays> disks;
+    std::vector<LightArrays> others;  // lights that are no disks
+    std::size_t light_count() const { return disks.size() + others.size(); }
     std::vector<OccluderF> occluders;  // those that may hide a disk from one of the sites
     std::vector<Rgb> rho_d;            // per pixel, for the colours of the film
     std::vector<double> rho_s_exact;
+    std::vector<Rgb> tint;  // of the lobe, as in Surface
 
     /// Adds a site where room was made for it.
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading);

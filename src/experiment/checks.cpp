@@ -79,15 +79,22 @@ void check_material(Draft& draft, const Shape& shape) {
 }
 
 void check_light(Draft& draft) {
-    if (const auto& disks = draft.e.disks; disks.size() > most_disks)
-        draft.complain("disks." + disks[most_disks].name,
-            fmt::format("disks: expected at most {}, found {}", most_disks, disks.size()));
+    const auto& disks = draft.e.disks;
+    const auto& lights = draft.e.lights;
+    if (const std::size_t all = disks.size() + lights.size(); all > most_lights)
+        draft.complain(disks.size() > most_lights ? "disks." + disks[most_lights].name
+                                                  : "lights." + lights[most_lights - disks.size()].name,
+            fmt::format("disks and lights: expected at most {}, found {}", most_lights, all));
+    for (const Light& light : lights) check_form(draft, "lights." + light.name, light.form);
     const Rgb& fill = draft.e.fill;
-    const bool dark = std::all_of(draft.e.disks.begin(), draft.e.disks.end(),
-        [](const DiskLight& d) { return d.radiance[0] + d.radiance[1] + d.radiance[2] <= 0; });
-    if (dark && draft.sound("disks") && draft.sound("fill") && draft.sound("fill.radiance") &&
+    const auto is_dark = [](const auto& light) {
+        return light.radiance[0] + light.radiance[1] + light.radiance[2] <= 0;
+    };
+    const bool dark =
+        std::all_of(disks.begin(), disks.end(), is_dark) && std::all_of(lights.begin(), lights.end(), is_dark);
+    if (dark && draft.sound("disks") && draft.sound("lights") && draft.sound("fill") && draft.sound("fill.radiance") &&
         fill[0] + fill[1] + fill[2] <= 0)
-        draft.complain("fill.radiance", "no light: expected a disk or the fill with a radiance above 0");
+        draft.complain("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
 }
 
 void check_outside_arms(Draft& draft) {
@@ -142,11 +149,21 @@ void check_names(Draft& draft) {
     }
     check_film_files(draft);
     check_outside_arms(draft);
-    for (const DiskLight& disk : draft.e.disks)
-        if (const Shape* shape = draft.e.find_shape(disk.name))
-            draft.complain("disks." + disk.name,
-                fmt::format("duplicate name '{}': expected a disk to be named unlike the shape at {}", disk.name,
+    const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
+        if (const Shape* shape = draft.e.find_shape(name))
+            draft.complain(path + name,
+                fmt::format("duplicate name '{}': expected a {} to be named unlike the shape at {}", name, what,
                     to_string(shape->at)));
+    };
+    for (const DiskLight& disk : draft.e.disks) unlike_shapes("disk", "disks.", disk.name);
+    for (const Light& light : draft.e.lights) {
+        unlike_shapes("light", "lights.", light.name);
+        for (const DiskLight& disk : draft.e.disks)
+            if (disk.name == light.name)
+                draft.complain("lights." + light.name,
+                    fmt::format("duplicate name '{}': expected a light to be named unlike the disk at {}", light.name,
+                        to_string(disk.at)));
+    }
 }
 
 }  // namespace crescent

@@ -46,6 +46,7 @@ std::string toml(const Key& key, const Value& value) {
             for (const std::string& text : value.texts) out += (out.empty() ? "" : ", ") + toml_text(text);
             return "[" + out + "]";
         }
+        case Type::gray: return value.numbers.size() == 1 ? number(value.numbers[0]) : list(value.numbers);
         default: return list(value.numbers);
     }
 }

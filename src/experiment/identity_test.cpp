@@ -63,6 +63,24 @@ center = [1, 3, 1]
 normal = [0, -1, 0]
 radius = 0.2
 radiance = [9, 8, 7]
+[lights.bulb]
+kind = "sphere"
+center = [2, 3, 1]
+radius = 0.2
+radiance = [3, 2, 1]
+[lights.window]
+kind = "rectangle"
+corner = [-3, 2, 1]
+edge_u = [1, 0, 0]
+edge_v = [0, 0, 1]
+radiance = [1, 2, 3]
+[lights.spot]
+kind = "disk"
+center = [-1, 3, 1]
+normal = [0, -1, 0]
+radius = 0.3
+two_sided = true
+radiance = [1, 1, 3]
 [arms.phong]
 n = [4, 16]
 [exponent]
@@ -136,6 +154,18 @@ std::size_t keys_of(const Section& section) {
     std::size_t all = section.keys.size();
     for (const Section& sub : section.sections) all += keys_of(sub);
     return all;
+}
+
+TEST(Identity, SeesTheColourOfALobeAndTakesAGreyOneForItsNumber) {
+    const auto text_of = [](const char* value) {
+        return canonical_text(parse(room, "a.toml", {std::string("ball.rho_s=") + value, "ball.s=9"}));
+    };
+    EXPECT_EQ(text_of("0.25"), text_of("[0.25, 0.25, 0.25]"));
+    EXPECT_NE(text_of("0.25"), text_of("[0.25, 0.25, 0.2]"));
+    const std::string coloured = text_of("[0.3, 0.1, 0.7]");
+    EXPECT_EQ(coloured, canonical_text(parse(coloured, "b.toml")));
+    const Experiment e = parse(coloured, "b.toml");
+    EXPECT_DOUBLE_EQ(e.shapes[0].material.rho_s, luminance(Rgb{0.3, 0.1, 0.7}));
 }
 
 TEST(Identity, DependsOnEffectiveValuesAlone) {

@@ -15,6 +15,7 @@ std::string bounds(const Key& key) {
         case Type::number:
         case Type::point:
         case Type::color:
+        case Type::gray:
         case Type::numbers:
         case Type::integers: return to_string(key.range);
         default: return "";
@@ -33,6 +34,7 @@ std::string noun(const Key& key) {
         case Type::point: return "3 numbers [x, y, z]";
         case Type::direction: return "a unit vector [x, y, z]";
         case Type::color: return "3 numbers [r, g, b]";
+        case Type::gray: return "a number, or 3 numbers [r, g, b],";
         case Type::numbers: return "ascending numbers";
         case Type::integers: return "ascending integers";
         case Type::box: return "4 integers [x0, y0, x1, y1]";

@@ -27,6 +27,7 @@ enum class Type {
     point,      // 3 numbers x, y, z
     direction,  // a unit vector
     color,      // 3 numbers r, g, b, linear Rec.709
+    gray,       // a number, or 3 of a colour
     numbers,    // ascending, a bare number is a list of one
     integers,   // ascending, a bare integer is a list of one
     box,        // pixels x0, y0, x1, y1, both ends inclusive, origin bottom-left

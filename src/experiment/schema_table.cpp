@@ -39,6 +39,20 @@ Section camera() {
         {}};
 }
 
+/// One number where the lobe has no colour.
+constexpr Slot specular = {[](void* object, const Value& value) {
+                               const std::vector<double>& n = value.numbers;
+                               const bool grey = n.size() == 1;
+                               static_cast<Shape*>(object)->material.set_specular(
+                                   grey ? Rgb{n[0], n[0], n[0]} : Rgb{n[0], n[1], n[2]});
+                           },
+    [](const void* object, Value& value) {
+        const Material& m = static_cast<const Shape*>(object)->material;
+        if (m.specular) value.numbers.assign(m.specular->begin(), m.specular->end());
+        else value.numbers = {m.rho_s};
+        return true;
+    }};
+
 Section shape_tables() {
     std::vector<Key> keys = {kind_key<Shapes, &Shape::form>()}, colors;
     for (Key& key : parameter_keys<Shapes, &Shape::form>())
@@ -46,8 +60,7 @@ Section shape_tables() {
     const std::vector<Key> material = {
         {"rho_d", Type::color, unit_range, "", required, "", "Diffuse albedo: f = rho_d/pi + rho_s lobe.",
             to<&Shape::material, &Material::rho_d>},
-        {"rho_s", Type::number, unit_range, "", defaulted, "0", "Albedo of the lobe; 0: a Lambert surface.",
-            to<&Shape::material, &Material::rho_s>},
+        {"rho_s", Type::gray, unit_range, "", defaulted, "0", "Albedo of the lobe; 0: a Lambert surface.", specular},
         {"s", Type::number, exponent_range, "", optional, "the experiment's s; needed where rho_s > 0",
             "Exponent of the lobe. On a Lambert surface it only steers the arms.", to<&Shape::material, &Material::s>},
         {"brdf", Type::word, none, "", defaulted, "\"phong\"", "Which lobe.", to<&Shape::material, &Material::brdf>,
@@ -75,8 +88,18 @@ Section disks() {
         {}};
 }
 
+Section light_tables() {
+    std::vector<Key> keys = {kind_key<LightKinds, &Light::form>()};
+    for (Key& key : parameter_keys<LightKinds, &Light::form>()) keys.push_back(std::move(key));
+    keys.push_back(
+        {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.", to<&Light::radiance>});
+    return {"lights", Many::named, optional,
+        "Lights of any kind; [disks.NAME] is another way to write a disk. They come after the disks of such tables.",
+        in<&Experiment::lights, Experiment>, std::move(keys), {}};
+}
+
 Section fill() {
-    return {"fill", Many::one, optional, "Light from every direction in which no disk is met.", {},
+    return {"fill", Many::one, optional, "Light from every direction in which no other light is met.", {},
         {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
             to_owner<Experiment, &Experiment::fill>}},
         {}};
@@ -206,8 +229,8 @@ const Section& schema() {
                 "Whether the note's explanations of the Phong arm are measured.", to<&Experiment::note_evidence>},
             {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
                 to<&Experiment::published>}},
-        {image(), camera(), shape_tables(), disks(), fill(), arms(), exponent(), regions(), reference(), furnaces(),
-            plates(), assertions()}};
+        {image(), camera(), shape_tables(), disks(), light_tables(), fill(), arms(), exponent(), regions(), reference(),
+            furnaces(), plates(), assertions()}};
     return root;
 }
 

@@ -47,7 +47,8 @@ public:
             case Type::numbers:
             case Type::integers: return list(node) && ascending(node);
             case Type::point:
-            case Type::color: return list(node);
+            case Type::color:
+            case Type::gray: return list(node);
         }
         return false;
     }
@@ -113,7 +114,7 @@ private:
 
     bool list(const Node& node) {
         const std::size_t count = count_of(key_.type);
-        if (count == 0 && is_number(node)) {
+        if ((count == 0 || key_.type == Type::gray) && is_number(node)) {
             value_.numbers.resize(1);
             return scalar(node, value_.numbers[0]);
         }

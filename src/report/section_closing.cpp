@@ -56,6 +56,7 @@ void light_rows(const Page& page, std::vector<Row>& rows) {
         "Every arm that does not aim at lights misses it; in the limit none can find it."});
     std::vector<std::string> furnace{"fill.radiance=[1, 1, 1]"};
     for (const DiskLight& disk : e.disks) furnace.push_back(fmt::format("disks.{}.radiance=[1, 1, 1]", disk.name));
+    for (const Light& light : e.lights) furnace.push_back(fmt::format("lights.{}.radiance=[1, 1, 1]", light.name));
     rows.push_back({"The whole scene as a white furnace?", with(page, furnace),
         "Each surface shows its albedo; what departs is the arm’s."});
 }

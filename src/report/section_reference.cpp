@@ -13,7 +13,7 @@ using html::words;
 
 constexpr const char* quadrature_prose = R"(
 <p>The reference integrates each pixel to convergence: the Lambert term on the fill in closed form, the lobe on the fill
-from a table of its albedo, every disk by quadrature. It has no seed, and states its own error.</p>
+from a table of its albedo, every light by quadrature. It has no seed, and states its own error.</p>
 )";
 
 constexpr const char* both_prose = R"(

@@ -44,7 +44,7 @@ template <class Any> std::string parameters_of(const Any& any) {
 
 std::string lobe(const Material& m) {
     if (m.rho_s == 0) return "–";
-    const std::string share = "<i>ρ</i><sub>s</sub> = " + shortest(m.rho_s);
+    const std::string share = "<i>ρ</i><sub>s</sub> = " + (m.specular ? rgb(*m.specular) : shortest(m.rho_s));
     const LobeInfo& lobe = lobe_info(m.brdf);
     const bool by_alpha = lobe.parameter == LobeParameter::alpha;
     return fmt::format("{}, {}, {} = {}", share, lobe.label, by_alpha ? "<i>α</i>" : "<i>s</i>",
@@ -66,13 +66,13 @@ std::string shapes_table(const Page& page) {
 }
 
 std::string lights_table(const Experiment& e) {
-    html::Table table("Lights. Disks are seen by sampled rays only; the fill comes from everywhere a disk is not seen",
+    html::Table table("Lights. Sampled rays alone meet them; the fill comes from wherever no other light is met",
         {words("Light"), words("Where"), words("Radiance, W/(sr m²)")});
-    for (const DiskLight& d : e.disks)
-        table.row({html::heading(escape(d.name)),
-            words(fmt::format("disk at {}, facing {}, radius {}{}", vec(d.center), vec(d.normal), shortest(d.radius),
-                d.two_sided ? ", both sides" : "")),
-            words(rgb(d.radiance))});
+    std::vector<Light> lights = e.lights;
+    for (auto disk = e.disks.rbegin(); disk != e.disks.rend(); ++disk) lights.insert(lights.begin(), disk->light());
+    for (const Light& light : lights)
+        table.row({html::heading(escape(light.name)),
+            words(fmt::format("{}: {}", light.kind(), parameters_of(light.form))), words(rgb(light.radiance))});
     table.row({html::heading("fill"), words("the whole hemisphere"), words(rgb(e.fill))});
     return table.str();
 }

@@ -1,23 +1,44 @@
-// What shines. Radiance in W/(sr m^2), lengths in m.
+// What shines. Radiance in W/(sr m^2), lengths in m. Seen by sampled rays only.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
 #include <string>
-#include <variant>
+#include <vector>
 
 #include "base/errors.h"
 #include "color/rgb.h"
-#include "scene/shapes/all.h"
+#include "scene/lights/all.h"
 
 namespace crescent {
 
-inline constexpr std::size_t most_disks = 64;  // disk lights in one scene: kernels hold the sums of each at hand
+inline constexpr std::size_t most_lights = 64;  // in one scene
 
-/// A flat figure that is seen in the directions of a light.
-using Figure = std::variant<shapes::Disk, shapes::Quad>;
+struct Light {
+    std::string name;
+    LightKinds::Any form;  // one of the kinds of lights/all.h
+    Rgb radiance{};
+    Place at;
+    std::string_view kind() const { return LightKinds::names[form.index()]; }
 
-/// A disk that emits `radiance` from the side its normal points to (or both). Seen by sampled rays only.
+    /// What it puts before the lights behind it.
+    Bodies::Any body() const {
+        return std::visit([](const auto& f) -> Bodies::Any { return f.body(); }, form);
+    }
+    /// An emitting side faces x.
+    bool shines_on(Vec3d x) const {
+        return std::visit([&](const auto& f) { return f.shines_on(x); }, form);
+    }
+    /// In whose directions it is seen from x.
+    Figure seen_from(Vec3d x) const {
+        return std::visit([&](const auto& f) { return f.seen_from(x); }, form);
+    }
+    /// How much it is worth choosing: Y(L) times the largest area that it shows, over pi.
+    double power() const {
+        return luminance(radiance) * std::visit([](const auto& f) { return f.disk_area(); }, form);
+    }
+    bool is_disk() const { return form.index() == 0; }
+};
+
+/// A disk that emits `radiance` from the side its normal points to (or both): the light of [disks.NAME].
 struct DiskLight {
     std::string name;
     Vec3d center{}, normal{};
@@ -25,18 +46,7 @@ struct DiskLight {
     Rgb radiance{};
     bool two_sided = false;
     Place at;
-
-    /// What it puts before the lights behind it.
-    shapes::Disk body() const { return {center, normal, radius}; }
-    /// An emitting side faces x. A disk whose plane passes through x, within 1e-6 of how far its points are, gives it
-    /// nothing.
-    bool shines_on(Vec3d x) const {
-        const Vec3d d = center - x;
-        const double along = dot(d, normal);
-        return std::fabs(along) > 1e-6 * (std::sqrt(dot(d, d)) + radius) && (two_sided || along < 0);
-    }
-    /// In whose directions it is seen from x.
-    Figure seen_from(Vec3d) const { return body(); }
+    Light light() const { return {name, lights::Disk{center, normal, radius, two_sided}, radiance, at}; }
 };
 
 }  // namespace crescent

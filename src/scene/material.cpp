@@ -4,9 +4,18 @@
 
 namespace crescent {
 
+void Material::set_specular(const Rgb& color) {
+    const double y = luminance(color);
+    const bool grey = color[0] == color[1] && color[1] == color[2];
+    rho_s = grey ? color[0] : y;
+    specular = grey ? std::nullopt : std::optional<Rgb>(color);
+}
+
 Surface surface_of(const Material& m, double common_s) {
     const double s = m.s.value_or(common_s);
-    return {m.rho_d, m.rho_s, m.brdf, s, m.alpha.value_or(std::sqrt(2 / (s + 2)))};
+    Surface out = {m.rho_d, m.rho_s, m.brdf, s, m.alpha.value_or(std::sqrt(2 / (s + 2)))};
+    for (std::size_t c = 0; m.specular && m.rho_s > 0 && c < 3; ++c) out.tint[c] = (*m.specular)[c] / m.rho_s;
+    return out;
 }
 
 }  // namespace crescent

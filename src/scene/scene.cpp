@@ -17,6 +17,12 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
     up = pixel * cross(across, forward);
     for (std::size_t k = 0; k < data.shapes.size(); ++k)
         if (data.shapes[k].occludes) add_occluders(data.shapes[k], static_cast<int>(k), occluders);
+    for (const DiskLight& disk : data.disks) lights.push_back(disk.light());
+    for (const bool disks : {true, false}) {
+        for (const Light& light : data.lights)
+            if (light.is_disk() == disks) lights.push_back(light);
+        if (disks) disk_count = lights.size();
+    }
     if (const Shape* own = data.shape_of_s()) s_shape = own - data.shapes.data();
     origin = nearest_seen();
 }

@@ -43,7 +43,9 @@ public:
     const Camera& camera() const { return made_->data.camera; }
     const std::vector<Shape>& shapes() const { return made_->data.shapes; }
     const std::vector<Occluder>& occluders() const { return made_->occluders; }
-    const std::vector<DiskLight>& disks() const { return made_->data.disks; }
+    /// Disks first, else in the order in which they are given.
+    const std::vector<Light>& lights() const { return made_->lights; }
+    std::size_t disk_count() const { return made_->disk_count; }
     const Rgb& fill() const { return made_->data.fill; }
     /// Made from one Scene by copies and with_s(), with the same exponent: all they say is the same.
     bool is_same_as(const Scene& other) const { return made_ == other.made_ && s_ == other.s_; }
@@ -55,6 +57,8 @@ private:
         Vec3d forward{}, right{}, up{};  // right and up scaled to one pixel
         Vec3d origin{};
         std::vector<Occluder> occluders;
+        std::vector<Light> lights;
+        std::size_t disk_count = 0;
         std::ptrdiff_t s_shape = -1;  // whose exponent is the scene's; -1: none has one
 
         explicit Made(SceneData from);

@@ -16,7 +16,8 @@ struct SceneData {
     Image image;
     Camera camera;
     std::vector<Shape> shapes;
-    std::vector<DiskLight> disks;
+    std::vector<DiskLight> disks;  // lights too, before the others
+    std::vector<Light> lights;
     Rgb fill{};  // uniform over the hemisphere
     std::string
         s_of;  // the shape whose exponent is the scene's; empty: the first with a lobe, else the first with an s

@@ -1,0 +1,24 @@
+// The one list of the kinds of light. A new one is a file beside this one and a word here; the list feeds the
+// experiment files, the manual, arms, kernels, references and the report. docs/extending.md has the steps. Disks come
+// first in every scene: kernels and arms have sums and tests of their own for them (arms/sampler.h,
+// estimator/disk_hit.h).
+#pragma once
+
+#include "scene/lights/disk.h"
+#include "scene/lights/rectangle.h"
+#include "scene/lights/sphere.h"
+
+namespace crescent {
+
+using LightKinds = KindList<lights::Disk, lights::Sphere, lights::Rectangle>;
+
+/// Calls f.template operator()<Kind>() for the kind at an index of the list that is not the disk.
+template <class F> void with_light_kind(std::size_t index, F&& f) {
+    const auto among = [&]<class Disk, class... Kind>(KindList<Disk, Kind...>) {
+        std::size_t k = 1;
+        ((k++ == index ? void(f.template operator()<Kind>()) : void()), ...);
+    };
+    among(LightKinds{});
+}
+
+}  // namespace crescent

@@ -1,0 +1,44 @@
+// What the kinds of light share: how one is seen from a surface point, in double precision for the references and, for
+// all but disks, as arms and kernels have it. (Disks have forms of their own there, arms/sampler.h.)
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+
+#include "scene/shapes/all.h"
+
+namespace crescent {
+
+/// A flat figure that is seen in the directions of a light.
+using Figure = std::variant<shapes::Disk, shapes::Quad>;
+
+/// An emitting side of a flat light faces the point that d leads to its centre from. One whose plane passes through the
+/// point, within 1e-6 of how far its own points are, gives it nothing.
+inline bool shines_flat(Vec3d d, Vec3d normal, double radius, bool two_sided) {
+    const double along = dot(d, normal);
+    return std::fabs(along) > 1e-6 * (std::sqrt(dot(d, d)) + radius) && (two_sided || along < 0);
+}
+
+/// A light as a surface point sees it, in the point's local frame. What the vectors and numbers are is each kind's own.
+template <class F> struct LocalLight {
+    std::size_t kind = 0;  // index in LightKinds
+    F power{};             // its share in the choice among lights
+    Vec3<F> a{}, b{}, c{};
+    std::array<F, 7> number{};
+};
+/// The same in double: nine components of the vectors, then the numbers.
+inline constexpr std::size_t local_numbers = 16;
+struct LightNumbers {
+    Vec3d a{}, b{}, c{};
+    std::array<double, 7> number{};
+};
+
+/// A direction towards a light and its density in 1/sr; 0 where the light gives the point nothing.
+template <class F> struct Aimed {
+    Vec3<F> wi;
+    F pdf;
+};
+
+}  // namespace crescent

@@ -1,0 +1,93 @@
+// sphere: a ball that shines outwards, alike from all of its surface. A point in it gets nothing from it.
+//   Seen from x it fills the cone about c with sin = R / |c|: by solid angle, directions are uniform in that cone,
+//     p = 1 / (2 pi (1 - cos)), 1 - cos = sin^2 / (1 + cos)       Shirley, Wang & Zimmerman 1996, "Monte Carlo
+//     Techniques for Direct Lighting Calculations", section 3.2;
+//   by area, points are uniform on the cap that x sees, of area 2 pi R^2 (1 - sin).
+#pragma once
+
+#include "scene/lights/light_kind.h"
+
+namespace crescent::lights {
+
+struct Sphere {
+    static constexpr std::string_view name = "sphere";
+    Vec3d center{};
+    double radius = 0;
+
+    static constexpr auto parameters() {
+        return std::array{parameter::place("center", &Sphere::center, "Centre."),
+            parameter::length("radius", &Sphere::radius, "Radius.")};
+    }
+
+    shapes::Sphere body() const { return {center, radius}; }
+    bool shines_on(Vec3d x) const { return dot(center - x, center - x) > sqr(radius * (1 + 1e-6)); }
+    /// The disk that x's tangents touch.
+    Figure seen_from(Vec3d x) const {
+        const Vec3d d = center - x;
+        const double d2 = dot(d, d), rest = 1 - sqr(radius) / d2;  // cos^2 of the cone
+        return shapes::Disk{x + rest * d, (-1 / std::sqrt(d2)) * d, radius * std::sqrt(rest)};
+    }
+    double disk_area() const { return sqr(radius); }
+
+    /// a: to the centre, m. Numbers: the radius; of the cone sin, 1 - cos; 1 where it shines on x.
+    LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
+        const Vec3d d = center - x;
+        const double sin2 = std::min(1.0, sqr(radius) / dot(d, d)), cos = std::sqrt(1 - sin2);
+        return {frame.to_local(d), {}, {},
+            {radius, std::sqrt(sin2), sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, std::sqrt(dot(d, d)), 0}};
+    }
+    template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[3] > number<F>(0); }
+
+    /// Where w meets it: a distance, the nearest point's where it misses.
+    template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {
+        const F along = dot(l.a, w);
+        const Vec3<F> off = l.a - w * along;
+        const F rest = sqr(l.number[0]) - dot(off, off);
+        t = along - sqrt(larger(rest, number<F>(0)));
+        return (rest >= number<F>(0)) & (along > number<F>(0)) & shines(l);
+    }
+    /// Of a ball that holds it, about a.
+    template <class F> static F radius2(const LocalLight<F>& l) { return sqr(l.number[0]); }
+
+    template <class F> static Aimed<F> by_angle(const LocalLight<F>& l, Vec2<F> u) {
+        const F drop = u.x * l.number[2];  // 1 - cos
+        const F sin = sqrt(drop * (number<F>(2) - drop));
+        const SinCos<F> phi = sincos_turns(u.y);
+        const Vec3<F> axis = l.a * (number<F>(1) / l.number[4]);
+        const Vec3<F> e = frame_about(axis).to_world({sin * phi.cos, sin * phi.sin, -drop});
+        return {axis + e, angle_density(l)};
+    }
+    template <class F> static F angle_pdf(const LocalLight<F>& l, Vec3<F> w) {
+        F t;
+        return select(meets(l, w, t), angle_density(l), number<F>(0));
+    }
+
+    /// Height z = 1 - u (1 - sin) on the sphere over its centre, towards x.
+    template <class F> static Aimed<F> by_area(const LocalLight<F>& l, Vec2<F> u) {
+        const F one = number<F>(1), drop = u.x * (one - l.number[1]), z = one - drop;
+        const F r = sqrt(drop * (number<F>(2) - drop));
+        const SinCos<F> phi = sincos_turns(u.y);
+        const Vec3<F> axis = l.a * (-one / l.number[4]);
+        const Vec3<F> n = frame_about(axis).to_world({r * phi.cos, r * phi.sin, z});
+        const Vec3<F> y = l.a + n * l.number[0];
+        const F t2 = dot(y, y), t = sqrt(t2);
+        const F cos = larger((z * l.number[4] - l.number[0]) / t, number<F>(1e-7));  // -n.y / t
+        return {y * (one / t), select(shines(l), area_density(l) * t2 / cos, number<F>(0))};
+    }
+    template <class F> static F area_pdf(const LocalLight<F>& l, Vec3<F> w) {
+        F t;
+        const auto met = meets(l, w, t);
+        const F along = dot(l.a, w), cos = larger((along - t) / l.number[0], number<F>(1e-7));
+        return select(met, area_density(l) * sqr(t) / cos, number<F>(0));
+    }
+
+private:
+    template <class F> static F angle_density(const LocalLight<F>& l) {
+        return select(shines(l), number<F>(0.5 / pi) / larger(l.number[2], number<F>(1e-30)), number<F>(0));
+    }
+    template <class F> static F area_density(const LocalLight<F>& l) {  // 1/m^2
+        return number<F>(0.5 / pi) / (sqr(l.number[0]) * larger(number<F>(1) - l.number[1], number<F>(1e-7)));
+    }
+};
+
+}  // namespace crescent::lights
