@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "arms/info.h"
@@ -25,6 +26,10 @@ double error_of(const Page& page, const ArmPlan& arm, std::uint64_t n) {
 bool is_about(const ArmPlan& arm, PdfAxis axis) {
     const ArmInfo* info = find_arm_info(arm.sampler);
     return info && info->about == axis && !info->combines;
+}
+
+std::ptrdiff_t shared_rungs(const ArmPlan& a, const ArmPlan& b) {
+    return std::ranges::count_if(a.n, [&](std::uint64_t n) { return std::ranges::find(b.n, n) != b.n.end(); });
 }
 
 std::vector<std::string> names_where(const Experiment& e, const std::function<bool(const ArmPlan&)>& is) {
@@ -54,6 +59,7 @@ ArmPair arm_pair(const Page& page) {
     pair.narrow = arm_about_mirror(page.in.experiment);
     if (!pair.narrow) return {};
     double least = std::numeric_limits<double>::infinity();
+    std::ptrdiff_t most = 0;
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
         const auto ran = [&](std::uint64_t n) {
             return n > 0 && page.find.run(arm->name, n) && page.find.run(pair.narrow->name, n);
@@ -62,7 +68,9 @@ ArmPair arm_pair(const Page& page) {
         const std::uint64_t n = ran(shared) ? shared : page.find.common_n({arm, pair.narrow});
         if (!ran(n)) continue;
         const double error = error_of(page, *arm, n);
-        if (!pair.broad || error < least) pair.broad = arm, pair.n = n, least = error;
+        const std::ptrdiff_t rungs = shared_rungs(*arm, *pair.narrow);
+        if (!pair.broad || rungs > most || (rungs == most && error < least))
+            pair.broad = arm, pair.n = n, least = error, most = rungs;
     }
     return pair ? pair : ArmPair{};
 }
