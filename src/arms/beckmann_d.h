@@ -21,7 +21,17 @@ template <class F> struct BeckmannD {
         .axis = "the normal $n$",
         .trials = trials,
         .gl = {2e-5, "as blinn"}};
-    static Theory theory(const TrialPoint& at) { return {.bounded = at.rho_d == 0}; }
+    /// n.m is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. Where exp(-tan^2 /
+    /// alpha^2) is less than the smallest double there, p is 0 where Lambert is not.
+    static Theory theory(const TrialPoint& at) {
+        const double least = math::cos((at.theta_deg + 90) * pi / 360);
+        Theory t{.bounded = at.rho_d == 0};
+        if (at.rho_d > 0 && (1 / sqr(least) - 1) / sqr(at.alpha) > 700)
+            t.underflows =
+                "exp(-tan^2/alpha^2) is less than the smallest number there is where Lambert is not 0: p is 0 in "
+                "the arm's own arithmetic";
+        return t;
+    }
 
     Beckmann<F> beckmann;
     explicit BeckmannD(const Site<F>& site) : beckmann{site.alpha} {}
