@@ -282,8 +282,7 @@ std::vector<PlantedFault> planted_faults(bool full) {
         PlantedFault fault{p.name, p.arm, {}, cause_of(p.name)};
         const Stage on = stage(p.lobe, p.lambert, p.light, p.sharpness);
         for (const auto& [theta, azimuth] : wo_grid(full)) {
-            if (theta != 0 && theta != 45 && theta != 75)
-                continue;  // a fault that shows at three of them shows at sixteen
+            if (theta != 0 && theta != 45 && theta != 75) continue;  // what shows at three of them shows at sixteen
             std::shared_ptr<const JudgedSampler> right;
             for_each_arm(Arms{}, [&]<template <class> class A>() {
                 if (A<float>::name == p.arm)
@@ -294,6 +293,7 @@ std::vector<PlantedFault> planted_faults(bool full) {
         }
         out.push_back(std::move(fault));
     }
+    for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
     return out;
 }
 

@@ -1,4 +1,4 @@
-#include "laws/right/right.h"
+#include "laws/right/renderers.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -20,9 +20,17 @@ public:
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = recipe_.pdf(at[i].wo, at[i].wi);
     }
-    bool has_f() const override { return static_cast<bool>(recipe_.f); }
+    Traits traits() const override { return recipe_.traits; }
+    bool has_f() const override { return recipe_.f || recipe_.f_channels; }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = recipe_.f ? recipe_.f(at[i].wo, at[i].wi) : 0;
+        for (std::size_t i = 0; i < at.size(); ++i)
+            out[i] = recipe_.f       ? recipe_.f(at[i].wo, at[i].wi)
+                : recipe_.f_channels ? luminance(recipe_.f_channels(at[i].wo, at[i].wi))
+                                     : 0;
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        if (!recipe_.f_channels) return JudgedSampler::f_channels(at, out);
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = recipe_.f_channels(at[i].wo, at[i].wi);
     }
 
 private:
@@ -46,7 +54,7 @@ std::shared_ptr<const JudgedSampler> subject_of(Recipe recipe) {
 Recipe right_sampler(std::uint64_t index, std::uint32_t seed) {
     static const std::vector<RecipeFamily> all = [] {
         std::vector<RecipeFamily> out;
-        for (const auto& some : {microfacet_families(), lobe_families(), table_families()})
+        for (const auto& some : {microfacet_families(), lobe_families(), table_families(), renderer_families()})
             out.insert(out.end(), some.begin(), some.end());
         return out;
     }();
@@ -57,7 +65,11 @@ Recipe right_sampler(std::uint64_t index, std::uint32_t seed) {
 Trial right_trial(std::uint64_t index, std::uint32_t seed) {
     Dice dice = dice_of(index, seed + 0x51u);
     const double theta = dice.whole(0, 7) == 0 ? 0 : dice.whole(0, 3) ? dice.uniform(0.5, 80) : dice.uniform(80, 89);
-    return trial_of_subject(subject_of(right_sampler(index, seed)), theta, theta == 0 ? 0 : dice.uniform(0, 360));
+    const std::shared_ptr<const JudgedSampler> subject = subject_of(right_sampler(index, seed));
+    const Traits::Asked asked = subject->traits().wo;
+    if (asked == Traits::Asked::none) return trial_of_subject(subject, 0, 0);
+    const bool below = asked == Traits::Asked::both && index / 2 % 2 == 1;
+    return trial_of_subject(subject, below ? 180 - theta : theta, theta == 0 ? 0 : dice.uniform(0, 360));
 }
 
 }  // namespace crescent

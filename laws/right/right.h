@@ -17,6 +17,8 @@ struct Recipe {
     std::string family, parameters;
     std::function<Draw(Vec3d wo, const Numbers& u)> sample;
     std::function<double(Vec3d wo, Vec3d wi)> pdf, f;
+    Traits traits{};
+    std::function<Vec3d(Vec3d wo, Vec3d wi)> f_channels{};  // in place of f, where there are three channels
 };
 
 /// Parameters drawn at random: a pure function of the seed, the same on every machine.

@@ -27,7 +27,8 @@ struct Integral {
     double second = 0, second_se = 0;  // by points at random in the same cells: unbiased, with its standard error
     std::vector<double> bin_errors;    // what each bin is known to
     std::size_t evaluations = 0;
-    bool settled = true;  // the tolerance was reached
+    bool sampled = false;  // a table of too many cells to sum, known from points at random alone
+    bool settled = true;   // the tolerance was reached
 };
 
 struct Effort {

@@ -198,6 +198,12 @@ Verdict judge_normalised(const Work& work) {
             v.say = told + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
             return v;
         }
+        if (mass.sampled && mass.error < 0.02) {
+            v.say = told +
+                fmt::format(", known to {:.2g}: p is a table of more cells than were asked for; {} points were.",
+                    mass.error, mass.evaluations);
+            continue;
+        }
         if (!mass.settled && mass.error > allowed && v.state == State::right) {
             v.state = State::inconclusive;
             v.say = told +

@@ -130,42 +130,6 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
     return m;
 }
 
-std::size_t uneven_deltas(const Work& work, const Batchful& b) {
-    std::size_t out = 0;
-    for (const DeltaPart& p : delta_parts(work, b).parts) out += p.otherwise;
-    return out;
-}
-
-/// The same u in the opposite order: answers that differ come from something else than wo and u.
-struct Repeated {
-    std::size_t tried = 0, other = 0;
-    Numbers u{};
-    Vec3d first{}, again{};
-};
-
-Repeated ask_again(const Work& work, int technique) {
-    Repeated out;
-    if (!work.subject.draws_at_will() || work.traits.own_random) return out;
-    const Batchful& b = work.first(technique);
-    out.tried = std::min<std::size_t>(b.u.size(), 256);
-    std::vector<Numbers> u(b.u.begin(), b.u.begin() + static_cast<std::ptrdiff_t>(out.tried));
-    std::reverse(u.begin(), u.end());
-    std::vector<Draw> again(out.tried);
-    work.subject.sample(technique, work.trial.wo, u, again);
-    for (std::size_t i = 0; i < out.tried; ++i) {
-        const Draw &x = b.draws[i], &y = again[out.tried - 1 - i];
-        const bool nothing = !(x.pdf > 0) && !(y.pdf > 0);
-        if (nothing && x.delta == y.delta && (x.delta == 0 || length(x.wi - y.wi) == 0)) continue;
-        if ((x.pdf == y.pdf && x.delta == y.delta && x.wi.x == y.wi.x && x.wi.y == y.wi.y && x.wi.z == y.wi.z))
-            continue;
-        if (out.other++ > 0) continue;
-        out.u = b.u[i];
-        out.first = x.wi;
-        out.again = y.wi;
-    }
-    return out;
-}
-
 Mismatch mis_sum(const Work& work, const Batchful& b) {
     Mismatch m;
     std::vector<Pair> at;
@@ -234,6 +198,15 @@ Verdict judge_identity(const Work& work) {
                 "or answers out of turn.",
                 r.other, r.tried, told(r.u, work.traits.numbers), r.first.x, r.first.y, r.first.z, r.again.x, r.again.y,
                 r.again.z);
+            return v;
+        }
+        if (const std::size_t repeats = repeated_directions(work, b); repeats > 0) {
+            v.state = State::wrong;
+            v.evidence["repeated_directions"] = repeats;
+            v.say = fmt::format(
+                "{} of {} draws have the very direction of another draw: only a grid of directions is ever drawn, and "
+                "p is a density.",
+                repeats, b.draws.size());
             return v;
         }
         if (const Mismatch m = work.traits.has_pdf ? pdf_twice(work, t) : Mismatch{}; m.matters())

@@ -84,7 +84,7 @@ void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& wa
              +[](Work& w) { return judge_mean(w); }})
         judge_next(work, out, watch, verdict);
     diagnose(work, out.verdicts);
-    if (work.subject.has_f()) out.efficiency = measure_efficiency(work, index);
+    if (work.subject.has_f() && work.weighs()) out.efficiency = measure_efficiency(work, index);
 }
 
 void settle(Judgement& j) {

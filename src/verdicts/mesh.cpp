@@ -96,6 +96,15 @@ std::vector<double> rows_of(const std::vector<double>& a) {
     return out;
 }
 
+/// Per turn, of a cell with values v and w of g at heights x and y: g is constant there, or g sin theta is, as texels
+/// in theta x phi have it; the latter to what single precision knows. -1: neither.
+double mass_of(double v, double w, double a0, double a1, double x, double y) {
+    if (std::fabs(v - w) <= 1e-9 * std::fabs(v)) return (a1 - a0) * v;
+    const double one = v * std::sqrt(x * (2 - x)), two = w * std::sqrt(y * (2 - y));
+    if (std::fabs(one - two) <= 2e-6 * std::fabs(one)) return (theta_of(a1) - theta_of(a0)) * one;
+    return -1;
+}
+
 std::vector<double> merged(std::vector<double> edges, std::span<const double> more) {
     edges.insert(edges.end(), more.begin(), more.end());
     std::sort(edges.begin(), edges.end());
@@ -146,8 +155,8 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
         for (std::size_t k = 0; k + 1 < b.size(); ++k) {
             const int sector = std::min(static_cast<int>(0.5 * (b[k] + b[k + 1]) * sectors), sectors - 1);
             const int bin = static_cast<int>(ring) * sectors + sector;
-            if (std::fabs(v[2 * k] - v[2 * k + 1]) <= 1e-9 * std::fabs(v[2 * k]))
-                out.bins[static_cast<std::size_t>(bin)] += (a[i + 1] - a[i]) * (b[k + 1] - b[k]) * v[2 * k];
+            const double mass = mass_of(v[2 * k], v[2 * k + 1], a[i], a[i + 1], where[2 * k].x, where[2 * k + 1].x);
+            if (mass >= 0) out.bins[static_cast<std::size_t>(bin)] += (b[k + 1] - b[k]) * mass;
             else rest.push_back({a[i], a[i + 1], b[k], b[k + 1], bin});
         }
         if (17 * rest.size() > effort.most_evaluations) return {};

@@ -26,4 +26,8 @@ using Prepare = std::function<std::vector<Rect>(std::vector<Rect>)>;
 std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
     const Effort& effort, const Prepare& prepare = {}, const Witnesses* witnesses = nullptr);
 
+/// The integral of what has too many cells to sum: points at random, spread over `cells` first and then where g varies
+/// most. Its error is three standard errors, of the whole and of each bin.
+Integral integrate_by_points(std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations);
+
 }  // namespace crescent

@@ -53,6 +53,18 @@ void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::s
 double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
 double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f, int channel = 0);
 
+/// See repeats.cpp.
+/// The same u in the opposite order: answers that differ come from something else than wo and u.
+struct Repeated {
+    std::size_t tried = 0, other = 0;
+    Numbers u{};
+    Vec3d first{}, again{};
+};
+
+Repeated ask_again(const Work& work, int technique);
+std::size_t repeated_directions(const Work& work, const Batchful& b);
+std::size_t uneven_deltas(const Work& work, const Batchful& b);
+
 /// What the draws of a sampler without pdf(w) imply of its density, as a map and a table; see implied.cpp.
 Verdict implied_density(Work& work, Verdict v);
 

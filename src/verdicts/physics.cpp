@@ -144,6 +144,10 @@ Verdict judge_physics(const Work& work) {
                 ? " (reciprocity across the surface is not looked at: w_o below it is not answered for)"
                 : " (reciprocity across the surface is not looked at: the index is not known)";
     }
+    if (!work.weighs()) {
+        v.say += "; there is nothing to weigh draws by, hence no furnace.";
+        return v;
+    }
     const bool even = work.trial.light.fill > 0;  // an arm that aims at disks alone is not asked for an even light
     if (!even || !mean_is_testable(s, tail_of(x), work.trial.theory)) {
         v.say += even ? fmt::format("; the arm's white furnace reads {:.4g}, with too heavy a tail for a test.", s.mean)

@@ -137,9 +137,13 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
     });
 }
 
+constexpr const char* no_weights =
+    "There is neither a pdf nor a weight with the draws, hence nothing to weigh them by.";
+
 Verdict judge_tail(Work& work) {
     if (!work.subject.has_drawn_f())
         return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
+    if (!work.weighs()) return work.verdict("tail", State::skipped, no_weights);
     std::vector<double> x = first_weights(work, false);
     const Spread s = spread(x);
     const std::optional<Tail> tail = tail_of(x);
@@ -197,6 +201,7 @@ Verdict judge_mean(const Work& work) {
         return work.verdict("mean", State::skipped,
             work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with."
                                        : "There is no BRDF, hence no integral to compare the mean with.");
+    if (!work.weighs()) return work.verdict("mean", State::skipped, no_weights);
     Verdict v = work.verdict("mean", State::right, "");
     const Integral expected = due_mean(work, false);
     const std::vector<double> x = first_weights(work, false);

@@ -197,6 +197,13 @@ std::vector<double> Work::f_of_channel(std::span<const Vec3d> wi, int channel) c
     return out;
 }
 
+bool Work::weighs() const {
+    if (!subject.has_drawn_f()) return false;
+    const std::vector<Draw>& draws = first_[0].draws;
+    return traits.has_pdf ||
+        std::any_of(draws.begin(), draws.end(), [](const Draw& d) { return d.weight.has_value(); });
+}
+
 std::vector<double> Work::weights(std::span<const Batchful> techniques, bool even) const {
     std::vector<double> x(techniques[0].draws.size());
     for (std::size_t t = 0; t < techniques.size(); ++t) {

@@ -112,6 +112,8 @@ public:
     bool whole() const { return trial.wo.z < 0 || (below_.transmits && below_.reached); }
     /// Light from wi counts.
     bool counts(Vec3d wi) const { return wi.z > 0 || (wi.z < 0 && whole()); }
+    /// Its draws have weights: f cos / p, or what the sampler itself says.
+    bool weighs() const;
     /// Radiance from wi; the fill shines from below too where that counts.
     double light(Vec3d wi) const { return wi.z < 0 && whole() ? trial.light.fill : trial.light(wi); }
 
@@ -170,6 +172,8 @@ private:
     void find_guides();
     void find_rims(int technique);
     void add_rims(Density& d) const;
+    std::optional<Density> table_density(int technique) const;
+    std::vector<Rect> cells_of(const Density& d) const;
     void sharpen(int technique, Density& d) const;
     Witnesses witnesses_of(int technique, const Density& d) const;
     Density density_about(

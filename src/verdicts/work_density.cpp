@@ -34,21 +34,9 @@ void Work::measure_density() {
         }
         const bool sharp = count > 0 && length(mean) / count > 0.9;
         const Vec3d n{0, 0, 1};
-        const Batch about_n = batch_of(t, SphereMap(n));
-        const std::optional<Mesh> mesh = find_mesh(about_n);
-        if (mesh && mesh->cells() <= (subject.serial() ? 200000u : 10000000u)) {
-            Density d = bins_about(n, true);
-            const Witnesses seen = witnesses_of(t, d);
-            const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
-            const Effort effort{2.5e-6, 6 * rigour.evaluations, 5e-5};
-            if (std::optional<Integral> mass =
-                    integrate_mesh(*mesh, d.rings, d.sectors, about_n, effort, crowd, &seen)) {
-                d.mass = std::move(*mass);
-                grant_doubts(t, d);
-                share_nothing(t, d);
-                density_.push_back(std::move(d));
-                continue;
-            }
+        if (std::optional<Density> table = table_density(t)) {
+            density_.push_back(std::move(*table));
+            continue;
         }
         Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations)
                           : density_about(t, n, true, rigour.evaluations);
@@ -67,6 +55,34 @@ void Work::measure_density() {
             d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
+}
+
+/// A density that jumps along heights and azimuths about an axis: the normal, or for a sky any axis of the frame. Its
+/// cells are summed, or sampled where a program would be asked too often.
+std::optional<Density> Work::table_density(int t) const {
+    std::vector<Vec3d> axes = {{0, 0, 1}};
+    if (traits.wo == Traits::Asked::none) axes.insert(axes.end(), {{0, 1, 0}, {1, 0, 0}});
+    for (Vec3d axis : axes) {
+        Density d = bins_about(axis, axis.z == 1);
+        const Batch g = batch_of(t, d.map);
+        const std::optional<Mesh> mesh = find_mesh(g);
+        if (!mesh) continue;
+        const Witnesses seen = witnesses_of(t, d);
+        const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
+        const std::size_t most = subject.serial() && !rigour.full ? 200000 : 10000000;
+        std::optional<Integral> mass;
+        if (mesh->cells() <= most)
+            mass = integrate_mesh(*mesh, d.rings, d.sectors, g, {2.5e-6, 6 * rigour.evaluations, 5e-5}, crowd, &seen);
+        else
+            mass = integrate_by_points(
+                crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g, 4 * rigour.evaluations);
+        if (!mass) continue;
+        d.mass = std::move(*mass);
+        grant_doubts(t, d);
+        share_nothing(t, d);
+        return d;
+    }
+    return {};
 }
 
 /// 2 pi p over coordinates about an axis.
@@ -190,16 +206,21 @@ Density Work::bins_about(Vec3d axis, bool about_n) const {
     return d;
 }
 
-Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
-    Density d = bins_about(axis, about_n);
+std::vector<Rect> Work::cells_of(const Density& d) const {
     std::vector<Rect> cells;
     const int rings = static_cast<int>(d.rings.size()) - 1;
     for (int i = 0; i < rings; ++i)
         for (int k = 0; k < d.sectors; ++k)
             cells.push_back({d.rings[static_cast<std::size_t>(i)], d.rings[static_cast<std::size_t>(i) + 1],
                 double(k) / d.sectors, double(k + 1) / d.sectors, i * d.sectors + k});
+    return cells;
+}
+
+Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
+    Density d = bins_about(axis, about_n);
+    const int rings = static_cast<int>(d.rings.size()) - 1;
     const Witnesses witnesses = witnesses_of(technique, d);
-    d.mass = integrate(guided(std::move(cells), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
+    d.mass = integrate(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
         {edge_mass / 20, evaluations, edge_mass}, &witnesses);
     grant_doubts(technique, d);
     return d;
