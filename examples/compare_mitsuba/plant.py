@@ -4,8 +4,8 @@ there: the false-alarm rate and the power of `--expect same`, measured on render
     pip install mitsuba
     python plant.py OUT [--crescent crescent] [--repeats 100] [--write docs/compare.md]
 
-Each repeat renders three sets of seeds: two of the scene as it is, one with the bias. `crescent compare --expect same` on
-the two equal sets is to end with exit code 0, on the third and the first with 1. With --write, the measured rates are
+Each repeat renders three sets of seeds: two of the scene as it is, one with the bias. `crescent compare --expect same`
+on the two equal sets is to end with exit code 0, on the third and the first with 1. With --write, the measured rates are
 put between the two lines of the file that say "measured by plant.py" and "end of plant.py".
 """
 import argparse
@@ -44,11 +44,12 @@ def rate(hits, of):
 
 
 def measured(args, right, wrong):
-    version = subprocess.run([args.crescent, "version"], capture_output=True, text=True, check=True).stdout.split(" (")[0]
-    rows = [f"Mitsuba {mi.__version__}, {version}: {args.repeats} repeats of {args.seeds} seeds a set, {args.size} x {args.size} pixels, "
-            f"{args.spp} samples, direct light, alpha {args.alpha}.", "",
+    told = subprocess.run([args.crescent, "version"], capture_output=True, text=True, check=True)
+    rows = [f"Mitsuba {mi.__version__}, {told.stdout.split(' (')[0]}: {args.repeats} repeats of {args.seeds} seeds a set, "
+            f"{args.size} x {args.size} pixels, {args.spp} samples, direct light, alpha {args.alpha}.", "",
             "| sets | exit 0: no difference | exit 1: a difference | exit 4: cannot be said |", "|---|---|---|---|"]
-    for name, codes in (("two of one scene", right), (f"green wall's albedo {100 * args.bias:g} % higher in one", wrong)):
+    biased = f"green wall's albedo {100 * args.bias:g} % higher in one"
+    for name, codes in (("two of one scene", right), (biased, wrong)):
         rows.append(f"| {name} | " + " | ".join(rate(codes.count(code), len(codes)) for code in (0, 1, 4)) + " |")
     return "\n".join(rows)
 
@@ -82,7 +83,8 @@ def main():
     if args.write:
         with open(args.write, encoding="utf-8") as file:
             page = file.read()
-        page, found = re.subn(r"(<!-- measured by plant.py -->\n).*?(<!-- end of plant.py -->)", lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
+        lines = r"(<!-- measured by plant.py -->\n).*?(<!-- end of plant.py -->)"
+        page, found = re.subn(lines, lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
         if not found:
             raise SystemExit(f"{args.write}: no lines 'measured by plant.py' and 'end of plant.py'")
         with open(args.write, "w", encoding="utf-8") as file:

@@ -5,7 +5,7 @@
     crescent compare --arm path='OUT/path-*.exr' --arm both='OUT/both-*.exr' \
                      --arm emitter='OUT/emitter-*.exr' --arm bsdf='OUT/bsdf-*.exr' --reference OUT/reference.exr
 
-`both`, `emitter` and `bsdf` are direct illumination alone; `path` has indirect light too, so it differs from the others.
+`both`, `emitter` and `bsdf` are direct illumination alone; `path` has indirect light too, so it differs from them.
 The reference is direct illumination at 64 times the samples. With --bias B one wall's albedo is changed by that share.
 """
 import argparse
@@ -13,7 +13,8 @@ import os
 
 import mitsuba as mi
 
-mi.set_variant("scalar_rgb" if os.environ.get("MITSUBA_SCALAR") else "llvm_ad_rgb" if "llvm_ad_rgb" in mi.variants() else "scalar_rgb")
+# The LLVM variant is many times faster where libLLVM is found (DRJIT_LIBLLVM_PATH says where it is).
+mi.set_variant("scalar_rgb" if os.environ.get("MITSUBA_SCALAR") else "llvm_ad_rgb")
 
 INTEGRATORS = {
     "path": {"type": "path", "max_depth": 6},
@@ -26,7 +27,8 @@ INTEGRATORS = {
 def scene(integrator, size, bias):
     box = mi.cornell_box()
     box["integrator"] = integrator
-    box["sensor"]["film"].update(width=size, height=size, pixel_format="rgb", component_format="float32", rfilter={"type": "box"})
+    box["sensor"]["film"].update(
+        width=size, height=size, pixel_format="rgb", component_format="float32", rfilter={"type": "box"})
     if bias:
         green = box["green"]["reflectance"]["value"]
         box["green"]["reflectance"]["value"] = [c * (1 + bias) for c in green]

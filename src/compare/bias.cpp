@@ -65,8 +65,9 @@ void test_regions(const Sides& sides, double alpha, BiasResult& out) {
     const std::vector<bool> differs = holm(p, alpha);
     for (std::size_t r = 0; r < p.size(); ++r) {
         MeanTest& t = out.regions[r];
-        const double pixels = static_cast<double>(sides.all.regions[r].pixels.size());
-        t.differs = differs[r] && std::fabs(t.a - t.b) >= sides.unseen(t.a - t.b, pixels, level);
+        if (!differs[r]) continue;
+        const SetNoise noise = sides.noise_of(sides.all.regions[r]);
+        t.differs = std::fabs(t.a - t.b) >= sides.blind(t.a, t.b, noise.pixels, noise.a + noise.b, level);
     }
 }
 
@@ -88,7 +89,7 @@ void test_tile(const Sides& sides, std::size_t t, double level, PlaceTests& out)
     }
     const Welch w = sides.test(a, b, noise, true);
     if (w.se == 0 && d == 0) return;  // the same constant on both sides
-    out.p[t] = std::fabs(d) < sides.unseen(d, noise.pixels, level) ? 1 : w.p;
+    out.p[t] = std::fabs(d) < sides.blind(noise.mean_a, noise.mean_b, noise.pixels, noise.a + noise.b, level) ? 1 : w.p;
     ++out.tested;
 }
 

@@ -16,14 +16,16 @@
 
 namespace crescent {
 
-void MeanFilm::add(const Render& render) {
+void MeanFilm::add(const Render& render, double variance_scale) {
     if (count == 0) {
         y.assign(render.size(), 0), m2.assign(render.size(), 0);
         for (std::vector<float>* plane : {&r, &g, &b}) plane->assign(render.size(), 0);
         told_variance.assign(render.variance.size(), 0);
     }
-    if (render.variance.size() != told_variance.size()) told_variance.clear();  // not every file has one
+    if (render.variance.size() != told_variance.size() || variance_scale == 0)
+        told_variance.clear();  // not every file has one
     ++count;
+    rounding = std::max(rounding, render.rounding);
     const double n = static_cast<double>(count);
     const float share = static_cast<float>(1 / n);
     const auto add_pixel = [&](std::size_t i) {
@@ -32,7 +34,7 @@ void MeanFilm::add(const Render& render) {
         m2[i] += off * (value - y[i]);
         r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share;
         b[i] += (render.b[i] - b[i]) * share;
-        if (!told_variance.empty()) told_variance[i] += render.variance[i];
+        if (!told_variance.empty()) told_variance[i] += render.variance[i] * static_cast<float>(variance_scale);
     };
     const auto width = static_cast<std::size_t>(render.width);
     parallel_for(std::size_t{0}, static_cast<std::size_t>(render.height), [&](std::size_t row) {
@@ -110,15 +112,21 @@ bool all_equal(const Render& render) {
 
 }  // namespace
 
-void FirstPass::arm(
-    ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name) {
+void FirstPass::arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer,
+    const std::string& name, const std::optional<double>& spp) {
     each_render(all_.source, files, layer, watch_, [&](const Render& render) {
         fit(render);
         look(render);
         RenderFile file{render.file, hash_of(render), render.layer, render.variance_channels, render.sample_channel,
             render.spp, render.seconds, numbers_in(render.file)};
         known(file, name);
-        to.film.add(render);
+        const std::optional<double>& samples = spp ? spp : render.spp;
+        if (render.per_sample && !samples)
+            all_.warnings.push_back(
+                fmt::format("{}: {} is the variance of one sample, and nothing says how many there "
+                            "are: give --spp",
+                    render.file, render.variance_channels));
+        to.film.add(render, !render.per_sample ? 1 : samples ? 1 / *samples : 0);
         to.files.push_back(std::move(file));
     });
 }

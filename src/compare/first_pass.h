@@ -8,8 +8,10 @@ namespace crescent {
 class FirstPass {
 public:
     FirstPass(Readings& all, Watch& watch) : all_(all), watch_(watch) {}
-    /// Reads every file of an arm into `to`. Throws InputError at the first that does not fit.
-    void arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name);
+    /// Reads every file of an arm into `to`; `spp`: samples a pixel, where the plan says them. Throws InputError at the
+    /// first that does not fit.
+    void arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
+        const std::optional<double>& spp);
 
 private:
     void fit(const Render& render);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "compare/page.h"
 #include "pages/charts.h"
@@ -30,27 +31,44 @@ std::string region_table(const BiasResult& b) {
 
 std::string places(const BiasResult& b) {
     if (b.tiles.p.empty()) return {};
-    std::string out = fmt::format(
-        "Tiles: {} tested, {} differ, {} left out because one pixel of one render carries half of their spread.",
-        b.tiles.tested, b.tiles.different, b.tiles.left_out);
+    std::string out =
+        fmt::format("Tiles: {} tested, {} differ, {} left out.", b.tiles.tested, b.tiles.different, b.tiles.left_out);
     if (!b.pixel_p.empty()) out += fmt::format(" Pixels: {} tested, {} differ.", b.pixels_tested, b.pixels_different);
-    out += fmt::format(
-        " False discoveries are controlled after {}. A difference that rare events which no render met could make up "
-        "counts as none.",
-        b.dependent ? "Benjamini and Yekutieli, since neighbouring pixels’ noise is correlated"
-                    : "Benjamini and Hochberg");
-    if (!b.reference_error.empty()) out += " The reference’s own error: " + escape(b.reference_error) + ".";
+    if (b.dependent) out += " Neighbouring pixels’ noise is correlated: after Benjamini and Yekutieli.";
     return html::p(out);
 }
 
+/// What holds of every pair, once.
+std::string method(const CompareResult& result) {
+    std::string out =
+        "Welch’s test over renders, of the mean <i>Y</i> of each region, tile and pixel; false discoveries are "
+        "controlled after Holm (regions) and Benjamini and Hochberg (tiles, pixels). A tile is left out where one "
+        "pixel "
+        "of one render carries half of its spread. A difference that rare events which no render met could make up "
+        "counts as none. <i>Smallest seen</i>: the difference that would have been found nine times out of ten.";
+    if (!result.reference_error_from.empty())
+        out += " The reference’s own error: " + escape(result.reference_error_from) + ".";
+    return html::p(out);
+}
+
+double sum_of(const std::vector<std::uint64_t>& counts) {
+    return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
+}
+
+/// Counts in percent of `total`.
+std::vector<double> percents(const std::vector<std::uint64_t>& counts, double total) {
+    std::vector<double> out;
+    for (const std::uint64_t count : counts) out.push_back(100 * static_cast<double>(count) / total);
+    return out;
+}
+
 /// Steps: `counts` over equal bins from low to high; a second series stands on the first.
-std::string histogram(const std::vector<std::uint64_t>& below, const std::vector<std::uint64_t>& above, Axis x,
-    const char* what, const char* title) {
+std::string histogram(
+    const std::vector<double>& below, const std::vector<double>& above, Axis x, const char* what, const char* title) {
     std::vector<double> edges, zero, low, high, all{0};
     const double width = (x.high - x.low) / static_cast<double>(below.size());
     for (std::size_t k = 0; k < below.size(); ++k) {
-        const double first = static_cast<double>(below[k]),
-                     second = first + (above.empty() ? 0 : static_cast<double>(above[k]));
+        const double first = below[k], second = first + (above.empty() ? 0 : above[k]);
         for (const double edge : {x.low + width * static_cast<double>(k), x.low + width * static_cast<double>(k + 1)})
             edges.push_back(edge), zero.push_back(0), low.push_back(first), high.push_back(second);
         all.push_back(second);
@@ -62,19 +80,20 @@ std::string histogram(const std::vector<std::uint64_t>& below, const std::vector
 }
 
 std::string pixel_histogram(const BiasResult& b) {
-    if (b.pixel_p.empty()) return {};
+    if (!b.pixels_tested) return {};
     const Axis x{0, 1, false, "p of a pixel", {0, 0.2, 0.4, 0.6, 0.8, 1}};
     return fmt::format(
         "<figure class=\"narrow\">{}<figcaption>Over pixels, p is spread evenly where nothing differs and noise is "
         "near normal; a heap at 0 is a difference, one in the middle or at 1 noise with rare bright "
         "events.</figcaption></figure>\n",
-        histogram(b.pixel_p, {}, x, "pixels", "Histogram of p over pixels"));
+        histogram(percents(b.pixel_p, sum_of(b.pixel_p)), {}, x, "% of pixels", "Histogram of p over pixels"));
 }
 
 }  // namespace
 
 std::string means_section(const CompareResult& result) {
-    std::string out;
+    if (result.bias.empty()) return {};
+    std::string out = method(result);
     for (const BiasResult& b : result.bias) out += region_table(b) + places(b) + pixel_histogram(b);
     return out;
 }
@@ -84,15 +103,16 @@ std::string noise_section(const CompareResult& result) {
     for (const NoiseResult& n : result.noise) {
         out += html::p(escape(n.sentence));
         for (const NoiseResult::Histogram& h : n.regions) {
-            if (std::all_of(h.told.begin(), h.told.end(), [](auto c) { return c == 0; }) &&
-                std::all_of(h.rest.begin(), h.rest.end(), [](auto c) { return c == 0; }))
-                continue;
+            const double tiles = sum_of(h.told) + sum_of(h.rest);
+            if (tiles == 0) continue;
             const Axis x{-noise_range, noise_range, false,
                 fmt::format("log2 of the variance of {} over that of {}", n.a, n.b), {-4, -2, 0, 2, 4}};
             out += fmt::format(
                 "<figure class=\"narrow\">{}<figcaption>Tiles of {}: coloured where the ratio is told apart from 1, "
                 "grey where not; the ends hold what lies beyond.</figcaption></figure>\n",
-                histogram(h.told, h.rest, x, "tiles", "Histogram of the variance ratio"), escape(h.region));
+                histogram(percents(h.told, tiles), percents(h.rest, tiles), x, "% of tiles",
+                    "Histogram of the variance ratio"),
+                escape(h.region));
         }
     }
     return out;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/parallel.h"
 
@@ -13,7 +14,6 @@ constexpr std::size_t bins = 20;         // of the histogram of p
 constexpr std::size_t named_most = 5;    // pixels that are named
 constexpr std::size_t chunk = 1u << 14;  // pixels
 constexpr std::size_t table_from = 1u << 17;
-constexpr std::size_t least_renders = 6;  // fewer may give a pixel the same value in each by chance
 
 /// Which twentieth a p is in, by t and degrees of freedom (rounded to an eighth): a search instead of a beta function.
 class Bins {
@@ -44,9 +44,26 @@ struct Moments {
     bool known = false;
 };
 
-Moments moments(const Sides& s, std::size_t i) {
+/// A tile's variance at a pixel's brightness, where that is below the tile's.
+double scaled(const ArmReadings& arm, std::size_t tile, double variance, double y) {
+    double mean = 0;
+    for (const auto& render : arm.tiles) mean += render[tile].y / static_cast<double>(arm.tiles.size());
+    const double share = mean > 0 ? std::min(1.0, std::fabs(y) / mean) : 1;
+    return variance * share * share;
+}
+
+/// `floored`: a pixel may give the same value in every render by chance (so many hits of so many samples), and its
+/// spread is never taken for less than that of its tile, at the pixel's own brightness.
+Moments moments(const Sides& s, std::size_t i, bool floored) {
     const double ka = static_cast<double>(s.a.files.size()), kb = static_cast<double>(s.b.files.size());
-    const double va = s.a.film.variance(i) / ka, vb = s.b.film.variance(i) / kb;
+    double va = s.a.film.variance(i), vb = s.b.film.variance(i);
+    if (floored) {
+        const int w = s.all.width;
+        const std::size_t t = s.all.tiles.of(static_cast<int>(i) % w, static_cast<int>(i) / w);
+        va = std::max(va, scaled(s.a, t, s.tile_a[t], s.a.film.y[i]));
+        vb = std::max(vb, scaled(s.b, t, s.tile_b[t], s.b.film.y[i]));
+    }
+    va /= ka, vb /= kb;
     Moments m;
     m.difference = s.a.film.y[i] - s.b.film.y[i];
     m.known = !std::isnan(va) && !std::isnan(vb) && (va + vb > 0 || m.difference != 0);
@@ -70,7 +87,7 @@ Part part_of(const Sides& s, std::size_t begin, double alpha, double level, cons
     const auto& pixels = s.all.regions.back().pixels;
     Part out;
     for (std::size_t k = begin; k < std::min(pixels.size(), begin + chunk); ++k) {
-        const Moments m = moments(s, pixels[k]);
+        const Moments m = moments(s, pixels[k], false);
         if (!m.known) continue;
         const std::size_t bin = m.se > 0 ? table.of(m.difference / m.se, m.df) : 0;
         ++out.histogram[bin], ++out.tested;
@@ -84,9 +101,9 @@ Part part_of(const Sides& s, std::size_t begin, double alpha, double level, cons
 }  // namespace
 
 double pixel_p(const Sides& s, std::size_t i, double level) {
-    const Moments m = moments(s, i);
+    const Moments m = moments(s, i, true);
     if (!m.known) return std::nan("");
-    if (std::fabs(m.difference) < s.unseen(m.difference, 1, level)) return 1;
+    if (std::fabs(m.difference) < s.blind(s.a.film.y[i], s.b.film.y[i], 1, 0, level)) return 1;
     return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : 0;
 }
 
@@ -95,7 +112,6 @@ double pixel_level(const Sides& s, double alpha) {
 }
 
 void test_pixels(const Sides& s, double alpha, BiasResult& out) {
-    if (s.renders() < least_renders) return;
     if (s.lone_reference() && s.b.film.told_variance.empty()) return;
     const std::size_t count = s.all.regions.back().pixels.size();
     const double level = pixel_level(s, alpha);

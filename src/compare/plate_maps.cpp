@@ -29,12 +29,15 @@ Rect titled(Canvas& c, const Rect& slot, const std::string& title) {
 
 Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {1, "≥ " + figures(top, 2)}}; }
 
+/// What is told is never as grey as what is not.
+double visible(double t) { return std::copysign(0.2 + 0.8 * std::min(1.0, std::fabs(t)), t); }
+
 /// A value a tile, `told` ones in their colour, the others grey; in the left of two slots, or in one.
 Block tile_block(
     const Readings& all, const Fit& f, const std::vector<double>& value, const std::vector<bool>& told, double top) {
     return nearest_block(frame_of(all), f, [&](int x, int y) {
         const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
-        return std::isnan(value[t]) ? ground_bytes : diverging(told[t] ? value[t] / top : 0.0);
+        return std::isnan(value[t]) ? ground_bytes : diverging(told[t] ? visible(value[t] / top) : 0.0);
     });
 }
 
@@ -97,7 +100,7 @@ Picture bias_plate(const Sides& s, const BiasResult& found, double alpha) {
                     const std::size_t i = pixel(s.all, x, y);
                     if (s.all.bad[i]) return ground_bytes;
                     const bool told = found.pixels_different && pixel_p(s, i, level) <= found.pixel_level;
-                    return diverging(told ? (s.a.film.y[i] - s.b.film.y[i]) / top : 0);
+                    return diverging(told ? visible((s.a.film.y[i] - s.b.film.y[i]) / top) : 0);
                 }),
             right);
     }
@@ -116,15 +119,17 @@ Picture noise_plate(const Readings& all, const NoiseResult& n) {
     header(c, true, fmt::format("log<sub>2</sub> of the variance of {} over that of {}", escaped(n.a), escaped(n.b)));
     Rect band = content_band;
     band.w -= bar_room;
-    double top = 1;
+    std::vector<double> sizes{1};
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
-        if (n.told_apart[t]) top = std::max(top, std::ceil(std::fabs(n.log2_ratio[t])));
+        if (n.told_apart[t]) sizes.push_back(std::fabs(n.log2_ratio[t]));
+    const double top = std::ceil(quantile(std::move(sizes), 0.95));
     const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
     framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top), band);
     const auto ratio = [](double log2) {
         return log2 < 0 ? fmt::format("1/{:.0f}", std::exp2(-log2)) : fmt::format("{:.0f}", std::exp2(log2));
     };
-    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour, {{0, ratio(-top)}, {0.5, "1"}, {1, ratio(top)}});
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour,
+        {{0, "≤ " + ratio(-top)}, {0.5, "1"}, {1, "≥ " + ratio(top)}});
     return finished(c,
         fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: not told apart from 1. Ground: one of them has "
                     "no noise.",

@@ -85,8 +85,8 @@ Readings read_all(const ComparePlan& plan, Watch& watch, const RenderSource& sou
     FirstPass first(all, watch);
     all.arms.resize(plan.arms.size());
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name);
-    if (!reference.empty()) first.arm(all.reference.emplace(), reference, plan.reference_layer, "the reference");
+        first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
+    if (!reference.empty()) first.arm(all.reference.emplace(), reference, plan.reference_layer, "the reference", {});
     all.tiles = Tiles(all.width, all.height);
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
     regions(plan, all);

@@ -2,27 +2,20 @@
 // window smaller or larger than the display window. The image is the display window; what lies outside the data window
 // is 0. Deep parts and what is not radiance (Cryptomatte, normals, depth, ...) are passed by.
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFloatAttribute.h>
-#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
-#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <map>
 
 #include "base/errors.h"
-#include "color/rgb.h"
+#include "compare/exr_extra.h"
 #include "compare/render.h"
-#include "films/film.h"
 
 namespace crescent {
 
@@ -34,18 +27,6 @@ struct Layer {
     std::string name;                   // "part/layer", as --layer takes it
     std::vector<std::string> channels;  // 3 or 1
 };
-
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
-/// "RenderLayer.Combined.R" -> RenderLayer.Combined and r.
-std::pair<std::string, std::string> cut(const std::string& channel) {
-    const std::size_t dot = channel.rfind('.');
-    if (dot == std::string::npos) return {"", lower(channel)};
-    return {channel.substr(0, dot), lower(channel.substr(dot + 1))};
-}
 
 std::string joined(const std::string& part, const std::string& layer) {
     return part.empty() || layer.empty() ? part + layer : part + "/" + layer;
@@ -60,24 +41,13 @@ bool is_data(const std::string& layer) {
         std::begin(words), std::end(words), [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-using Channels = std::map<std::string, std::map<std::string, std::string>>;  // layer -> colour -> channel
-
-Channels channels_of(const Imf::Header& header) {
-    Channels out;
-    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-        const auto [layer, colour] = cut(c.name());
-        out[layer][colour] = c.name();
-    }
-    return out;
-}
-
 std::vector<Layer> layers_of(Imf::MultiPartInputFile& file) {
     std::vector<Layer> out;
     for (int part = 0; part < file.parts(); ++part) {
         const Imf::Header& header = file.header(part);
         if (header.hasType() && Imf::isDeepData(header.type())) continue;
         const std::string part_name = file.parts() > 1 && header.hasName() ? header.name() : "";
-        for (auto& [layer, colours] : channels_of(header)) {
+        for (auto& [layer, colours] : exr_channels(header)) {
             if (is_data(layer) || (layer.empty() && is_data(part_name))) continue;
             const std::string name = joined(part_name, layer);
             if (colours.contains("r") && colours.contains("g") && colours.contains("b"))
@@ -180,73 +150,6 @@ private:
     std::vector<std::pair<std::vector<float>*, std::vector<float>>> data_;
 };
 
-/// A number in an attribute: an int, a float, or text such as "12.5" or "01:02.50" (minutes and seconds, hours before).
-std::optional<double> number_of(const Imf::Attribute& attribute) {
-    if (const auto* a = dynamic_cast<const Imf::IntAttribute*>(&attribute)) return a->value();
-    if (const auto* a = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) return static_cast<double>(a->value());
-    if (const auto* a = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) return a->value();
-    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute);
-    if (!text) return {};
-    double total = 0;
-    std::string_view rest = text->value();
-    while (true) {
-        double piece = 0;
-        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), piece);
-        if (error != std::errc{}) return {};
-        total = 60 * total + piece;
-        rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-        if (rest.empty() || rest == "s") return total;
-        if (rest.front() != ':') return {};
-        rest.remove_prefix(1);
-    }
-}
-
-/// The first attribute whose name, without what stands before its last '.' or '/', is one of these.
-std::optional<double> attribute(const Imf::Header& header, std::initializer_list<const char*> names) {
-    for (auto a = header.begin(); a != header.end(); ++a) {
-        std::string name = lower(a.name());
-        name = name.substr(std::min(name.find_last_of("./") + 1, name.size()));
-        std::erase_if(name, [](char c) { return c == '_' || c == ' ' || c == '-'; });
-        for (const char* word : names)
-            if (name == word)
-                if (const auto value = number_of(a.attribute()); value && *value > 0) return value;
-    }
-    return {};
-}
-
-/// Where the renderer wrote a variance of this layer, or a standard error: of Y, or of R, G and B.
-struct Spread {
-    std::vector<std::string> channels;
-    bool squared = true;  // false: standard errors
-};
-Spread spread_of(const Imf::Header& header, const std::string& part) {
-    Channels all = channels_of(header);
-    for (auto& [layer, colours] : all) {
-        const std::string name = lower(layer.empty() ? part : layer);
-        const std::size_t at = name.find_last_of("./");
-        const std::string last = at == std::string::npos ? name : name.substr(at + 1);
-        const bool squared = last == "variance" || last == "var" || last.ends_with("_variance");
-        if (!squared && last != "error" && last != "stddev") continue;
-        if (colours.contains("y")) return {{colours["y"]}, squared};
-        if (colours.contains("r") && colours.contains("g") && colours.contains("b"))
-            return {{colours["r"], colours["g"], colours["b"]}, squared};
-    }
-    return {};
-}
-
-/// Variance of Y. R, G and B of one sample rise and fall together: their deviations add, which is never too little.
-void add_variance(Render& out, const std::vector<std::vector<float>>& planes, bool squared) {
-    out.variance.resize(out.size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        double deviation = 0;
-        for (std::size_t c = 0; c < planes.size(); ++c) {
-            const double x = std::max(0.0, static_cast<double>(planes[c][i]));
-            deviation += (planes.size() == 3 ? luminance_weights[c] : 1) * (squared ? std::sqrt(x) : x);
-        }
-        out.variance[i] = static_cast<float>(deviation * deviation);
-    }
-}
-
 Render read_layer(Imf::MultiPartInputFile& file, const std::string& path, const Layer& layer) {
     Planes planes(file, layer.part);
     const Imf::Header& header = file.header(layer.part);
@@ -256,17 +159,18 @@ Render read_layer(Imf::MultiPartInputFile& file, const std::string& path, const 
     out.layer = layer.name;
     std::vector<float>* colours[] = {&out.r, &out.g, &out.b};
     for (std::size_t c = 0; c < layer.channels.size(); ++c) planes.want(layer.channels[c], *colours[c]);
-    const Spread spread = spread_of(header, header.hasName() ? header.name() : "");
-    std::vector<std::vector<float>> spreads(spread.channels.size());
-    for (std::size_t c = 0; c < spreads.size(); ++c) planes.want(spread.channels[c], spreads[c]);
+    const ExrExtra extra = exr_extra(header, header.hasName() ? header.name() : "");
+    std::vector<std::vector<float>> spreads(extra.spread.size());
+    for (std::size_t c = 0; c < spreads.size(); ++c) planes.want(extra.spread[c], spreads[c]);
+    std::vector<float> samples;
+    if (!extra.samples.empty()) planes.want(extra.samples, samples);
     planes.read();
     if (layer.channels.size() == 1) out.g = out.b = out.r;
-    if (!spreads.empty()) {
-        add_variance(out, spreads, spread.squared);
-        out.variance_channels = fmt::format("{}", fmt::join(spread.channels, ", "));
-    }
-    out.spp = attribute(header, {"spp", "samples", "samplesperpixel", "samplecount", "n"});
-    out.seconds = attribute(header, {"rendertime", "seconds", "time", "rendertimes"});
+    out.spp = exr_attribute(header, {"spp", "samples", "samplesperpixel", "samplecount", "n"});
+    out.seconds = exr_attribute(header, {"rendertime", "seconds", "time", "rendertimes"});
+    if (header.channels().findChannel(layer.channels[0])->type == Imf::HALF) out.rounding = 0x1p-11;
+    set_variance(out, extra, spreads);
+    if (!extra.samples.empty()) set_samples(out, extra, samples);
     return out;
 }
 

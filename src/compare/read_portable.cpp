@@ -152,6 +152,7 @@ Render read_radiance_hdr(const std::string& path, std::span<const char> bytes) {
     if (!known) in.fail("expected a resolution such as '-Y 540 +X 960'");
     in.check_size(w, h);
     Render out(path, w, h);
+    out.rounding = 0x1p-8;
     std::vector<Rgbe> row(static_cast<std::size_t>(w));
     for (int line = 0; line < h; ++line) {
         read_scanline(in, row);
@@ -241,6 +242,7 @@ Render read_npy(const std::string& path, std::span<const char> bytes) {
     const auto rows = static_cast<std::size_t>(h.shape[0]), columns = static_cast<std::size_t>(h.shape[1]);
     const std::size_t channels = colour ? static_cast<std::size_t>(h.shape[2]) : 1;
     Render out(path, static_cast<int>(columns), static_cast<int>(rows));
+    if (h.bytes == 2) out.rounding = 0x1p-11;
     const auto width = static_cast<std::size_t>(h.bytes);
     const auto data = in.take(rows * columns * channels * width);
     for (std::size_t row = 0; row < rows; ++row) {

@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -121,6 +122,24 @@ void write_exr(const std::string& path, const std::vector<Part>& parts) {
     }
 }
 
+/// One pixel, a value a channel.
+void write_planes(const std::string& path, const std::vector<std::pair<std::string, float>>& planes) {
+    Imf::Header header(1, 1);
+    header.insert("cycles.ViewLayer.render_time", Imf::StringAttribute("01:03.50"));
+    header.setName("rgb");
+    header.setType(Imf::SCANLINEIMAGE);
+    for (const auto& [name, value] : planes) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::MultiPartOutputFile file(path.c_str(), &header, 1);
+    std::vector<float> values;
+    for (const auto& [name, value] : planes) values.push_back(value);
+    Imf::FrameBuffer buffer;
+    for (std::size_t k = 0; k < planes.size(); ++k)
+        buffer.insert(planes[k].first, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&values[k]), 4, 4));
+    Imf::OutputPart part(file, 0);
+    part.setFrameBuffer(buffer);
+    part.writePixels(1);
+}
+
 TEST_F(Renders, ReadOpenExrAsRenderersWriteIt) {
     write_exr(path("plain.exr"), {{"rgb", ""}});
     write_exr(path("tiled.exr"), {{"rgb", "", true}});
@@ -139,6 +158,29 @@ TEST_F(Renders, FillTheDisplayWindowFromASmallerDataWindow) {
     const Render r = read_render(path("a.exr"));
     EXPECT_EQ(r.r, (std::vector<float>{1, 0, 0, 0}));
     EXPECT_EQ(r.g, (std::vector<float>{0, 1, 0, 0}));
+}
+
+TEST_F(Renders, TakeVariancesAndSamplesByTheirNames) {
+    write_exr(path("own.exr"), {{"rgb", ""}, {"variance", ""}});
+    EXPECT_TRUE(read_render(path("own.exr")).variance.empty());  // of another part: not this radiance's
+    write_planes(path("pbrt.exr"),
+        {{"R", 2}, {"G", 2}, {"B", 2}, {"Variance.R", 4}, {"Variance.G", 4}, {"Variance.B", 4},
+            {"RelativeVariance.R", 1}});
+    const Render pbrt = read_render(path("pbrt.exr"));
+    EXPECT_TRUE(pbrt.per_sample);
+    EXPECT_NEAR(pbrt.variance[0], 4, 1e-5);
+    write_planes(path("moment.exr"), {{"R", 3}, {"G", 3}, {"B", 3}, {"nested.Y", 3}, {"m2_nested.Y", 13}});
+    const Render moment = read_render(path("moment.exr"));
+    EXPECT_TRUE(moment.per_sample);
+    EXPECT_NEAR(moment.variance[0], 4, 1e-5);
+    EXPECT_EQ(moment.variance_channels, "m2_nested.Y, nested.Y");
+    write_planes(path("error.exr"), {{"R", 3}, {"G", 3}, {"B", 3}, {"stddev.Y", 0.5f}, {"Debug Sample Count.X", 64}});
+    const Render error = read_render(path("error.exr"));
+    EXPECT_FALSE(error.per_sample);
+    EXPECT_NEAR(error.variance[0], 0.25, 1e-6);
+    EXPECT_EQ(error.spp, 64);
+    EXPECT_EQ(error.seconds, 63.5);
+    EXPECT_EQ(error.sample_channel, "Debug Sample Count.X");
 }
 
 TEST_F(Renders, AskWhichLayerIsMeant) {

@@ -17,6 +17,8 @@ struct Render {
     std::vector<float> variance;    // of Y of this render, where the renderer wrote it; empty elsewhere
     std::string variance_channels;  // which channels that came from, and what was made of them
     std::string sample_channel;     // where the renderer wrote the samples of each pixel
+    double rounding = 0x1p-24;      // of a channel, relative: 2^-24 for float, 2^-11 for half, 2^-8 for RGBE
+    bool per_sample = false;        // `variance` is that of one sample: to be divided by the samples a pixel
     std::optional<double> spp;      // samples a pixel, from the file's attributes or its sample-count channel
     std::optional<double> seconds;  // render time, from the file's attributes
 

@@ -20,7 +20,9 @@ struct MeanFilm {
     std::vector<double> y, m2;         // mean of Y; sum of (Y - mean)^2
     std::vector<float> r, g, b;        // mean radiance
     std::vector<float> told_variance;  // sum over renders of the variance of Y that the renderer wrote; empty: none
-    void add(const Render& render);
+    double rounding = 0;               // of a pixel, relative: the coarsest of its files
+    /// `variance_scale` makes what the render tells the variance of its pixels; 0: it cannot be known.
+    void add(const Render& render, double variance_scale = 1);
     /// Variance of Y of one render at pixel i; NaN where nothing tells it.
     double variance(std::size_t i) const;
 };

@@ -11,7 +11,8 @@ namespace crescent {
 namespace {
 
 std::string relative(double a, double b) {
-    return b != 0 ? fmt::format("{:+.2g} %", 100 * (a / b - 1)) : fmt::format("{} beside 0", figures(a, 2));
+    if (!(b > 0)) return fmt::format("{} beside {}", figures(a, 2), figures(b, 2));
+    return a / b < 2 ? fmt::format("{:+.2g} %", 100 * (a / b - 1)) : fmt::format("{:.2g} times", a / b);
 }
 
 std::string place(const Found& f) {
@@ -22,7 +23,7 @@ std::string place(const Found& f) {
 std::string places(const std::vector<Found>& found, std::uint64_t all) {
     std::vector<std::string> out;
     for (const Found& f : found) out.push_back(fmt::format("{} ({})", place(f), relative(f.a, f.b)));
-    return fmt::format("{}{}", fmt::join(out, ", "), all > found.size() ? ", …" : "");
+    return fmt::format("{}{}", fmt::join(out, ", "), all > found.size() ? " and more" : "");
 }
 
 std::vector<std::string> differences(const BiasResult& b) {

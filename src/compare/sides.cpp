@@ -60,6 +60,15 @@ double low_over_high(const std::vector<double>& power) {
     return high > 0 ? std::max(1.0, power.front() / high) : 1;
 }
 
+/// 0 where one file says nothing of them.
+std::vector<double> tile_variances(const ArmReadings& arm) {
+    std::vector<double> out(arm.tiles[0].size());
+    const double k = static_cast<double>(arm.files.size());
+    for (const auto& render : arm.tiles)
+        for (std::size_t t = 0; t < out.size(); ++t) out[t] += k > 1 ? render[t].spread / (k - 1) : 0;
+    return out;
+}
+
 }  // namespace
 
 Sides::Sides(const ComparePlan& plan, const Readings& readings, const CompareResult& measured, std::size_t first,
@@ -75,6 +84,7 @@ Sides::Sides(const ComparePlan& plan, const Readings& readings, const CompareRes
     dependent = frame.colour == NoiseColour::correlated;
     if (other) dependent |= other->region(whole_frame).colour == NoiseColour::correlated;
     if (dependent) low_frequencies = low_over_high(frame.power);
+    tile_a = tile_variances(a), tile_b = tile_variances(b);
 }
 
 SetNoise Sides::noise_of(const Box& box) const {
@@ -110,6 +120,14 @@ double Sides::unseen(double difference, double pixels, double level) const {
     const ArmReadings& lower = difference < 0 ? a : b;
     if (lower.files.size() < 2) return 0;
     return -math::log(level) * lower.rare_event / (pixels * static_cast<double>(lower.files.size()));
+}
+
+double Sides::blind(double mean_a, double mean_b, double pixels, double variance, double level) const {
+    constexpr double roundings = 4;
+    const double rounded = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
+    const double left = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
+    return std::max(
+        unseen(mean_a - mean_b, pixels, level), roundings * rounded * std::max(left, 1 / std::sqrt(pixels)));
 }
 
 double roughness(const Readings& all, const ArmReadings& arm, const PixelSet& set) {

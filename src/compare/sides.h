@@ -34,6 +34,9 @@ struct Sides {
     /// The difference of a mean that events as large as the rarest seen would make up, on the side that is lower, where
     /// they are so rare that its renders met none with a probability of `level`. Below it a t-test is blind.
     double unseen(double difference, double pixels, double level) const;
+    /// The larger of that and of what the files' rounding makes of two means: all of it where there is no noise to
+    /// spread it, less and less under noise of this variance a pixel.
+    double blind(double mean_a, double mean_b, double pixels, double variance, double level) const;
 
     const Readings& all;
     const ArmReadings &a, &b;
@@ -42,6 +45,7 @@ struct Sides {
     bool referred = false, dependent = false;
     double low_frequencies = 1;                              // of the noise's power, over that of its high ones
     std::vector<std::pair<std::size_t, std::size_t>> pairs;  // of renders; empty: independent
+    std::vector<double> tile_a, tile_b;                      // variance of a pixel of one render, mean over a tile
 };
 
 /// The reference's own squared error a pixel where it is one file that does not say it: what the mean of an arm less

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Time and memory of `crescent compare` on many large renders: 64 of 3840 x 2160, half floats, made up here.
+
+    python3 bench/compare_memory.py --crescent build/crescent [--renders 64] [--zip] [--write docs/compare.md]
+
+The renders are written into a temporary folder and deleted after. Time stands beside that of reading the same files and
+doing nothing with them. With --write the table goes between the two lines of the page that say "measured by
+compare_memory.py" and "end of compare_memory.py". Needs NumPy.
+"""
+import argparse
+import os
+import re
+import resource
+import struct
+import subprocess
+import tempfile
+import time
+import zlib
+
+import numpy as np
+
+WIDTH, HEIGHT, LINES = 3840, 2160, 16
+
+
+def attribute(name, kind, value):
+    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+
+def header(compressed):
+    """Of a scanline file with channels B, G, R of half floats (OpenEXR file layout)."""
+    channels = b"".join(c + b"\0" + struct.pack("<iBBBBii", 1, 0, 0, 0, 0, 1, 1) for c in (b"B", b"G", b"R")) + b"\0"
+    window = struct.pack("<4i", 0, 0, WIDTH - 1, HEIGHT - 1)
+    return (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute("channels", "chlist", channels)
+            + attribute("compression", "compression", b"\3" if compressed else b"\0")
+            + attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+            + attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+            + attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
+            + attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0")
+
+
+def packed(raw):
+    """ZIP: even bytes, then odd ones, each the difference from the one before, deflated."""
+    data = np.frombuffer(raw, np.uint8)
+    data = np.concatenate([data[0::2], data[1::2]])
+    out = data.copy()
+    out[1:] = data[1:] - data[:-1] + np.uint8(128)
+    small = zlib.compress(out.tobytes(), 1)
+    return small if len(small) < len(raw) else raw
+
+
+def write(path, planes, compressed):
+    """planes: HEIGHT x 3 x WIDTH half floats, a row's B, G, R one after another, as the file has them."""
+    step = LINES if compressed else 1
+    blocks = []
+    for y in range(0, HEIGHT, step):
+        raw = planes[y:y + step].tobytes()
+        blocks.append((y, packed(raw) if compressed else raw))
+    head = header(compressed)
+    at = len(head) + 8 * len(blocks)
+    offsets = []
+    for _, block in blocks:
+        offsets.append(at)
+        at += 8 + len(block)
+    with open(path, "wb") as file:
+        file.write(head + struct.pack(f"<{len(offsets)}Q", *offsets))
+        for y, block in blocks:
+            file.write(struct.pack("<ii", y, len(block)) + block)
+
+
+def render(noise, size, seed):
+    """1 + size * noise, the noise turned by as much as the seed says."""
+    turned = np.roll(noise, (seed * 977 % HEIGHT, seed * 3301 % WIDTH), axis=(0, 2))
+    return (1 + size * turned).astype(np.float16)
+
+
+def read_alone(folder):
+    start = time.monotonic()
+    for name in sorted(os.listdir(folder)):
+        with open(f"{folder}/{name}", "rb", buffering=0) as file:
+            while file.read(1 << 24):
+                pass
+    return time.monotonic() - start
+
+
+def measured(args, folder, out):
+    read = read_alone(folder)
+    command = [args.crescent, "compare", "--arm", f"a={folder}/a*.exr", "--arm", f"b={folder}/b*.exr", "--out", out]
+    start = time.monotonic()
+    subprocess.run(command + ["--quiet"], check=True, stdout=subprocess.DEVNULL)
+    seconds = time.monotonic() - start
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    total = sum(os.path.getsize(f"{folder}/{name}") for name in os.listdir(folder))
+    kind = "ZIP" if args.zip else "uncompressed"
+    return "\n".join([
+        "| renders | bytes | time | processor time | reading alone, once, cached | peak memory |",
+        "|---|---|---|---|---|---|",
+        f"| {args.renders} of {WIDTH} x {HEIGHT}, half, {kind} | {total / 1e9:.1f} GB | {seconds:.0f} s | "
+        f"{used.ru_utime + used.ru_stime:.0f} s | {read:.1f} s | {used.ru_maxrss / 1e6:.2f} GB |"])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--crescent", default="crescent")
+    parser.add_argument("--renders", type=int, default=64)
+    parser.add_argument("--zip", action="store_true")
+    parser.add_argument("--write", metavar="FILE")
+    args = parser.parse_args()
+    noise = np.random.default_rng(1).standard_normal((HEIGHT, 3, WIDTH), np.float32)
+    with tempfile.TemporaryDirectory() as work:
+        os.mkdir(f"{work}/renders")
+        for k in range(args.renders):
+            write(f"{work}/renders/{'ab'[k % 2]}{k:02}.exr", render(noise, (0.2, 0.1)[k % 2], k + 1), args.zip)
+        text = f"{os.cpu_count()} processors:\n\n" + measured(args, f"{work}/renders", f"{work}/out")
+    print(text)
+    if not args.write:
+        return
+    with open(args.write, encoding="utf-8") as file:
+        page = file.read()
+    lines = r"(<!-- measured by compare_memory.py -->\n).*?(<!-- end of compare_memory.py -->)"
+    page, found = re.subn(lines, lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
+    if not found:
+        raise SystemExit(f"{args.write}: no lines 'measured by compare_memory.py' and 'end of compare_memory.py'")
+    with open(args.write, "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+if __name__ == "__main__":
+    main()

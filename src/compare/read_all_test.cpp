@@ -1,0 +1,90 @@
+// What fits together and what does not: renders that stand in memory.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compare/made.h"
+#include "compare/renders.h"
+
+namespace crescent {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Renders of so many pixels a side, by name; all of arm "a" begin with a, of "b" with b.
+class Memory : public ::testing::Test {
+protected:
+    Render& put(const std::string& name, std::uint32_t seed, int side = 16) {
+        Render r(name, side, side);
+        for (std::size_t i = 0; i < r.size(); ++i)
+            r.r[i] = r.g[i] = r.b[i] =
+                static_cast<float>(made_pixel({MadeNoise::Kind::normal, 0.1, 0}, seed, static_cast<std::uint32_t>(i)));
+        return renders_[name] = r;
+    }
+    Readings read(std::vector<CompareFlag> flags = {}) const {
+        flags.push_back({{"arms", "a", "files"}, "a", false, "a"});
+        flags.push_back({{"arms", "b", "files"}, "b", false, "b"});
+        RenderSource source;
+        source.expand = [this](const std::vector<std::string>& names, const Place&) {
+            std::vector<std::string> out;
+            for (const auto& [name, render] : renders_)
+                if (name.starts_with(names[0])) out.push_back(name);
+            return out;
+        };
+        source.read = [this](const std::string& name, const std::string&) { return renders_.at(name); };
+        Watch watch;
+        return read_all(plan_of(flags), watch, source);
+    }
+    std::string refusal(const std::vector<CompareFlag>& flags = {}) const {
+        try {
+            (void)read(flags);
+        } catch (const InputError& error) { return error.what(); }
+        return "";
+    }
+    std::map<std::string, Render> renders_;
+};
+
+TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndTold) {
+    put("a0", 1), put("a1", 2).g[17] = std::nanf(""), put("b0", 3), put("b1", 4).r[18] = INFINITY;
+    const Readings all = read();
+    EXPECT_EQ(all.bad_pixels, 2u);
+    EXPECT_EQ(all.regions.back().pixels.size(), 254u);
+    ASSERT_EQ(all.warnings.size(), 2u);
+    EXPECT_THAT(all.warnings[0], HasSubstr("a1: 1 pixel not finite"));
+    for (const auto& render : all.arms[0].regions) EXPECT_TRUE(std::isfinite(render.back().y));
+}
+
+TEST_F(Memory, CopiesInOneArmAreRefusedAndInTwoArmsTold) {
+    put("a0", 1), put("a1", 2), put("b0", 1), put("b1", 3);
+    EXPECT_THAT(read().warnings, ::testing::ElementsAre(HasSubstr("b0: the same pixels as a0 of a")));
+    put("a2", 2);
+    EXPECT_THAT(refusal(), HasSubstr("a2: the same pixels as a1"));
+}
+
+TEST_F(Memory, SizesThatDifferAreRefused) {
+    put("a0", 1), put("a1", 2), put("b0", 3, 17);
+    EXPECT_THAT(refusal(), HasSubstr("b0: expected 16 x 16 pixels as in a0, found 17 x 17"));
+}
+
+TEST_F(Memory, ConstantAndNegativePixelsAreTold) {
+    put("a0", 1), put("a1", 2).r[3] = -1, put("b0", 3), put("b1", 4);
+    for (auto* plane : {&renders_["b0"].r, &renders_["b0"].g, &renders_["b0"].b}) plane->assign(256, 0.5f);
+    EXPECT_THAT(read().warnings,
+        ::testing::ElementsAre(
+            HasSubstr("a1: 1 pixel with a negative channel"), HasSubstr("b0: all pixels are equal")));
+}
+
+TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
+    for (const char* name : {"a0", "b0"}) {
+        Render& r = put(name, name[0]);
+        r.variance.assign(r.size(), 8), r.per_sample = true, r.variance_channels = "Variance.R";
+    }
+    const Readings all = read({{{"arms", "a", "spp"}, "4", true, "--spp"}});
+    EXPECT_DOUBLE_EQ(all.arms[0].film.variance(0), 2);
+    EXPECT_TRUE(std::isnan(all.arms[1].film.variance(0)));
+    EXPECT_THAT(all.warnings, ::testing::ElementsAre(HasSubstr("b0: Variance.R is the variance of one sample")));
+}
+
+}  // namespace
+}  // namespace crescent
