@@ -31,6 +31,9 @@ expect 4 "$CRESCENT" compare "${arms[@]}" --expect same --out few --quiet
 printf 'title = "From a file"\n[arms.u]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n' >plan.toml
 expect 0 "$CRESCENT" compare plan.toml --out from-file --quiet
 grep -q 'From a file' from-file/report.html || die "the title is not in the report"
+expect 0 "$CRESCENT" compare --arm 'a=s%d/films/uniform.exr' --arm 'b=s%02d/films/cosine.exr' --layer a=n=16 --layer b=n=16 \
+    --pair --alpha 0.05 --exposure 2 --out paired --quiet
+grep -q '"paired": true' paired/metrics.json || die "--pair did not pair"
 expect 0 "$CRESCENT" compare --schema
 
 # Rungs of a ladder are known by their names; --spp without a name is for all arms, of the file too.

@@ -58,14 +58,50 @@ Box Tiles::box(std::size_t tile, int width, int height) const {
     return {i, j, std::min(width, i + size) - 1, std::min(height, j + size) - 1};
 }
 
+namespace {
+
+/// "seed%04d.exr" as a pattern: any digits stand where %d, %4d or %04d does. The text before and after is kept as it
+/// is.
+struct Digits {
+    std::string before, after;
+};
+std::optional<Digits> digits_in(const std::string& pattern) {
+    const std::size_t percent = pattern.find('%');
+    if (percent == std::string::npos) return {};
+    const std::size_t end = pattern.find_first_not_of("0123456789", percent + 1);
+    if (end == std::string::npos || pattern[end] != 'd') return {};
+    return Digits{pattern.substr(0, percent), pattern.substr(end + 1)};
+}
+
+std::vector<std::string> globbed(const std::string& pattern) {
+    std::error_code ignored;
+    if (std::filesystem::exists(pattern, ignored)) return {pattern};  // "render[1].exr" may be a name
+    glob_t found{};
+    const int failed = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
+    std::vector<std::string> paths;
+    for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+    ::globfree(&found);
+    return paths;
+}
+
+std::vector<std::string> matching(const std::string& pattern) {
+    const std::optional<Digits> digits = digits_in(pattern);
+    if (!digits) return globbed(pattern);
+    std::vector<std::string> paths = globbed(digits->before + "*" + digits->after);
+    if ((digits->before + digits->after).find_first_of("*?[") != std::string::npos) return paths;
+    std::erase_if(paths, [&](const std::string& path) {  // what stands for the * is digits alone
+        const std::size_t from = digits->before.size(), to = path.size() - digits->after.size();
+        return to <= from || path.find_first_not_of("0123456789", from) < to;
+    });
+    return paths;
+}
+
+}  // namespace
+
 std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at) {
     std::vector<std::string> out;
     for (const std::string& pattern : patterns) {
-        glob_t found{};
-        const int failed = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
-        std::vector<std::string> paths;
-        for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
-        ::globfree(&found);
+        const std::vector<std::string> paths = matching(pattern);
         if (paths.empty()) throw InputError(at, fmt::format("expected files that match '{}', found none", pattern));
         out.insert(out.end(), paths.begin(), paths.end());
     }

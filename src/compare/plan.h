@@ -11,7 +11,7 @@
 
 namespace crescent {
 
-/// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..]).
+/// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..], %d for digits).
 struct RenderArm {
     std::string name;
     Place at;

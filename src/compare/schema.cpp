@@ -13,8 +13,8 @@ constexpr Need required = Need::required, optional = Need::optional, defaulted =
 Section arms() {
     return {"arms", Many::named, required, "Sets of independent renders of one view: several seeds of A, several of B.",
         in<&ComparePlan::arms>,
-        {{"files", Type::texts, none, "", required, "", "Paths or patterns (*, ?, [a-z]) of the renders.",
-             to<&RenderArm::files>},
+        {{"files", Type::texts, none, "", required, "",
+             "Paths or patterns (*, ?, [a-z], %d for digits) of the renders.", to<&RenderArm::files>},
             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
                 to<&RenderArm::layer>},
             {"spp", Type::number, positive, "samples/pixel", optional, "what the files say",
