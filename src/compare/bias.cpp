@@ -35,7 +35,7 @@ std::string why_not(const Sides& sides, std::size_t region) {
         const auto& needed = arm->regions[region].renders_needed;
         return "heavy tail: " + arm->name +
             (needed ? fmt::format(", from about {:.0f} renders on it could be said", *needed)
-                    : ", with any number of renders");
+                    : ", and from how many renders on it could be said is not known");
     }
     return "";
 }

@@ -124,7 +124,7 @@ std::string hash_of(const Render& render) {
 }
 
 std::vector<std::uint64_t> numbers_in(const std::string& path) {
-    const std::string name = std::filesystem::path(path).stem().string();
+    const std::string name = std::filesystem::path(path).replace_extension().string();  // folders may tell seeds
     std::vector<std::uint64_t> out;
     for (std::size_t i = 0; i < name.size();) {
         if (name[i] < '0' || name[i] > '9') {

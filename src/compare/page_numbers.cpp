@@ -74,8 +74,8 @@ std::string remarks(const PixelSet& set, const CompareResult& result) {
                     ? fmt::format(
                           "From about {:.0f} renders on it would be a twentieth, and an interval could be said.",
                           *r.renders_needed)
-                    : "No number of renders would make an interval mean anything: the mean of such errors does not "
-                      "settle."));
+                    : "From how many renders on an interval could be said is not known: the mean of such errors "
+                      "does not settle over those that are here."));
         if (r.told_ratio)
             out += html::p(fmt::format("{} in {}: the renderer’s own variance is {} times that over renders.",
                 escape(arm.name), escape(set.name), html::value(figures(*r.told_ratio, 3))));

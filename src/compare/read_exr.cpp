@@ -25,6 +25,7 @@ namespace {
 struct Layer {
     int part = 0;
     std::string name;                   // "part/layer", as --layer takes it
+    std::string alone;                  // the same where the file has one part, which need not be named
     std::vector<std::string> channels;  // 3 or 1
 };
 
@@ -46,14 +47,15 @@ std::vector<Layer> layers_of(Imf::MultiPartInputFile& file) {
     for (int part = 0; part < file.parts(); ++part) {
         const Imf::Header& header = file.header(part);
         if (header.hasType() && Imf::isDeepData(header.type())) continue;
-        const std::string part_name = file.parts() > 1 && header.hasName() ? header.name() : "";
+        const std::string own_name = header.hasName() ? header.name() : "";
+        const std::string part_name = file.parts() > 1 ? own_name : "";
         for (auto& [layer, colours] : exr_channels(header)) {
             if (is_data(layer) || (layer.empty() && is_data(part_name))) continue;
-            const std::string name = joined(part_name, layer);
+            const std::string name = joined(part_name, layer), alone = joined(own_name, layer);
             if (colours.contains("r") && colours.contains("g") && colours.contains("b"))
-                out.push_back({part, name, {colours["r"], colours["g"], colours["b"]}});
+                out.push_back({part, name, alone, {colours["r"], colours["g"], colours["b"]}});
             else if (colours.contains("y") && !colours.contains("ry") && lower(layer) != "luminance")
-                out.push_back({part, name, {colours["y"]}});
+                out.push_back({part, name, alone, {colours["y"]}});
         }
     }
     return out;
@@ -91,7 +93,7 @@ const Layer& chosen(const std::string& path, const std::vector<Layer>& layers, c
         throw InputError({path, 0, 0}, "several layers hold radiance: say which with --layer: " + names_of(layers));
     }
     for (const Layer& layer : layers)
-        if (layer.name == wanted) return layer;
+        if (layer.name == wanted || layer.alone == wanted) return layer;
     std::vector<std::string> names;
     for (const Layer& layer : layers) names.push_back(layer.name);
     const std::string near = nearest(wanted, names);

@@ -184,6 +184,8 @@ TEST_F(Renders, TakeVariancesAndSamplesByTheirNames) {
 }
 
 TEST_F(Renders, AskWhichLayerIsMeant) {
+    write_exr(path("one.exr"), {{"quadrature", ""}});
+    expect_four(read_render(path("one.exr"), "quadrature"));  // by its own name, though it is alone
     write_exr(path("a.exr"), {{"direct", ""}, {"indirect", ""}});
     EXPECT_THROW((void)read_render(path("a.exr")), InputError);
     expect_four(read_render(path("a.exr"), "indirect"));
