@@ -65,7 +65,16 @@ void add_check(CLI::App& app, Work& work) {
         ->type_name("FILE")
         ->needs(samples)
         ->check(told);
-    c->add_option("--wo", f->wo, "the w_o of --samples")->type_name("x,y,z")->needs(samples);
+    auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
+    wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
+    auto* against = c->add_option("--against", f->against,
+        "hold the sampler against an arm of the list, or a program: same distribution, same f, variance ratio");
+    against->type_name("ARM|'PROGRAM'")->check(told);
+    c->add_option("--expect", f->expect, "same: with --against, another distribution fails")
+        ->type_name("same")
+        ->check(CLI::IsMember({"same"}))
+        ->needs(against);
+    for (auto* other : {planted, rates, right}) against->excludes(other), wo->excludes(other);
     for (auto* file :
         {c->add_option("--json", f->json, "write every verdict with its evidence; equal calls give equal bytes"),
             c->add_option("--timing", f->timing, "write what each verdict and each sample took"),

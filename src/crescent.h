@@ -60,6 +60,7 @@
 #include "scene/scene.h"
 #include "scene/shadow.h"
 #include "simd/random.h"
+#include "verdicts/against.h"
 #include "verdicts/error_rates.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"

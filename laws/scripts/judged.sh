@@ -60,8 +60,18 @@ expect 1 "$CRESCENT" check --quiet --samples wrong.csv --wo 0,0,1 --pdf-table ta
 sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
 expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
 grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"
-for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 0,0,1"; do
+for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 95" "cosine --wo 0,0,-1" "cosine --wo 1,2,3,4"; do
     expect 2 "$CRESCENT" check $call
 done
 expect 2 "$CRESCENT" check --exec ''
+expect 0 "$CRESCENT" check --quiet cosine --wo 60,250 --wo 0,0,1 --json wo.json
+[ "$(grep -c '"case": "w_o 60 deg az 250' wo.json)" -gt 0 ] && ! grep -q "w_o 45 deg" wo.json || die "--wo is not what is judged: $(grep case wo.json | sort | uniq -c)"
+expect 0 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --json against.json
+grep -q "B is better here" printed && grep -q '"name": "same_f"' against.json || die "nothing is said of two samplers: $(cat printed)"
+expect 1 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --expect same
+expect 0 "$CRESCENT" check --quiet --exec ./cosine --wo 45 --against ./cosine --expect same
+expect 2 "$CRESCENT" check uniform --against cosin
+expect 2 "$CRESCENT" check uniform --against ./nowhere
+asked=$(sed -n 's/.*"questions": \([0-9]*\).*/\1/p' c.json)
+[ "${asked:-0}" -gt 100000 ] && [ "$asked" -le 4000000 ] || die "cosine.c was asked '$asked' questions"
 expect 3 "$CRESCENT" check cosine --json /nowhere/x.json

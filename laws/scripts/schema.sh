@@ -46,3 +46,18 @@ for error in judge.iter_errors(metrics): sys.exit(f"metrics.json: {error.json_pa
 for wrong in ({**metrics, "unknown": 1}, {**metrics, "runs": 3}, {k: v for k, v in metrics.items() if k != "runs"}):
     assert not judge.is_valid(wrong), "a wrong metrics.json passes the schema"
 END
+
+# The samples of the tests of metrics.json: names, infinities, nothing measured, heavy tails; and three that ought not to fit.
+mkdir samples
+expect 0 env -u GTEST_TOTAL_SHARDS CRESCENT_METRICS_SAMPLES=samples "${CRESCENT_TESTS:?the tests}" --gtest_brief=1 --gtest_filter='MetricsJson.*'
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import glob, json, sys
+import jsonschema
+schema = json.load(open(sys.argv[1] + "/docs/metrics.schema.json"))
+judge = jsonschema.validators.validator_for(schema)(schema)
+fits, breaks = glob.glob("samples/fits-*.json"), glob.glob("samples/breaks-*.json")
+assert len(fits) >= 5 and len(breaks) >= 3, f"{len(fits)} and {len(breaks)} samples"
+for path in fits:
+    for error in judge.iter_errors(json.load(open(path))): sys.exit(f"{path}: {error.json_path}: {error.message}")
+for path in breaks: assert not judge.is_valid(json.load(open(path))), f"{path} fits the schema"
+END

@@ -66,6 +66,7 @@ template <class A, class B> void side_by_side(const A& a, const B& b) {
 
 template <class Work> auto on_threads(int, const Work& work) { return work(); }
 
+/// Threads that parallel_for may use at this place.
 inline int threads_here() { return 1; }
 
 template <class T> class PerThread {

@@ -26,6 +26,7 @@ struct FlipExposures {
     double start = 0, stop = 0;
     int count = 2;
 };
+/// Where HDR-FLIP begins and ends, in stops, from the reference (Andersson et al. 2021, section 3.2).
 FlipExposures flip_exposures(const FlipImage& reference);
 
 }  // namespace crescent

@@ -12,6 +12,7 @@ struct MadeNoise {
     double size = 0;  // sd, sd of the logarithm, or chance a pixel
     double bias = 0;
 };
+/// "normal noise", for tables.
 std::string to_string(const MadeNoise& noise);
 
 /// Two arms "a" and "b" of so many renders of width x width pixels, and a reference without error.

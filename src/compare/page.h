@@ -8,6 +8,7 @@
 
 namespace crescent {
 
+/// The tables of the page: every meter by arm and region, with its interval.
 std::string numbers_section(const ComparePlan& plan, const Readings& all, const CompareResult& result);
 std::string rankings_section(const CompareResult& result);
 std::string means_section(const CompareResult& result);

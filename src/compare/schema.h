@@ -9,6 +9,7 @@
 
 namespace crescent {
 
+/// The table of a comparison file, as schema() is that of an experiment.
 const Section& compare_schema();
 const std::vector<QuantityWord>& compare_words();
 

@@ -24,6 +24,7 @@ MeanInterval mean_interval(std::span<const double> values, double confidence);
 struct Welch {
     double difference = 0, se = 0, df = 0, p = 1;
 };
+/// Welch's test that two means are equal: t, degrees of freedom (Welch-Satterthwaite) and the two-sided p.
 Welch welch_test(const MeanInterval& a, const MeanInterval& b);
 /// One mean against 0, for differences of pairs.
 Welch paired_test(const MeanInterval& differences);

@@ -9,14 +9,17 @@
 
 namespace crescent {
 
+/// The side that a light's figure emits from.
 inline Vec3d normal_of(const shapes::Disk& disk) { return disk.normal; }
 inline Vec3d normal_of(const shapes::Quad& quad) { return normalize(cross(quad.edge_u, quad.edge_v)); }
 inline Vec3d normal_of(const Figure& figure) {
     return std::visit([](const auto& f) { return normal_of(f); }, figure);
 }
+/// The centre of a figure, m.
 inline Vec3d middle_of(const Figure& figure) {
     return std::visit([](const auto& f) { return f.middle(); }, figure);
 }
+/// How far a figure reaches from its middle along an axis, m.
 inline double half_extent_of(const Figure& figure, Vec3d axis) {
     return std::visit([&](const auto& f) { return f.half_extent(axis); }, figure);
 }
@@ -48,6 +51,7 @@ inline std::array<Vec3d, 4> corners_about(const shapes::Disk& disk) {
                 down = disk.center - disk.radius * frame.b;
     return {up - side, up + side, down + side, down - side};
 }
+/// The corners in their order about the normal.
 inline std::array<Vec3d, 4> corners_about(const shapes::Quad& quad) {
     return {quad.corner, quad.corner + quad.edge_u, quad.corner + quad.edge_u + quad.edge_v, quad.corner + quad.edge_v};
 }
@@ -59,6 +63,7 @@ inline std::array<Vec3d, 4> corners_about(const Figure& figure) {
 inline shapes::Disk moved(const shapes::Disk& disk, Vec3d x, double far) {
     return {x + far * (disk.center - x), disk.normal, far * disk.radius};
 }
+/// The figure seen from x, lengths over `far`.
 inline shapes::Quad moved(const shapes::Quad& quad, Vec3d x, double far) {
     return {x + far * (quad.corner - x), far * quad.edge_u, far * quad.edge_v};
 }
@@ -66,6 +71,7 @@ inline Figure moved(const Figure& figure, Vec3d x, double far) {
     return std::visit([&](const auto& f) -> Figure { return moved(f, x, far); }, figure);
 }
 
+/// The figure as something that hides others.
 inline Bodies::Any body_of(const Figure& figure) {
     return std::visit([](const auto& f) -> Bodies::Any { return f; }, figure);
 }

@@ -242,6 +242,7 @@ template <class A, class L, class F> void estimate(const KernelCall& call) {
         estimate_pack<A, L, F>(call, at, room, [](const Site<F>& site) { return A(site); });
 }
 
+/// One arm's kernels, [lobe + 1].
 template <class F, template <class> class A, template <class> class... L>
 constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
     return {estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, L<F>, F>...};

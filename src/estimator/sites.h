@@ -16,6 +16,7 @@ inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 struct TileBox {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
+/// The tiles of an image, row by row from the bottom.
 std::vector<TileBox> tiles_of(int width, int height);
 
 /// One disk light as each pixel sees it, and what a sample that meets it is worth.
@@ -53,6 +54,7 @@ struct OccluderF {
     float radius;
     float offset;  // each kind's own, see scene/body.h
 };
+/// In float, from `origin` on.
 OccluderF occluder_about(const Occluder& o, Vec3d origin);
 
 /// Sites of one BRDF kind. `lobe` is -1 where rho_s = 0.

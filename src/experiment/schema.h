@@ -36,6 +36,7 @@ enum class Type {
     shape  // the name of one
 };
 
+/// "from 0 to 1", "above 0": for messages and the manual.
 std::string to_string(const Range& range);
 
 enum class Need { required, optional, defaulted };
@@ -132,6 +133,7 @@ template <class T> T whole(double x) {
     return static_cast<T>(x);
 }
 
+/// A checked value into a member, by the member's type.
 inline void assign(double& to, const Value& v) { to = v.number; }
 inline void assign(bool& to, const Value& v) { to = v.flag; }
 inline void assign(std::string& to, const Value& v) { to = v.text; }
@@ -143,6 +145,7 @@ inline void assign(std::vector<std::uint64_t>& to, const Value& v) {
     to.clear();
     for (const double x : v.numbers) to.push_back(whole<std::uint64_t>(x));
 }
+/// Pixels x0, y0, x1, y1.
 inline void assign(Box& to, const Value& v) {
     const auto at = [&](int i) { return whole<int>(v.numbers[static_cast<std::size_t>(i)]); };
     to = {at(0), at(1), at(2), at(3)};
@@ -159,6 +162,7 @@ void assign(T& to, const Value& v) {
 }
 template <class T> void assign(std::optional<T>& to, const Value& v) { assign(to.emplace(), v); }
 
+/// A member back into a value; false where it holds none.
 inline bool fetch(double from, Value& v) { return v.number = from, true; }
 inline bool fetch(bool from, Value& v) { return v.flag = from, v.word = from, true; }
 inline bool fetch(const std::string& from, Value& v) { return v.text = from, true; }
@@ -169,6 +173,7 @@ inline bool fetch(const std::vector<double>& from, Value& v) { return v.numbers 
 inline bool fetch(const std::vector<std::uint64_t>& from, Value& v) {
     return v.numbers.assign(from.begin(), from.end()), true;
 }
+/// Pixels x0, y0, x1, y1.
 inline bool fetch(const Box& from, Value& v) {
     v.numbers.clear();
     for (const int x : {from.x0, from.y0, from.x1, from.y1}) v.numbers.push_back(x);

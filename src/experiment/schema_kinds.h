@@ -6,6 +6,7 @@
 
 namespace crescent {
 
+/// The type of a key, from that of the member it is stored in.
 inline Type type_of(const std::type_identity<double>&, bool) { return Type::number; }
 inline Type type_of(const std::type_identity<bool>&, bool) { return Type::flag; }
 inline Type type_of(const std::type_identity<Vec3d>&, bool unit) { return unit ? Type::direction : Type::point; }

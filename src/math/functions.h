@@ -24,11 +24,13 @@
 
 namespace crescent::math {
 
+/// e^x and 2^x; infinity above the largest double, 0 below the smallest.
 double exp(double x);
 double exp2(double x);
 /// e^x - 1 without cancellation near 0.
 double expm1(double x);
 
+/// The natural and the decimal logarithm; NaN for x < 0, -infinity at 0.
 double log(double x);
 double log10(double x);
 /// log(1 + x) without cancellation near 0.
@@ -37,6 +39,7 @@ double log1p(double x);
 /// x^y; a negative x has a power for whole y alone.
 double pow(double x, double y);
 
+/// Of x in radians.
 double sin(double x);
 double cos(double x);
 double tan(double x);
@@ -46,11 +49,13 @@ struct SinCos {
 /// Both for little more than one.
 SinCos sincos(double x);
 
+/// Inverse sine and cosine, radians; NaN outside [-1, 1].
 double asin(double x);
 double acos(double x);
 /// The angle of (x, y) from the x axis, in [-pi, pi].
 double atan2(double y, double x);
 
+/// The length of a vector, without overflow on the way.
 double hypot(double x, double y);
 double hypot(double x, double y, double z);
 

@@ -13,6 +13,7 @@
 
 namespace crescent {
 
+/// Every furnace of the experiment, measured. Throws Interrupted when the watch says stop.
 std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
     Watch& watch, const OutsideSamplers& outside = {});
 

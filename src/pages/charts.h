@@ -73,6 +73,7 @@ struct Strip {
     bool has_published = false;
     double published = 0;
 };
+/// A band as a strip with its median: <svg>.
 std::string strip_svg(const Strip& strip);
 
 }  // namespace crescent

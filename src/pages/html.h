@@ -14,6 +14,7 @@ namespace crescent::html {
 std::string element(std::string_view tag, std::string_view attributes, std::string_view html);
 inline std::string element(std::string_view tag, std::string_view html) { return element(tag, "", html); }
 
+/// A paragraph, and text as code.
 inline std::string p(std::string_view html) { return element("p", html) + "\n"; }
 inline std::string code(std::string_view text) { return element("code", escape(text)); }
 /// One command on a line of its own.
@@ -21,6 +22,7 @@ inline std::string command(std::string_view text) { return element("pre", elemen
 inline std::string link(std::string_view id, std::string_view html) {
     return element("a", "href=\"#" + std::string(id) + "\"", html);
 }
+/// <ul> of items that are HTML already.
 std::string list(const std::vector<std::string>& html_items);
 
 /// "a, b and c".
@@ -41,6 +43,7 @@ struct Cell {
     int rows = 1;    // rowspan
     int across = 1;  // colspan
 };
+/// Cells of words, of a figure, and a heading of rows.
 Cell words(std::string html);
 Cell figure(std::string_view text);  // number(), right-aligned; "" becomes an en dash
 Cell heading(std::string html, int rows = 1);

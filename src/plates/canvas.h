@@ -25,6 +25,7 @@ struct Rect {
 struct Colour {
     double r = 0, g = 0, b = 0, a = 1;
 };
+/// 8-bit sRGB as Cairo takes it.
 Colour colour(const Srgb8& c);
 
 enum class Weight { regular = 400, medium = 500, semibold = 600 };

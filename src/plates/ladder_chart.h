@@ -7,6 +7,7 @@
 
 namespace crescent::plates {
 
+/// RMSE of a region against N, both axes logarithmic, one curve an arm with its band.
 void draw_ladder_chart(Sheet& sheet, const Rect& slot, const std::string& region);
 
 }  // namespace crescent::plates

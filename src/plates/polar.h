@@ -23,6 +23,7 @@ struct PolarPlot {
     double tilt = 0;      // of R, radians
     std::vector<PolarCurve> curves;
 };
+/// Densities in the plane of n and R, as polar curves.
 void draw_polar(Canvas& canvas, const PolarPlot& plot);
 
 }  // namespace crescent::plates

@@ -14,6 +14,7 @@ struct View {
     int width = 0, height = 0;
     const float *r = nullptr, *g = nullptr, *b = nullptr, *y = nullptr;
 };
+/// A film or reference to be drawn; null draws nothing.
 View view(const Film* film);
 View view(const ReferenceFilm* film);
 
@@ -25,6 +26,7 @@ struct Fit {
     double ratio() const;  // out_w / in_w
     int in_w = 0, in_h = 0;
 };
+/// The largest w x h picture that fits a slot, at a whole number of pixels.
 Fit fit(int w, int h, double slot_w, double slot_h);
 /// "1:1", "×4", "×0.41"; "×0.06 across, ×0.12 up" where one pixel is the least that can be drawn.
 std::string to_string(const Fit& f);

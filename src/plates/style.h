@@ -38,6 +38,7 @@ inline constexpr Text title_text{24, bright, Weight::semibold, Align::left, Vert
 inline constexpr Text body_text{18, bright, Weight::regular, Align::left, Vertical::top, 1, 14};
 inline constexpr Text small_text{15, muted, Weight::regular, Align::left, Vertical::top, 1, 12};
 
+/// A text style with one thing changed.
 constexpr Text with(Text t, Align a) { return t.align = a, t; }
 constexpr Text with(Text t, Vertical v) { return t.vertical = v, t; }
 constexpr Text with(Text t, const Colour& c) { return t.ink = c, t; }

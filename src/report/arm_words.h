@@ -15,6 +15,7 @@ struct ArmPair {
     std::uint64_t n = 0;
     explicit operator bool() const { return broad && narrow && n > 0; }
 };
+/// The narrow and the broad arm that the report tells apart.
 ArmPair arm_pair(const Page& page);
 
 /// Arms about the normal that join no others.

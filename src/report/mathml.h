@@ -10,6 +10,7 @@ namespace crescent::mathml {
 
 using M = std::string;
 
+/// <tag>inside</tag>.
 inline M wrap(std::string_view tag, const M& inside) {
     M out;
     for (const std::string_view part : {std::string_view("<"), tag, std::string_view(">"), std::string_view(inside),
@@ -17,6 +18,7 @@ inline M wrap(std::string_view tag, const M& inside) {
         out += part;
     return out;
 }
+/// A letter, an operator, a number, a word, a space.
 inline M mi(std::string_view letter) { return wrap("mi", M(letter)); }
 inline M upright(std::string_view word) { return "<mi mathvariant=\"normal\">" + M(word) + "</mi>"; }
 inline M mn(std::string_view digits) { return wrap("mn", M(digits)); }
@@ -27,6 +29,7 @@ inline M row(std::initializer_list<M> parts) {
     for (const M& part : parts) all += part;
     return wrap("mrow", all);
 }
+/// Indices, powers, fractions, roots.
 inline M sub(const M& base, const M& low) { return wrap("msub", base + low); }
 inline M sup(const M& base, const M& high) { return wrap("msup", base + high); }
 inline M subsup(const M& base, const M& low, const M& high) { return wrap("msubsup", base + low + high); }
@@ -39,6 +42,7 @@ inline M abs(std::initializer_list<M> parts) {
     return row({"<mo form=\"prefix\" stretchy=\"false\">|</mo>", row(parts),
         "<mo form=\"postfix\" stretchy=\"false\">|</mo>"});
 }
+/// Brackets that grow with what they hold.
 inline M paren(std::initializer_list<M> parts) { return row({mo("("), row(parts), mo(")")}); }
 
 /// In a line of text, and on a line of its own (with words for those who do not see it).

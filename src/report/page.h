@@ -92,6 +92,7 @@ struct Column {
     std::uint64_t n = 0;
     double s = 0;
 };
+/// Rows are arms and rungs; each column a meter with its band.
 std::string meters_table(const Page& page, const std::string& caption_html, const std::vector<Column>& columns);
 /// Which arm has the larger RMSE in a region, by how much, in how many seeds, and whether that ranks them.
 std::string ordering_sentence(

@@ -6,6 +6,7 @@
 
 namespace crescent {
 
+/// As metrics.json has it.
 Json provenance_json(const Provenance& provenance);
 
 }  // namespace crescent

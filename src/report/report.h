@@ -54,6 +54,7 @@ struct ReportInputs {
     const Plates& plates;
 };
 
+/// The files of a report, as bytes: the same inputs give the same ones.
 std::string metrics_json(const ReportInputs& in);
 std::string metrics_csv(const ReportInputs& in);
 std::string junit_xml(const ReportInputs& in);

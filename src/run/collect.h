@@ -45,6 +45,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch);
 
+/// Where the outputs of a plan come from.
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
 
 }  // namespace crescent

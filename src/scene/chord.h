@@ -49,6 +49,7 @@ struct OnPlane {
     double w0, w1;
     Interval sides;  // start and end lie on different sides
 };
+/// A point on the plane of a light, seen from a surface point.
 OnPlane project(Vec3d p, Vec3d n, const Sight& s);
 
 }  // namespace crescent

@@ -16,6 +16,7 @@ struct Crossing {
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
+/// A surface at t that takes its turn there.
 inline Crossing crossing_at(double t, Vec3d n) { return {t, t, n, false}; }
 
 /// t where the ray meets the plane through `point` with normal n.

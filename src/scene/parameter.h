@@ -39,13 +39,16 @@ template <class Kind> struct Parameter {
 
 namespace parameter {
 
+/// A point, m.
 template <class Kind> constexpr Parameter<Kind> place(std::string_view name, Vec3d Kind::* to, std::string_view means) {
     return {name, to, means, place_range, "m"};
 }
+/// A length, m.
 template <class Kind>
 constexpr Parameter<Kind> length(std::string_view name, double Kind::* to, std::string_view means) {
     return {name, to, means, length_range, "m"};
 }
+/// A unit vector.
 template <class Kind>
 constexpr Parameter<Kind> direction(std::string_view name, Vec3d Kind::* to, std::string_view means) {
     return {name, to, means, {}, "", true};

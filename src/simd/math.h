@@ -118,6 +118,7 @@ template <class F> CRESCENT_INLINE F log_one_minus(F u) {
     const Split<F> l = log2_split(number<F>(1) - u, number<F>(0) - u);
     return (l.hi + l.lo) * number<F>(0.69314718055994531);
 }
+/// The same in double.
 inline double log_one_minus(double u) { return math::log1p(-u); }
 
 /// x^y and 1 - x^y for x in [0, 1], y > 0, given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
@@ -157,6 +158,7 @@ template <class F> CRESCENT_INLINE Power<F> root(F u, F y) {
     const F shifted = x + number<F>(round_magic);
     return exp2_split(shifted, x - (shifted - number<F>(round_magic)));
 }
+/// The same in double.
 inline Power<double> root(double u, double y) {
     const double l = y * math::log(u);
     return {math::exp(l), -math::expm1(l)};
@@ -169,10 +171,12 @@ template <class F> CRESCENT_INLINE F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
     return power(number<F>(1) + near, near, s).value;
 }
 
+/// The functions above in double: the reference and the verdicts use them.
 inline SinCos<double> sincos_turns(double u) {
     const double a = 2 * pi * u;
     return {math::sin(a), math::cos(a)};
 }
+/// 2^x and x^y; x <= 0 gives 0.
 inline double exp2(double x) { return math::exp2(x); }
 inline double pow(double x, double y) { return x > 0 ? math::pow(x, y) : 0.0; }
 inline Power<double> power(double x, double y) {
@@ -180,6 +184,7 @@ inline Power<double> power(double x, double y) {
     const double l = y * math::log(x);
     return {math::exp(l), -math::expm1(l)};
 }
+/// (a.b)_+^s for unit a and b.
 inline double cosine_power(Vec3<double> a, Vec3<double> b, double s) {
     const Vec3<double> d = a - b;
     const double near = -0.5 * dot(d, d);

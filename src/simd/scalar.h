@@ -25,17 +25,20 @@ template <> struct Lanes<double> {
 template <class F> using MaskOf = typename Lanes<F>::Mask;
 template <class F> using UintOf = typename Lanes<F>::Uint;
 
+/// a where m holds, b elsewhere: the vocabulary of packs (pack.h) for one number.
 constexpr float select(bool m, float a, float b) { return m ? a : b; }
 constexpr double select(bool m, double a, double b) { return m ? a : b; }
 constexpr std::uint32_t select(bool m, std::uint32_t a, std::uint32_t b) { return m ? a : b; }
 constexpr bool any(bool m) { return m; }
 constexpr std::uint32_t plus_one_where(bool m, std::uint32_t u) { return u + static_cast<std::uint32_t>(m); }
 
+/// Correctly rounded.
 inline float sqrt(float x) { return std::sqrt(x); }
 inline double sqrt(double x) { return std::sqrt(x); }
 inline float abs(float x) { return std::fabs(x); }
 inline double abs(double x) { return std::fabs(x); }
 
+/// A float's representation, and back.
 inline std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
 template <class F> F from_bits(UintOf<F> u);
 template <> inline float from_bits<float>(std::uint32_t u) { return std::bit_cast<float>(u); }

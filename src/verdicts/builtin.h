@@ -17,6 +17,7 @@ struct SurfaceSetup {
     double s = 32, alpha = 0.3;
 };
 
+/// f of the surface, 1/sr, without the cosine.
 double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 
 template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }

@@ -48,6 +48,7 @@ struct Witnesses {
     double total = 0;                        // draws, those in no bin included
 };
 
+/// The integral over cells, by Genz-Malik rules on the worst cell first, with the error it is known to.
 Integral integrate(
     std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses = nullptr);
 

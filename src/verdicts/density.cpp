@@ -252,7 +252,7 @@ Verdict judge_density(Work& work) {
         v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
         if (work.rigour.pictures && t == 0)
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d),
-                static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected});
+                static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected, d.rings});
         std::optional<Fit> fresh;
         const auto of = [&](auto which) {
             return work.fails(which(f), [&](int round) {
@@ -271,6 +271,7 @@ Verdict judge_density(Work& work) {
                 "The draws do not follow p {}: chi-square {:.4g} on {:g} degrees ({}), and again on a fresh seed with "
                 "more draws.",
                 fault, f.joint.statistic, f.joint.degrees, coordinates(d));
+            tell_worst(v, d, f.observed, f.expected);
             return v;
         }
         v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).",

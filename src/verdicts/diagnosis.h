@@ -28,6 +28,7 @@ struct Diagnosis {
     std::string means;     // "a constant 0.9706 = (s+1)/(s+2)"
 };
 
+/// The factors that people forget, double or exchange, at the work's w_o.
 std::vector<Factor> usual_factors(const Work& work);
 /// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows.
 std::string name_of_constant(const Work& work, double constant);

@@ -14,6 +14,7 @@ struct FalseAlarms {
     std::uint64_t calls = 0;  // seeds on which some right arm was called wrong
     double alpha = 0, screen = 0;
 };
+/// How often right arms are accused, over so many seeds. Throws Interrupted.
 FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& rigour, Watch& watch);
 
 /// Clopper & Pearson 1934: the 95 % interval of a rate.

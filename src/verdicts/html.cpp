@@ -6,28 +6,13 @@
 #include "math/functions.h"
 #include "pages/charts.h"
 #include "pages/page.h"
+#include "verdicts/pictures.h"
 #include "verdicts/print.h"
 #include "verdicts/summary.h"
 
 namespace crescent {
 
 namespace {
-
-/// Three maps, painted by the script at the head of the page from the counts themselves.
-std::string maps(const BinMap& m) {
-    const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()),
-        *std::max_element(m.expected.begin(), m.expected.end()));
-    std::string out = fmt::format(
-        "<p>Counts, {}: rings downwards from the axis, turns to the right; full scale is {:.0f} draws. Difference: "
-        "(observed - expected) / sqrt(expected), red more, blue fewer, full at 4.</p><div class=row>",
-        m.coordinates, top);
-    for (const char* title : {"observed", "expected", "standardised difference"})
-        out += fmt::format("<figure><canvas width={} height={}></canvas><figcaption>{}</figcaption></figure>",
-            m.sectors, m.rings, title);
-    out += fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}])</script>", m.sectors, top,
-        fmt::join(m.observed, ","), fmt::join(m.expected, ","));
-    return out;
-}
 
 /// Counts of X over its size, both logarithmic, with the fitted tail where there is one.
 std::string histogram(const WeightPicture& w) {
@@ -63,31 +48,19 @@ std::string histogram(const WeightPicture& w) {
         chart.str(), w.zeros, fitted);
 }
 
-std::string curve(const std::vector<double>& v, std::string_view colour) {
-    const double top = std::max(*std::max_element(v.begin(), v.end()), 1e-300);
-    std::string out = fmt::format("<polyline fill='none' stroke='{}' stroke-width='2' points='", colour);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const double angle = (static_cast<double>(i) - 89) * 3.14159265358979 / 180, r = 180 * v[i] / top;
-        out += fmt::format("{:.1f},{:.1f} ", 200 + r * math::sin(angle), 190 - r * math::cos(angle));
-    }
-    return out + "'/>";
-}
-
-std::string rose(const WeightPicture& w) {
-    if (w.rose_p.empty()) return "";
-    return "<figure><svg viewBox='0 0 400 200' width='360' height='180'><line x1='0' y1='190' x2='400' y2='190' "
-           "stroke='#999'/>" +
-        curve(w.rose_f, "#888") + curve(w.rose_p, "#27d") +
-        "</svg><figcaption>Plane of incidence: p (blue) over f L cos (grey), each to its own largest "
-        "value</figcaption></figure>";
-}
-
 /// What this page needs beside the style sheet of all.
 constexpr const char* head =
     "<style>.right{color:var(--good)}.inconclusive{color:var(--accent)}.wrong,.error{color:var(--bad);font-weight:600}"
     ".skipped{color:var(--soft)}.row{display:flex;flex-wrap:wrap;gap:1em}.row figure{margin:0;width:auto}"
     ".matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .6em}details{margin-bottom:.6em}"
-    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;border:1px solid var(--line)}"
+    "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;outline:1px solid var(--line)}"
+    ".map{position:relative;width:320px}.map canvas{position:absolute;left:40px;top:5px}.map "
+    "svg{position:relative;display:block}"
+    ".map text,.rose text{font-size:11px;fill:var(--soft)}.map path,.rose path{stroke:var(--soft);fill:none}.rose "
+    ".faint{stroke:var(--line)}"
+    ".rose "
+    "polyline{fill:none;stroke-width:2}.rose-f{stroke:var(--soft)}.rose-p{stroke:var(--c1)}.worst{fill:none;stroke:#"
+    "0a0;stroke-width:2}"
     "@media (min-width:64rem){.wide{overflow-x:auto}}</style><script>"
     "function paint(w,top,seen,due){const "
     "c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const "
@@ -162,10 +135,11 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
         }
         out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
             escape(arm), escape(trial), rows);
-        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial) out += maps(j.maps[map++]);
+        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial)
+            out += map_figures(j.maps[map++]);
         out += "<div class=row>";
         while (weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].trial == trial) {
-            out += histogram(j.weights[weight]) + rose(j.weights[weight]);
+            out += histogram(j.weights[weight]) + rose_figure(j.weights[weight]);
             ++weight;
         }
         out += "</div></details>";

@@ -40,6 +40,7 @@ struct Efficiency {
     double low() const;
     double high() const;
 };
+/// Variance of one trial's weight and the cost of a sample.
 Efficiency measure_efficiency(const Work& work, std::size_t trial);
 /// The time of one sample of each, asked by one thread, all in turn: a slow moment of the machine falls on all alike.
 void measure_costs(std::span<const Trial> trials, const Rigour& rigour, std::span<Efficiency> all, const Watch& watch);

@@ -85,6 +85,23 @@ double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
     return f.rho_d / pi + f.rho_s * lobe_value(f.lobe, f.s, f.alpha, wo, wi);
 }
 
+std::shared_ptr<const JudgedSampler> arm_on(const std::string& name, const Trial& trial) {
+    Stage on;
+    const auto value = [&](const char* key, double& to) {
+        for (const auto& [known, v] : trial.parameters)
+            if (known == key) to = v;
+    };
+    value("s", on.surface.s);
+    value("alpha", on.surface.alpha);
+    on.surface.rho_d = trial.brdf.empty() || trial.brdf.starts_with("Lambert") ? 0.5 : 0;
+    for (const LobeInfo& lobe : lobe_infos())
+        if (trial.brdf == lobe.label || trial.brdf == "Lambert + " + std::string(lobe.label))
+            on.surface.lobe = lobe.kind;
+    on.surface.rho_s = on.surface.lobe == LobeKind::none ? 0 : 0.4;
+    on.light = trial.light;
+    return subject_of(name, on, trial.wo);
+}
+
 std::vector<std::pair<double, double>> wo_grid(bool full) {
     std::vector<std::pair<double, double>> grid = {
         {0, 0}, {1, 200}, {30, 0}, {45, 130}, {60, 250}, {75, 310}, {85, 75}, {89, 180}};
@@ -127,66 +144,7 @@ Trial trial_on(
     return t;
 }
 
-namespace {
-
-/// A built-in arm aimed at a user's BRDF.
-template <template <class> class A> class Borrowed : public BuiltIn<A> {
-public:
-    Borrowed(std::shared_ptr<const JudgedSampler> owner, Vec3d wo) : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
-    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
-    bool serial() const override { return owner_->serial(); }
-
-private:
-    std::shared_ptr<const JudgedSampler> owner_;
-};
-
-}  // namespace
-
-Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, double theta, double azimuth) {
-    Trial t;
-    t.arm = subject->name();
-    t.wo = tilt(theta, azimuth);
-    t.theta_deg = theta;
-    t.azimuth_deg = azimuth;
-    t.subject = subject;
-    return t;
-}
-
-namespace {
-
-/// The grid of w_o that a sampler answers for: one where it has none, mirrored under the surface too where it takes
-/// both sides.
-std::vector<std::pair<double, double>> grid_for(const Traits& traits, bool full) {
-    if (traits.wo == Traits::Asked::none) return {{0, 0}};
-    std::vector<std::pair<double, double>> grid = wo_grid(full);
-    if (traits.wo != Traits::Asked::both) return grid;
-    for (const auto& [theta, azimuth] : wo_grid(full))
-        if (full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
-    return grid;
-}
-
-}  // namespace
-
-std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full) {
-    std::vector<Trial> trials;
-    const Traits traits = subject->traits();
-    for (const auto& [theta, azimuth] : grid_for(traits, full)) {
-        trials.push_back(trial_of_subject(subject, theta, azimuth));
-        const bool can_be_ranked =
-            subject->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::Asked::none;
-        if (!can_be_ranked) continue;  // cosine and uniform reach neither delta parts nor the other side
-        const Vec3d wo = tilt(theta, azimuth);
-        for (const std::shared_ptr<const JudgedSampler>& peer :
-            {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
-                std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
-            trials.push_back(trial_of_subject(peer, theta, azimuth));
-            trials.back().yardstick = true;
-        }
-    }
-    return trials;
-}
-
-std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full) {
+std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full, const Grid& own) {
     std::vector<Trial> trials;
     const std::vector<std::string> names = sampler_names();
     if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
@@ -207,7 +165,7 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
             if (!seen) stages.push_back(s);
         }
         for (const Stage& s : stages)
-            for (const auto& [theta, azimuth] : wo_grid(full)) {
+            for (const auto& [theta, azimuth] : own.empty() ? wo_grid(full) : own) {
                 Trial t = trial_on(s, theta, azimuth, name, subject_of(name, s, tilt(theta, azimuth)));
                 t.theory = theory_of(*find_arm_info(name), s, theta);
                 trials.push_back(std::move(t));

@@ -14,13 +14,21 @@ using Settings = std::map<std::string, double>;
 /// Directions from the normal to 89 deg, each at its own azimuth: (theta, azimuth) in degrees.
 std::vector<std::pair<double, double>> wo_grid(bool full);
 /// Every trial of one arm, or of all where the name is empty. Throws InputError for an unknown name.
-std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full);
+using Grid = std::vector<std::pair<double, double>>;
+/// `grid`: w_o of one's own, (theta, azimuth) in degrees, in place of wo_grid.
+std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full, const Grid& grid = {});
 
 /// A user's sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a
 /// BRDF.
-std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full);
+/// A sampler whose draws and p are the same whatever w_o is, and that has no BRDF, as that of an environment light, is
+/// judged once.
+std::vector<Trial> trials_of_subject(
+    const std::shared_ptr<const JudgedSampler>& subject, bool full, const Grid& grid = {});
 /// The same at one w_o.
 Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, double theta, double azimuth);
+
+/// The arm of the list named `name` as it is on a trial's surface, under its light, at its w_o.
+std::shared_ptr<const JudgedSampler> arm_on(const std::string& name, const Trial& trial);
 
 /// One surface and light to try an arm on.
 struct Stage {
@@ -29,6 +37,7 @@ struct Stage {
     std::string brdf, lighting;
     bool tells_s = false, tells_alpha = false;
 };
+/// A surface and light of the built-in list: lobe, with a Lambert part or without, under "fill", "disk" or both.
 Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);
 /// The trial of `subject` on a stage at one w_o, theory not yet filled in.
 Trial trial_on(

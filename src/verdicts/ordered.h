@@ -6,6 +6,7 @@
 
 namespace crescent {
 
+/// The verdicts in the order in which they are given: each stands on those before it.
 Verdict judge_valid(const Work& work);
 Verdict judge_support(const Work& work);
 Verdict judge_normalised(const Work& work);
@@ -23,11 +24,13 @@ struct CornerFaults {
     std::size_t count = 0, tried = 0;
     double chance = 0;  // of one sample
 };
+/// What comes back at the corners of u.
 CornerFaults corner_faults(const Work& work, int technique);
 
 struct Spread {
     double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
 };
+/// Mean and variance of x.
 Spread spread(std::span<const double> x);
 /// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken
 /// out.
@@ -83,6 +86,9 @@ struct WarpPoint {
     Vec3d wi{};
     double jacobian = 0, error = 0;  // sr; relative
 };
+/// "Most at theta 31.2 deg, phi 250.1 deg: 812 seen, 640.3 due."
+void tell_worst(Verdict& v, const Density& d, const std::vector<double>& observed, const std::vector<double>& expected);
+
 /// What the warp's derivatives say; see jacobian.cpp.
 struct WarpFinding {
     std::size_t usable = 0, below = 0;  // points with a trusted |J|, and those with p |J| < 1
@@ -100,6 +106,7 @@ struct Branches {
     double known_to = 0;
     int choosers = 0;
 };
+/// Whether the third number and on choose between continuous branches.
 Branches follow_branches(const Work& work, int technique, std::span<const Numbers> at);
 WarpFinding study_warp(const Work& work, int technique);
 

@@ -56,6 +56,7 @@ inline bool take_float(std::string_view& s, double& out) {
     return true;
 }
 
+/// Nothing but spaces.
 inline bool blank(std::string_view s) { return s.find_first_not_of(" \t") == std::string_view::npos; }
 
 /// Shortest text that reads back as the same double.

@@ -54,8 +54,8 @@ double chance_of(const Work& work, int technique, double threshold, bool even) {
         const std::vector<Part> parts = parts_of(work, technique, wi, even);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
     };
-    return integrate(
-        guided(graded_cells(work.whole() ? 2 : 1), map, work.guides()), 1, g, {1e-7, work.rigour.evaluations})
+    return integrate(guided(graded_cells(work.whole() ? 2 : 1), map, work.guides()), 1, g,
+        {1e-7, work.affordable(work.rigour.evaluations)})
         .value;
 }
 

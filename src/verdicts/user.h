@@ -187,7 +187,7 @@ Judgement judge_sampler(std::string name, S sampler, const Rigour& rigour = Rigo
     if constexpr (user::must_be_judgeable<S>()) {
         const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));
         Watch alone;
-        return judge(trials_of_subject(subject, rigour.full), rigour, watch ? *watch : alone);
+        return judge(trials_of_subject(subject, rigour.full, rigour.wo), rigour, watch ? *watch : alone);
     } else {
         return {};
     }

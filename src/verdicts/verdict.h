@@ -37,6 +37,7 @@ struct BinMap {
     std::string arm, trial, coordinates;
     int rings = 0, sectors = 0;
     std::vector<double> observed, expected;  // ring-major
+    std::vector<double> edges{};             // of the rings: 1 - cos of the angle to the axis
 };
 
 /// The largest weights, a histogram of all, and p against f L cos along a grid of directions.

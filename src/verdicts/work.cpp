@@ -70,6 +70,7 @@ Rigour Rigour::thorough() {
     r.rings = 30;
     r.sectors = 32;
     r.evaluations = 1000000;
+    r.questions = 12000000;
     return r;
 }
 
@@ -87,9 +88,16 @@ Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index)
       traits(t.subject->traits()),
       index_(index),
       seed_(r.seed) {
+    asked_before_ = subject.spending().answers;
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
     grain_ = grain_of(first_[0].draws, traits.bits);
     look_below();
+}
+
+std::size_t Work::affordable(std::size_t wanted, std::size_t keep) const {
+    if (!subject.serial()) return wanted;
+    const std::size_t asked = static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep;
+    return std::min(wanted, std::max<std::size_t>(rigour.questions > asked ? rigour.questions - asked : 0, 2000));
 }
 
 void Work::redraw(std::uint32_t seed) {
@@ -103,7 +111,9 @@ Batchful Work::draw(int technique, int round) const {
     if (const auto* tape = dynamic_cast<const RecordedSubject*>(&subject)) {
         tape->half(round, b.u, b.draws);
     } else {
-        const std::uint64_t n = round == 0 ? rigour.draws : 4 * rigour.draws;
+        const std::uint64_t more =
+            subject.serial() ? affordable(12 * rigour.draws) / 3 : 4 * rigour.draws;  // each is asked three times
+        const std::uint64_t n = round == 0 ? rigour.draws : more;
         const std::uint32_t seed = seed_of(seed_, static_cast<std::uint32_t>(round) * 7919u);
         b.u.resize(n);
         b.draws.resize(n);

@@ -25,7 +25,9 @@ struct Rigour {
     int rings = 20, sectors = 16;
     std::size_t evaluations = 80000;  // of one integral, at most
     bool pictures = false;            // keep maps and weights for the HTML page
-    bool accept_few = false;          // a program too slow for every w_o is judged by those that were looked at
+    std::size_t questions = 460000;   // that a program is asked at one w_o, at most; pictures and times apart
+    std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees in place of the grid; empty: the grid
+    bool accept_few = false;  // a program too slow for every w_o is judged by those that were looked at
     // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
     double screen = 1e-3, confirm = 1e-4;
     static Rigour quick() { return {}; }
@@ -53,6 +55,7 @@ struct Batchful {
     std::uint64_t deltas = 0;   // draws of delta parts
 };
 
+/// No component is NaN or infinite.
 inline bool is_finite(Vec3d w) { return std::isfinite(w.x + w.y + w.z); }
 
 /// Nothing drawn as a density: pdf 0, or a direction under the horizon at which pdf(w) is 0.
@@ -85,6 +88,9 @@ struct Unmet {
 class Work {
 public:
     Work(const Trial& trial, const Rigour& rigour, Tally& tally, std::uint32_t index);
+    /// So many of the wanted questions as a program may still be asked here, `keep` of them left for later; 2000 at
+    /// least.
+    std::size_t affordable(std::size_t wanted, std::size_t keep = 0) const;
 
     const Trial& trial;
     const Rigour& rigour;
@@ -158,8 +164,11 @@ public:
 
 private:
     std::uint32_t index_, seed_;
+    std::uint64_t asked_before_ = 0;  // of a program, when this trial began
     std::vector<Batchful> first_;
     std::vector<Density> density_;
+    static constexpr std::size_t for_later =
+        170000;  // questions for the verdicts after the density and its confirmation
     std::vector<Vec3d> guides_, rims_;
     std::size_t drawn_guides_ = 0;  // the first of the guides
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle

@@ -48,11 +48,14 @@ void Work::measure_density() {
             Density other = sharp ? density_about(t, n, true, rigour.evaluations)
                                   : density_about(t, normalize(peak), false, rigour.evaluations);
             if (other.mass.error < d.mass.error) d = std::move(other);
-            if (d.mass.error > 1e-4) d = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations);
+            if (d.mass.error > 1e-4)
+                d = density_about(t, d.map.frame.n, d.about_n, affordable(6 * rigour.evaluations, for_later));
         }
         share_nothing(t, d);
         if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5)  // a failure needs a second quadrature that confirms it
-            d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
+            d.second = density_about(
+                t, d.about_n ? normalize(peak) : n, !d.about_n, affordable(6 * rigour.evaluations, for_later), 2e-5)
+                           .mass;
         density_.push_back(std::move(d));
     }
 }
@@ -69,13 +72,14 @@ std::optional<Density> Work::table_density(int t) const {
         if (!mesh) continue;
         const Witnesses seen = witnesses_of(t, d);
         const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
-        const std::size_t most = subject.serial() && !rigour.full ? 200000 : 10000000;
+        const std::size_t most = subject.serial() && !rigour.full ? affordable(400000, for_later) / 2 : 10000000;
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
-            mass = integrate_mesh(*mesh, d.rings, d.sectors, g, {2.5e-6, 6 * rigour.evaluations, 5e-5}, crowd, &seen);
+            mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
+                {2.5e-6, affordable(6 * rigour.evaluations, for_later), 5e-5}, crowd, &seen);
         else
-            mass = integrate_by_points(
-                crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g, 4 * rigour.evaluations);
+            mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
+                affordable(4 * rigour.evaluations, for_later));
         if (!mass) continue;
         d.mass = std::move(*mass);
         grant_doubts(t, d);
@@ -216,7 +220,8 @@ std::vector<Rect> Work::cells_of(const Density& d) const {
     return cells;
 }
 
-Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass) const {
+Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
+    const std::size_t evaluations = affordable(wanted, for_later);
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
     const Witnesses witnesses = witnesses_of(technique, d);

@@ -97,8 +97,9 @@ void Work::share_nothing(int technique, Density& d) const {
 }
 
 /// Sixteen random shifts of an even cover give the share of u that draws nothing and its standard error.
-void Work::find_nothing(int technique, Density& d, std::uint64_t n) const {
+void Work::find_nothing(int technique, Density& d, std::uint64_t wanted) const {
     constexpr int shifts = 16;
+    const std::uint64_t n = affordable(2 * shifts * wanted, for_later) / (2 * shifts);  // a draw, and p at it
     double sum = 0, square = 0, deltas = 0;
     std::vector<Numbers> u(n);
     std::vector<Draw> draws(n);

@@ -20,6 +20,7 @@ const Integral& Work::incoming(Where where, bool even) const {
 namespace {
 
 using OfLight = Work::OfLight;
+constexpr std::size_t for_confirmation = 90000;  // questions: 30,000 fresh draws with p and f at each
 
 /// Another disk stands before y.
 bool hidden(const TrialLight& light, const TrialDisk& own, Vec3d y) {
@@ -92,10 +93,10 @@ Integral Work::integrate_light(const OfLight& of_light, bool even) const {
                 of_light(wi, out);
                 for (double& v : out) v *= 2 * pi * fill;
             },
-            {5e-6, rigour.evaluations});
+            {5e-6, affordable(2 * rigour.evaluations, for_confirmation) / 2});
     }
     for (const TrialDisk& disk : light.disks)
-        if (!even) add_disk(total, light, disk, of_light, rigour.evaluations / 4);
+        if (!even) add_disk(total, light, disk, of_light, affordable(rigour.evaluations / 2, for_confirmation) / 2);
     return total;
 }
 

@@ -1,0 +1,23 @@
+// What `crescent check` and its measurements of the bench itself share.
+#pragma once
+
+#include "commands.h"
+#include "crescent.h"
+#include "progress.h"
+
+namespace crescent::cli {
+
+Rigour rigour_of(const CheckFlags& flags);
+int exit_of(State state);
+void write_files(const CheckFlags& flags, const Judgement& j);
+std::string shortest(double v);
+
+/// Which verdict catches which fault. Exit 0 where every fault is caught.
+int check_planted(const CheckFlags& flags, Progress& watch);
+/// All tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and no right sampler is accused
+/// beyond --alpha.
+int check_error_rates(const CheckFlags& flags, Watch& watch);
+/// Exit 0 where no right sampler is accused more often than was promised.
+int check_right(const CheckFlags& flags, Watch& watch);
+
+}  // namespace crescent::cli

@@ -1,0 +1,93 @@
+// Two samplers held against each other: what is alike is not told apart, what differs is, and the ratio of variances
+// has its interval.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/right/right.h"
+#include "verdicts/against.h"
+
+namespace crescent {
+namespace {
+
+const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no such verdict");
+}
+
+std::vector<Trial> trials(const std::string& arm, const std::string& brdf, double theta) {
+    std::vector<Trial> all = trials_of(arm, {}, false, {{theta, 40}});
+    std::erase_if(all, [&](const Trial& t) { return t.brdf != brdf || t.lighting != "fill"; });
+    all.resize(1);
+    return all;
+}
+
+Judgement against(
+    std::span<const Trial> a, std::span<const Trial> b, bool expect_same = false, std::uint32_t seed = 1) {
+    Watch watch;
+    Rigour rigour;
+    rigour.draws = 8192;
+    rigour.seed = seed;
+    return judge_against(a, b, rigour, expect_same, watch);
+}
+
+TEST(Against, ItselfNothingIsToldApart) {
+    const std::vector<Trial> a = trials("cosine", "Lambert + GGX", 60);
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+        const Judgement j = against(a, arm_against("cosine", a), true, seed);
+        EXPECT_EQ(j.state, State::right) << against_text(j);
+        const Verdict& v = named(j, "variance");
+        EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.1) << v.say;
+        EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.9) << v.say;
+    }
+}
+
+TEST(Against, AnotherSamplerOfTheSameDistributionIsNotToldApart) {
+    const std::vector<Trial> a = trials("cosine", "Lambert", 45);
+    Recipe r{"cosine by rejection", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
+    r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.5 / pi : 0.0; };
+    r.sample = [](Vec3d, Vec2d u) {  // another way round than the arm's
+        const double rad = std::sqrt(1 - u.y), phi = -2 * pi * u.x, z = std::sqrt(u.y);
+        return Draw{{rad * std::cos(phi), rad * std::sin(phi), z}, z / pi, {}, {}};
+    };
+    const Judgement j = against(a, sampler_against(subject_of(r), a), true);
+    EXPECT_EQ(named(j, "same_distribution").state, State::right) << against_text(j);
+    EXPECT_EQ(named(j, "same_f").state, State::right) << against_text(j);
+}
+
+TEST(Against, ABetterOneIsSaidToBeSoWithItsInterval) {
+    const std::vector<Trial> a = trials("uniform", "Lambert + Phong", 45);
+    const std::vector<Trial> b = arm_against("mixture", a);
+    const Judgement told = against(a, b), expected = against(a, b, true);
+    EXPECT_EQ(told.state, State::right) << against_text(told);
+    EXPECT_FALSE(named(told, "same_distribution").evidence["same"].get<bool>());
+    EXPECT_EQ(expected.state, State::wrong);
+    const Verdict& v = named(told, "variance");
+    EXPECT_NE(v.say.find("B is better here"), std::string::npos) << v.say;
+    EXPECT_GT(v.evidence["interval"][0].get<double>(), 1);
+    const Verdict& back = named(against(b, a), "variance");
+    EXPECT_NE(back.say.find("A is better here"), std::string::npos) << back.say;
+    EXPECT_LT(back.evidence["ratio"].get<double>() * v.evidence["ratio"].get<double>(), 1.3);
+}
+
+TEST(Against, AnotherFIsWrongAndAHeavyTailIsInconclusive) {
+    const std::vector<Trial> a = trials("cosine", "Lambert", 45);
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
+    r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.505 / pi : 0.0; };
+    r.sample = [](Vec3d, Vec2d u) {
+        const double rad = std::sqrt(u.x), phi = 2 * pi * u.y, z = std::sqrt(1 - u.x);
+        return Draw{{rad * std::cos(phi), rad * std::sin(phi), z}, z / pi, {}, {}};
+    };
+    const Judgement j = against(a, sampler_against(subject_of(r), a));
+    EXPECT_EQ(named(j, "same_f").state, State::wrong) << against_text(j);
+    const std::vector<Trial> phong = trials("phong", "Lambert + Phong", 0);
+    const Verdict v = named(against(phong, arm_against("cosine", phong)), "variance");
+    EXPECT_EQ(v.state, State::inconclusive) << v.say;
+    EXPECT_NE(v.say.find("heavy tail"), std::string::npos) << v.say;
+    EXPECT_FALSE(v.settle.empty());
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,259 @@
+#include "verdicts/against.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "math/functions.h"
+#include "simd/random.h"
+#include "verdicts/ordered.h"
+#include "verdicts/outcome.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr std::uint32_t other_stream = 1u << 20;  // B draws from streams that no A draws from
+
+/// Draws of every technique, by A's bins; what draws nothing is one more.
+std::vector<double> count(const Work& work, const Density& bins, int round) {
+    std::vector<double> out(bins.mass.bins.size() + 1);
+    for (int t = 0; t < work.subject.techniques(); ++t) {
+        const Batchful fresh = round == 0 ? Batchful{} : work.draw(t, round);
+        const Batchful& b = round == 0 ? work.first(t) : fresh;
+        for (std::size_t i = 0; i < b.draws.size(); ++i) {
+            const bool nothing = is_nothing(b.draws[i], b.pdf[i]);
+            ++out[nothing ? out.size() - 1 : bins.bin_of(bins.map.coordinates(b.draws[i].wi))];
+        }
+    }
+    return out;
+}
+
+double total(const std::vector<double>& v) {
+    double sum = 0;
+    for (double x : v) sum += x;
+    return sum;
+}
+
+/// Pearson's chi-square of two samples (Press et al., Numerical Recipes, 14.3.2, unequal totals), neighbours pooled to
+/// ten draws.
+double two_sample_p(const std::vector<double>& a, const std::vector<double>& b) {
+    const double na = total(a), nb = total(b);
+    if (!(na > 0) || !(nb > 0)) return na == nb ? 1 : 0;
+    const double up = std::sqrt(nb / na), down = std::sqrt(na / nb);
+    double statistic = 0, degrees = -1, x = 0, y = 0, last_x = 0, last_y = 0;
+    const auto term = [&](double p, double q) { return p + q > 0 ? sqr(up * p - down * q) / (p + q) : 0.0; };
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        x += a[i];
+        y += b[i];
+        if (x + y < 10) continue;
+        statistic += term(x, y);
+        ++degrees;
+        last_x = x, last_y = y;
+        x = y = 0;
+    }
+    if (x + y > 0)
+        statistic += term(last_x + x, last_y + y) - term(last_x, last_y);  // what is left joins the last pool
+    return chi_squared_p(statistic, degrees);
+}
+
+/// Over all bins, over rings alone, over sectors alone.
+std::array<double, 3> two_sample(const Density& bins, const std::vector<double>& a, const std::vector<double>& b) {
+    const std::size_t sectors = static_cast<std::size_t>(bins.sectors), rings = bins.rings.size() - 1;
+    std::vector<double> ring_a(rings), ring_b(rings), sector_a(sectors), sector_b(sectors);
+    for (std::size_t i = 0; i < rings * sectors; ++i) {
+        ring_a[i / sectors] += a[i], ring_b[i / sectors] += b[i];
+        sector_a[i % sectors] += a[i], sector_b[i % sectors] += b[i];
+    }
+    return {two_sample_p(a, b), two_sample_p(ring_a, ring_b), two_sample_p(sector_a, sector_b)};
+}
+
+Verdict same_distribution(const Work& a, const Work& b, bool expect_same) {
+    Verdict v = a.verdict("same_distribution", State::right, "");
+    const Density& bins = a.density(0);
+    const std::array<double, 3> p = two_sample(bins, count(a, bins, 0), count(b, bins, 0));
+    bool differ = false;
+    std::optional<std::array<double, 3>> again;
+    for (std::size_t k = 0; k < 3; ++k)
+        differ = a.fails(p[k],
+                     [&](int round) {
+                         if (!again) again = two_sample(bins, count(a, bins, round), count(b, bins, round));
+                         return (*again)[k];
+                     }) ||
+            differ;
+    v.evidence["same"] = !differ;
+    v.evidence["p"] = p[0];
+    v.evidence["p_rings"] = p[1];
+    v.evidence["p_sectors"] = p[2];
+    v.evidence["draws"] = {a.first(0).draws.size(), b.first(0).draws.size()};
+    v.state = differ && expect_same ? State::wrong : State::right;
+    v.say = fmt::format("{}: p = {:.3g}, rings {:.3g}, sectors {:.3g}.",
+        differ ? "They draw from different distributions, and again on fresh seeds"
+               : "No difference between their distributions is seen",
+        p[0], p[1], p[2]);
+    return v;
+}
+
+/// f of both where both are asked: all over the upper half, and where either draws.
+Verdict same_f(const Work& a, const Work& b) {
+    Verdict v = a.verdict("same_f", State::right, "");
+    if (!a.subject.has_f() || !b.subject.has_f()) {
+        v.state = State::skipped;
+        v.say = "There is no f to compare.";
+        return v;
+    }
+    std::vector<Vec3d> wi;
+    for (std::uint64_t i = 0; i < 256; ++i) {
+        const Vec2<float> u = draw(23, 0, i, 0);
+        const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z),
+                     phi = 2 * pi * static_cast<double>(u.y);
+        wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
+    }
+    for (const Work* w : {&a, &b})
+        for (std::size_t i = 0, n = 0; i < w->first(0).draws.size() && n < 256; ++i)
+            if (const Draw& d = w->first(0).draws[i]; d.pdf > 0 && w->counts(d.wi)) wi.push_back(normalize(d.wi)), ++n;
+    const std::vector<double> fa = a.f(wi), fb = b.f(wi);
+    std::size_t differ = 0, worst = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < wi.size(); ++i) {
+        const double off = std::fabs(fa[i] - fb[i]), size = std::max(std::fabs(fa[i]), std::fabs(fb[i]));
+        if (off <= 1e-4 * size + 1e-30) continue;
+        if (off <=
+            1e-4 * size + f_conditioning(a, a.trial.wo, wi[i], fa[i]) + f_conditioning(b, b.trial.wo, wi[i], fb[i]))
+            continue;
+        ++differ;
+        if (off / size > most) most = off / size, worst = i;
+    }
+    v.evidence["directions"] = wi.size();
+    v.evidence["differ"] = differ;
+    v.say = fmt::format("f is the same at {} directions.", wi.size());
+    if (differ == 0) return v;
+    v.state = State::wrong;
+    v.say = fmt::format(
+        "f differs at {} of {} directions, most at ({:.4g}, {:.4g}, {:.4g}): {:.6g} and {:.6g}. Their variances are "
+        "not those of one integral.",
+        differ, wi.size(), wi[worst].x, wi[worst].y, wi[worst].z, fa[worst], fb[worst]);
+    return v;
+}
+
+Verdict variance(const Work& a, const Work& b) {
+    Verdict v = a.verdict("variance", State::right, "");
+    if (!a.subject.has_f() || !b.subject.has_f()) {
+        v.state = State::skipped;
+        v.say = "There is no f, hence no variance of f L cos / p.";
+        return v;
+    }
+    const Efficiency ea = measure_efficiency(a, 0), eb = measure_efficiency(b, 0);
+    v.evidence["variance_a"] = ea.variance;
+    v.evidence["variance_b"] = eb.variance;
+    for (const auto& [e, who] : {std::pair(&ea, "A"), {&eb, "B"}})
+        if (e->heavy) {
+            v.state = State::inconclusive;
+            v.say += fmt::format("{}{} has a heavy tail, or one that no draw met: its variance is not known.",
+                v.say.empty() ? "" : " ", who);
+            v.settle = "An arm whose p falls off no faster than f L cos, or more draws (--full).";
+        }
+    if (v.state == State::inconclusive) return v;
+    if (!(ea.variance > 0) || !(eb.variance > 0)) {
+        v.say = fmt::format("The variances are {:.4g} and {:.4g}.", ea.variance, eb.variance);
+        return v;
+    }
+    const double ratio = ea.variance / eb.variance,
+                 spread = math::exp(1.959964 * math::hypot(ea.relative_se, eb.relative_se));
+    v.evidence["ratio"] = ratio;
+    v.evidence["interval"] = {ratio / spread, ratio * spread};
+    const char* who = ratio / spread > 1 ? "B is better here"
+        : ratio * spread < 1             ? "A is better here"
+                                         : "No telling which is better here";
+    v.say = fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).", who, ratio,
+        ratio / spread, ratio * spread);
+    return v;
+}
+
+std::vector<Verdict> compare_one(
+    const Trial& ta, const Trial& tb, std::uint32_t index, const Rigour& rigour, bool expect_same, Tally& tally) {
+    Work a(ta, rigour, tally, index), b(tb, rigour, tally, index + other_stream);
+    a.measure_density();
+    b.measure_density();
+    std::vector<Verdict> out = {same_distribution(a, b, expect_same), same_f(a, b), variance(a, b)};
+    for (Verdict& v : out) v.arm = ta.arm + " against " + tb.arm;
+    return out;
+}
+
+}  // namespace
+
+Judgement judge_against(
+    std::span<const Trial> a, std::span<const Trial> b, const Rigour& given, bool expect_same, Watch& watch) {
+    for (const auto& trials : {a, b})
+        for (const Trial& t : trials)
+            if (!t.subject->traits().has_pdf)
+                throw InputError({t.arm, 0, 0}, "has no pdf(w), which two samplers are held against each other by");
+    Rigour rigour = given;
+    rigour.share(3 * a.size());
+    Tally tally;
+    watch.begin("two samplers", static_cast<double>(a.size()));
+    std::vector<std::vector<Verdict>> all(a.size());
+    const auto one = [&](std::size_t i) {
+        watch.check();
+        try {
+            all[i] = compare_one(a[i], b[i], static_cast<std::uint32_t>(i), rigour, expect_same, tally);
+        } catch (const SubjectFault& fault) {
+            const Cut cut = cut_by(fault);
+            for (const char* name : {"same_distribution", "same_f", "variance"}) {
+                Verdict v;
+                v.arm = a[i].arm + " against " + b[i].arm;
+                v.trial = a[i].text();
+                v.name = name;
+                v.state = cut.state;
+                v.say = cut.first;
+                if (v.state == State::inconclusive)
+                    v.settle = "More time (--patience), or a program that answers faster.";
+                all[i].push_back(std::move(v));
+            }
+        }
+        watch.advance(1);
+    };
+    bool serial = false;
+    for (std::size_t i = 0; i < a.size(); ++i) serial = serial || a[i].subject->serial() || b[i].subject->serial();
+    if (serial)
+        for (std::size_t i = 0; i < a.size(); ++i) one(i);
+    else parallel_for(std::size_t{0}, a.size(), one);
+    Judgement out;
+    out.alpha = rigour.alpha;
+    out.tests = tally.tests;
+    out.screened = tally.screened;
+    out.confirmed = tally.confirmed;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        out.questions = std::max(out.questions,
+            a[i].subject->spending().answers + (a[i].subject == b[i].subject ? 0 : b[i].subject->spending().answers));
+        for (Verdict& v : all[i]) out.verdicts.push_back(std::move(v));
+    }
+    const auto has = [&](State s) {
+        return std::any_of(out.verdicts.begin(), out.verdicts.end(), [s](const Verdict& v) { return v.state == s; });
+    };
+    out.state = has(State::wrong)  ? State::wrong
+        : has(State::error)        ? State::error
+        : has(State::inconclusive) ? State::inconclusive
+                                   : State::right;
+    out.as_expected = out.state == State::right;
+    return out;
+}
+
+std::string against_text(const Judgement& j) {
+    std::string out, last;
+    for (const Verdict& v : j.verdicts) {
+        if (v.trial != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.trial);
+        last = v.trial;
+        out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.say,
+            v.settle.empty() ? "" : " What would settle it: " + v.settle);
+    }
+    const std::string asked = j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "";
+    return out +
+        fmt::format(
+            "\n{}; {} statistical tests share a family-wise error of {:g}{}\n", word(j.state), j.tests, j.alpha, asked);
+}
+
+}  // namespace crescent

@@ -1,0 +1,26 @@
+// Two samplers, A and B, at the same w_o under the same light: do they draw from one distribution, have they one f, and
+// which of them has the smaller variance. Three verdicts a w_o:
+//
+//   same_distribution  two-sample chi-square over bins about A's lobe, over rings and over sectors alone, both stages
+//   as elsewhere same_f             f of both at pairs of directions all over, and where either draws variance Var X_A
+//   / Var X_B with its 95 % interval; "heavy tail" where either has one
+#pragma once
+
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+
+namespace crescent {
+
+/// Trials of A and of B, one for one. expect_same: a difference in distribution is wrong, not only told.
+Judgement judge_against(
+    std::span<const Trial> a, std::span<const Trial> b, const Rigour& rigour, bool expect_same, Watch& watch);
+
+/// Built-in arm `name` on the surface, light and w_o of each of these trials; with A's f where A is not built in.
+std::vector<Trial> arm_against(const std::string& name, std::span<const Trial> a);
+/// Another sampler at the w_o of each of these trials.
+std::vector<Trial> sampler_against(const std::shared_ptr<const JudgedSampler>& b, std::span<const Trial> a);
+
+/// A w_o a line: both states, the ratio and its interval.
+std::string against_text(const Judgement& judgement);
+
+}  // namespace crescent

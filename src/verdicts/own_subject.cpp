@@ -1,0 +1,159 @@
+// Trials of somebody's own sampler, with arms of the list beside it that are aimed at its BRDF.
+#include <cmath>
+
+#include "verdicts/against.h"
+#include "verdicts/list.h"
+
+namespace crescent {
+
+namespace {
+
+/// A built-in arm aimed at a user's BRDF.
+template <template <class> class A> class Borrowed : public BuiltIn<A> {
+public:
+    Borrowed(std::shared_ptr<const JudgedSampler> owner, Vec3d wo) : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
+    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    bool serial() const override { return owner_->serial(); }
+
+private:
+    std::shared_ptr<const JudgedSampler> owner_;
+};
+
+}  // namespace
+
+Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, double theta, double azimuth) {
+    Trial t;
+    t.arm = subject->name();
+    t.wo = tilt(theta, azimuth);
+    t.theta_deg = theta;
+    t.azimuth_deg = azimuth;
+    t.subject = subject;
+    return t;
+}
+
+namespace {
+
+/// The grid of w_o that a sampler answers for: one where it has none, mirrored under the surface too where it takes
+/// both sides.
+Grid grid_for(const Traits& traits, bool full) {
+    if (traits.wo == Traits::Asked::none) return {{0, 0}};
+    Grid grid = wo_grid(full);
+    if (traits.wo != Traits::Asked::both) return grid;
+    for (const auto& [theta, azimuth] : wo_grid(full))
+        if (full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
+    return grid;
+}
+
+/// The same answers at every w_o, to the last bit: 64 draws, and p at as many directions.
+bool knows_no_wo(const JudgedSampler& subject, const Grid& grid) {
+    if (subject.has_drawn_f() || !subject.draws_at_will() || subject.traits().own_random || !subject.traits().has_pdf)
+        return false;
+    constexpr std::size_t n = 64;
+    std::vector<Numbers> u(n);
+    for (std::size_t i = 0; i < n; ++i)
+        for (int k = 0; k < subject.traits().numbers; ++k) {
+            const double turn =
+                0.5 + 0.7548776662466927 * static_cast<double>((i + 1) * (static_cast<std::size_t>(k) + 1));
+            u[i][k] = std::floor(0x1p24 * (turn - std::floor(turn))) * 0x1p-24;
+        }
+    std::vector<Draw> first(n), draws(n);
+    std::vector<double> p_first(n), p(n);
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+        const Vec3d wo = tilt(grid[k].first, grid[k].second);
+        subject.sample(0, wo, u, draws);
+        std::vector<Pair> at(n);
+        for (std::size_t i = 0; i < n; ++i)
+            at[i] = {wo, tilt(2.8 * static_cast<double>(i), 137.5 * static_cast<double>(i))};
+        subject.pdf(0, at, p);
+        if (k == 0) first = draws, p_first = p;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Draw &a = first[i], &b = draws[i];
+            if (!(a.pdf == b.pdf && a.delta == b.delta && a.wi.x == b.wi.x && a.wi.y == b.wi.y && a.wi.z == b.wi.z &&
+                    p[i] == p_first[i]))
+                return false;
+        }
+    }
+    return subject.techniques() == 1;
+}
+
+}  // namespace
+
+std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full, const Grid& own) {
+    std::vector<Trial> trials;
+    const Traits traits = subject->traits();
+    const Grid grid = own.empty() ? grid_for(traits, full) : own;
+    if (own.empty() && traits.wo == Traits::Asked::upper && knows_no_wo(*subject, grid)) {
+        trials.push_back(trial_of_subject(subject, 45, 130));
+        trials.back().any_wo = true;
+        return trials;
+    }
+    for (const auto& [theta, azimuth] : grid) {
+        trials.push_back(trial_of_subject(subject, theta, azimuth));
+        const bool can_be_ranked =
+            subject->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.wo != Traits::Asked::none;
+        if (!can_be_ranked) continue;  // cosine and uniform reach neither delta parts nor the other side
+        const Vec3d wo = tilt(theta, azimuth);
+        for (const std::shared_ptr<const JudgedSampler>& peer :
+            {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
+                std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
+            trials.push_back(trial_of_subject(peer, theta, azimuth));
+            trials.back().yardstick = true;
+        }
+    }
+    return trials;
+}
+
+namespace {
+
+/// An arm of the list aimed at somebody else's f.
+class WithF : public JudgedSampler {
+public:
+    WithF(std::shared_ptr<const JudgedSampler> arm, std::shared_ptr<const JudgedSampler> owner)
+        : arm_(std::move(arm)), owner_(std::move(owner)) {}
+    std::string name() const override { return arm_->name(); }
+    Traits traits() const override { return arm_->traits(); }
+    int techniques() const override { return arm_->techniques(); }
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        arm_->sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { arm_->pdf(t, at, out); }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        arm_->exact_pdf(t, at, out);
+    }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        arm_->mis_weight(t, at, out);
+    }
+    bool has_f() const override { return owner_->has_f(); }
+    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    bool serial() const override { return owner_->serial(); }
+
+private:
+    std::shared_ptr<const JudgedSampler> arm_, owner_;
+};
+
+}  // namespace
+
+std::vector<Trial> arm_against(const std::string& name, std::span<const Trial> a) {
+    std::vector<Trial> out;
+    for (const Trial& t : a) {
+        Trial b = t;
+        b.arm = name;
+        b.theory = {};
+        b.subject = std::make_shared<WithF>(arm_on(name, t), t.subject);
+        out.push_back(std::move(b));
+    }
+    return out;
+}
+
+std::vector<Trial> sampler_against(const std::shared_ptr<const JudgedSampler>& subject, std::span<const Trial> a) {
+    std::vector<Trial> out;
+    for (const Trial& t : a) {
+        out.push_back(t);
+        out.back().arm = subject->name();
+        out.back().subject = subject;
+        out.back().theory = {};
+    }
+    return out;
+}
+
+}  // namespace crescent

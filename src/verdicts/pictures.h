@@ -1,0 +1,18 @@
+// The figures of the HTML page, each with its axes: maps of bins, roses of p over f L cos.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verdicts/verdict.h"
+
+namespace crescent {
+
+/// The bin that is off by the most standard deviations.
+std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected);
+
+/// Observed, expected and standardised difference, painted by the page's script; the worst bin has a frame.
+std::string map_figures(const BinMap& map);
+std::string rose_figure(const WeightPicture& weights);
+
+}  // namespace crescent
