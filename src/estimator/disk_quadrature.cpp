@@ -44,7 +44,7 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
         [&](const auto& b) {
             const Vec3d d = b.middle() - c;
             const auto beyond = [&](Vec3d axis) {
-                return dot(axis, d) - b.half_extent(axis) >= radius * std::sqrt(dot(axis, axis));
+                return dot(axis, d) - b.half_extent(axis) > radius * std::sqrt(dot(axis, axis));  // never along 0
             };
             if (beyond(d)) return false;
             for (const Vec3d& axis : b.faces())
@@ -52,6 +52,15 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
             return true;
         },
         body.body);
+}
+
+/// May two lights meet, of which one is a ball?
+bool intersects_ball(const Light& a, const Light& b) {
+    const auto into = [](const Light& ball, const Light& other) {
+        const lights::Sphere* s = std::get_if<lights::Sphere>(&ball.form);
+        return s && may_reach_into({other.body(), -1}, s->center, s->radius);
+    };
+    return into(a, b) || into(b, a);
 }
 
 /// The integral over the directions of a figure, what stands before it hidden.
@@ -96,6 +105,16 @@ DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) 
     const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, normal_of(figure)};
     const std::vector<const Blocker*> near = in_the_way(hit, figure);
     DiskIntegral out = over(figure, point, hit.n, near);
+    // Two lights of which one reaches into the other, a ball: where the ball ends is not known to the figures, and what
+    // the other hides of this one is doubtful as a whole.
+    for (const Blocker* b : near) {
+        if (!b->light || !intersects_ball(light_, *b->light)) continue;
+        std::vector<const Blocker*> others = near;
+        std::erase(others, b);
+        const DiskIntegral open = over(figure, point, hit.n, others);
+        out.diffuse_error += std::fabs(open.diffuse - out.diffuse) + open.diffuse_error;
+        out.lobe_error += std::fabs(open.lobe - out.lobe) + open.lobe_error;
+    }
     const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
     const auto reaches_in = [&](const Blocker* b) { return may_reach_into(b->body, ball->center, ball->radius); };
     if (!ball || std::none_of(near.begin(), near.end(), reaches_in)) return out;

@@ -278,7 +278,8 @@ TEST(Mistakes, MoreDiskLightsThanKernelsHoldAreRefusedWhereTheFirstOfThemStands)
         (void)parse(text, "x.toml");
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()), fmt::format("x.toml:{}:8: disks: expected at most 64, found 65", line));
+        EXPECT_EQ(std::string(error.what()),
+            fmt::format("x.toml:{}:8: disks and lights: expected at most 64, found 65", line));
     }
 }
 

@@ -44,49 +44,12 @@ Grid grid_for(const Traits& traits, bool full) {
     return grid;
 }
 
-/// The same answers at every w_o, to the last bit: 64 draws, and p at as many directions.
-bool knows_no_wo(const JudgedSampler& subject, const Grid& grid) {
-    if (subject.has_drawn_f() || !subject.draws_at_will() || subject.traits().own_random || !subject.traits().has_pdf)
-        return false;
-    constexpr std::size_t n = 64;
-    std::vector<Numbers> u(n);
-    for (std::size_t i = 0; i < n; ++i)
-        for (int k = 0; k < subject.traits().numbers; ++k) {
-            const double turn =
-                0.5 + 0.7548776662466927 * static_cast<double>((i + 1) * (static_cast<std::size_t>(k) + 1));
-            u[i][k] = std::floor(0x1p24 * (turn - std::floor(turn))) * 0x1p-24;
-        }
-    std::vector<Draw> first(n), draws(n);
-    std::vector<double> p_first(n), p(n);
-    for (std::size_t k = 0; k < grid.size(); ++k) {
-        const Vec3d wo = tilt(grid[k].first, grid[k].second);
-        subject.sample(0, wo, u, draws);
-        std::vector<Pair> at(n);
-        for (std::size_t i = 0; i < n; ++i)
-            at[i] = {wo, tilt(2.8 * static_cast<double>(i), 137.5 * static_cast<double>(i))};
-        subject.pdf(0, at, p);
-        if (k == 0) first = draws, p_first = p;
-        for (std::size_t i = 0; i < n; ++i) {
-            const Draw &a = first[i], &b = draws[i];
-            if (!(a.pdf == b.pdf && a.delta == b.delta && a.wi.x == b.wi.x && a.wi.y == b.wi.y && a.wi.z == b.wi.z &&
-                    p[i] == p_first[i]))
-                return false;
-        }
-    }
-    return subject.techniques() == 1;
-}
-
 }  // namespace
 
 std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>& subject, bool full, const Grid& own) {
     std::vector<Trial> trials;
     const Traits traits = subject->traits();
     const Grid grid = own.empty() ? grid_for(traits, full) : own;
-    if (own.empty() && traits.wo == Traits::Asked::upper && knows_no_wo(*subject, grid)) {
-        trials.push_back(trial_of_subject(subject, 45, 130));
-        trials.back().any_wo = true;
-        return trials;
-    }
     for (const auto& [theta, azimuth] : grid) {
         trials.push_back(trial_of_subject(subject, theta, azimuth));
         const bool can_be_ranked =

@@ -33,8 +33,8 @@ double TrialLight::operator()(Vec3d wi) const {
 
 std::string Trial::text() const {
     const bool none = subject && subject->traits().wo == Traits::Asked::none;
-    std::string s = none ? "no w_o" : any_wo ? std::string("any w_o") : fmt::format("w_o {:g} deg", theta_deg);
-    if (theta_deg > 0 && !any_wo) s += fmt::format(" az {:g}", azimuth_deg);
+    std::string s = none ? "no w_o" : fmt::format("w_o {:g} deg", theta_deg);
+    if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
     for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
     for (const std::string& part : {brdf, lighting})
         if (!part.empty()) s += ", " + part;

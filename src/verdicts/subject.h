@@ -150,7 +150,6 @@ struct Trial {
     Parameters parameters;
     TrialLight light;
     Theory theory;
-    bool any_wo = false;     // its answers are the same whatever w_o is
     bool yardstick = false;  // only its efficiency counts, for others to be ranked against
     std::shared_ptr<const JudgedSampler> subject;
     std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"

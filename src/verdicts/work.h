@@ -25,7 +25,7 @@ struct Rigour {
     int rings = 20, sectors = 16;
     std::size_t evaluations = 80000;  // of one integral, at most
     bool pictures = false;            // keep maps and weights for the HTML page
-    std::size_t questions = 460000;   // that a program is asked at one w_o, at most; pictures and times apart
+    std::size_t questions = 2000000;   // that a program is asked at one w_o, at most; pictures and times apart
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees in place of the grid; empty: the grid
     bool accept_few = false;  // a program too slow for every w_o is judged by those that were looked at
     // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
