@@ -203,7 +203,7 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end()) return arm_against(flags.against, a);
     const std::string near = nearest(flags.against, names);
-    if (!near.empty())
+    if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
         throw InputError({"--against " + flags.against, 0, 0}, "no sampler of the list; did you mean '" + near + "'?");
     PipeLimits limits;
     limits.stop = &watch.stop;

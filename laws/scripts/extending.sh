@@ -55,7 +55,7 @@ edge_u = [0.8, 0.1, 0.3]
 edge_v = [0.2, 0.7, 0.1]
 rho_d = [0.4, 0.3, 0.2]
 occludes = true
-[lights.it]
+[lights.panel]
 kind = "square"
 center = [0.4, 2.0, 0.9]
 side = 0.6
