@@ -1,0 +1,126 @@
+"""The command `crescent` of the wheel: `crescent check`, samplers judged by themselves.
+
+    crescent check                        every built-in arm
+    crescent check phong --set s=32       one of them
+    crescent check mine.py:sampler        a Sampler, or a module or class with sample, pdf and f
+    crescent check --exec ./mine          a program, over its stdin and stdout
+    crescent check --plugin ./libmine.so  a shared library
+
+Exit codes: 0 right, 1 wrong, 2 bad input, 3 error, 4 inconclusive, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from . import Judgement, Sampler, __version__, _crescent, commit
+from ._check import _grid, _judge, _trials
+
+EXIT = {"right": 0, "wrong": 1, "error": 3, "inconclusive": 4}
+
+
+def _module(name: str) -> ModuleType:
+    path = Path(name)
+    if path.suffix != ".py":
+        return importlib.import_module(name)
+    if not path.is_file():
+        raise ValueError(f"{name}: no such file")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def sampler_at(where: str) -> Sampler:
+    """The sampler that "FILE.py:NAME", "module:NAME" or "FILE.py" means."""
+    name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
+    found: Any = _module(name)
+    if colon:
+        if not hasattr(found, inside):
+            raise ValueError(f"{name} has no '{inside}'")
+        found = getattr(found, inside)
+    if isinstance(found, Sampler):
+        return found
+    found = found() if isinstance(found, type) else found
+    if not hasattr(found, "sample"):
+        raise ValueError(f"{where} has no sample(wo, u)")
+    title = inside or Path(name).stem
+    return Sampler(found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=title)
+
+
+def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
+    """The trials, and whether they are of the whole list of arms."""
+    grid = _grid([tuple(map(float, word.split(",")))[:2] if "," in word else float(word) for word in args.wo])
+    if args.exec:
+        return _crescent.trials_of_program(args.exec, args.patience, args.full, grid), False
+    if args.plugin:
+        return _crescent.trials_of_plugin(args.plugin, args.full, grid), False
+    arm = args.sampler or ""
+    if ":" in arm or arm.endswith(".py"):
+        return _trials(sampler_at(arm), args.full, grid), False
+    settings = {key: float(value) for key, _, value in (word.partition("=") for word in args.set)}
+    return _crescent.trials_of_arm(arm, settings, args.full, grid), not arm
+
+
+def _parser() -> argparse.ArgumentParser:
+    about, _, _ = (__doc__ or "").partition("\n\n")
+    parser = argparse.ArgumentParser("crescent", description=about, epilog=(__doc__ or "").partition("\n\n")[2],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--version", action="version", version=f"crescent {__version__} ({commit})")
+    check = parser.add_subparsers(dest="command", required=True).add_parser("check", help="judge a sampler")
+    check.add_argument("sampler", nargs="?", help="an arm of the list, FILE.py:NAME or module:NAME")
+    check.add_argument("--exec", metavar="COMMAND", help="a program to judge")
+    check.add_argument("--plugin", metavar="FILE", help="a shared library to judge")
+    check.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="a parameter of an arm")
+    check.add_argument("--wo", metavar="THETA[,AZIMUTH]", action="append", default=[], help="w_o, in degrees")
+    check.add_argument("--alpha", type=float, default=1e-3, help="how often a right sampler may be called wrong")
+    check.add_argument("--seed", type=int, default=1)
+    check.add_argument("--full", action="store_true", help="look harder, for minutes")
+    check.add_argument("--patience", type=float, default=0, metavar="S", help="seconds that a program has in all")
+    check.add_argument("--json", metavar="FILE")
+    check.add_argument("--junit", metavar="FILE")
+    check.add_argument("--html", metavar="FILE")
+    return parser
+
+
+def _write(judgement: Judgement, args: argparse.Namespace) -> None:
+    if args.json:
+        _crescent.write_whole(args.json, judgement.json())
+    if args.junit:
+        judgement.junit(args.junit)
+    if args.html:
+        judgement.html(args.html)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    args = _parser().parse_args(argv)
+    try:
+        trials, whole_list = _trials_of(args)
+        command = "crescent " + " ".join(argv if argv is not None else sys.argv[1:])
+        judgement = _judge(trials, command, alpha=args.alpha, seed=args.seed, full=args.full)
+        print(judgement)
+        _write(judgement, args)
+    except KeyboardInterrupt:
+        return 130
+    except (ValueError, ImportError) as e:
+        print(e, file=sys.stderr)
+        return 2
+    except (OSError, RuntimeError) as e:
+        print(e, file=sys.stderr)
+        return 3
+    if whole_list:
+        return 0 if judgement.as_expected else 1
+    return EXIT[judgement.state]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

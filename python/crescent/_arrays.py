@@ -1,0 +1,150 @@
+"""What the callables of a sampler give, brought to arrays of doubles; what does not fit is told with its first bad row.
+
+Any array that speaks DLPack or NumPy's protocol is taken. Directions are ``[n, 3]``, densities ``[n]``, weights and f
+``[n]`` or ``[n, 3]``, one row an asked row. A plain number stands for the same number in every row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def as_numpy(value: Any, what: str) -> NDArray[Any]:
+    """The array behind `value`, on the host; ValueError where it is none, with the first row that does not fit."""
+    if isinstance(value, np.ndarray):
+        return value
+    if hasattr(value, "detach"):  # a tensor that autograd follows, or that lies on a device
+        value = value.detach().cpu()
+    if hasattr(value, "__dlpack__"):
+        try:
+            return np.from_dlpack(value)
+        except (BufferError, RuntimeError, TypeError, ValueError):
+            pass  # another device, or a scalar: NumPy's protocol brings it here
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{what}: {_first_ragged(value)}") from None
+
+
+def _first_ragged(rows: Sequence[Any]) -> str:
+    """The first of a list of rows that is not as long as row 0."""
+    first = np.shape(rows[0])
+    for i, row in enumerate(rows):
+        if np.shape(row) != first:
+            return f"row {i} has shape {np.shape(row)}, row 0 has {first}"
+    return "its rows are no numbers"
+
+
+def _numbers(value: Any, what: str) -> NDArray[Any]:
+    """An array of real numbers."""
+    array = as_numpy(value, what)
+    if array.dtype.kind in "fiub":
+        return array
+    if array.dtype.kind == "O":
+        for i, row in enumerate(array):
+            if not isinstance(row, (int, float, np.number)):
+                raise ValueError(f"{what}: row {i} is {type(row).__name__}, expected a number")
+        return array.astype(np.float64)
+    raise ValueError(f"{what}: dtype {array.dtype}, expected floating-point numbers")
+
+
+def _rows(array: NDArray[Any], n: int, what: str) -> None:
+    if len(array) < n:
+        raise ValueError(f"{what}: {len(array)} rows for {n} that were asked: row {len(array)} is the first without one")
+    if len(array) > n:
+        raise ValueError(f"{what}: {len(array)} rows for {n} that were asked: row {n} is the first too many")
+
+
+def column(value: Any, n: int, what: str) -> Array:
+    """``[n]``."""
+    array = _numbers(value, what)
+    if array.ndim == 0:
+        return np.full(n, array, np.float64)
+    if array.ndim != 1:
+        raise ValueError(f"{what}: shape {array.shape}, expected ({n},): row 0 has shape {array.shape[1:]}")
+    _rows(array, n, what)
+    return np.ascontiguousarray(array, np.float64)
+
+
+def directions(value: Any, n: int, what: str) -> Array:
+    """``[n, 3]``."""
+    array = _numbers(value, what)
+    if array.ndim != 2 or array.shape[1] != 3:
+        row = f": row 0 has shape {array.shape[1:]}" if array.ndim > 0 and len(array) else ""
+        raise ValueError(f"{what}: shape {array.shape}, expected ({n}, 3){row}")
+    _rows(array, n, what)
+    return np.asarray(array, np.float64)
+
+
+def channels(value: Any, n: int, what: str) -> Array:
+    """``[n, 1]`` or ``[n, 3]``, from ``[n]``, ``[n, 1]`` or ``[n, 3]``."""
+    array = _numbers(value, what)
+    if array.ndim < 2:
+        return column(array, n, what)[:, None]
+    if array.ndim != 2 or array.shape[1] not in (1, 3):
+        raise ValueError(f"{what}: shape {array.shape}, expected ({n},) or ({n}, 3): row 0 has shape {array.shape[1:]}")
+    _rows(array, n, what)
+    return np.asarray(array, np.float64)
+
+
+Parts = tuple[Array, Array, Array | None, Array | None]
+
+
+def draws(answer: Any, n: int, name: str) -> Parts:
+    """(wi, pdf, weight or None, delta or None) of what `sample` gave: a tuple of two to four, or a mapping."""
+    if isinstance(answer, Mapping):
+        unknown = set(answer) - {"wi", "pdf", "weight", "delta"}
+        if unknown or not {"wi", "pdf"} <= set(answer):
+            raise ValueError(f"{name}: sample gave the keys {sorted(answer)}, expected wi and pdf, weight, delta")
+        answer = tuple(answer.get(key) for key in ("wi", "pdf", "weight", "delta"))
+    if not isinstance(answer, (tuple, list)) or not 2 <= len(answer) <= 4:
+        got = f"{len(answer)} values" if isinstance(answer, (tuple, list)) else type(answer).__name__
+        raise ValueError(f"{name}: sample gave {got}, expected (wi, pdf), (wi, pdf, weight) or (wi, pdf, weight, delta)")
+    wi, pdf, weight, delta = (*answer, None, None)[:4]
+    told = f"{name}: sample's "
+    p = column(pdf, n, told + "pdf")
+    if delta is not None:
+        chosen = as_numpy(delta, told + "delta")
+        delta = np.where(chosen, p, 0.0) if chosen.dtype == bool else column(chosen, n, told + "delta")
+    return (
+        directions(wi, n, told + "wi"),
+        p,
+        None if weight is None else channels(weight, n, told + "weight"),
+        delta,
+    )
+
+
+def asks_sample(sample: Callable[..., Any], name: str, takes_wo: bool) -> Callable[[Array, Array], Parts]:
+    """`sample` as the core asks it: arrays of doubles in, all four parts out."""
+
+    def ask(wo: Array, u: Array) -> Parts:
+        return draws(sample(wo, u) if takes_wo else sample(u), len(u), name)
+
+    return ask
+
+
+def asks_pdf(pdf: Callable[..., Any], name: str, takes_wo: bool) -> Callable[[Array, Array], Array]:
+    """`pdf` as the core asks it."""
+
+    def ask(wo: Array, wi: Array) -> Array:
+        return column(pdf(wo, wi) if takes_wo else pdf(wi), len(wi), f"{name}: pdf")
+
+    return ask
+
+
+def asks_f(f: Callable[..., Any], name: str, count: int) -> Callable[[Array, Array], Array]:
+    """`f` as the core asks it, `count` channels."""
+
+    def ask(wo: Array, wi: Array) -> Array:
+        values = channels(f(wo, wi), len(wi), f"{name}: f")
+        if values.shape[1] > count:
+            raise ValueError(f"{name}: f has {values.shape[1]} channels, expected {count}")
+        return values
+
+    return ask

@@ -1,0 +1,114 @@
+"""A judgement: nine verdicts a direction w_o, in words, as data, and as files."""
+
+from __future__ import annotations
+
+import json as _json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any, Literal, NoReturn
+
+from . import _crescent
+
+State = Literal["right", "wrong", "inconclusive", "skipped", "error"]
+Path = str | PathLike[str]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One verdict on one sampler at one w_o."""
+
+    sampler: str
+    case: str  #: w_o and parameters: "w_o 60 deg az 250"
+    name: str  #: valid, support, normalised, density, identity, physics, tail, mean or efficiency
+    state: State
+    say: str  #: one sentence for the reader
+    settle: str = ""  #: what would settle it, where it is inconclusive
+    expected: bool = True  #: False: the list of built-in arms expects another state
+    evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers behind it
+    seconds: float = field(default=0.0, compare=False, repr=False)
+
+
+def _verdict(raw: dict[str, Any]) -> Verdict:
+    return Verdict(
+        raw["arm"], raw["case"], raw["name"], raw["state"], raw["say"], raw["settle"], raw["expected"],
+        _json.loads(raw["evidence"]), raw["seconds"],
+    )
+
+
+class Judgement:
+    """What a call of :func:`crescent.check` found. It has no truth value: ask for ``.state``."""
+
+    def __init__(self, judged: _crescent.Judged) -> None:
+        self._judged = judged
+        self._verdicts = tuple(_verdict(raw) for raw in judged.verdicts)
+
+    @property
+    def state(self) -> State:
+        """The worst of all verdicts: wrong, error, inconclusive or right."""
+        return self._judged.state  # type: ignore[return-value]
+
+    @property
+    def as_expected(self) -> bool:
+        """Every verdict is what the list of built-in arms expects; of a sampler of one's own: none is wrong."""
+        return bool(self._judged.as_expected)
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Every verdict, in the order in which they are given."""
+        return self._verdicts
+
+    @property
+    def tests(self) -> int:
+        """How many statistical tests shared alpha."""
+        return int(self._judged.tests)
+
+    def of(self, name: str) -> tuple[Verdict, ...]:
+        """The verdicts of one name over all w_o."""
+        return tuple(v for v in self._verdicts if v.name == name)
+
+    def wrong(self) -> tuple[Verdict, ...]:
+        """The verdicts that accuse."""
+        return tuple(v for v in self._verdicts if v.state == "wrong")
+
+    def broken(self) -> tuple[str, ...]:
+        """The names of the verdicts that accuse, each once, in their order."""
+        return tuple(dict.fromkeys(v.name for v in self.wrong()))
+
+    def __iter__(self) -> Iterator[Verdict]:
+        return iter(self._verdicts)
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError("a judgement is right, wrong, inconclusive or an error: compare .state with one of them")
+
+    def __repr__(self) -> str:
+        broken = f": {', '.join(self.broken())}" if self.broken() else ""
+        return f"<Judgement {self.state}{broken}; {len(self._verdicts)} verdicts>"
+
+    def __str__(self) -> str:
+        return self._judged.text()
+
+    def text(self, all: bool = False) -> str:
+        """The table of the terminal; `all`: every verdict with its sentence."""
+        return self._judged.text(all)
+
+    def json(self) -> str:
+        """The text of docs/check.schema.json: equal calls give equal bytes."""
+        return self._judged.json()
+
+    def junit(self, path: Path) -> None:
+        """Writes JUnit XML for a build server."""
+        _write(path, self._judged.junit())
+
+    def html(self, path: Path) -> None:
+        """Writes one page: the summary, a matrix of w_o and verdicts, maps, histograms and roses."""
+        _write(path, self._judged.html())
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of a notebook's cell."""
+        page = self._judged.html().replace("&", "&amp;").replace('"', "&quot;")
+        return f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0" title="judgement"></iframe>'
+
+
+def _write(path: Path, text: str) -> None:
+    _crescent.write_whole(str(path), text)

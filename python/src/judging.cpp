@@ -1,0 +1,209 @@
+// Samplers and their judgement, for crescent/_check.py: subjects in, a Judgement out.
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "callables.h"
+#include "doors.h"
+
+namespace crescent::python {
+
+namespace {
+
+using Subject = std::shared_ptr<const JudgedSampler>;
+
+/// Trials over w_o, and who is asked in them.
+struct Trials {
+    std::vector<Trial> all;
+    Subject subject;  // null: an arm of the list
+    std::size_t size() const {
+        std::size_t judged = 0;
+        for (const Trial& t : all) judged += !t.yardstick;
+        return judged;
+    }
+};
+
+Traits::Asked asked_word(const std::string& wo) {
+    if (wo == "upper") return Traits::Asked::upper;
+    if (wo == "both") return Traits::Asked::both;
+    if (wo == "none") return Traits::Asked::none;
+    throw nb::value_error(fmt::format("wo is '{}': expected 'upper', 'both' or 'none'", wo).c_str());
+}
+
+Trials of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers, int channels,
+    const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial, bool reciprocal,
+    std::optional<std::vector<double>> eta, bool importance, bool full, const Grid& grid) {
+    Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
+    c.traits.numbers = numbers;
+    c.traits.channels = channels;
+    c.traits.wo = asked_word(wo);
+    c.traits.has_pdf = !c.pdf.is_none();
+    c.traits.delta = delta;
+    c.traits.reciprocal = reciprocal;
+    c.traits.importance = importance;
+    if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
+    const auto subject = std::make_shared<CallableSampler>(std::move(c));
+    return {trials_of_subject(subject, full, grid), subject};
+}
+
+Trials of_subject(const Subject& subject, bool full, const Grid& grid) {
+    return {trials_of_subject(subject, full, grid), subject};
+}
+
+/// What was judged of what, in words and for files.
+struct Judged {
+    Judgement judgement;
+    JudgementSource source;
+    bool against = false;
+};
+
+Rigour rigour_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
+    if (!(alpha > 0 && alpha < 1))
+        throw nb::value_error(fmt::format("alpha is {:g}: expected a number between 0 and 1", alpha).c_str());
+    Rigour r = full ? Rigour::thorough() : Rigour::quick();
+    r.alpha = alpha;
+    r.seed = seed;
+    r.pictures = true;
+    r.accept_few = accept_few;
+    return r;
+}
+
+void tell(const Trials& trials, Raised* raised) {
+    if (const auto* callables = dynamic_cast<const CallableSampler*>(trials.subject.get())) callables->tell(raised);
+}
+
+bool is_serial(const Trials& trials) {
+    return dynamic_cast<const CallableSampler*>(trials.subject.get()) && trials.subject->serial();
+}
+
+Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
+    bool expect_same, int threads, const std::string& command, const nb::object& progress) {
+    const Rigour rigour = rigour_of(alpha, seed, full, accept_few);
+    PolledWatch watch;
+    Raised raised(watch);
+    Judged out{{}, {version(), commit(), command}, other != nullptr};
+    const auto work = [&] {
+        if (!other) {
+            out.judgement = judge(trials.all, rigour, watch);
+            return;
+        }
+        std::vector<Trial> a = trials.all, b = other->all;
+        for (std::vector<Trial>* side : {&a, &b}) std::erase_if(*side, [](const Trial& t) { return t.yardstick; });
+        if (other->subject) b = sampler_against(other->subject, a);
+        out.judgement = judge_against(a, b, rigour, expect_same, watch);
+    };
+    const bool serial = is_serial(trials) || (other && is_serial(*other));
+    tell(trials, &raised);
+    if (other) tell(*other, &raised);
+    const auto quiet = [&] {
+        tell(trials, nullptr);
+        if (other) tell(*other, nullptr);
+    };
+    try {
+        watched(watch, raised, progress, serial, [&] { threads > 0 ? on_threads(threads, work) : work(); });
+    } catch (...) {
+        quiet();
+        throw;
+    }
+    quiet();
+    return out;
+}
+
+nb::dict as_dict(const Verdict& v) {
+    nb::dict out;
+    out["arm"] = v.arm;
+    out["case"] = v.trial;
+    out["name"] = v.name;
+    out["state"] = std::string(word(v.state));
+    out["say"] = v.say;
+    out["settle"] = v.settle;
+    out["expected"] = v.expected;
+    out["evidence"] = v.evidence.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    out["seconds"] = v.seconds;
+    return out;
+}
+
+std::vector<nb::dict> verdicts_of(const Judged& j) {
+    std::vector<nb::dict> out;
+    for (const Verdict& v : j.judgement.verdicts) out.push_back(as_dict(v));
+    return out;
+}
+
+void add_judged(nb::module_& m) {
+    nb::class_<Judged>(m, "Judged", "A judgement as it came: verdicts with their evidence, and where it comes from.")
+        .def_prop_ro("state", [](const Judged& j) { return std::string(word(j.judgement.state)); })
+        .def_prop_ro("as_expected", [](const Judged& j) { return j.judgement.as_expected; })
+        .def_prop_ro("tests", [](const Judged& j) { return j.judgement.tests; })
+        .def_prop_ro("questions", [](const Judged& j) { return j.judgement.questions; })
+        .def_prop_ro("verdicts", &verdicts_of)
+        .def(
+            "text",
+            [](const Judged& j, bool all) {
+                return j.against ? against_text(j.judgement) : verdict_table(j.judgement, all);
+            },
+            nb::arg("all") = false)
+        .def("json", [](const Judged& j) { return verdict_json(j.judgement, j.source); })
+        .def("junit", [](const Judged& j) { return verdict_junit(j.judgement); })
+        .def("html", [](const Judged& j) { return verdict_html(j.judgement, j.source); });
+}
+
+}  // namespace
+
+void add_judging(nb::module_& m) {
+    using namespace nb::literals;
+    nb::class_<Trials>(m, "Trials", "A sampler over a grid of w_o, ready to be judged.")
+        .def("__len__", &Trials::size)
+        .def_prop_ro(
+            "draws",
+            [](const Trials& t) {
+                const auto* c = dynamic_cast<const CallableSampler*>(t.subject.get());
+                return c ? c->draws() : 0;
+            },
+            "Draws that the callables made so far.");
+    m.def("trials_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
+        "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "eta"_a.none(),
+        "importance"_a, "full"_a, "grid"_a);
+    m.def(
+        "trials_of_arm",
+        [](const std::string& arm, const Settings& settings, bool full, const Grid& grid) {
+            return Trials{trials_of(arm, settings, full, grid), nullptr};
+        },
+        "arm"_a, "settings"_a, "full"_a, "grid"_a);
+    m.def(
+        "trials_of_program",
+        [](const std::string& command, double patience, bool full, const Grid& grid) {
+            PipeLimits limits;
+            limits.total_seconds = patience > 0 ? patience : full ? 3600 : limits.total_seconds;
+            return of_subject(start_pipe(command, limits), full, grid);
+        },
+        "command"_a, "patience"_a, "full"_a, "grid"_a);
+    m.def(
+        "trials_of_plugin",
+        [](const std::string& path, bool full, const Grid& grid) { return of_subject(open_plugin(path), full, grid); },
+        "path"_a, "full"_a, "grid"_a);
+    m.def(
+        "trials_of_samples",
+        [](const std::string& samples, const std::string& table, double theta, double azimuth) {
+            const auto file = std::make_shared<SampleFile>(samples, table);
+            return Trials{{trial_of_subject(file, theta, azimuth)}, file};
+        },
+        "samples"_a, "table"_a, "theta"_a, "azimuth"_a);
+    m.def(
+        "arm_beside",
+        [](const std::string& arm, const Trials& a) {
+            std::vector<Trial> judged = a.all;
+            std::erase_if(judged, [](const Trial& t) { return t.yardstick; });
+            return Trials{arm_against(arm, judged), nullptr};
+        },
+        "arm"_a, "trials"_a);
+    m.def("judge", &judged, "trials"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
+        "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
+    m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes beside the place and renames.");
+    m.def("sampler_names", &sampler_names, "The built-in arms.");
+    add_judged(m);
+}
+
+}  // namespace crescent::python

@@ -1,0 +1,27 @@
+// The module `crescent._crescent`: what the package `crescent` is made of. Errors keep their kind: InputError and
+// SubjectFault become ValueError and RuntimeError, OutputError an OSError.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include "crescent.h"
+#include "doors.h"
+
+NB_MODULE(_crescent, m) {
+    namespace nb = nanobind;
+    nb::register_exception_translator([](const std::exception_ptr& p, void*) {
+        try {
+            std::rethrow_exception(p);
+        } catch (const crescent::Interrupted&) {
+            PyErr_SetNone(PyExc_KeyboardInterrupt);
+        } catch (const crescent::InputError& e) {
+            PyErr_SetString(PyExc_ValueError, e.what());
+        } catch (const crescent::OutputError& e) {
+            PyErr_SetString(PyExc_OSError, e.what());
+        } catch (const crescent::SubjectFault& e) { PyErr_SetString(PyExc_RuntimeError, e.what()); }
+    });
+    nb::set_leak_warnings(false);  // a callable of the main module may live until the interpreter ends
+    m.doc() = "The C++ core of crescent; use the package `crescent`.";
+    m.attr("__version__") = crescent::version();
+    m.attr("commit") = crescent::commit();
+    crescent::python::add_judging(m);
+}

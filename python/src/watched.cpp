@@ -1,0 +1,67 @@
+#include "watched.h"
+
+#include <nanobind/stl/string.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <thread>
+
+namespace crescent::python {
+
+namespace {
+
+/// With the lock held: a Ctrl-C, or what the progress callable raises, asks the work to stop.
+void look_around(PolledWatch& watch, Raised& raised, const nb::object& progress) {
+    try {
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        if (progress.is_none() || watch.stop) return;
+        const PolledWatch::State state = watch.state();
+        progress(state.what, state.done, state.total);
+    } catch (...) { raised.keep(); }
+}
+
+}  // namespace
+
+void watched(PolledWatch& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
+    const std::function<void()>& work) {
+    const auto guarded = [&] {
+        try {
+            work();
+        } catch (...) { raised.keep(); }
+    };
+    if (on_this_thread) {
+        {
+            const nb::gil_scoped_release free;
+            guarded();
+        }
+        look_around(watch, raised, progress);
+        return raised.throw_again();
+    }
+    std::mutex lock;
+    std::condition_variable over;
+    bool done = false;
+    {
+        const nb::gil_scoped_release free;
+        std::thread worker([&] {
+            guarded();
+            const std::lock_guard guard(lock);
+            done = true;
+            over.notify_one();
+        });
+        std::unique_lock guard(lock);
+        while (!over.wait_for(guard, std::chrono::milliseconds(50), [&] { return done; })) {
+            guard.unlock();
+            {
+                const nb::gil_scoped_acquire held;
+                look_around(watch, raised, progress);
+            }
+            guard.lock();
+        }
+        guard.unlock();
+        worker.join();
+    }
+    look_around(watch, raised, progress);
+    raised.throw_again();
+}
+
+}  // namespace crescent::python

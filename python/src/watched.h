@@ -1,0 +1,43 @@
+// Long work under Python: the interpreter's lock is free, Ctrl-C ends the work, and the caller hears how far it is.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <exception>
+#include <functional>
+#include <mutex>
+
+#include "crescent.h"
+
+namespace crescent::python {
+
+namespace nb = nanobind;
+
+/// What a Python callable raised while C++ was asking it: the first one counts, and asks the work to stop.
+class Raised {
+public:
+    explicit Raised(Watch& watch) : watch_(watch) {}
+    /// Inside a catch block.
+    void keep() {
+        const std::lock_guard guard(lock_);
+        if (!first_) first_ = std::current_exception();
+        watch_.stop = true;
+    }
+    void throw_again() const {
+        if (first_) std::rethrow_exception(first_);
+    }
+    void check() const { watch_.check(); }
+
+private:
+    Watch& watch_;
+    std::mutex lock_;
+    std::exception_ptr first_;
+};
+
+/// Calls `work` without the interpreter's lock. on_this_thread: for callables that want one thread, the caller's own;
+/// else in a thread of its own, and this one looks for Ctrl-C and calls progress(what, done, total) some times a
+/// second.
+void watched(PolledWatch& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
+    const std::function<void()>& work);
+
+}  // namespace crescent::python

@@ -1,0 +1,172 @@
+"""check: right samplers are right, faults are found, and what does not fit is told with its first bad row."""
+
+import json
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+from samplers import cosine, cosine_pdf, lambert, mirror, sphere, sphere_pdf
+
+import crescent
+
+
+def test_a_right_sampler_is_right_and_a_pdf_that_is_1_percent_off_is_wrong():
+    assert crescent.check(cosine, cosine_pdf, lambert, name="cosine").state == "right"
+    off = crescent.check(cosine, lambda wo, wi: 1.01 * cosine_pdf(wo, wi), lambert)
+    assert off.state == "wrong"
+    assert {"normalised", "identity"} <= set(off.broken())
+
+
+def test_a_judgement_is_data_files_and_no_truth_value(tmp_path):
+    j = crescent.check(cosine, cosine_pdf, lambert, name="mine", wo_deg=[30, (60, 250)])
+    assert {v.case for v in j.verdicts} == {"w_o 30 deg az 0", "w_o 60 deg az 250"}
+    assert all(v.sampler == "mine" for v in j) and j.of("density")[0].evidence
+    data = json.loads(j.json())
+    assert data["format"] == "crescent check 1" and len(data["verdicts"]) == len(j.verdicts)
+    j.junit(tmp_path / "j.xml")
+    j.html(tmp_path / "j.html")
+    assert (tmp_path / "j.xml").read_text().startswith("<?xml") and "<html" in (tmp_path / "j.html").read_text()
+    assert "srcdoc=" in j._repr_html_() and "mine" in str(j)
+    with pytest.raises(TypeError, match="compare .state"):
+        bool(j)
+    with pytest.raises(OSError):
+        j.junit(tmp_path / "no such folder" / "j.xml")
+
+
+def test_equal_calls_give_equal_bytes_whatever_the_threads():
+    one = crescent.check(cosine, cosine_pdf, lambert, wo_deg=[45, 85], threads=1).json()
+    assert one == crescent.check(cosine, cosine_pdf, lambert, wo_deg=[45, 85]).json()
+    assert one != crescent.check(cosine, cosine_pdf, lambert, wo_deg=[45, 85], seed=2).json()
+
+
+def test_a_sampler_without_w_o_and_one_with_a_delta_part():
+    assert crescent.check(sphere, sphere_pdf, wo="none").state == "right"
+    j = crescent.check(
+        mirror, lambda wo, wi: 0.75 * cosine_pdf(wo, wi), lambda wo, wi: 0.5 * lambert(wo, wi), u=3, wo_deg=[30]
+    )
+    assert j.state == "right", str(j)
+
+
+def test_three_channels_and_a_weight_that_is_not_f_cos_over_p():
+    def colour(wo, wi):
+        return lambert(wo, wi)[:, None] * [0.2, 0.5, 0.8]
+
+    def weighed(wo, u):
+        return *cosine(wo, u), np.tile([0.2, 0.5, 0.8], (len(u), 1))
+
+    def wrong(wo, u):
+        return *cosine(wo, u), np.tile([0.8, 0.5, 0.2], (len(u), 1))
+
+    assert crescent.check(weighed, cosine_pdf, colour, wo_deg=[30]).state == "right"
+    assert "identity" in crescent.check(wrong, cosine_pdf, colour, wo_deg=[30]).broken()
+
+
+def test_domain_hemisphere_needs_no_guard_at_the_horizon():
+    def unguarded(wo, wi):
+        return wi[:, 2] / np.pi
+
+    assert crescent.check(cosine, unguarded, lambert, wo_deg=[30]).state == "wrong"
+    assert crescent.check(cosine, unguarded, lambert, wo_deg=[30], domain="hemisphere").state == "right"
+
+
+@pytest.mark.parametrize(
+    "pdf, said",
+    [
+        (lambda wo, wi: cosine_pdf(wo, wi)[:-1], "row 7 is the first without one"),
+        (lambda wo, wi: cosine_pdf(wo, wi)[:, None], r"row 0 has shape \(1,\)"),
+        (lambda wo, wi: [[1.0], [1.0, 2.0]] * 4, "row 1 has shape"),
+        (lambda wo, wi: cosine_pdf(wo, wi) * 1j, "dtype complex128"),
+        (lambda wo, wi: [0.1] * 3 + [None] + [0.1] * 4, "row 3 is NoneType"),
+    ],
+)
+def test_a_pdf_of_another_shape_is_told_with_its_first_bad_row(pdf, said):
+    with pytest.raises(ValueError, match=said):
+        crescent.check(cosine, pdf, name="mine")
+
+
+@pytest.mark.parametrize(
+    "sample, said",
+    [
+        (lambda wo, u: cosine(wo, u)[0], "expected .wi, pdf."),
+        (lambda wo, u: (cosine(wo, u)[0][:, :2], cosine(wo, u)[1]), r"expected \(8, 3\): row 0 has shape \(2,\)"),
+        (lambda wo, u: {"wi": cosine(wo, u)[0], "p": 1}, "keys"),
+        (lambda wo, u: (cosine(wo, u)[0], cosine(wo, u)[1][1:]), "row 7"),
+    ],
+)
+def test_a_sample_of_another_shape_is_told(sample, said):
+    with pytest.raises(ValueError, match=said):
+        crescent.check(sample, cosine_pdf)
+
+
+def test_a_length_that_goes_wrong_later_is_told_too_and_so_is_what_a_callable_raises():
+    def short(wo, wi):
+        return cosine_pdf(wo, wi)[: max(len(wi) - 1, 8)]
+
+    with pytest.raises(ValueError, match="is the first without one"):
+        crescent.check(cosine, short)
+
+    class Mine(Exception):
+        pass
+
+    def raises(wo, wi):
+        if len(wi) > 8:
+            raise Mine("at my place")
+        return cosine_pdf(wo, wi)
+
+    with pytest.raises(Mine, match="at my place"):
+        crescent.check(cosine, raises)
+
+
+@pytest.mark.parametrize("serial", [False, True])
+def test_ctrl_c_ends_a_judgement(serial):
+    began = threading.Event()
+
+    def slow(wo, wi):
+        if len(wi) > 8 and not began.is_set():
+            began.set()
+            os.kill(os.getpid(), signal.SIGINT)
+        return cosine_pdf(wo, wi)
+
+    with pytest.raises(KeyboardInterrupt):
+        crescent.check(cosine, slow, lambert, full=True, serial=serial)
+    assert began.is_set()
+
+
+def test_progress_is_told_and_what_it_raises_ends_the_judgement():
+    told = []
+    crescent.check(cosine, cosine_pdf, lambert, progress=lambda *at: told.append(at))
+    assert told and told[-1][0] == "verdicts"
+
+    def stop(what, done, total):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        crescent.check(cosine, cosine_pdf, lambert, progress=stop)
+
+
+def test_a_serial_sampler_is_called_by_the_callers_thread_alone():
+    threads = set()
+
+    def noted(wo, wi):
+        threads.add(threading.get_ident())
+        return cosine_pdf(wo, wi)
+
+    assert crescent.check(cosine, noted, lambert, wo_deg=[30], serial=True).state == "right"
+    assert threads == {threading.get_ident()}
+
+
+def test_built_in_arms_alone_and_against_each_other():
+    assert crescent.check("cosine").as_expected
+    assert crescent.check(cosine, cosine_pdf, lambert, against="cosine", expect_same=True, wo_deg=[30]).state == "right"
+    j = crescent.check(cosine, cosine_pdf, lambert, against="uniform", expect_same=True, wo_deg=[30])
+    assert "same_distribution" in j.broken()
+    with pytest.raises(ValueError, match="did you mean 'cosine'"):
+        crescent.check("cosin")
+
+
+@pytest.mark.parametrize("known", [{"u": 9}, {"channels": 2}, {"domain": "disk"}, {"wo": "left"}, {"wo_deg": [90]}, {"alpha": 2}])
+def test_what_is_declared_wrongly_is_a_value_error(known):
+    with pytest.raises(ValueError):
+        crescent.check(cosine, cosine_pdf, **known)

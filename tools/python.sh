@@ -1,0 +1,65 @@
+# Shell functions behind ./wheel and ./test: environments, the Python module in the build tree, the wheel, its trial. Sourced after
+# setup.sh. PyPI is asked for nothing that an environment has already.
+
+# find_python [GIVEN]: the interpreter to build for; the system's python3 where none is given.
+find_python() {
+    local python=${1:-/usr/bin/python3}
+    "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo "$python"; return; }
+    say "$python: expected CPython 3.11 or later"
+    return 1
+}
+
+# make_environment DIR PYTHON PACKAGE...: a virtual environment that has these packages. Exit 3 where PyPI has none.
+make_environment() {
+    local dir=$1 python=$2 log
+    shift 2
+    log="$log_dir/$(basename "$dir").log"
+    [ -x "$dir/bin/python" ] && [ "$("$dir/bin/python" -V 2>&1)" = "$("$python" -V 2>&1)" ] || {
+        rm -rf "$dir"
+        "$python" -m venv "$dir" >"$log" 2>&1 || fail 3 "$log" "$python -m venv failed: is python3-venv installed?"
+    }
+    [ "$(cat "$dir/has" 2>/dev/null)" = "$*" ] && return
+    "$dir/bin/python" -m pip -q --disable-pip-version-check install "$@" >"$log" 2>&1 ||
+        fail 3 "$log" "not to be had from PyPI: $*"
+    printf '%s' "$*" >"$dir/has"
+}
+
+# add_python_module DIR: brings the Python module into the release build, with an environment of its own in DIR. Says so
+# and leaves it out where that cannot be had: nothing else stands on it.
+add_python_module() {
+    local python
+    python=$(find_python) && (make_environment "$1" "$python" nanobind numpy pytest) ||
+        { say "going on without the Python package: its environment could not be made"; return; }
+    grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
+        grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return
+    (cd "$root" && cmake --preset release -DCRESCENT_PYTHON=ON -DPython_EXECUTABLE="$1/bin/python") >"$log_dir/python.log" 2>&1 ||
+        say "going on without the Python package (log: $log_dir/python.log)"
+}
+
+# make_wheel ENVIRONMENT DIST: builds and repairs; sets `wheel` to the file.
+make_wheel() {
+    local tools=$1 dist=$2 raw="$root/build/python-raw" log="$log_dir/wheel.log" start=$SECONDS made
+    say "building the wheel (log: ${log#"$root"/})"
+    rm -rf "$raw"
+    (cd "$root" && PATH="$tools/bin:$PATH" "$tools/bin/python" -m pip --disable-pip-version-check wheel -v . \
+        --no-build-isolation --no-deps -w "$raw") >"$log" 2>&1 || fail 3 "$log" "building the wheel failed"
+    made=$(ls "$raw"/*.whl) || fail 3 "$log" "no wheel came of it"
+    PATH="$tools/bin:$PATH" "$tools/bin/python" -m auditwheel repair --strip -w "$raw/repaired" "$made" >>"$log" 2>&1 ||
+        fail 3 "$log" "auditwheel could not repair ${made##*/}"
+    made=$(ls "$raw"/repaired/*.whl)
+    mkdir -p "$dist"
+    wheel="$dist/${made##*/}"
+    mv "$made" "$wheel.partial" && mv "$wheel.partial" "$wheel" || fail 3 "$log" "cannot write $wheel"
+    say "built ${wheel##*/} in $((SECONDS - start)) s"
+}
+
+# try_wheel ENVIRONMENT WHEEL: installs it there and judges with it; nothing of the repository is on the way.
+try_wheel() {
+    local dir=$1 log="$log_dir/wheel-tried.log"
+    "$dir/bin/python" -m pip -q --disable-pip-version-check install --force-reinstall "$2" >"$log" 2>&1 ||
+        fail 3 "$log" "installing ${2##*/} failed"
+    (cd / && "$dir/bin/python" -m pytest -q "$root/python/tests" --rootdir="$root/python/tests" -p no:cacheprovider) >>"$log" 2>&1 ||
+        fail 1 "$log" "the wheel does not pass its tests"
+    (cd / && "$dir/bin/crescent" check cosine) >>"$log" 2>&1 || fail 1 "$log" "crescent check cosine failed"
+    say "$(tail -n 20 "$log" | grep -E '^[0-9]+ passed' | tail -n 1)"
+}
