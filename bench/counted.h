@@ -46,7 +46,7 @@ namespace bench {
 
 /// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there
 /// is one.
-template <class L> Counted carry(const Site<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
+template <class L> Counted carry(const ShadingPoint<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
     const LocalDisk<Counted>& disk = site.disks[0];
     const L lobe(site.s, site.alpha);
     const Counted g = weight * (drawn.wi.z / drawn.pdf.v), f = lobe(site.wo, drawn.wi);
@@ -60,7 +60,7 @@ template <class L> Counted carry(const Site<Counted>& site, const Drawn<Counted>
 template <template <class> class A, class L> std::uint64_t operations_per_sample() {
     const auto c = [](double x) { return Counted(static_cast<float>(x)); };
     const LocalDisk<Counted> disk{{c(1), c(0.5), c(2)}, {c(0), c(0), c(-1)}, c(0.1), c(0), c(1)};
-    const Site<Counted> site{{c(0.6), c(0), c(0.8)}, c(32), c(0.2), c(0.17), c(0.12), &disk, 1};
+    const ShadingPoint<Counted> site{{c(0.6), c(0), c(0.8)}, c(32), c(0.2), c(0.17), c(0.12), &disk, 1};
     const A<Counted> arm(site);
     Counted::operations = 0;
     const Vec2<Counted> u{unit_float<Counted>(0x51234567u), unit_float<Counted>(0x9abcdef0u)};

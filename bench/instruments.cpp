@@ -29,7 +29,7 @@ struct Figures {
 };
 
 Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampler, std::uint64_t n, double samples) {
-    Watch watch;
+    ProgressMonitor watch;
     const Job job{sampler, sampler, {n}, scene.s(), 1};
     gl.films(scene, {sampler, sampler, {1}, job.s, 1}, watch);  // compiles
     double cpu_s = 1e30, gl_s = 1e30;

@@ -91,8 +91,8 @@ std::string shortest(double v) {
     return text;
 }
 
-Rigour rigour_of(const CheckFlags& flags) {
-    Rigour r = flags.full ? Rigour::thorough() : Rigour::quick();
+TestSettings rigour_of(const CheckFlags& flags) {
+    TestSettings r = flags.full ? TestSettings::thorough() : TestSettings::quick();
     if (!(flags.alpha > 0 && flags.alpha < 1)) throw InputError({"--alpha", 0, 0}, "is between 0 and 1");
     r.alpha = flags.alpha;
     r.seed = flags.seed;
@@ -110,7 +110,7 @@ int exit_of(State state) {
 
 namespace {
 
-std::vector<Trial> trials_for(const CheckFlags& flags, const Watch& watch) {
+std::vector<Trial> trials_for(const CheckFlags& flags, const ProgressMonitor& watch) {
     if (!flags.exec.empty()) {
         PipeLimits limits;
         limits.stop = &watch.stop;
@@ -189,17 +189,17 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
 namespace {
 
 /// How much a program will be asked, before it is asked for an hour.
-void tell_cost(std::span<const Trial> trials, const Rigour& rigour, Watch& watch) {
+void tell_cost(std::span<const Trial> trials, const TestSettings& rigour, ProgressMonitor& watch) {
     std::size_t judged = 0;
     bool program = false;
-    for (const Trial& t : trials) judged += !t.yardstick, program = program || t.subject->serial();
+    for (const Trial& t : trials) judged += !t.baseline, program = program || t.subject->serial();
     if (!program || !rigour.full) return;
     watch.say(fmt::format(
         "--full asks at most {} questions: {} at each of {} w_o", judged * rigour.questions, rigour.questions, judged));
 }
 
 /// B on the trials of A: an arm of the list by its name, or a program.
-std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const Watch& watch) {
+std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const ProgressMonitor& watch) {
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end()) return arm_against(flags.against, a);
     const std::string near = nearest(flags.against, names);
@@ -213,7 +213,7 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
 
 /// Exit 0: compared; 1: f differs, or with --expect same the distribution does; 4: a tail is too heavy to tell.
 int check_against(const CheckFlags& flags, std::vector<Trial> a, Progress& watch) {
-    std::erase_if(a, [](const Trial& t) { return t.yardstick; });
+    std::erase_if(a, [](const Trial& t) { return t.baseline; });
     const Judgement j = judge_against(a, others_of(flags, a, watch), rigour_of(flags), flags.expect == "same", watch);
     watch.clear();
     print(against_text(j));

@@ -7,7 +7,7 @@
 
 namespace crescent::cli {
 
-Rigour rigour_of(const CheckFlags& flags);
+TestSettings rigour_of(const CheckFlags& flags);
 int exit_of(State state);
 void write_files(const CheckFlags& flags, const Judgement& j);
 std::string shortest(double v);
@@ -16,8 +16,8 @@ std::string shortest(double v);
 int check_planted(const CheckFlags& flags, Progress& watch);
 /// All tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and no right sampler is accused
 /// beyond --alpha.
-int check_error_rates(const CheckFlags& flags, Watch& watch);
+int check_error_rates(const CheckFlags& flags, ProgressMonitor& watch);
 /// Exit 0 where no right sampler is accused more often than was promised.
-int check_right(const CheckFlags& flags, Watch& watch);
+int check_right(const CheckFlags& flags, ProgressMonitor& watch);
 
 }  // namespace crescent::cli

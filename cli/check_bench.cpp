@@ -61,12 +61,12 @@ bool keeps_promise(const RightLaw& law) { return rate_interval(law.accused, law.
 
 /// Right samplers at random parameters in quick and in full mode, where --right asks for them; kept: no more of them
 /// are accused than was promised.
-std::string right_tables(const CheckFlags& flags, Watch& watch, bool& kept) {
+std::string right_tables(const CheckFlags& flags, ProgressMonitor& watch, bool& kept) {
     if (flags.right == 0) return {};
     std::string out =
         "Samplers of many families, the parameters and w_o of each drawn at random, each judged by a call of its "
         "own.\n";
-    for (Rigour rigour : {Rigour::quick(), Rigour::thorough()}) {
+    for (TestSettings rigour : {TestSettings::quick(), TestSettings::thorough()}) {
         rigour.alpha = flags.alpha;
         rigour.seed = flags.seed;
         const RightLaw law = measure_right(flags.first, flags.right, rigour, watch);
@@ -88,8 +88,8 @@ std::string command_of_rates(const CheckFlags& f) {
 
 }  // namespace
 
-int check_error_rates(const CheckFlags& flags, Watch& watch) {
-    Rigour rigour = rigour_of(flags);
+int check_error_rates(const CheckFlags& flags, ProgressMonitor& watch) {
+    TestSettings rigour = rigour_of(flags);
     rigour.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
     const FalseAlarms alarms = measure_false_alarms(flags.error_rates, rigour, watch);
     bool kept = rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha;
@@ -98,10 +98,10 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     std::vector<Explained> causes;
     const std::vector<PlantedFault> quick = planted_faults(false), full = planted_faults(true);
     for (std::size_t i = 0; i < quick.size(); ++i) {
-        const Judgement seen = judge(quick[i].trials, Rigour::quick(), watch);
+        const Judgement seen = judge(quick[i].trials, TestSettings::quick(), watch);
         causes.push_back(explained(quick[i], seen));
         table.push_back({quick[i].name, quick[i].breaks, catchers(seen),
-            catchers(judge(full[i].trials, Rigour::thorough(), watch))});
+            catchers(judge(full[i].trials, TestSettings::thorough(), watch))});
         kept = kept && !table.back().full.empty();
     }
     print(error_rates_text(alarms, law, table, command_of_rates(flags),
@@ -114,7 +114,7 @@ int check_error_rates(const CheckFlags& flags, Watch& watch) {
     return kept && found == 0 ? held : failed;
 }
 
-int check_right(const CheckFlags& flags, Watch& watch) {
+int check_right(const CheckFlags& flags, ProgressMonitor& watch) {
     const RightLaw law = measure_right(flags.first, flags.right, rigour_of(flags), watch);
     std::string text;
     for (const std::string& line : law.said) text += line;

@@ -10,7 +10,7 @@
 
 namespace crescent::cli {
 
-class Progress : public Watch {
+class Progress : public ProgressMonitor {
 public:
     enum class Style { bar, lines, silent };
 

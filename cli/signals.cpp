@@ -14,7 +14,7 @@ namespace crescent::cli {
 
 namespace {
 
-std::atomic<Watch*> watched{nullptr};
+std::atomic<ProgressMonitor*> watched{nullptr};
 std::atomic<bool> let_finish{false};
 std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
 timer_t deadline;
@@ -24,7 +24,7 @@ constexpr long moving_patience_s = 5;  // outputs that are being moved are let f
 
 /// What stands under the final names when the process ends here.
 const char* last_words() {
-    const Watch* watch = watched.load();
+    const ProgressMonitor* watch = watched.load();
     switch (watch ? watch->outputs.load() : left_behind.load()) {
         case Outputs::moving: return "crescent: interrupted; the outputs are either all of before or all of this run\n";
         case Outputs::stand: return "crescent: interrupted; the outputs of this run are complete\n";
@@ -47,13 +47,13 @@ void end_after(long seconds, long nanoseconds) {
 }
 
 extern "C" void time_is_up(int signal) {
-    const Watch* watch = watched.load();
+    const ProgressMonitor* watch = watched.load();
     if (!watch || watch->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
     else end_after(moving_patience_s, 0);
 }
 
 extern "C" void ask_to_stop(int signal) {
-    Watch* watch = watched.load();
+    ProgressMonitor* watch = watched.load();
     if (!watch || watch->stop.exchange(true)) end_now(signal);
     else end_after(0, patience_ns);
 }
@@ -85,7 +85,7 @@ void end_on_signals() {
 #endif
 #endif
 
-StopOnSignal::StopOnSignal(Watch& watch) {
+StopOnSignal::StopOnSignal(ProgressMonitor& watch) {
     watched = &watch;
     sigevent event{};
     event.sigev_notify = SIGEV_SIGNAL;

@@ -1,8 +1,8 @@
 // Ctrl-C and SIGTERM.
 #pragma once
 
-namespace crescent {
-class Watch;
+namespace crescent::inline base {
+class ProgressMonitor;
 }
 
 namespace crescent::cli {
@@ -15,7 +15,7 @@ void end_on_signals();
 /// before, or all of this run; the last words say which.
 class StopOnSignal {
 public:
-    explicit StopOnSignal(Watch& watch);
+    explicit StopOnSignal(ProgressMonitor& watch);
     ~StopOnSignal();
     StopOnSignal(const StopOnSignal&) = delete;
     StopOnSignal& operator=(const StopOnSignal&) = delete;

@@ -14,7 +14,7 @@ const ArmPlan* by_sampler(const Experiment& e, const std::string& sampler) {
 }
 
 /// The arm with this sampler; where there is none, a complaint with the nearest that the experiment has.
-std::string needed(const Experiment& e, const std::string& sampler, std::vector<Complaint>& wrong) {
+std::string needed(const Experiment& e, const std::string& sampler, std::vector<Diagnostic>& wrong) {
     if (const ArmPlan* arm = by_sampler(e, sampler)) return arm->name;
     std::vector<std::string> there;
     for (const ArmPlan& arm : e.arms) there.push_back(arm.sampler);
@@ -50,7 +50,7 @@ std::vector<std::uint64_t> shared(const ArmPlan& a, const ArmPlan& b) {
 
 Cast cast_of(Experiment& e) {
     Cast c;
-    std::vector<Complaint> wrong;
+    std::vector<Diagnostic> wrong;
     c.cosine = needed(e, "cosine", wrong);
     c.phong = needed(e, "phong", wrong);
     if (const ArmPlan* arm = by_sampler(e, "uniform")) c.uniform = arm->name;

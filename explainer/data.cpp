@@ -11,7 +11,8 @@ namespace crescent::film {
 namespace {
 
 /// The cosine arm with 1, 2, 4, .. samples up to the ladder's highest: what the film opens with.
-std::vector<Film> opening_of(const Experiment& experiment, const Cast& cast, const std::string& isa, Watch& watch) {
+std::vector<Film> opening_of(
+    const Experiment& experiment, const Cast& cast, const std::string& isa, ProgressMonitor& watch) {
     std::vector<std::uint64_t> n;
     for (std::uint64_t k = 1; k <= cast.rungs.back(); k *= 2) n.push_back(k);
     watch.begin("the opening", double(n.back()) * experiment.image.width * experiment.image.height);
@@ -78,7 +79,7 @@ Box around(const Data& data, const Box& of, int w, int h) {
     return {x0, y0, x0 + w - 1, y0 + h - 1};
 }
 
-Data collect(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
     Data data;
     data.experiment = experiment;
     data.experiment_hash = fmt::format("{:016x}", hash(experiment));

@@ -60,7 +60,7 @@ bool has_word(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Watch& watch) {
+void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& watch) {
     const std::string list = folder + "/encoders.txt";
     int code = 0;
     try {
@@ -91,7 +91,7 @@ void Encoder::take(const Raster& raster) {
     if (!process_.write(raster.bytes.data(), raster.bytes.size())) fail();
 }
 
-void Encoder::finish(const Watch& watch) {
+void Encoder::finish(const ProgressMonitor& watch) {
     if (process_.wait(watch) != 0) fail();
 }
 

@@ -53,7 +53,8 @@ std::vector<std::pair<std::string, std::string>> attributes_of(const Data& data)
 /// A film in the making.
 class Making {
 public:
-    Making(const Data& data, const Timeline& timeline, const FilmOptions& options, Staging& staging, Watch& watch)
+    Making(const Data& data, const Timeline& timeline, const FilmOptions& options, Staging& staging,
+        ProgressMonitor& watch)
         : data_(data),
           timeline_(timeline),
           options_(options),
@@ -153,11 +154,11 @@ private:
     const Timeline& timeline_;
     const FilmOptions& options_;
     Staging& staging_;
-    Watch& watch_;
+    ProgressMonitor& watch_;
     Painter painter_;
 };
 
-std::string make(const Experiment& experiment, const FilmOptions& options, Watch& watch) {
+std::string make(const Experiment& experiment, const FilmOptions& options, ProgressMonitor& watch) {
     const bool pictures = !options.still.empty() || options.stills;
     Experiment cast = experiment;
     cast_of(cast);  // what is missing is told before the work
@@ -184,7 +185,7 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Watch
 }
 
 const bool registered = [] {
-    film_maker() = [](const Experiment& experiment, const FilmOptions& options, Watch& watch) {
+    film_maker() = [](const Experiment& experiment, const FilmOptions& options, ProgressMonitor& watch) {
         const int asked = options.threads > 0 ? options.threads : usable_threads();
         const int threads = std::min(asked, oneapi::tbb::info::default_concurrency());
         return on_threads(threads, [&] { return make(experiment, options, watch); });

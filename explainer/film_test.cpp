@@ -169,7 +169,7 @@ TEST(Film, CaptionsKeepTheirLawsSilentAndSpoken) {
 
 std::vector<std::uint64_t> hashes(int first, int last, int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-    Watch watch;
+    ProgressMonitor watch;
     std::vector<std::uint64_t> out;
     for_each_frame(timeline(), small_height, first, last, watch, [&](const Raster& r) { out.push_back(r.hash); });
     return out;

@@ -89,7 +89,7 @@ bool Process::write(const unsigned char* bytes, std::size_t size) {
     return true;
 }
 
-int Process::wait(const Watch& watch) {
+int Process::wait(const ProgressMonitor& watch) {
     if (pipe_ >= 0) ::close(pipe_);
     pipe_ = -1;
     int status = 0;

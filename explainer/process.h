@@ -22,7 +22,7 @@ public:
     bool write(const unsigned char* bytes, std::size_t size);
     /// Closes the pipe and waits; the exit code, 128 + signal where a signal ended it. Interrupted where the watch says
     /// so.
-    int wait(const Watch& watch);
+    int wait(const ProgressMonitor& watch);
 
 private:
     int pid_ = -1, pipe_ = -1;

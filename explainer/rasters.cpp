@@ -72,7 +72,7 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas) {
     return raster;
 }
 
-void for_each_frame(const Timeline& timeline, int height, int first, int last, Watch& watch,
+void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& watch,
     const std::function<void(const Raster&)>& take) {
     tbb::enumerable_thread_specific<std::unique_ptr<Desk>> desks;
     int next = first;

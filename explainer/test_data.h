@@ -58,7 +58,7 @@ box = [20, 2, 76, 12]
 
 inline const Data& small_data() {
     static const Data data = [] {
-        Watch watch;
+        ProgressMonitor watch;
         return collect(small_experiment(), {}, watch);
     }();
     return data;

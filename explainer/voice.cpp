@@ -63,7 +63,7 @@ std::vector<float> samples_of_wav(const std::string& bytes, int& rate) {
     return {};
 }
 
-Voice::Voice(std::string command, std::string folder, Watch& watch)
+Voice::Voice(std::string command, std::string folder, ProgressMonitor& watch)
     : command_(std::move(command)), folder_(std::move(folder)), watch_(watch) {}
 
 const std::vector<float>& Voice::said(const std::string& text) {

@@ -69,7 +69,7 @@ TEST(Framebuffers, LargerThanTheDriverTakesAreRefusedWithItsLog) {
 
 TEST(LostContext, EndsTheFilmWithAnErrorThatSaysSo) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     const std::unique_ptr<Context> mine = open_context({});
     Estimator gl(*mine);
     static_cast<void>(gl.films(scene, "cosine", {4}, 1, watch));

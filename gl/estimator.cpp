@@ -60,7 +60,7 @@ Estimator::Kernel& Estimator::kernel(const std::string& sampler, int lobe, std::
     return *kernel;
 }
 
-const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, Watch& watch) {
+const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, ProgressMonitor& watch) {
     const auto same = [](const TileBox& a, const TileBox& b) {
         return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
     };
@@ -83,8 +83,8 @@ const Framebuffer& Estimator::framebuffer(int width, int height, std::size_t att
 namespace {
 
 /// What every draw of a program reads besides the samples' range.
-void set_scene(const Program& program, const Sites& lights, const Bodies& bodies, const TileBox& box, int image_width,
-    std::uint32_t seed) {
+void set_scene(const Program& program, const ShadingPoints& lights, const Bodies& bodies, const TileBox& box,
+    int image_width, std::uint32_t seed) {
     program.use();
     program.set("sites", 0);
     program.set("corner", box.x0, box.y0);
@@ -99,11 +99,11 @@ void set_scene(const Program& program, const Sites& lights, const Bodies& bodies
 }  // namespace
 
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
-    std::vector<Film>& films, Watch& watch) {
+    std::vector<Film>& films, ProgressMonitor& watch) {
     const std::size_t disks = scene.disk_count();
     const SiteTexture& here = sites(scene, box, watch);
     if (here.groups().empty()) return;
-    const Sites lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
+    const ShadingPoints lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
     const Bodies bodies = bodies_of(lights.occluders);
     std::vector<LobePart> parts;
     for (const int lobe : here.lobes()) {
@@ -122,14 +122,14 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     for (Film& film : films) {
         pass.advance_to(film.n);
         for (std::size_t g = 0; g < here.groups().size(); ++g) {
-            develop(scene, here.groups()[g], pass.moments()[g], film);
+            resolve_film(scene, here.groups()[g], pass.moments()[g], film);
             for (const std::uint32_t bad : pass.moments()[g].bad) film.bad += bad;
         }
     }
 }
 
 std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, Watch& watch) {
+    std::uint32_t seed, ProgressMonitor& watch) {
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
     if (!(find_arm_info(sampler)->gl.relative > 0))
         throw OutputError("the GL instrument has no copy of the sampler '" + sampler + "': use the cpu");

@@ -12,7 +12,7 @@ using test::Difference;
 
 Difference differences(
     const Scene& scene, Estimator& gl, const std::string& arm, std::uint64_t n, std::uint32_t seeds) {
-    Watch watch;
+    ProgressMonitor watch;
     const ShapeMap shapes = shape_map(scene);
     Difference out;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed)
@@ -52,7 +52,7 @@ TEST(FilmLaw, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
 TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
     const Scene scene(test::small_scene()), other(test::small_scene({"shapes.phong.s=24.0024"}));
     const ShapeMap shapes = shape_map(scene);
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     Difference d;
     test::compare(scene, shapes, estimate_films(other, "phong", {48}, 1, "", watch)[0],
@@ -63,7 +63,7 @@ TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
 TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
     const Scene scene(test::small_scene()), other(test::small_scene({"disks.left.radius=0.42"}));
     const ShapeMap shapes = shape_map(scene);
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     Difference d;
     for (std::uint32_t seed = 1; seed <= 4; ++seed)
@@ -74,7 +74,7 @@ TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
 
 TEST(Films, EveryPlaneIsTheCpus) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     const Film a = estimate_films(scene, "cosine", {64}, 5, "", watch)[0],
                b = gl.films(scene, "cosine", {64}, 5, watch)[0];
@@ -91,7 +91,7 @@ TEST(Films, EveryPlaneIsTheCpus) {
 TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
     const Scene scene(test::small_scene(
         {"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     for (const std::uint64_t n : {4u, 64u, 1000u}) {
         const Film a = estimate_films(scene, "light-area", {n}, 5, "", watch)[0],
@@ -105,7 +105,7 @@ TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
 TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
     const Scene scene(test::small_scene({"disks.left.radius=1e-6", "disks.right.radius=1e-6", "fill.radiance=[0,0,0]",
         "image.width=24", "image.height=16"}));
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     for (const char* arm : {"light-area", "light-solid-angle", "mis-balance"}) {
         const Film a = estimate_films(scene, arm, {16}, 5, "", watch)[0], b = gl.films(scene, arm, {16}, 5, watch)[0];
@@ -117,7 +117,7 @@ TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
 
 TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     const std::vector<Film> many = gl.films(scene, "mixture", {1, 3, 16, 37, 64}, 9, watch);
     for (const Film& film : many) {
@@ -131,7 +131,7 @@ TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
 
 TEST(Films, AFilmInRectanglesIsTheFilmAtOnce) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     Estimator whole(test::context()), parts(test::context(), 40);
     EXPECT_EQ(
         hash(parts.films(scene, "cosine", {16}, 3, watch)[0]), hash(whole.films(scene, "cosine", {16}, 3, watch)[0]));
@@ -139,7 +139,7 @@ TEST(Films, AFilmInRectanglesIsTheFilmAtOnce) {
 
 TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
     const Scene scene(test::small_scene({"image.width=12", "image.height=8"}));
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     for (const char* arm : {"uniform", "cosine"}) {
         const Film a = estimate_films(scene, arm, {65536}, 5, "", watch)[0],
@@ -160,7 +160,7 @@ TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
     const Scene scene(experiment);
     ASSERT_EQ(scene.disk_count(), 15u);
     Estimator gl(test::context());
-    Watch watch;
+    ProgressMonitor watch;
     const Film a = estimate_films(scene, "light-area", {32}, 2, "", watch)[0],
                b = gl.films(scene, "light-area", {32}, 2, watch)[0];
     EXPECT_EQ(a.hits, b.hits);
@@ -194,7 +194,7 @@ box = [0, 0, 3, 3]
 )",
         "plain.toml");
     const Scene scene(experiment);
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     const Film a = estimate_films(scene, "cosine", {16}, 1, "", watch)[0],
                b = gl.films(scene, "cosine", {16}, 1, watch)[0];
@@ -206,7 +206,7 @@ TEST(Films, APlantedNaNIsCountedInEverySample) {
     Experiment experiment = test::small_scene();
     experiment.shapes[0].material.s = std::numeric_limits<double>::quiet_NaN();
     const Scene scene(experiment);
-    Watch watch;
+    ProgressMonitor watch;
     Estimator gl(test::context());
     const std::uint64_t cpu = estimate_films(scene, "phong", {8}, 1, "", watch)[0].bad;
     EXPECT_GT(cpu, 100u);
@@ -215,7 +215,7 @@ TEST(Films, APlantedNaNIsCountedInEverySample) {
 
 TEST(Films, StopWhenAsked) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     watch.stop = true;
     Estimator gl(test::context());
     EXPECT_THROW(gl.films(scene, "cosine", {1u << 24}, 1, watch), Interrupted);

@@ -63,7 +63,7 @@ void GlInstrument::claim_framebuffer(const std::string& what, int width, int hei
     claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
 }
 
-std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Watch& watch, TileKeeper*) {
+std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, ProgressMonitor& watch, TileCheckpoint*) {
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.image();

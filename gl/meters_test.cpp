@@ -20,7 +20,7 @@ box = [4, 4, 90, 16]
 }
 
 Measured measured_with(const std::shared_ptr<Instrument>& instrument) {
-    Watch watch;
+    ProgressMonitor watch;
     RunOptions options;
     options.instrument = instrument;
     return measure_in_memory(metered_scene(), options, watch);

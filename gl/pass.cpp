@@ -15,7 +15,7 @@ constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may 
 }  // namespace
 
 Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer,
-    std::vector<LobePart> parts, std::size_t disks, Watch& watch)
+    std::vector<LobePart> parts, std::size_t disks, ProgressMonitor& watch)
     : context_(context),
       sites_(sites),
       framebuffer_(framebuffer),
@@ -104,7 +104,7 @@ void Pass::gather(std::size_t first_disk, int samples) {
     for (std::size_t k = 0; k < met_.size(); ++k) framebuffer_.read(2 + k, met_[k]);
     const std::size_t disks = std::min(disks_ - std::min(first_disk, disks_), most_recorded);
     tbb::parallel_for(std::size_t{0}, moments_.size(), [&](std::size_t g) {
-        const Sites& group = sites_.groups()[g];
+        const ShadingPoints& group = sites_.groups()[g];
         Moments& m = moments_[g];
         for (std::size_t i = 0; i < group.count; ++i) {
             const std::size_t at = 4 * sites_.texel(group, i);

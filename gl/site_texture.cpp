@@ -20,16 +20,16 @@ std::vector<TileBox> tiles_in(const TileBox& box) {
 
 }  // namespace
 
-SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileBox& box, Watch& watch)
+SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& watch)
     : context_(context), box_(box), image_width_(static_cast<std::size_t>(scene.image().width)) {
     const std::vector<TileBox> tiles = tiles_in(box);
-    std::vector<std::vector<Sites>> all(tiles.size());
+    std::vector<std::vector<ShadingPoints>> all(tiles.size());
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         if (!watch.stop) all[k] = sites_of(scene, tiles[k], nullptr);
     });
     watch.check();
-    for (std::vector<Sites>& groups : all)
-        for (Sites& group : groups) groups_.push_back(std::move(group));
+    for (std::vector<ShadingPoints>& groups : all)
+        for (ShadingPoints& group : groups) groups_.push_back(std::move(group));
 
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
                       layer_count = site_layers(scene.disk_count());
@@ -43,7 +43,7 @@ SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileB
 
 SiteTexture::~SiteTexture() { context_.gl().DeleteTextures(1, &texture_); }
 
-void SiteTexture::fill_site(std::vector<float>& layers, const Sites& s, std::size_t i) const {
+void SiteTexture::fill_site(std::vector<float>& layers, const ShadingPoints& s, std::size_t i) const {
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()), at = texel(s, i);
     std::size_t layer = 0;
     const auto put = [&](float x, float y, float z, float w) {
@@ -79,7 +79,7 @@ void SiteTexture::bind() const {
     context_.gl().BindTexture(GL_TEXTURE_2D_ARRAY, texture_);
 }
 
-std::size_t SiteTexture::texel(const Sites& group, std::size_t i) const {
+std::size_t SiteTexture::texel(const ShadingPoints& group, std::size_t i) const {
     const std::size_t x = group.pixel[i] % image_width_, y = group.pixel[i] / image_width_;
     return (y - static_cast<std::size_t>(box_.y0)) * static_cast<std::size_t>(width()) +
         (x - static_cast<std::size_t>(box_.x0));
@@ -87,7 +87,7 @@ std::size_t SiteTexture::texel(const Sites& group, std::size_t i) const {
 
 std::vector<int> SiteTexture::lobes() const {
     std::vector<int> out;
-    for (const Sites& group : groups_)
+    for (const ShadingPoints& group : groups_)
         if (std::find(out.begin(), out.end(), group.lobe) == out.end()) out.push_back(group.lobe);
     std::sort(out.begin(), out.end());
     return out;
@@ -97,7 +97,7 @@ LobePixels SiteTexture::pixels_of(int lobe) const {
     const std::size_t across = static_cast<std::size_t>(width());
     LobePixels out{
         std::vector<std::uint64_t>(static_cast<std::size_t>((height() + strip_rows - 1) / strip_rows)), width(), 0};
-    for (const Sites& group : groups_) {
+    for (const ShadingPoints& group : groups_) {
         for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) {
             const std::size_t at = texel(group, i);
             const int x = static_cast<int>(at % across);

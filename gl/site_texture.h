@@ -22,7 +22,7 @@ struct LobePixels {
 /// Sites in groups of one lobe, as sites_of() makes them, tile by tile.
 class SiteTexture {
 public:
-    SiteTexture(const Context& context, const Scene& scene, const TileBox& box, Watch& watch);
+    SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& watch);
     ~SiteTexture();
     SiteTexture(const SiteTexture&) = delete;
     SiteTexture& operator=(const SiteTexture&) = delete;
@@ -30,24 +30,24 @@ public:
     const TileBox& box() const { return box_; }
     int width() const { return box_.x1 - box_.x0; }
     int height() const { return box_.y1 - box_.y0; }
-    const std::vector<Sites>& groups() const { return groups_; }
+    const std::vector<ShadingPoints>& groups() const { return groups_; }
     /// Lobes, their places in the list or -1, that some pixel here has.
     std::vector<int> lobes() const;
     LobePixels pixels_of(int lobe) const;
     /// Where site i of a group stands in the rectangle, row by row.
-    std::size_t texel(const Sites& group, std::size_t i) const;
+    std::size_t texel(const ShadingPoints& group, std::size_t i) const;
 
     /// Binds the texture to unit 0.
     void bind() const;
 
 private:
-    void fill_site(std::vector<float>& layers, const Sites& group, std::size_t i) const;
+    void fill_site(std::vector<float>& layers, const ShadingPoints& group, std::size_t i) const;
     void upload(const std::vector<float>& layers, std::size_t layer_count);
 
     const Context& context_;
     TileBox box_;
     std::size_t image_width_;
-    std::vector<Sites> groups_;
+    std::vector<ShadingPoints> groups_;
     GLuint texture_ = 0;
 };
 

@@ -24,8 +24,8 @@ std::vector<Trial> trials(const std::string& arm, const std::string& brdf, doubl
 
 Judgement against(std::span<const Trial> a, std::span<const Trial> b, bool expect_same = false, std::uint32_t seed = 1,
     std::uint64_t draws = 8192) {
-    Watch watch;
-    Rigour rigour;
+    ProgressMonitor watch;
+    TestSettings rigour;
     rigour.draws = draws;
     rigour.seed = seed;
     return judge_against(a, b, rigour, expect_same, watch);

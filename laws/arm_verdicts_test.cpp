@@ -13,8 +13,8 @@ namespace crescent {
 namespace {
 
 Judgement of(const std::string& arm, const Settings& settings = {}) {
-    Watch watch;
-    return judge(trials_of(arm, settings, false), Rigour::quick(), watch);
+    ProgressMonitor watch;
+    return judge(trials_of(arm, settings, false), TestSettings::quick(), watch);
 }
 
 const Verdict& find(const Judgement& j, const std::string& trial, const std::string& name) {
@@ -82,13 +82,13 @@ public:
 
 /// And what explains a fault is named for four of five of those that have such a cause, and for no other.
 TEST_P(PlantedFaultsInQuickMode, AreCaughtAndExplained) {
-    Watch watch;
+    ProgressMonitor watch;
     const auto faults = planted_faults(false);
     EXPECT_GE(faults.size(), 60u);
     std::size_t with = 0, named = 0;
     std::string told;
     for (std::size_t k = GetParam(); k < faults.size(); k += shards * every) {
-        const Judgement j = judge(faults[k].trials, Rigour::quick(), watch);
+        const Judgement j = judge(faults[k].trials, TestSettings::quick(), watch);
         EXPECT_EQ(j.state, State::wrong) << faults[k].name;
         const Explained e = explained(faults[k], j);
         with += !e.cause.empty();
@@ -199,8 +199,8 @@ TEST(Verdicts, CallAProgramTooSlowRatherThanWrong) {
     limits.total_seconds = 0.5;
     const std::string slow =
         "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
-    Rigour rigour;
-    Watch watch;
+    TestSettings rigour;
+    ProgressMonitor watch;
     rigour.accept_few = true;  // few, not none
     const Judgement j = judge(trials_of_subject(start_pipe(slow, limits), false), rigour, watch);
     EXPECT_EQ(j.state, State::inconclusive);

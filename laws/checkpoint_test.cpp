@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Listener : Watch {
+struct Listener : ProgressMonitor {
     std::string said;
     void say(std::string_view line) override { said += std::string(line) + "\n"; }
 };
@@ -45,7 +45,7 @@ protected:
         std::vector<RunMeter> meters;
         for (const std::uint64_t n : first.n) meters.push_back(meter(e, first, n));
         kept.add(meters);
-        TileKeeper tiles = kept.tiles(second);
+        TileCheckpoint tiles = kept.tiles(second);
         std::vector<Film> films(second.n.size(), Film(4, 4, 4));
         for (Film& film : films) film.y.assign(16, 0.5f);
         tiles.begin({{0, 0, 2, 4}, {2, 0, 4, 4}}, outputs_of(films));
@@ -55,7 +55,7 @@ protected:
     std::pair<std::size_t, int> found(const Experiment& e) const {
         Checkpoint kept(e, "CPU", out_, 0, watch_);
         const Job second = job(e, 1);
-        TileKeeper tiles = kept.tiles(second);
+        TileCheckpoint tiles = kept.tiles(second);
         std::vector<Film> films(second.n.size(), Film(4, 4, 4));
         tiles.begin({{0, 0, 2, 4}, {2, 0, 4, 4}}, outputs_of(films));
         if (tiles.holds(1)) {
@@ -92,7 +92,7 @@ TEST_F(Keeping, TwoLaddersOfOneArmAreTwoPasses) {
     Job other = job(experiment_, 1);
     other.n = {2, 16};
     keep(experiment_);
-    TileKeeper tiles = kept.tiles(other);
+    TileCheckpoint tiles = kept.tiles(other);
     std::vector<Film> films(2, Film(4, 4, 4));
     tiles.begin({{0, 0, 2, 4}, {2, 0, 4, 4}}, outputs_of(films));
     EXPECT_FALSE(tiles.holds(1));
@@ -116,13 +116,13 @@ TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {
     keep(other);
     {
         Checkpoint kept(other, "CPU", out_, 0, watch_);
-        kept.forget();
+        kept.discard();
     }
     EXPECT_NE(watch_.said.find("another, unfinished run"), std::string::npos) << watch_.said;
     EXPECT_EQ(found(experiment_), (std::pair<std::size_t, int>(2, 1)));
     EXPECT_EQ(found(other).first, 0u);
     Checkpoint kept(experiment_, "CPU", out_, 0, watch_);
-    kept.forget();
+    kept.discard();
     EXPECT_FALSE(fs::exists(out_ + "/.crescent-kept"));
 }
 

@@ -97,8 +97,8 @@ static_assert(user::without_wo<Sky>() && !user::without_wo<Own>());
 static_assert(user::channels<Coat>() == 3 && user::numbers<Coat>() == 3);
 static_assert(!user::Judgeable<V3>);
 
-Rigour few() {
-    Rigour r;
+TestSettings few() {
+    TestSettings r;
     r.draws = 4096;
     return r;
 }
@@ -127,7 +127,7 @@ TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
 }
 
 TEST(Doors, JudgingStopsWhenItsWatchSaysSo) {
-    Watch watch;
+    ProgressMonitor watch;
     watch.stop = true;
     EXPECT_THROW(judge_sampler("own", Own{}, few(), &watch), Interrupted);
 }

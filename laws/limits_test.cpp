@@ -17,8 +17,8 @@ namespace {
 Judgement at_a_few(const std::string& arm, const Settings& settings) {
     std::vector<Trial> trials = trials_of(arm, settings, false);
     std::erase_if(trials, [](const Trial& t) { return t.theta_deg != 45 && t.theta_deg != 89; });
-    Watch watch;
-    Rigour rigour = Rigour::quick();
+    ProgressMonitor watch;
+    TestSettings rigour = TestSettings::quick();
     rigour.draws /= 4;
     return judge(trials, rigour, watch);
 }
@@ -81,15 +81,15 @@ TEST(Limits, AccuseASamplerThatLeavesOutWhatItClaims) {
         const Vec3d wi{sin * std::cos(phi), sin * std::sin(phi), z};
         return Draw{wi, p(wo, wi), {}, {}};
     };
-    Watch watch;
+    ProgressMonitor watch;
     const Trial trial = trial_of_subject(subject_of(r), 45, 130);
-    const Judgement j = judge({&trial, 1}, Rigour::quick(), watch);
+    const Judgement j = judge({&trial, 1}, TestSettings::quick(), watch);
     for (const Verdict& v : j.verdicts)
         if (v.name == "mean" || v.name == "physics") EXPECT_EQ(v.state, State::wrong) << v.name << ": " << v.say;
 }
 
-Judgement judged(std::shared_ptr<const JudgedSampler> subject, Rigour rigour) {
-    Watch watch;
+Judgement judged(std::shared_ptr<const JudgedSampler> subject, TestSettings rigour) {
+    ProgressMonitor watch;
     const Trial trial = trial_of_subject(subject, 45, 130);
     return judge({&trial, 1}, rigour, watch);
 }
@@ -104,7 +104,7 @@ TEST(Limits, WhatIsInconclusiveSaysWhatWouldSettleIt) {
         const double r = std::sqrt(u.x), phi = 2 * pi * u.y, z = std::sqrt(1 - u.x);
         return Draw{{r * std::cos(phi), r * std::sin(phi), z}, z / pi, {}, {}};
     };
-    expect_settled(judged(subject_of(r), Rigour::quick()), met);  // f goes on below: support, physics, mean
+    expect_settled(judged(subject_of(r), TestSettings::quick()), met);  // f goes on below: support, physics, mean
     for (const char* name : {"support", "physics", "mean"}) EXPECT_TRUE(met.count(name)) << name;
 
     Recipe wrinkled = r;  // jumps along thousands of curves
@@ -114,7 +114,7 @@ TEST(Limits, WhatIsInconclusiveSaysWhatWouldSettleIt) {
             : 0.0;
     };
     wrinkled.f = {};
-    Rigour few = Rigour::quick();
+    TestSettings few = TestSettings::quick();
     few.evaluations = 2000;
     expect_settled(judged(subject_of(wrinkled), few), met);
 
@@ -126,17 +126,17 @@ TEST(Limits, WhatIsInconclusiveSaysWhatWouldSettleIt) {
         return d;
     };
     rare.pdf = [](Vec3d, Vec3d wi) { return wi.z * wi.z > 1 - 2e-4 && wi.z > 0 ? wi.z / pi : 0.0; };
-    few = Rigour::quick();
+    few = TestSettings::quick();
     few.draws = 2048;
     expect_settled(judged(subject_of(rare), few), met);
     for (const char* name : {"normalised", "density"}) EXPECT_TRUE(met.count(name)) << name;
 
     PipeLimits limits;
     limits.total_seconds = 0.3;
-    Watch watch;
+    ProgressMonitor watch;
     const std::string slow =
         "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
-    expect_settled(judge(trials_of_subject(start_pipe(slow, limits), false), Rigour::quick(), watch), met);
+    expect_settled(judge(trials_of_subject(start_pipe(slow, limits), false), TestSettings::quick(), watch), met);
     EXPECT_EQ(met.size(), verdict_names.size());
 }
 

@@ -16,9 +16,9 @@ namespace crescent {
 namespace {
 
 Judgement judged(std::shared_ptr<const JudgedSampler> subject, double theta = 45) {
-    Watch watch;
+    ProgressMonitor watch;
     const Trial trial = trial_of_subject(subject, theta, 130);
-    return judge({&trial, 1}, Rigour::quick(), watch);
+    return judge({&trial, 1}, TestSettings::quick(), watch);
 }
 
 const Verdict& named(const Judgement& j, std::string_view name) {
@@ -77,9 +77,9 @@ TEST(OwnSamplers, AreTimedInTurnsWhileNothingElseIsAsked) {
     std::vector<Logged::Call> calls;
     std::vector<Trial> trials;
     for (int i = 0; i < 4; ++i) trials.push_back(trial_of_subject(std::make_shared<Logged>(lock, calls), 15.0 * i, 0));
-    Rigour rigour;
+    TestSettings rigour;
     rigour.draws = 4096;
-    Watch watch;
+    ProgressMonitor watch;
     judge(trials, rigour, watch);
     std::sort(calls.begin(), calls.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
     ASSERT_GT(calls.size(), 28u);

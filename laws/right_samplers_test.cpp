@@ -16,15 +16,15 @@ std::string told(const RightLaw& law) {
 }
 
 TEST(RightSamplers, OfEveryFamilyAreLeftAloneInQuickMode) {
-    Watch watch;
-    const RightLaw law = measure_right(0, 60, Rigour::quick(), watch);
+    ProgressMonitor watch;
+    const RightLaw law = measure_right(0, 60, TestSettings::quick(), watch);
     EXPECT_GE(law.families.size(), 20u);
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
 TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
-    Watch watch;
-    Rigour rigour = Rigour::thorough();
+    ProgressMonitor watch;
+    TestSettings rigour = TestSettings::thorough();
     rigour.draws /= 8;  // as full mode integrates, with fewer draws
     const RightLaw law = measure_right(1000, 20, rigour, watch);
     EXPECT_EQ(law.accused, 0u) << told(law);
@@ -32,12 +32,12 @@ TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
 
 /// p jumps where the half vector crosses the horizon; the first sampler of their own that people bring.
 TEST(RightSamplers, WithAnisotropicVisibleNormalsAreLeftAlone) {
-    Watch watch;
+    ProgressMonitor watch;
     const auto subject = subject_of(ggx_visible_at(0.1, 0.4));
-    const Judgement quick = judge(trials_of_subject(subject, false), Rigour::quick(), watch);
+    const Judgement quick = judge(trials_of_subject(subject, false), TestSettings::quick(), watch);
     EXPECT_EQ(quick.state, State::right) << what_is_wrong(quick);
     for (std::uint32_t seed : {2u, 3u}) {
-        Rigour rigour = Rigour::thorough();
+        TestSettings rigour = TestSettings::thorough();
         rigour.seed = seed;
         const Trial trial = trial_of_subject(subject, 60, 250);
         const Judgement full = judge({&trial, 1}, rigour, watch);

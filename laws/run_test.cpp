@@ -12,7 +12,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "base/polled_watch.h"
+#include "base/polled_monitor.h"
 
 namespace crescent {
 namespace {
@@ -28,7 +28,7 @@ Experiment tiny(std::vector<std::string> overrides = {}) {
 std::string metrics_of(Measured measured) { return metrics_json(report_inputs(measured)); }
 
 TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
-    Watch watch;
+    ProgressMonitor watch;
     const RunPlan plan = crescent::plan(tiny());
     Prepared prepared = prepare(plan, {.threads = 1}, watch);
     std::vector<JobResult> results;
@@ -41,12 +41,13 @@ TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
     EXPECT_NE(stepwise.film({"cosine", 16, 32, 7}), nullptr);
     EXPECT_NE(stepwise.reference(32), nullptr);
     EXPECT_EQ(stepwise.reference(8), nullptr);
-    EXPECT_EQ(stepwise.metrics.references[0].rmse_unlike, std::nullopt) << "the note's reference was not asked for";
+    EXPECT_EQ(stepwise.metrics.references[0].max_relative_rmse_change, std::nullopt)
+        << "the note's reference was not asked for";
     EXPECT_TRUE(stepwise.monte_carlo.empty());
 }
 
 TEST(RunSteps, ComputeTheNotesReferenceWhereTheExperimentAsksForIt) {
-    Watch watch;
+    ProgressMonitor watch;
     const RunPlan plan = crescent::plan(tiny({"reference.monte_carlo=true", "seeds=1"}));
     const Prepared prepared = prepare(plan, {}, watch);
     ASSERT_EQ(prepared.monte_carlo.size(), 1u);
@@ -54,7 +55,7 @@ TEST(RunSteps, ComputeTheNotesReferenceWhereTheExperimentAsksForIt) {
 }
 
 TEST(RunSteps, AnswerAStopWithoutAnException) {
-    PolledWatch watch;
+    PolledMonitor watch;
     const RunPlan plan = crescent::plan(tiny());
     Prepared prepared = prepare(plan, {}, watch);
     EXPECT_FALSE(prepared.stopped);
@@ -93,7 +94,7 @@ struct Process {
 };
 
 /// Looks at the process whenever work is done, from whichever thread does it.
-struct Looker : Watch {
+struct Looker : ProgressMonitor {
     Process before;
     std::atomic<int> changed{0};
     void advance(double) override { changed += !(Process() == before); }

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "experiment/experiment.h"
 
 namespace crescent {
@@ -25,7 +25,7 @@ struct FilmOptions {
 };
 
 /// Makes the film and publishes it under options.out as one; returns a summary for the terminal.
-using FilmMaker = std::function<std::string(const Experiment&, const FilmOptions&, Watch&)>;
+using FilmMaker = std::function<std::string(const Experiment&, const FilmOptions&, ProgressMonitor&)>;
 
 /// Empty: this program was built without it.
 FilmMaker& film_maker();

@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) try {
     const crescent::Experiment experiment = crescent::load(argc > 1 ? argv[1] : "experiment.toml");
-    crescent::Watch watch;
+    crescent::ProgressMonitor watch;
     for (const crescent::ArmPlan& arm : experiment.arms)
         for (const crescent::Film& film :
             crescent::estimate_films(crescent::Scene(experiment), arm.sampler, arm.n, experiment.seed, "", watch)) {

@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     const bool stop = argc > 1 && std::strcmp(argv[1], "stop") == 0;
     const crescent::RunPlan plan = crescent::plan(two_arms());
     const crescent::Engine engine{.threads = 2};
-    crescent::PolledWatch watch;  // its state() may be read, and its `stop` be set, from any thread
+    crescent::PolledMonitor watch;  // its state() may be read, and its `stop` be set, from any thread
     crescent::Prepared prepared = crescent::prepare(plan, engine, watch);
 
     std::vector<crescent::JobResult> results;

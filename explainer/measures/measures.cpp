@@ -95,7 +95,7 @@ PixelStory pixel_story(const Data& data) {
 /// As meters/evidence.cpp draws them.
 std::vector<Vec3d> cosine_directions(std::uint32_t seed, std::uint64_t n) {
     std::vector<Vec3d> out;
-    const Cosine<double> arm(Site<double>{});
+    const Cosine<double> arm(ShadingPoint<double>{});
     for (std::uint64_t k = 0; k < n; ++k) {
         const Vec2<float> u = draw(seed, 0, k);
         out.push_back(arm.sample({0, 0, 1}, {static_cast<double>(u.x), static_cast<double>(u.y)}).wi);
@@ -151,7 +151,7 @@ double WeightTail::expected(std::size_t bin) const {
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     WeightTail out;
     out.s = s, out.k = (s - 1) / (s + 1), out.least = 2 / (s + 1), out.n = n;
-    Site<float> site{};
+    ShadingPoint<float> site{};
     site.wo = {0, 0, 1}, site.s = static_cast<float>(s);
     const Phong<float> arm(site);
     std::vector<double> weights;
@@ -177,7 +177,7 @@ WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     return out;
 }
 
-Measures take_measures(const Data& data, const std::string&, Watch& watch) {
+Measures take_measures(const Data& data, const std::string&, ProgressMonitor& watch) {
     Measures out;
     out.story = pixel_story(data);
     watch.check();

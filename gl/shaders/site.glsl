@@ -1,4 +1,4 @@
-// Everything about a pixel's surface point, as src/estimator/sites.h gathers it and src/arms/sampler.h hands it to an arm.
+// Everything about a pixel's surface point, as src/estimator/shading_points.h gathers it and src/arms/sampler.h hands it to an arm.
 // Directions in the local frame unless they are said to be the world's; lengths in m, radiance in W/(sr m^2).
 //
 // `sites` has one texel a pixel and these layers, written by gl/site_texture.cpp:

@@ -57,7 +57,7 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
     const Experiment e = parse(std::string(scene_text) + added, "extending",
         {"fill.radiance=" + fill, "arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
     const Scene scene(e);
-    Watch watch;
+    ProgressMonitor watch;
     const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", watch)[0];
     const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, watch)[0];
     double off = 0, variance = 0, error = 0, all = 0;
@@ -72,8 +72,8 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
 }
 
 bool is_judged_as_expected(const std::string& sampler) {
-    Watch watch;
-    const Judgement j = judge(trials_of(sampler, {}, false), Rigour::quick(), watch);
+    ProgressMonitor watch;
+    const Judgement j = judge(trials_of(sampler, {}, false), TestSettings::quick(), watch);
     if (!j.as_expected) std::cout << verdict_table(j);
     return j.as_expected;
 }

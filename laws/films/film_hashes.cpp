@@ -50,14 +50,14 @@ void print_functions() {
 
 void print(const Experiment& experiment) {
     const Scene scene(experiment);
-    Watch watch;
+    ProgressMonitor watch;
     for (const std::string& isa : isas())
         for (const ArmPlan& arm : experiment.arms)
             for (const Film& film : estimate_films(scene, arm.sampler, arm.n, experiment.seed, isa, watch))
                 std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film)
                           << '\n';
     for (const std::string& isa : isas())
-        for (const ReferenceFilm& film : note_reference(scene, experiment, {experiment.s()}, isa, watch))
+        for (const ReferenceFilm& film : monte_carlo_reference(scene, experiment, {experiment.s()}, isa, watch))
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
     for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, watch))
         std::cout << experiment.file << " quadrature " << hash(film) << '\n';

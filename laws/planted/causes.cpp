@@ -51,13 +51,13 @@ Explained explained(const PlantedFault& fault, const Judgement& judgement) {
 }
 
 std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uint32_t seed, std::string& told) {
-    Rigour rigour = Rigour::quick();
+    TestSettings rigour = TestSettings::quick();
     rigour.seed = seed;
     std::size_t found = 0;
     for (std::size_t i = first; i < first + count; ++i) {
-        Tally tally;
+        TestCounts tally;
         const Trial trial = right_trial(i, seed);
-        Work work(trial, rigour, tally, static_cast<std::uint32_t>(i));
+        TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (const std::optional<Diagnosis>& what : {diagnose_density(work, 0), diagnose_identity(work, 0)}) {
             if (!what) continue;

@@ -146,7 +146,7 @@ TrialLight two_disks() { return stage(LobeKind::none, true, "two disks", 32).lig
 /// The density of A where it aims at disk k alone, chosen with certainty.
 template <template <class> class A> double towards(LocalDisk<double> disk, const Pair& at) {
     disk.power = 1;
-    Site<double> site{};
+    ShadingPoint<double> site{};
     site.disks = &disk, site.disk_count = 1;
     return A<double>(site).pdf(at.wo, at.wi).v;
 }

@@ -20,15 +20,15 @@ RightFamily& family_of(RightLaw& law, const std::string& name) {
 
 }  // namespace
 
-RightLaw measure_right(std::uint64_t first, std::uint64_t count, const Rigour& given, Watch& watch) {
+RightLaw measure_right(std::uint64_t first, std::uint64_t count, const TestSettings& given, ProgressMonitor& watch) {
     std::vector<Judgement> all(count);
     watch.begin("right samplers", static_cast<double>(count));
     oneapi::tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
         watch.check();
-        Rigour rigour = given;
+        TestSettings rigour = given;
         rigour.seed = seed_of(given.seed, static_cast<std::uint32_t>(first + i));
         const Trial trial = right_trial(first + i, given.seed);
-        Watch inner;
+        ProgressMonitor inner;
         all[i] = judge({&trial, 1}, rigour, inner);
         watch.advance(1);
     });

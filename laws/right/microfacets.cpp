@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "base/vec_cast.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
 #include "simd/scalar.h"
@@ -14,10 +15,6 @@ namespace {
 
 template <class F> F length_of(Vec3<F> v) { return std::sqrt(dot(v, v)); }
 template <class F> Vec3<F> unit(Vec3<F> v) { return v * (F(1) / length_of(v)); }
-template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
-template <class F> Vec3d widen(Vec3<F> v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
 template <class F> constexpr F turn = static_cast<F>(2 * pi);
 
 template <class F> struct Ggx2 {

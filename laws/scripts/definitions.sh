@@ -7,7 +7,7 @@ cd "$CRESCENT_SOURCE" || exit 1
 
 for isa in sse4 avx2 avx512; do
     for object in $(find "${CRESCENT_BUILD:?}" -name "kernel_$isa.cpp.o"); do
-        shared=$(nm -C --defined-only "$object" | awk '$2 ~ /^[WVu]$/' | grep -v "crescent::$isa::")
+        shared=$(nm -C --defined-only "$object" | awk '$2 ~ /^[WVu]$/' | grep -v "crescent::[a-z]*::$isa::")
         [ -z "$shared" ] || die "$object shares functions with other files: $shared"
         checked=1
     done
@@ -16,7 +16,7 @@ done
 
 awk '
     FNR == 1 { space = "" }
-    /^namespace [a-z_:]+ \{/ { space = $2 }
+    /^namespace [a-z_:]+(inline [a-z_]+)? \{/ { space = $0; sub(/ \{.*/, "", space) }
     /^(struct|class|enum class) [A-Za-z_0-9]+( final)?( :[^;]*)? \{/ {
         name = $1 == "enum" ? $3 : $2
         full = space "::" name

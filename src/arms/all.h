@@ -16,7 +16,7 @@
 #include "arms/phong.h"
 #include "arms/uniform.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <template <class> class... A> struct ArmList {
     static constexpr std::size_t count = sizeof...(A);
@@ -30,4 +30,4 @@ template <class Call, template <class> class... A> constexpr void for_each_arm(A
     (f.template operator()<A>(), ...);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -7,7 +7,7 @@
 #include "arms/halfway.h"
 #include "lobes/beckmann.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct BeckmannD {
     static constexpr std::string_view name = "beckmann-d";
@@ -23,9 +23,9 @@ template <class F> struct BeckmannD {
         .gl = {2e-5, "as blinn"}};
     /// n.m is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. Where exp(-tan^2 /
     /// alpha^2) is less than the smallest double there, p is 0 where Lambert is not.
-    static Theory theory(const TrialPoint& at) {
+    static ExpectedBehaviour theory(const TrialPoint& at) {
         const double least = math::cos((at.theta_deg + 90) * pi / 360);
-        Theory t{.bounded = at.rho_d == 0};
+        ExpectedBehaviour t{.bounded = at.rho_d == 0};
         if (at.rho_d > 0 && (1 / sqr(least) - 1) / sqr(at.alpha) > 700)
             t.underflows =
                 "exp(-tan^2/alpha^2) is less than the smallest number there is where Lambert is not 0: p is 0 in "
@@ -34,7 +34,7 @@ template <class F> struct BeckmannD {
     }
 
     Beckmann<F> beckmann;
-    explicit BeckmannD(const Site<F>& site) : beckmann{site.alpha} {}
+    explicit BeckmannD(const ShadingPoint<F>& site) : beckmann{site.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1), a2 = sqr(beckmann.alpha);
@@ -52,4 +52,4 @@ template <class F> struct BeckmannD {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -6,7 +6,7 @@
 
 #include "arms/halfway.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct Blinn {
     static constexpr std::string_view name = "blinn";
@@ -23,12 +23,12 @@ template <class F> struct Blinn {
         .trials = trials,
         .gl = {2e-5, "p has 1/(wo.m), and the mirrored wi doubles m's error"}};
     /// n.h is least for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
-    static Theory theory(const TrialPoint& at) {
+    static ExpectedBehaviour theory(const TrialPoint& at) {
         const double least = math::cos((at.theta_deg + 90) * pi / 360);
         return {.bounded = at.rho_d == 0, .underflows = power_underflows(at, least)};
     }
     F s, inverse, scale;
-    explicit Blinn(const Site<F>& site)
+    explicit Blinn(const ShadingPoint<F>& site)
         : s(site.s),
           inverse(number<F>(1) / (site.s + number<F>(1))),
           scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
@@ -50,4 +50,4 @@ template <class F> struct Blinn {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

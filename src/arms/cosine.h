@@ -4,7 +4,7 @@
 
 #include "arms/sampler.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct Cosine {
     static constexpr std::string_view name = "cosine";
@@ -18,8 +18,8 @@ template <class F> struct Cosine {
         .about = PdfAxis::normal,
         .trials = trials,
         .gl = {2.5e-6, "as uniform; cos/p is a constant"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
-    explicit Cosine(const Site<F>&) {}
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
+    explicit Cosine(const ShadingPoint<F>&) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F sin = sqrt(number<F>(1) - u.x);
@@ -32,4 +32,4 @@ template <class F> struct Cosine {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -9,7 +9,7 @@
 #include "arms/halfway.h"
 #include "lobes/ggx.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct GgxBoundedVndf {
     static constexpr std::string_view name = "ggx-bounded-vndf";
@@ -23,22 +23,20 @@ template <class F> struct GgxBoundedVndf {
         .axis = "the normal $n$",
         .trials = trials,
         .gl = {1e-4, "as ggx-vndf, whose cap is cut at a height that is rounded as well"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
 
     Ggx<F> ggx;
-    explicit GgxBoundedVndf(const Site<F>& site) : ggx{site.alpha} {}
+    explicit GgxBoundedVndf(const ShadingPoint<F>& site) : ggx{site.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
-        const F one = number<F>(1), a = ggx.alpha;
-        const Vec3<F> stretched = normalize(Vec3<F>{a * wo.x, a * wo.y, wo.z});
+        const F one = number<F>(1);
+        const Vec3<F> stretched = stretched_by(ggx.alpha, wo);
         const Bound bound = bound_at(wo);
         const F height = one + bound.k * stretched.z;                    // of the cap
         const F drop = u.x * height;                                     // 1 - z on it
         const F rise = (one - u.x) * height + bound.rest * stretched.z;  // z + stretched.z
         const F sin = sqrt(larger(drop * (number<F>(2) - drop), number<F>(0)));
-        const SinCos<F> phi = sincos_turns(u.y);
-        const Vec3<F> m =
-            normalize(Vec3<F>{a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise});
+        const Vec3<F> m = normal_from_cap(ggx.alpha, stretched, sin, sincos_turns(u.y), rise);
         const Vec3<F> wi = mirror_about(wo, m);
         return {wi, density(wo, wi, m)};
     }
@@ -60,4 +58,4 @@ private:
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

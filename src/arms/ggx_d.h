@@ -8,7 +8,7 @@
 #include "arms/halfway.h"
 #include "lobes/ggx.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct GgxD {
     static constexpr std::string_view name = "ggx-d";
@@ -22,9 +22,9 @@ template <class F> struct GgxD {
         .axis = "the normal $n$",
         .trials = trials,
         .gl = {2e-5, "as blinn"}};
-    static Theory theory(const TrialPoint& at) { return {.bounded = at.rho_d == 0}; }
+    static ExpectedBehaviour theory(const TrialPoint& at) { return {.bounded = at.rho_d == 0}; }
     Ggx<F> ggx;
-    explicit GgxD(const Site<F>& site) : ggx{site.alpha} {}
+    explicit GgxD(const ShadingPoint<F>& site) : ggx{site.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const F one = number<F>(1), a2 = sqr(ggx.alpha);
@@ -42,4 +42,4 @@ template <class F> struct GgxD {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

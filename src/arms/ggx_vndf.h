@@ -8,7 +8,7 @@
 #include "arms/halfway.h"
 #include "lobes/ggx.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct GgxVndf {
     static constexpr std::string_view name = "ggx-vndf";
@@ -22,19 +22,17 @@ template <class F> struct GgxVndf {
         .axis = "the normal $n$",
         .trials = trials,
         .gl = {5e-5, "D(m) in f and p nearly cancel: (n.m)^4 near the pole is off by 1e-7/alpha^2 in each"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
     Ggx<F> ggx;
-    explicit GgxVndf(const Site<F>& site) : ggx{site.alpha} {}
+    explicit GgxVndf(const ShadingPoint<F>& site) : ggx{site.alpha} {}
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
-        const F one = number<F>(1), a = ggx.alpha;
-        const Vec3<F> stretched = normalize(Vec3<F>{a * wo.x, a * wo.y, wo.z});
+        const F one = number<F>(1);
+        const Vec3<F> stretched = stretched_by(ggx.alpha, wo);
         const F rise = (one - u.x) * (one + stretched.z);  // z + stretched.z on the cap
         const F z = rise - stretched.z;
         const F sin = sqrt(larger((one - z) * (one + z), number<F>(0)));
-        const SinCos<F> phi = sincos_turns(u.y);
-        const Vec3<F> m =
-            normalize(Vec3<F>{a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise});
+        const Vec3<F> m = normal_from_cap(ggx.alpha, stretched, sin, sincos_turns(u.y), rise);
         const Vec3<F> wi = mirror_about(wo, m);
         return {wi, density(wo, wi, m)};
     }
@@ -46,4 +44,4 @@ private:
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -6,7 +6,7 @@
 
 #include "arms/sampler.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> F half_jacobian(F wo_m) { return number<F>(4) * larger(wo_m, number<F>(1e-12)); }
 
@@ -24,4 +24,13 @@ template <class F> PerSr<F> above(Vec3<F> wo, Vec3<F> wi, F p) {
 /// wo mirrored in the unit vector m.
 template <class F> Vec3<F> mirror_about(Vec3<F> wo, Vec3<F> m) { return m * (number<F>(2) * dot(wo, m)) - wo; }
 
-}  // namespace crescent
+/// wo in the space where the lobe of width alpha is a hemisphere.        Heitz 2018, section 3.2
+template <class F> Vec3<F> stretched_by(F alpha, Vec3<F> wo) {
+    return normalize(Vec3<F>{alpha * wo.x, alpha * wo.y, wo.z});
+}
+/// The normal halfway between `stretched` and the direction (sin, phi, rise - stretched.z) of the cap, back from there.
+template <class F> Vec3<F> normal_from_cap(F alpha, Vec3<F> stretched, F sin, SinCos<F> phi, F rise) {
+    return normalize(Vec3<F>{alpha * (sin * phi.cos + stretched.x), alpha * (sin * phi.sin + stretched.y), rise});
+}
+
+}  // namespace crescent::inline arms

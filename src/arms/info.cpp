@@ -3,7 +3,7 @@
 #include "arms/all.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::uint64_t directions_per_sample(std::string_view sampler) {
     return arm ? static_cast<std::uint64_t>(arm->techniques) : 1;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

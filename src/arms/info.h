@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline arms {
 
 /// The direction that a density is centred on, where it has one and is symmetric about it.
 enum class PdfAxis { none, normal, mirror };
@@ -32,7 +32,7 @@ struct TrialPoint {
 };
 
 /// What a known theory says of an arm at such a point.
-struct Theory {
+struct ExpectedBehaviour {
     std::optional<double> lost{};    // fraction of the diffuse part that p cannot reach
     double lost_of = 0;              // that part's albedo
     std::optional<double> tail_k{};  // Pareto index of f L cos / p
@@ -73,7 +73,7 @@ struct ArmManual {
 struct ArmInfo : ArmManual {
     std::string_view name;  // the word for it in files, on plates and in the report
     int techniques = 1;     // directions drawn a sample
-    Theory (*theory)(const TrialPoint& at) = nullptr;
+    ExpectedBehaviour (*theory)(const TrialPoint& at) = nullptr;
 };
 
 /// The arms in the order of the list in all.h.
@@ -85,4 +85,4 @@ std::vector<std::string> sampler_names();
 /// Directions that an arm of the list draws a sample.
 std::uint64_t directions_per_sample(std::string_view sampler);
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -9,7 +9,7 @@
 #include "base/formula.h"
 #include "lobes/info.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 namespace {
 
 TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
@@ -57,4 +57,4 @@ TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -7,7 +7,7 @@
 
 #include "arms/sampler.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct LightArea {
     static constexpr std::string_view name = "light-area";
@@ -22,7 +22,7 @@ template <class F> struct LightArea {
         .misses = light_arm_misses,
         .trials = trials,
         .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
-    static Theory theory(const TrialPoint& at) { return theory_of_light_arm(at); }
+    static ExpectedBehaviour theory(const TrialPoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
     int count;
     const LocalLight<F>* others;  // after the disks
@@ -44,7 +44,7 @@ template <class F> struct LightArea {
     };
     Aim first;  // most scenes have but one
 
-    explicit LightArea(const Site<F>& site)
+    explicit LightArea(const ShadingPoint<F>& site)
         : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
         if (count > 0) first = Aim(disks[0]);
     }
@@ -134,4 +134,4 @@ private:
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

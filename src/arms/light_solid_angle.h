@@ -14,7 +14,7 @@
 
 #include "arms/sampler.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct LightSolidAngle {
     static constexpr std::string_view name = "light-solid-angle";
@@ -29,7 +29,7 @@ template <class F> struct LightSolidAngle {
         .misses = light_arm_misses,
         .trials = trials,
         .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};
-    static Theory theory(const TrialPoint& at) { return theory_of_light_arm(at); }
+    static ExpectedBehaviour theory(const TrialPoint& at) { return theory_of_light_arm(at); }
     const LocalDisk<F>* disks;
     int count;
     const LocalLight<F>* others;  // after the disks
@@ -43,7 +43,7 @@ template <class F> struct LightSolidAngle {
     };
     Cap first;  // most scenes have but one
 
-    explicit LightSolidAngle(const Site<F>& site)
+    explicit LightSolidAngle(const ShadingPoint<F>& site)
         : disks(site.disks), count(site.disk_count), others(site.others), other_count(site.other_count) {
         if (count > 0) first = cap_of(disks[0]);
     }
@@ -145,4 +145,4 @@ private:
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -8,7 +8,7 @@
 #include "arms/light_area.h"
 #include "arms/mixture.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 inline constexpr TrialSurface mis_trials[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
@@ -20,7 +20,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
     static constexpr int techniques = 2;
     Mixture<F> brdf;
     LightArea<F> light;
-    explicit TwoSampleMis(const Site<F>& site) : brdf(site), light(site) {}
+    explicit TwoSampleMis(const ShadingPoint<F>& site) : brdf(site), light(site) {}
 
     template <int t> auto sample_technique(Vec3<F> wo, Vec2<F> u) const {
         if constexpr (t == 0) return brdf.sample(wo, u);
@@ -35,4 +35,4 @@ template <class F, class Heuristic> struct TwoSampleMis {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

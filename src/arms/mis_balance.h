@@ -4,7 +4,7 @@
 
 #include "arms/mis.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 struct BalanceHeuristic {
     /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and weighs 0.
@@ -26,8 +26,8 @@ template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
         .combines = true,
         .trials = mis_trials,
         .gl = {5e-6, "as mixture; weights are at most 1"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, BalanceHeuristic>::TwoSampleMis;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -4,7 +4,7 @@
 
 #include "arms/mis.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 struct PowerHeuristic {
     template <class F> static F weight(F own, F other) {
@@ -26,8 +26,8 @@ template <class F> struct MisPower : TwoSampleMis<F, PowerHeuristic> {
         .combines = true,
         .trials = mis_trials,
         .gl = {5e-6, "as mixture; weights are at most 1"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
     using TwoSampleMis<F, PowerHeuristic>::TwoSampleMis;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -8,7 +8,7 @@
 #include "arms/cosine.h"
 #include "arms/phong.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct Mixture {
     static constexpr std::string_view name = "mixture";
@@ -24,11 +24,11 @@ template <class F> struct Mixture {
         .combines = true,
         .trials = trials,
         .gl = {5e-6, "as phong; the cosine beside it bounds 1/p"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
     Phong<F> lobe;
     Cosine<F> diffuse;
     F q;
-    explicit Mixture(const Site<F>& site) : lobe(site), diffuse(site) {
+    explicit Mixture(const ShadingPoint<F>& site) : lobe(site), diffuse(site) {
         const F sum = site.lobe + site.diffuse;
         const auto some = sum > number<F>(0);
         q = select(some, smaller(site.lobe / select(some, sum, number<F>(1)), number<F>(0.9)), number<F>(0));
@@ -46,4 +46,4 @@ template <class F> struct Mixture {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

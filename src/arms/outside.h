@@ -11,7 +11,7 @@
 
 #include "base/vec.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 /// What a sampler may know of the surface point, beside wo. Files and C read its rows as they stand here.
 struct OutsideSurface {
@@ -62,4 +62,4 @@ struct ArmInUse {
     ArmInUse(const char* word) : sampler(word) {}
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

@@ -7,7 +7,7 @@
 #include "arms/sampler.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct Phong {
     static constexpr std::string_view name = "phong";
@@ -25,10 +25,10 @@ template <class F> struct Phong {
         .gl = {7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"}};
     /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and past 90 deg from R no samples at
     /// all.
-    static Theory theory(const TrialPoint& at) {
+    static ExpectedBehaviour theory(const TrialPoint& at) {
         if (!(at.rho_d > 0)) return {.bounded = true};
         const bool tilted = at.theta_deg > 0;
-        Theory t;
+        ExpectedBehaviour t;
         t.lost = (1 - math::cos(at.theta_deg * pi / 180)) / 2;
         t.lost_of = at.rho_d;
         t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light lies below
@@ -40,7 +40,7 @@ template <class F> struct Phong {
         return t;
     }
     F s, inverse, scale;
-    explicit Phong(const Site<F>& site)
+    explicit Phong(const ShadingPoint<F>& site)
         : s(site.s),
           inverse(number<F>(1) / (site.s + number<F>(1))),
           scale((site.s + number<F>(1)) * number<F>(0.5 / pi)) {}
@@ -59,4 +59,4 @@ template <class F> struct Phong {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

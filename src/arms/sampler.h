@@ -10,7 +10,7 @@
 #include "scene/lights/all.h"
 #include "simd/frame.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 /// A density over solid angle, 1/sr.
 template <class F> struct PerSr {
@@ -58,7 +58,7 @@ template <class F> struct LocalDisk {
 };
 
 /// Everything about a surface point that a sampler may aim by.
-template <class F> struct Site {
+template <class F> struct ShadingPoint {
     Vec3<F> wo;
     F s;        // Phong exponent
     F alpha;    // GGX roughness
@@ -72,8 +72,8 @@ template <class F> struct Site {
 
 /// What holds of the arms that aim at disk lights alone.
 inline constexpr std::string_view light_arm_misses = "light that comes from no disk";
-inline Theory theory_of_light_arm(const TrialPoint& at) {
-    Theory t;
+inline ExpectedBehaviour theory_of_light_arm(const TrialPoint& at) {
+    ExpectedBehaviour t;
     if (at.fill > 0) t.wrong = "support", t.why = "an arm that aims at the disk alone cannot find the fill";
     return t;
 }
@@ -85,4 +85,4 @@ concept Sampler = requires(const S s, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
     { s.pdf(wo, wi) } -> std::same_as<PerSr<F>>;           // 0 off the support
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

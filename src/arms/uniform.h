@@ -4,7 +4,7 @@
 
 #include "arms/sampler.h"
 
-namespace crescent {
+namespace crescent::inline arms {
 
 template <class F> struct Uniform {
     static constexpr std::string_view name = "uniform";
@@ -18,8 +18,8 @@ template <class F> struct Uniform {
         .about = PdfAxis::normal,
         .trials = trials,
         .gl = {2.5e-6, "cos times the lobe: (w.R)^s turns 1e-7 of w.R into s 1e-7 of the lobe"}};
-    static Theory theory(const TrialPoint&) { return {.bounded = true}; }
-    explicit Uniform(const Site<F>&) {}
+    static ExpectedBehaviour theory(const TrialPoint&) { return {.bounded = true}; }
+    explicit Uniform(const ShadingPoint<F>&) {}
 
     [[gnu::always_inline]] Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F sin = sqrt(number<F>(1) - u.x * u.x);
@@ -31,4 +31,4 @@ template <class F> struct Uniform {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline arms

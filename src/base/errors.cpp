@@ -8,13 +8,13 @@
 #include <cctype>
 #include <numeric>
 
-namespace crescent {
+namespace crescent::inline base {
 
 namespace {
 
-std::string join(const std::vector<Complaint>& all) {
+std::string join(const std::vector<Diagnostic>& all) {
     std::string text;
-    for (const Complaint& c : all) {
+    for (const Diagnostic& c : all) {
         if (!text.empty()) text += '\n';
         const std::string at = printable(to_string(c.at));
         text += at.empty() ? c.say : at + ": " + c.say;
@@ -42,12 +42,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string to_string(const Place& at) {
+std::string to_string(const SourceLocation& at) {
     if (at.line == 0) return at.file;
     return fmt::format("{}:{}:{}", at.file, at.line, at.column);
 }
 
-InputError::InputError(std::vector<Complaint> all) : std::invalid_argument(join(all)), all_(std::move(all)) {}
+InputError::InputError(std::vector<Diagnostic> all) : std::invalid_argument(join(all)), all_(std::move(all)) {}
 
 Bug::Bug(const std::source_location& at, std::string_view claim)
     : std::logic_error(fmt::format("{}:{}: internal check failed: {}", at.file_name(), at.line(), claim)) {}
@@ -62,4 +62,4 @@ std::string nearest(std::string_view word, const std::vector<std::string>& valid
     return best;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

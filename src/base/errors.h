@@ -9,32 +9,32 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline base {
 
 /// Where a value stands: file, line and column, both counted from 1 (0: unknown).
-struct Place {
+struct SourceLocation {
     std::string file;
     unsigned line = 0, column = 0;
 };
 
 /// "gallery.toml:14:9", or as much of it as is known.
-std::string to_string(const Place& at);
+std::string to_string(const SourceLocation& at);
 
 /// One mistake in the input: where, and what was expected.
-struct Complaint {
-    Place at;
+struct Diagnostic {
+    SourceLocation at;
     std::string say;
 };
 
 /// The input is wrong. Carries every mistake that was found, in file order.
 class InputError : public std::invalid_argument {
 public:
-    explicit InputError(std::vector<Complaint> all);
-    InputError(const Place& at, const std::string& say) : InputError(std::vector<Complaint>{{at, say}}) {}
-    const std::vector<Complaint>& complaints() const { return all_; }
+    explicit InputError(std::vector<Diagnostic> all);
+    InputError(const SourceLocation& at, const std::string& say) : InputError(std::vector<Diagnostic>{{at, say}}) {}
+    const std::vector<Diagnostic>& complaints() const { return all_; }
 
 private:
-    std::vector<Complaint> all_;
+    std::vector<Diagnostic> all_;
 };
 
 /// Something could not be written, or a needed part (font, driver, library) is missing.
@@ -57,4 +57,4 @@ inline void ensure(
 /// The word of `valid` nearest to `word` by edit distance, "" where none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& valid);
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -16,7 +16,7 @@
 #include "base/errors.h"
 #include "base/publish.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
 namespace fs = std::filesystem;
 
@@ -135,7 +135,7 @@ void Staging::write(const std::string& name, const std::string& text) {
     write(name, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
-void Staging::commit(Watch& watch) {
+void Staging::commit(ProgressMonitor& watch) {
     Publication publication(out_, folder_, stage_);
     publication.publish(std::move(names_), kind_, watch.outputs);
     names_.clear();
@@ -144,4 +144,4 @@ void Staging::commit(Watch& watch) {
     said_.clear();
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/folder.h"
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
 /// A folder of outputs in the making. Nothing shows under a final name before commit(); if the process ends earlier,
 /// earlier outputs stand untouched; wherever it ends inside commit(), all of the old ones stand or all of the new ones.
@@ -30,7 +30,7 @@ public:
     std::string scratch() const { return folder_ + "/" + stage_ + "/scratch"; }
     /// Brings every output to its place and removes files of the earlier outputs that are not among them. What the
     /// folder holds besides stays. `watch` is told what stands when, and which files were kept under another name.
-    void commit(Watch& watch);
+    void commit(ProgressMonitor& watch);
 
 private:
     void clear_stale();
@@ -42,4 +42,4 @@ private:
     std::vector<std::string> names_, said_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline base

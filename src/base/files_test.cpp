@@ -14,7 +14,7 @@
 #include "base/errors.h"
 #include "base/publish.h"
 
-namespace crescent {
+namespace crescent::inline base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ protected:
     fs::path top_ = fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
         ("publishing-" + std::to_string(getpid()));
     fs::path out_ = top_ / "out";
-    Watch watch_;
+    ProgressMonitor watch_;
     void SetUp() override { fs::remove_all(top_), fs::create_directories(top_); }
     void TearDown() override { fs::remove_all(top_); }
 
@@ -238,4 +238,4 @@ TEST_F(Publishing, NamesWhatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline base

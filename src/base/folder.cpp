@@ -13,7 +13,7 @@
 
 #include "base/errors.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
 void (*before_change)() = nullptr;
 
@@ -163,4 +163,4 @@ bool Folder::sync(const std::string& leaf) const {
 
 std::string leaf_of(const std::string& name) { return name.substr(name.rfind('/') + 1); }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

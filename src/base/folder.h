@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline base {
 
 class Folder {
 public:
@@ -54,4 +54,4 @@ extern void (*before_change)();
 /// The last part of a name: "plates/hero.png" -> "hero.png".
 std::string leaf_of(const std::string& name);
 
-}  // namespace crescent
+}  // namespace crescent::inline base

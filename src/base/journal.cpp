@@ -19,9 +19,9 @@
 
 #endif
 
-namespace crescent {
+namespace crescent::inline base {
 
-Journal::Journal(std::string path, std::string key, Watch& watch)
+Journal::Journal(std::string path, std::string key, ProgressMonitor& watch)
     : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
 
 Journal::Journal(Journal&& other) noexcept
@@ -139,4 +139,4 @@ void Journal::remove() {}
 
 #endif
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
 class Journal {
 public:
     using Bytes = std::span<const std::byte>;
 
     /// `key` names the work: the records of other work count as none. Nothing is read or written yet.
-    Journal(std::string path, std::string key, Watch& watch);
+    Journal(std::string path, std::string key, ProgressMonitor& watch);
     ~Journal();
     Journal(Journal&& other) noexcept;
     Journal& operator=(Journal&&) = delete;
@@ -34,9 +34,9 @@ private:
     bool open(int flags);
     bool write(const std::vector<Bytes>& parts);
     std::string path_, key_;
-    Watch& watch_;
+    ProgressMonitor& watch_;
     int file_ = -1;
     bool off_ = false;  // another process has the file, or it cannot be written
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline base

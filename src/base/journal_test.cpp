@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <fstream>
 
-namespace crescent {
+namespace crescent::inline base {
 namespace {
 
 namespace fs = std::filesystem;
 using Texts = std::vector<std::string>;
 
-struct Listener : Watch {
+struct Listener : ProgressMonitor {
     int said = 0;
     void say(std::string_view) override { ++said; }
 };
@@ -126,4 +126,4 @@ TEST_F(Journals, ThatCannotBeWrittenSaySo) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline base

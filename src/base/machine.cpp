@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline base {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::uint64_t available_memory() {
     return std::min({machine, granted_memory("", "/proc/self/cgroup"), left_in_address_space()});
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

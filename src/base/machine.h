@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace crescent {
+namespace crescent::inline base {
 
 /// Processors that this process may run on, and no more than its control groups grant it time for; 1 at least.
 int usable_threads();
@@ -17,4 +17,4 @@ std::uint64_t available_memory();
 double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
 std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace crescent {
+namespace crescent::inline base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ TEST_F(Machines, BoundToOneProcessorUseOneThread) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -17,7 +17,7 @@
 #include <mutex>
 #endif
 
-namespace crescent {
+namespace crescent::inline base {
 
 #ifndef CRESCENT_SERIAL
 
@@ -85,4 +85,4 @@ struct Guard {
 
 #endif
 
-}  // namespace crescent
+}  // namespace crescent::inline base

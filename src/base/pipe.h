@@ -5,7 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace crescent {
+namespace crescent::inline base {
 
 /// ends[0] to read from, ends[1] to write to; false and errno where there is none to be had.
 inline bool make_pipe(int (&ends)[2]) {
@@ -18,4 +18,4 @@ inline bool make_pipe(int (&ends)[2]) {
 #endif
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

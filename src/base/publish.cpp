@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
 namespace {
 
@@ -214,4 +214,4 @@ bool Publication::keep_aside(const Folder& from, const std::string& name) {
     return true;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "base/folder.h"
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
 inline constexpr std::string_view stage_prefix = ".crescent-stage-";
 /// The list of what stands: one for each kind of work that writes into the folder.
@@ -62,4 +62,4 @@ private:
 /// The names in a manifest; those that could lead out of the folder are left out.
 std::vector<std::string> names_in(const std::string& manifest);
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace crescent {
+namespace crescent::inline base {
 namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -100,4 +100,4 @@ std::string shell_word(std::string_view word) {
     return out + "'";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline base

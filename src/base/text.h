@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace crescent {
+namespace crescent::inline base {
 
 /// For XML and XHTML-compatible HTML: & < > " ' as references; control characters that XML 1.0 forbids, and broken
 /// UTF-8, as U+FFFD.
@@ -20,4 +20,4 @@ std::string printable_lines(std::string_view text);
 /// The word as a POSIX shell reads it back: as it is where that is plain, else in quotes.
 std::string shell_word(std::string_view word);
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <random>
 
-namespace crescent {
+namespace crescent::inline base {
 namespace {
 
 TEST(Text, NothingThatMovesACursorIsPrinted) {
@@ -53,4 +53,4 @@ TEST(Text, IsCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline base

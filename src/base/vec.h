@@ -2,7 +2,7 @@
 // Directions are unit vectors; lengths are in scene units.
 #pragma once
 
-namespace crescent {
+namespace crescent::inline base {
 
 template <class F> struct Vec2 {
     F x, y;
@@ -37,4 +37,4 @@ template <class F> [[gnu::always_inline]] constexpr Vec3<F> cross(Vec3<F> a, Vec
 using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 
-}  // namespace crescent
+}  // namespace crescent::inline base

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace crescent {
+namespace crescent::inline color {
 
 using Rgb = std::array<double, 3>;  // linear Rec.709
 
@@ -14,4 +14,4 @@ template <class C> double luminance(const C& rgb) {
     return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline color

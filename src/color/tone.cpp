@@ -5,7 +5,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline color {
 
 namespace {
 
@@ -80,4 +80,4 @@ Srgb8 photograph(const Rgb& radiance, double exposure) {
     return {srgb_byte(mapped[0]), srgb_byte(mapped[1]), srgb_byte(mapped[2])};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline color

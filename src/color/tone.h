@@ -6,7 +6,7 @@
 
 #include "color/rgb.h"
 
-namespace crescent {
+namespace crescent::inline color {
 
 /// 8-bit sRGB, as it stands in a PNG.
 using Srgb8 = std::array<unsigned char, 3>;
@@ -29,4 +29,4 @@ inline constexpr Srgb8 not_a_number_colour{255, 0, 255};
 /// `not_a_number_colour`.
 Srgb8 photograph(const Rgb& radiance, double exposure);
 
-}  // namespace crescent
+}  // namespace crescent::inline color

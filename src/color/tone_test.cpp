@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace crescent {
+namespace crescent::inline color {
 namespace {
 
 TEST(Srgb, EncodesTheValuesOfTheStandard) {
@@ -89,4 +89,4 @@ TEST(Photograph, ShowsWhatIsNotANumberAndTakesNegativeLightForNone) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline color

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent {
+namespace crescent::inline color {
 
 namespace {
 
@@ -281,4 +281,4 @@ Srgb8 turbo(double t) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline color

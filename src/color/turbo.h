@@ -4,9 +4,9 @@
 
 #include "color/tone.h"
 
-namespace crescent {
+namespace crescent::inline color {
 
 /// t in [0, 1] (clamped) -> sRGB, linear between the 256 published entries. NaN: `not_a_number_colour`.
 Srgb8 turbo(double t);
 
-}  // namespace crescent
+}  // namespace crescent::inline color

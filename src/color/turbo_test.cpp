@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace crescent {
+namespace crescent::inline color {
 namespace {
 
 TEST(Turbo, HasThePublishedEntries) {
@@ -36,4 +36,4 @@ TEST(Turbo, GoesInSmallStepsAndClamps) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline color

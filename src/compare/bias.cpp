@@ -11,7 +11,7 @@
 #include "compare/pixel_tests.h"
 #include "compare/sides.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -143,4 +143,4 @@ BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const Compar
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

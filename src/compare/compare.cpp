@@ -8,10 +8,10 @@
 #include "compare/plates.h"
 #include "plates/canvas.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
-    Watch& watch, std::string& summary) {
+    ProgressMonitor& watch, std::string& summary) {
     const plates::Canvas probe(1, 1, {});  // a missing font is told before the work
     const Readings all = read_all(plan, watch);
     const CompareResult result = judge(plan, all, watch);
@@ -31,4 +31,4 @@ CompareResult compare(const ComparePlan& plan, const CompareOptions& options, co
     return result;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

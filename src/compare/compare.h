@@ -1,12 +1,12 @@
 // crescent compare: renders of other programs -> meters with their doubt, bias tests, plates, report.
 #pragma once
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "compare/outputs.h"
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 struct CompareOptions {
     std::string out = "out/compare";
@@ -15,6 +15,6 @@ struct CompareOptions {
 /// Reads, measures and writes everything under options.out; outputs appear whole or not at all. `summary` is for the
 /// terminal. Throws InputError, OutputError, Interrupted.
 CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
-    Watch& watch, std::string& summary);
+    ProgressMonitor& watch, std::string& summary);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -15,7 +15,7 @@
 #include "color/rgb.h"
 #include "films/film.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -152,4 +152,4 @@ std::optional<double> exr_attribute(const Imf::Header& header, std::initializer_
     return {};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

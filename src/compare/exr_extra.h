@@ -11,7 +11,7 @@
 
 #include "compare/render.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 std::string lower(std::string text);
 /// layer -> colour (lower case) -> channel: "RenderLayer.Combined.R" stands under RenderLayer.Combined and r.
@@ -39,4 +39,4 @@ void set_samples(Render& out, const ExrExtra& extra, const std::vector<float>& p
 /// The first attribute whose name, without what stands before its last '.' or '/', is one of these.
 std::optional<double> exr_attribute(const Imf::Header& header, std::initializer_list<const char*> names);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -14,7 +14,7 @@
 
 #include "base/parallel.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 void MeanFilm::add(const Render& render, double variance_scale) {
     if (count == 0) {
@@ -98,7 +98,7 @@ std::vector<std::string> matching(const std::string& pattern) {
 
 }  // namespace
 
-std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at) {
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& at) {
     std::vector<std::string> out;
     for (const std::string& pattern : patterns) {
         const std::vector<std::string> paths = matching(pattern);
@@ -206,4 +206,4 @@ void FirstPass::known(const RenderFile& file, const std::string& arm) {
     all_.warnings.push_back(fmt::format("{}: the same pixels as {} of {}", file.path, path, other));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -3,11 +3,11 @@
 
 #include "compare/renders.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 class FirstPass {
 public:
-    FirstPass(Readings& all, Watch& watch) : all_(all), watch_(watch) {}
+    FirstPass(Readings& all, ProgressMonitor& watch) : all_(all), watch_(watch) {}
     /// Reads every file of an arm into `to`; `spp`: samples a pixel, where the plan says them. Throws InputError at the
     /// first that does not fit.
     void arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
@@ -19,9 +19,9 @@ private:
     void known(const RenderFile& file, const std::string& arm);
 
     Readings& all_;
-    Watch& watch_;
+    ProgressMonitor& watch_;
     std::string first_;
     std::map<std::string, std::pair<std::string, std::string>> seen_;  // hash -> path, arm
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -7,7 +7,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -276,4 +276,4 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -11,7 +11,7 @@
 #include "pages/numbers.h"
 #include "pages/page.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::string compare_html(const ComparePlan& plan, const Readings& all, const Com
             {"assertions", "Assertions", assertions(result)}, {"files", "What was read", files_section(all, result)}});
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -9,7 +9,7 @@
 #include "compare/schema.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -24,7 +24,7 @@ template <class Read> std::optional<double> told(const std::optional<double>& pl
     return sum / static_cast<double>(arm.files.size());
 }
 
-ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t a, Watch& watch) {
+ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& watch) {
     ArmResult out;
     const ArmReadings& arm = all.arms[a];
     out.name = plan.arms[a].name, out.renders = arm.files.size();
@@ -94,7 +94,7 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
 
 }  // namespace
 
-CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch) {
+CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonitor& watch) {
     CompareResult out;
     out.warnings = all.warnings;
     const std::size_t arms = all.arms.size();
@@ -118,4 +118,4 @@ CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch) 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -4,7 +4,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// What one render of an arm cost, where it is known.
 struct Cost {
@@ -16,7 +16,7 @@ struct Flips {
 };
 
 /// Of the arm's first render, a region each; none without a reference.
-std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t arm, Watch& watch);
+std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t arm, ProgressMonitor& watch);
 
 /// Every meter of one arm in one region.
 RegionResult measure_region(
@@ -49,6 +49,6 @@ std::vector<Ranking> rank(const CompareResult& result);
 std::vector<SppLadder> ladders_of(const CompareResult& result);
 
 /// Measures, tests and judges everything that the plan asks.
-CompareResult judge(const ComparePlan& plan, const Readings& all, Watch& watch);
+CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonitor& watch);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -8,7 +8,7 @@
 #include "compare/made.h"
 #include "compare/schema.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -162,4 +162,4 @@ TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -9,7 +9,7 @@
 #include "math/functions.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -28,7 +28,7 @@ Render made_render(const std::string& path, const MadeNoise& noise, std::uint32_
 
 RenderSource source_of(const MadeWorld& world, std::uint32_t seed) {
     RenderSource out;
-    out.expand = [world](const std::vector<std::string>& patterns, const Place&) {
+    out.expand = [world](const std::vector<std::string>& patterns, const SourceLocation&) {
         std::vector<std::string> paths;
         const int count = patterns[0] == "reference" ? 1 : world.renders;
         for (int k = 0; k < count; ++k) paths.push_back(fmt::format("{}-{}", patterns[0], k));
@@ -73,8 +73,8 @@ CompareResult compare_made(const MadeWorld& world, std::uint32_t seed, const std
         {{"flip"}, "false", true, "flip"}};
     flags.insert(flags.end(), more.begin(), more.end());
     const ComparePlan plan = plan_of(flags);
-    Watch watch;
+    ProgressMonitor watch;
     return judge(plan, read_all(plan, watch, source_of(world, seed)), watch);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -3,7 +3,7 @@
 
 #include "compare/judge.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// Noise of mean 1 + bias. normal: of this sd. lognormal: sd is that of the logarithm. events: 0.9, and with this
 /// chance a bright event that is exponentially distributed and makes up the rest: what a caustic or a missed lamp does.
@@ -27,4 +27,4 @@ double made_pixel(const MadeNoise& noise, std::uint32_t seed, std::uint32_t pixe
 /// The world compared as files would be; equal seeds give equal renders. `more` flags stand over its own.
 CompareResult compare_made(const MadeWorld& world, std::uint32_t seed, const std::vector<CompareFlag>& more = {});
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

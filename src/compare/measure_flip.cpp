@@ -5,7 +5,7 @@
 #include "compare/judge.h"
 #include "color/tone.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -30,7 +30,7 @@ std::array<std::vector<float>, 3> photograph(
 
 }  // namespace
 
-std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t a, Watch& watch) {
+std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& watch) {
     std::vector<Flips> out(all.regions.size());
     if (!all.reference || !plan.flip) return out;
     watch.begin("FLIP", 1);
@@ -48,4 +48,4 @@ std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, st
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

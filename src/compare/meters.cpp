@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "stats/tail.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -197,4 +197,4 @@ RegionResult measure_region(
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -80,4 +80,4 @@ NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

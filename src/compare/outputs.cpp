@@ -13,7 +13,7 @@
 #include "pages/junit.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::string compare_summary(
     return out + "\n" + out_dir + "/report.html tells the rest.\n";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

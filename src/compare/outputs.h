@@ -4,7 +4,7 @@
 #include "compare/results.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// docs/compare.schema.json says what stands in it; equal inputs give equal bytes.
 std::string compare_json(
@@ -18,4 +18,4 @@ std::string compare_summary(
 std::string compare_html(const ComparePlan& plan, const Readings& all, const CompareResult& result,
     const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -6,7 +6,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// The tables of the page: every meter by arm and region, with its interval.
 std::string numbers_section(const ComparePlan& plan, const Readings& all, const CompareResult& result);
@@ -17,4 +17,4 @@ std::string ladders_section(const CompareResult& result);
 std::string spectra_section(const Readings& all, const CompareResult& result);
 std::string files_section(const Readings& all, const CompareResult& result);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

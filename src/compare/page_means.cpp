@@ -9,7 +9,7 @@
 #include "pages/html.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -146,4 +146,4 @@ std::string spectra_section(const Readings& all, const CompareResult& result) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

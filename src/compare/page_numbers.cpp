@@ -9,7 +9,7 @@
 #include "pages/html.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -177,4 +177,4 @@ std::string files_section(const Readings& all, const CompareResult& result) {
         (warnings.empty() ? "" : "<h3>Warnings</h3>\n" + html::list(warnings));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

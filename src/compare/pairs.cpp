@@ -5,7 +5,7 @@
 
 #include "compare/judge.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -44,4 +44,4 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const ArmReadings& a, 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

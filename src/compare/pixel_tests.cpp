@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -139,4 +139,4 @@ void test_pixels(const Sides& s, double alpha, BiasResult& out) {
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -3,7 +3,7 @@
 
 #include "compare/sides.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// p of one pixel; NaN where it has no noise and no difference, or its noise is not known. 1 where rare events that no
 /// render met could make up the difference (`level`, see Sides::unseen).
@@ -15,4 +15,4 @@ void test_pixels(const Sides& sides, double alpha, BiasResult& out);
 /// The level of Sides::unseen that test_pixels takes.
 double pixel_level(const Sides& sides, double alpha);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -8,14 +8,14 @@
 #include <set>
 
 #include "compare/schema.h"
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 #include "experiment/published.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
-Node text_node(const std::string& text, const Place& at) {
+Node text_node(const std::string& text, const SourceLocation& at) {
     Node node;
     node.kind = Node::Kind::text;
     node.text = text;
@@ -23,13 +23,13 @@ Node text_node(const std::string& text, const Place& at) {
     return node;
 }
 
-void move_to(Node& node, const Place& at) {
+void move_to(Node& node, const SourceLocation& at) {
     node.at = at;
     for (Member& member : node.members) member.at = at, move_to(member.value, at);
 }
 
 /// The value of a flag: TOML where it says so and is some, else text as it is; the reader says what was expected.
-Node value_of(const CompareFlag& flag, const Place& at) {
+Node value_of(const CompareFlag& flag, const SourceLocation& at) {
     if (!flag.toml) return text_node(flag.value, at);
     try {
         Node tree = read_toml("value = " + flag.value, flag.typed);
@@ -41,7 +41,7 @@ Node value_of(const CompareFlag& flag, const Place& at) {
     return text_node(flag.value, at);
 }
 
-Node& child(Node& parent, const std::string& key, const Place& at) {
+Node& child(Node& parent, const std::string& key, const SourceLocation& at) {
     if (Member* found = parent.find(key)) return found->value;
     parent.members.push_back({key, at, Node{}});
     parent.members.back().value.at = at;
@@ -50,7 +50,7 @@ Node& child(Node& parent, const std::string& key, const Place& at) {
 
 /// Lists grow with every flag that names them ("--arm a=x.exr --arm a=y.exr"); all else is replaced.
 void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
-    const Place at{flag.typed, 0, 0};
+    const SourceLocation at{flag.typed, 0, 0};
     Node* node = &root;
     for (std::size_t i = 0; i + 1 < flag.path.size(); ++i) node = &child(*node, flag.path[i], at);
     Node value = value_of(flag, at);
@@ -67,7 +67,7 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     to.members.push_back({"", at, std::move(value)});
 }
 
-void check_names(Draft& draft, const ComparePlan& plan) {
+void check_names(ParseContext& draft, const ComparePlan& plan) {
     std::vector<std::string> regions{whole_frame}, arms;
     for (const Region& r : plan.regions) regions.push_back(r.name);
     for (const MaskPlan& m : plan.masks) {
@@ -102,7 +102,7 @@ void check_names(Draft& draft, const ComparePlan& plan) {
         draft.complain("expect", "expect = \"same\": expected two arms, or an arm and a reference");
 }
 
-ComparePlan read_plan(Node root, Draft& draft, const std::vector<CompareFlag>& flags) {
+ComparePlan read_plan(Node root, ParseContext& draft, const std::vector<CompareFlag>& flags) {
     std::set<std::string> begun;
     for (const CompareFlag& flag : flags) put(root, flag, begun);
     ComparePlan plan;
@@ -121,7 +121,7 @@ ComparePlan read_plan(Node root, Draft& draft, const std::vector<CompareFlag>& f
 }  // namespace
 
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file) {
-    Draft draft;
+    ParseContext draft;
     draft.e.file = file.empty() ? "crescent compare" : file;
     Node root;
     if (!file.empty()) root = read_toml(read_text(file, "a compare file"), file, &draft.complaints);
@@ -130,11 +130,11 @@ ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& fi
 
 std::vector<std::string> compare_arms(const std::string& file) {
     std::vector<std::string> out;
-    std::vector<Complaint> ignored;
+    std::vector<Diagnostic> ignored;
     Node root = read_toml(read_text(file, "a compare file"), file, &ignored);
     if (const Member* arms = root.find("arms"))
         for (const Member& arm : arms->value.members) out.push_back(arm.key);
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

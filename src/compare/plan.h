@@ -9,12 +9,12 @@
 #include "base/errors.h"
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..], %d for digits).
 struct RenderArm {
     std::string name;
-    Place at;
+    SourceLocation at;
     std::vector<std::string> files;
     std::string layer;              // part or layer to read; "": the beauty
     std::optional<double> spp;      // samples a pixel of one render
@@ -24,7 +24,7 @@ struct RenderArm {
 /// Pixels where a mask's luminance is above 0 (a render, or a black and white picture in NPY or PFM).
 struct MaskPlan {
     std::string name;
-    Place at;
+    SourceLocation at;
     std::string file;
 };
 
@@ -67,4 +67,4 @@ std::vector<std::string> compare_arms(const std::string& file);
 std::string compare_schema_text();
 std::string compare_schema_json();
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -12,7 +12,7 @@
 #include "plates/words.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 using namespace plates;
 
@@ -138,4 +138,4 @@ Picture noise_plate(const Readings& all, const NoiseResult& n) {
         fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

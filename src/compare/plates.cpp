@@ -15,7 +15,7 @@
 #include "plates/words.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::map<std::string, Picture> compare_plates(
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -6,7 +6,7 @@
 #include "compare/results.h"
 #include "plates/plates.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// renders, errors, bias-A-B, noise-A-B: those that there is something to show for. Throws OutputError without the
 /// font.
@@ -19,4 +19,4 @@ Picture difference_plate(const Sides& sides, const std::string& a, const std::st
 Picture bias_plate(const Sides& sides, const BiasResult& found, double alpha);
 Picture noise_plate(const Readings& all, const NoiseResult& noise);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -11,7 +11,7 @@
 #include "math/functions.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -142,4 +142,4 @@ std::vector<SppLadder> ladders_of(const CompareResult& result) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

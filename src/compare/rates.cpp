@@ -11,7 +11,7 @@
 #include "simd/random.h"
 #include "verdicts/error_rates.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -20,7 +20,8 @@ using Kind = MadeNoise::Kind;
 const std::vector<CompareFlag> costs{
     {{"arms", "a", "seconds"}, "2", true, "seconds"}, {{"arms", "a", "spp"}, "16", true, "spp"}};
 
-std::vector<CompareResult> calls(const MadeWorld& world, std::uint32_t repeats, std::uint32_t seed, Watch& watch) {
+std::vector<CompareResult> calls(
+    const MadeWorld& world, std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
     std::vector<CompareResult> out(repeats);
     parallel_for(std::uint32_t{0}, repeats, [&](std::uint32_t k) {
         watch.check();
@@ -91,7 +92,7 @@ std::string covered(const std::vector<std::pair<MadeWorld, std::vector<CompareRe
 
 }  // namespace
 
-std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Watch& watch) {
+std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
     const MadeNoise normal{Kind::normal, 0.2}, coarse{Kind::normal, 0.5}, skewed{Kind::lognormal, 1};
     std::vector<std::pair<MadeWorld, std::vector<CompareResult>>> right, biased;
     for (const MadeNoise& noise :
@@ -127,4 +128,4 @@ std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Watch
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// Markdown. `repeats` calls of each kind of noise; equal arguments give equal text but for the date in the caller's.
-std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Watch& watch);
+std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -8,11 +8,11 @@
 #include "compare/schema.h"
 #include "compare/second_pass.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
-void add_set(Readings& all, PixelSet set, const Place& at) {
+void add_set(Readings& all, PixelSet set, const SourceLocation& at) {
     const bool any = !set.pixels.empty();
     std::erase_if(set.pixels, [&](std::uint32_t i) { return all.bad[i]; });
     if (set.pixels.empty())
@@ -57,7 +57,7 @@ void regions(const ComparePlan& plan, Readings& all) {
 }  // namespace
 
 void each_render(const RenderSource& source, const std::vector<std::string>& paths, const std::string& layer,
-    Watch& watch, const std::function<void(const Render&)>& use) {
+    ProgressMonitor& watch, const std::function<void(const Render&)>& use) {
     const auto start = [&](std::size_t k) {
         return std::async(std::launch::async, [&source, &layer, path = paths[k]] { return source.read(path, layer); });
     };
@@ -71,7 +71,7 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
     }
 }
 
-Readings read_all(const ComparePlan& plan, Watch& watch, const RenderSource& source) {
+Readings read_all(const ComparePlan& plan, ProgressMonitor& watch, const RenderSource& source) {
     Readings all;
     all.source = source;
     std::vector<std::vector<std::string>> files;
@@ -96,4 +96,4 @@ Readings read_all(const ComparePlan& plan, Watch& watch, const RenderSource& sou
     return all;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -7,7 +7,7 @@
 #include "compare/made.h"
 #include "compare/renders.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -26,14 +26,14 @@ protected:
         flags.push_back({{"arms", "a", "files"}, "a", false, "a"});
         flags.push_back({{"arms", "b", "files"}, "b", false, "b"});
         RenderSource source;
-        source.expand = [this](const std::vector<std::string>& names, const Place&) {
+        source.expand = [this](const std::vector<std::string>& names, const SourceLocation&) {
             std::vector<std::string> out;
             for (const auto& [name, render] : renders_)
                 if (name.starts_with(names[0])) out.push_back(name);
             return out;
         };
         source.read = [this](const std::string& name, const std::string&) { return renders_.at(name); };
-        Watch watch;
+        ProgressMonitor watch;
         return read_all(plan_of(flags), watch, source);
     }
     std::string refusal(const std::vector<CompareFlag>& flags = {}) const {
@@ -87,4 +87,4 @@ TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline comparing

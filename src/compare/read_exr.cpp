@@ -17,7 +17,7 @@
 #include "compare/exr_extra.h"
 #include "compare/render.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -187,4 +187,4 @@ Render read_exr(const std::string& path, const std::string& layer) {
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

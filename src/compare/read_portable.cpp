@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "compare/render.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -259,4 +259,4 @@ Render read_npy(const std::string& path, std::span<const char> bytes) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

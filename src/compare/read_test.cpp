@@ -19,7 +19,7 @@
 #include "compare/render.h"
 #include "base/errors.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -204,4 +204,4 @@ TEST_F(Renders, RefusePicturesAndBrokenFiles) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -14,7 +14,7 @@
 #include "color/rgb.h"
 #include "films/film.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -81,4 +81,4 @@ Render read_render(const std::string& path, const std::string& layer) {
     throw InputError({path, 0, 0}, "expected OpenEXR, PFM, Radiance HDR or NPY, found something else");
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

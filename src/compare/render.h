@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 struct Render {
     std::string file;
@@ -39,4 +39,4 @@ Render read_pfm(const std::string& path, std::span<const char> bytes);
 Render read_radiance_hdr(const std::string& path, std::span<const char> bytes);
 Render read_npy(const std::string& path, std::span<const char> bytes);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -7,12 +7,12 @@
 #include <functional>
 #include <map>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "compare/plan.h"
 #include "compare/render.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// Per pixel over K renders: Welford 1962 in double, for Y; mean colour for pictures.
 struct MeanFilm {
@@ -77,11 +77,12 @@ struct Tiles {
 };
 
 /// Files of the patterns, sorted by name; InputError where one matches nothing.
-std::vector<std::string> expand(const std::vector<std::string>& patterns, const Place& at);
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& at);
 
 /// Where renders come from: files, or what a program holds in memory.
 struct RenderSource {
-    std::function<std::vector<std::string>(const std::vector<std::string>&, const Place&)> expand = crescent::expand;
+    std::function<std::vector<std::string>(const std::vector<std::string>&, const SourceLocation&)> expand =
+        crescent::expand;
     std::function<Render(const std::string& path, const std::string& layer)> read = read_render;
 };
 
@@ -98,6 +99,6 @@ struct Readings {
 };
 
 /// Reads everything twice. Throws InputError where files do not fit each other.
-Readings read_all(const ComparePlan& plan, Watch& watch, const RenderSource& source = {});
+Readings read_all(const ComparePlan& plan, ProgressMonitor& watch, const RenderSource& source = {});
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

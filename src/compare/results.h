@@ -12,7 +12,7 @@
 #include "compare/statistics.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;  // of every interval
@@ -134,4 +134,4 @@ struct CompareResult {
     std::string say;  // one sentence for the state
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

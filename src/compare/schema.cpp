@@ -3,16 +3,17 @@
 
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
 constexpr Range none{}, share{0, 1, false, true}, positive{0, 1e12, true}, pixel_range{0, 65535};
-constexpr Need required = Need::required, optional = Need::optional, defaulted = Need::defaulted;
+constexpr Requirement required = Requirement::required, optional = Requirement::optional,
+                      defaulted = Requirement::defaulted;
 
 Section arms() {
-    return {"arms", Many::named, required, "Sets of independent renders of one view: several seeds of A, several of B.",
-        in<&ComparePlan::arms>,
+    return {"arms", Multiplicity::named, required,
+        "Sets of independent renders of one view: several seeds of A, several of B.", in<&ComparePlan::arms>,
         {{"files", Type::texts, none, "", required, "",
              "Paths or patterns (*, ?, [a-z], %d for digits) of the renders.", to<&RenderArm::files>},
             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
@@ -25,21 +26,22 @@ Section arms() {
 }
 
 Section regions() {
-    return {"regions", Many::named, optional, "Boxes in which errors are measured.", in<&ComparePlan::regions>,
+    return {"regions", Multiplicity::named, optional, "Boxes in which errors are measured.", in<&ComparePlan::regions>,
         {{"box", Type::box, pixel_range, "pixels", required, "",
             "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
         {}};
 }
 
 Section masks() {
-    return {"masks", Many::named, optional, "Sets of pixels in which errors are measured.", in<&ComparePlan::masks>,
+    return {"masks", Multiplicity::named, optional, "Sets of pixels in which errors are measured.",
+        in<&ComparePlan::masks>,
         {{"file", Type::text, none, "", required, "", "A picture of the renders' size; pixels above 0 belong to it.",
             to<&MaskPlan::file>}},
         {}};
 }
 
 Section assertions() {
-    return {"assertions", Many::titled, optional, "Claims that must hold, for a build server.",
+    return {"assertions", Multiplicity::titled, optional, "Claims that must hold, for a build server.",
         in<&ComparePlan::assertions>,
         {{"check", Type::check, none, "", required, "", "Two quantities, e.g. \"rmse.H(a) < rmse.H(b)\".",
             to<&AssertionPlan::left>}},
@@ -49,7 +51,7 @@ Section assertions() {
 }  // namespace
 
 const Section& compare_schema() {
-    static const Section root = {"", Many::one, required, "Renders of other programs, compared.", {},
+    static const Section root = {"", Multiplicity::one, required, "Renders of other programs, compared.", {},
         {{"title", Type::text, none, "", defaulted, "\"renders compared\"", "One line.", to<&ComparePlan::title>},
             {"reference", Type::texts, none, "", optional, "none", "Paths or patterns of the converged image.",
                 to<&ComparePlan::reference>},
@@ -109,4 +111,4 @@ std::string compare_schema_text() {
 
 std::string compare_schema_json() { return json_schema_of(compare_schema(), "crescent comparison"); }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -7,7 +7,7 @@
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// The table of a comparison file, as schema() is that of an experiment.
 const Section& compare_schema();
@@ -16,4 +16,4 @@ const std::vector<QuantityWord>& compare_words();
 /// The region that is every pixel; a footnote, never a headline.
 inline constexpr const char* whole_frame = "frame";
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

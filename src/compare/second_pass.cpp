@@ -11,7 +11,7 @@
 #include "compare/statistics.h"
 #include "stats/tail.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -179,7 +179,8 @@ private:
 
 }  // namespace
 
-void second_pass(const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, Watch& watch) {
+void second_pass(
+    const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, ProgressMonitor& watch) {
     const MeanFilm* reference = all.reference && &*all.reference != &arm ? &all.reference->film : nullptr;
     SecondPass pass(plan, all, reference);
     std::vector<Largest> largest;
@@ -191,4 +192,4 @@ void second_pass(const ComparePlan& plan, Readings& all, ArmReadings& arm, const
     for (const Largest& values : largest) arm.largest.push_back(values.falling());
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -6,7 +6,7 @@
 #include "compare/judge.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -59,4 +59,4 @@ std::string sentence_of(const BiasResult& b, double alpha) {
     return out + ".";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -7,7 +7,7 @@
 #include "compare/schema.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -136,4 +136,4 @@ double roughness(const Readings& all, const ArmReadings& arm, const PixelSet& se
     return visit.done(1).b;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

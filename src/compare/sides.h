@@ -6,7 +6,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 /// Noise of a set of pixels: means over it of the variance of a pixel, of one render.
 struct SetNoise {
@@ -52,4 +52,4 @@ struct Sides {
 /// the reference varies from one pixel to the next, less the arm's own share; a bias is taken to be smooth.
 double roughness(const Readings& all, const ArmReadings& arm, const PixelSet& set);
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

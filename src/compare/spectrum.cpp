@@ -8,7 +8,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -128,4 +128,4 @@ const char* to_string(NoiseColour colour) {
     return "unknown";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -7,7 +7,7 @@
 
 #include "math/distributions.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 
 namespace {
 
@@ -106,4 +106,4 @@ std::vector<bool> holm(std::span<const double> p, double alpha) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -8,7 +8,7 @@
 #include "compare/statistics.h"
 #include "compare/made.h"
 
-namespace crescent {
+namespace crescent::inline comparing {
 namespace {
 
 TEST(CompareStatistics, KnowStudentsT) {
@@ -67,4 +67,4 @@ TEST(CompareStatistics, ASpectrumHoldsThePowerOfAWave) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline comparing

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "arms/sampler.h"
-#include "estimator/sites.h"
+#include "estimator/shading_points.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where no emitting side does,
 /// r2 < 0 and nothing meets it.
@@ -101,4 +101,4 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -8,7 +8,7 @@
 #include "lobes/all.h"
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 using Parts = std::complex<double>;  // diffuse, lobe: two integrands in one pass
 
@@ -40,4 +40,4 @@ struct DiskPoint {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -7,7 +7,7 @@
 #include "estimator/fans.h"
 #include "estimator/whole_disk.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -92,7 +92,7 @@ std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Fig
         if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
         // A light in this one's plane stands before it at the end of the way, or does not.
         const Figure end = b.light ? moved(figure, hit.x, b.between.to) : figure;
-        if (!stands_clear(b.body, {hit.x}, body_of(end))) out.push_back(&b);
+        if (!is_separated(b.body, {hit.x}, body_of(end))) out.push_back(&b);
     }
     return out;
 }
@@ -128,4 +128,4 @@ DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "scene/shadow.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// Per unit radiance difference: the Lambert part (without rho_d) and the lobe part (without rho_s) of
 /// integral f cos dw over the visible disk, and how far each may be off: differences of two rules, summed.
@@ -37,4 +37,4 @@ private:
     std::vector<Blocker> blockers_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

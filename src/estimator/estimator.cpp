@@ -10,7 +10,7 @@
 #include "color/rgb.h"
 #include "estimator/outside.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -24,9 +24,9 @@ void run_kernel(const std::string& isa, const ArmInUse& arm, KernelCall call) {
 }
 
 /// Sums of one site over its film's n samples -> the film's pixel.
-class Finish {
+class FilmResolve {
 public:
-    Finish(const Scene& scene, const Sites& sites, const Moments& m, Film& film)
+    FilmResolve(const Scene& scene, const ShadingPoints& sites, const Moments& m, Film& film)
         : scene_(scene), sites_(sites), m_(m), film_(film) {}
 
     void pixel(std::size_t i) const {
@@ -67,19 +67,19 @@ private:
     }
 
     const Scene& scene_;
-    const Sites& sites_;
+    const ShadingPoints& sites_;
     const Moments& m_;
     Film& film_;
 };
 
 }  // namespace
 
-void develop(const Scene& scene, const Sites& sites, const Moments& moments, Film& film) {
-    const Finish finish(scene, sites, moments, film);
+void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film) {
+    const FilmResolve finish(scene, sites, moments, film);
     for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
 }
 
-void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* keeper,
+void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* keeper,
     const std::function<double(std::size_t)>& work) {
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         if (watch.stop.load(std::memory_order_relaxed) || (keeper && keeper->holds(k))) return;
@@ -92,7 +92,7 @@ void for_each_tile(const std::vector<TileBox>& tiles, Watch& watch, TileKeeper* 
 }
 
 std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, Watch& watch, TileKeeper* keeper) {
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* keeper) {
     const Image& image = scene.image();
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
@@ -107,11 +107,11 @@ std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const 
     for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
-        for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
+        for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
             run_kernel(isa, arm, {&sites, n, seed, moments, &watch.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
-                develop(scene, sites, moments[r], films[r]);
+                resolve_film(scene, sites, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
                     moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
             }
@@ -137,7 +137,7 @@ ShapeMap shape_map(const Scene& scene) {
     return map;
 }
 
-Moments estimate_sites(const Sites& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
+Moments estimate_sites(const ShadingPoints& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
     std::array<Moments, 1> moments;
     moments[0].resize(sites.pixel.size(), sites.light_count());
@@ -147,7 +147,7 @@ Moments estimate_sites(const Sites& sites, const ArmInUse& arm, std::uint64_t n,
 }
 
 std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
-    const Box& box, std::size_t count, const std::string& isa, Watch& watch, std::uint64_t& drawn) {
+    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& watch, std::uint64_t& drawn) {
     std::vector<float> all;
     Mutex lock;
     drawn = 0;
@@ -155,7 +155,7 @@ std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std:
     for (const TileBox& t : tiles_of(box.width(), box.height()))
         tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        for (const Sites& sites : sites_of(scene, tiles[k], nullptr)) {
+        for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
             if (watch.stop.load(std::memory_order_relaxed)) return;
             std::vector<float> samples(sites.count * n);
             estimate_sites(sites, arm, n, seed, isa, &watch.stop, samples.data());
@@ -177,4 +177,4 @@ std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std:
     return all;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -15,7 +15,7 @@
 #include "estimator/test_scene.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 using test::all_arms;
@@ -28,7 +28,7 @@ std::vector<std::string> hashes(const std::vector<Film>& films) {
 
 TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     for (const std::string& arm : all_arms()) {
         const auto scalar = hashes(estimate_films(scene, arm, {1, 7, 20}, 3, "scalar", watch));
         for (const std::string& isa : isas())
@@ -37,7 +37,7 @@ TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
 }
 
 TEST(SameBitsLaw, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
-    Watch watch;
+    ProgressMonitor watch;
     for (const LobeInfo& lobe : lobe_infos()) {
         const Scene scene(
             test::small_scene({"shapes.ball.brdf=\"" + std::string(lobe.name) + "\"", "shapes.ball.alpha=0.3"}));
@@ -50,7 +50,7 @@ TEST(SameBitsLaw, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
 
 TEST(SameBitsLaw, AnyNumberOfThreadsGivesTheSameFilms) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     const auto want = hashes(estimate_films(scene, "phong", {33}, 3, "", watch));
     for (std::size_t threads : {1u, 2u, 3u, 16u}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -60,7 +60,7 @@ TEST(SameBitsLaw, AnyNumberOfThreadsGivesTheSameFilms) {
 
 TEST(SameBitsLaw, NoticesAnotherSeedAndAnotherSampleCount) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     const auto want = hashes(estimate_films(scene, "cosine", {32}, 3, "", watch));
     EXPECT_NE(hashes(estimate_films(scene, "cosine", {32}, 4, "", watch)), want);
     EXPECT_NE(hashes(estimate_films(scene, "cosine", {31}, 3, "", watch)), want);
@@ -68,7 +68,7 @@ TEST(SameBitsLaw, NoticesAnotherSeedAndAnotherSampleCount) {
 
 TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     const auto many = estimate_films(scene, "phong", {1, 3, 16, 37, 64}, 9, "", watch);
     for (const Film& film : many)
         EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", watch)[0]), hash(film)) << "n = " << film.n;
@@ -78,7 +78,7 @@ TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
 TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
     const Scene scene(test::small_scene());
     constexpr std::uint64_t n = 65536;
-    for (Sites sites : sites_of(scene, {30, 20, 34, 23}, nullptr)) {
+    for (ShadingPoints sites : sites_of(scene, {30, 20, 34, 23}, nullptr)) {
         std::vector<float> x(sites.count * n);
         const Moments m = estimate_sites(sites, "cosine", n, 5, "", nullptr, x.data());
         for (std::size_t i = 0; i < sites.count; ++i) {
@@ -109,7 +109,7 @@ TEST(BadSamples, ANegativeWeightIsCounted) {
 TEST(BadSamples, MinusZeroIsNone) {
     const Scene scene(test::small_scene({"fill.radiance=[-0.0,-0.0,-0.0]", "shapes.ground.rho_d=[-0.0,-0.0,-0.0]",
         "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
-    Watch watch;
+    ProgressMonitor watch;
     for (const std::string& arm : all_arms())
         EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", watch)[0].bad, 0u) << arm;
     const Surface black{{-0.0, -0.0, -0.0}, 0, lobe_named("phong"), 0, 0};
@@ -118,7 +118,7 @@ TEST(BadSamples, MinusZeroIsNone) {
 
 TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     std::uint64_t above_n = 0;
     for (const std::string& arm : all_arms()) {
         const Film film = estimate_films(scene, arm, {32}, 2, "", watch)[0];
@@ -145,7 +145,7 @@ TEST(Furnace, CosineOnLambertHasNoVarianceAndLosesNothing) {
 TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     const Experiment experiment = test::small_scene();
     const Scene scene(experiment);
-    Watch watch;
+    ProgressMonitor watch;
     const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, watch)[0];
     for (const char* arm :
         {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
@@ -161,13 +161,13 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
 
 TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
     const Scene scene(test::small_scene());
-    const Sites sites = sites_of(scene, {30, 20, 34, 23}, nullptr).front();
+    const ShadingPoints sites = sites_of(scene, {30, 20, 34, 23}, nullptr).front();
     Moments moments;
     moments.resize(sites.pixel.size(), sites.disks.size());
     moments.spread[0] = moments.g[0] = std::nan("");
     moments.bad[0] = 1;
     Film film(67, 45, 8);
-    develop(scene, sites, moments, film);
+    resolve_film(scene, sites, moments, film);
     EXPECT_TRUE(std::isnan(film.var[sites.pixel[0]]));
     EXPECT_EQ(film.var[sites.pixel[1]], 0);
 }
@@ -175,9 +175,9 @@ TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
 /// Standard errors between the two references, over the whole image.
 double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
-    Watch watch;
+    ProgressMonitor watch;
     const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0],
-                        note = note_reference(scene, experiment, {experiment.s()}, "", watch)[0];
+                        note = monte_carlo_reference(scene, experiment, {experiment.s()}, "", watch)[0];
     double difference = 0, variance = 0;
     for (std::size_t at = 0; at < q.size(); ++at) {
         difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
@@ -199,7 +199,7 @@ TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     EXPECT_LT(references_apart(experiment), 4);
     Experiment alone = experiment;
     alone.disks.erase(alone.disks.begin());
-    Watch watch;
+    ProgressMonitor watch;
     const Scene both(experiment), bare(alone);
     const ReferenceFilm with = quadrature_reference(both, {both.s()}, watch)[0];
     const ReferenceFilm without = quadrature_reference(bare, {bare.s()}, watch)[0];
@@ -222,10 +222,10 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
     Experiment experiment = test::small_scene();
     experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
     const Scene scene(experiment);
-    Watch watch;
+    ProgressMonitor watch;
     const std::vector<double> s = {experiment.s()};
     const ReferenceFilm truth = quadrature_reference(scene, s, watch)[0],
-                        note = note_reference(scene, experiment, s, "", watch)[0];
+                        note = monte_carlo_reference(scene, experiment, s, "", watch)[0];
     for (std::uint32_t k = 0; k < 4; ++k)
         for (const char* arm : {"phong", "light-area"}) {
             const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", watch)[0];
@@ -237,7 +237,7 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
 
 TEST(Estimator, StopsWhenAsked) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     watch.stop = true;
     EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", watch), Interrupted);
 }
@@ -245,7 +245,7 @@ TEST(Estimator, StopsWhenAsked) {
 /// Asks to stop a little after the work has begun, from another thread, as a signal does.
 TEST(Estimator, StopsInMidWorkWithinATile) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     std::atomic<bool> done = false;
     std::thread other([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -259,11 +259,11 @@ TEST(Estimator, StopsInMidWorkWithinATile) {
 
 TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     constexpr std::uint64_t n = 40;
     const Box box = {28, 18, 40, 27};
     std::vector<float> all;
-    for (const Sites& sites : sites_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
+    for (const ShadingPoints& sites : sites_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
         std::vector<float> x(sites.count * n);
         estimate_sites(sites, "phong", n, 4, "", nullptr, x.data());
         all.insert(all.end(), x.begin(), x.end());
@@ -286,4 +286,4 @@ TEST(InstructionSets, AnUnknownNameIsTheReadersMistakeAndANearOneIsNamed) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

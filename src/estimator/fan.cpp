@@ -5,7 +5,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -59,4 +59,4 @@ double Fan::lambert(const DiskPoint& point, const Direction& from, const Directi
     return dot(point.frame.n, axis) * along + dot(point.frame.n, aside) * across;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -6,7 +6,7 @@
 #include "estimator/figure.h"
 #include "scene/shadow.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// sin(al), cos(al), al.
 struct Direction {
@@ -27,4 +27,4 @@ struct Fan {
     double lambert(const DiskPoint& point, const Direction& from, const Direction& to) const;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

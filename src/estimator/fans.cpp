@@ -8,7 +8,7 @@
 #include "estimator/lobe_along.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -199,4 +199,4 @@ DiskIntegral fan_by_fan(const DiskPoint& point, const Figure& light, const std::
     return sum.sum;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -9,10 +9,10 @@
 #include "estimator/disk_point.h"
 #include "estimator/disk_quadrature.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// `bodies` may stand between the point and the light; `at_horizon`: part of it may lie under the surface's horizon.
 DiskIntegral fan_by_fan(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies,
     bool about_lobe, bool at_horizon);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -1,6 +1,6 @@
 #include "estimator/figure.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 std::optional<Line> cut(const shapes::Disk& disk, Vec3d center, Vec3d k) {
     const Vec3d across = k - dot(k, disk.normal) * disk.normal;
@@ -25,4 +25,4 @@ std::optional<Line> cut(const shapes::Quad& quad, Vec3d corner, Vec3d k) {
     return Line{ends[0], ends[1]};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -7,7 +7,7 @@
 
 #include "scene/light.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// The side that a light's figure emits from.
 inline Vec3d normal_of(const shapes::Disk& disk) { return disk.normal; }
@@ -84,4 +84,4 @@ struct Line {
 std::optional<Line> cut(const shapes::Disk& disk, Vec3d at, Vec3d k);
 std::optional<Line> cut(const shapes::Quad& quad, Vec3d at, Vec3d k);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

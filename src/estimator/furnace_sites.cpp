@@ -4,7 +4,7 @@
 
 #include "color/rgb.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only) {
     Surface surface = surface_of(shape.material, scene.s());
@@ -12,8 +12,8 @@ Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_on
     return surface;
 }
 
-Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
-    Sites sites;
+ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
+    ShadingPoints sites;
     sites.lobe = surface.rho_s > 0 ? static_cast<int>(surface.brdf) : -1;
     sites.count = count;
     const auto fill = [&](std::vector<float>& array, double value) { array.assign(count, static_cast<float>(value)); };
@@ -35,4 +35,4 @@ Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o) {
     return sites;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -2,14 +2,14 @@
 // otherwise.
 #pragma once
 
-#include "estimator/sites.h"
+#include "estimator/shading_points.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// The material of a shape, with the scene's own s where it has none; lobe_only drops rho_d.
 Surface furnace_surface(const SceneData& scene, const Shape& shape, bool lobe_only);
 
 /// `count` alike sites, each with random numbers of its own. X = (cos/p) f.
-Sites furnace_sites(const Surface& surface, std::size_t count, double cos_o = 1);
+ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double cos_o = 1);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

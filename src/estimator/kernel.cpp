@@ -4,7 +4,7 @@
 #include "base/errors.h"
 #include "estimator/isas.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 KernelTable scalar_kernels();
 #define CRESCENT_DECLARE(name, needs) KernelTable name##_kernels();
@@ -90,4 +90,4 @@ int arm_index(std::string_view sampler) {
     return found;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "arms/all.h"
-#include "estimator/sites.h"
+#include "estimator/shading_points.h"
 #include "lobes/all.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// Moments of n samples, one entry a site; sums are kept in double.
 struct Moments {
@@ -35,7 +35,7 @@ struct Moments {
 inline constexpr std::size_t memory_of_light = 4096;
 
 struct KernelCall {
-    const Sites* sites = nullptr;
+    const ShadingPoints* sites = nullptr;
     std::span<const std::uint64_t> rungs;  // ascending
     std::uint32_t seed = 0;
     std::span<Moments> out;  // one a rung, sized to the padded count
@@ -61,4 +61,4 @@ const KernelTable& kernels_for(const std::string& isa);
 /// Index in the list of arms, or -1.
 int arm_index(std::string_view sampler);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

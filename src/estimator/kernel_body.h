@@ -10,14 +10,14 @@
 #include "lobes/all.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
 
 /// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
 /// only samples that meet a disk touch, so that it can live in registers.
-template <class F> struct Gathered {
+template <class F> struct RunningSums {
     F g = number<F>(0), g_lobe = number<F>(0);
     F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
     F pivot = number<F>(
@@ -40,9 +40,9 @@ template <class A, class L, class F> struct Lane : Lights<F> {
     using U = UintOf<F>;
     using Lights<F>::sites, Lights<F>::at, Lights<F>::disk_count, Lights<F>::light_count, Lights<F>::disks,
         Lights<F>::others, Lights<F>::cones, Lights<F>::meet;
-    Site<F> site;
+    ShadingPoint<F> site;
 
-    Lane(const Sites& all, std::size_t first, LightRoom<F>& room) : Lights<F>(all, first, room) {
+    Lane(const ShadingPoints& all, std::size_t first, LightRoom<F>& room) : Lights<F>(all, first, room) {
         site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
             load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks,
             static_cast<int>(disk_count), others, static_cast<int>(light_count - disk_count)};
@@ -55,7 +55,7 @@ template <class A, class L, class F> struct Lane : Lights<F> {
 
     /// X of one drawn direction, adding what it carries to the sums.
     template <class D>
-    [[gnu::always_inline]] F carry(Gathered<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
+    [[gnu::always_inline]] F carry(RunningSums<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
@@ -81,7 +81,7 @@ template <class A, class L, class F> struct Lane : Lights<F> {
         return x;
     }
 
-    [[gnu::always_inline]] void step(Gathered<F>& to, const Constants<F>& c, const A& arm, const L& brdf,
+    [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<F>& c, const A& arm, const L& brdf,
         const Vec4u<U>& h, bool odd, std::uint64_t j, const KernelCall& call) {
         const Vec2<F> u =
             odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
@@ -102,7 +102,7 @@ template <class A, class L, class F> struct Lane : Lights<F> {
         to.square = to.square + off * off;
         to.largest = larger(x, to.largest);
         // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
-        // arises from nothing that a site holds (sites.cpp).
+        // arises from nothing that a site holds (shading_points.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
         if (call.samples) keep(x, call.samples, j, call.rungs.back());
     }
@@ -137,7 +137,7 @@ template <class F> struct Totals {
         for (std::size_t at = 0; at < room.count * count; ++at) light_g[at] = light_g_lobe[at] = 0;
     }
     /// Takes the block's sums over and clears them.
-    void take(Gathered<F>& p, Met<F>& met, std::size_t lights) {
+    void take(RunningSums<F>& p, LightHitSums<F>& met, std::size_t lights) {
         add_lanes(p.g, g);
         add_lanes(p.g_lobe, g_lobe);
         add_lanes(p.off, off);
@@ -165,7 +165,7 @@ template <class F> struct Totals {
         return load_as<F>(pivot);
     }
     /// Sum of (X - mean X)^2 over the n samples of the blocks and of the one that is not full.
-    void spread(const Gathered<F>& p, double n, double* out) const {
+    void spread(const RunningSums<F>& p, double n, double* out) const {
         double first[count];
         add_lanes(p.off, off, first);
         add_lanes(p.square, square, out);
@@ -177,7 +177,7 @@ template <class F> struct Totals {
 };
 
 template <class F> [[gnu::noinline]] void write_rung(
-    const Lights<F>& lane, const Gathered<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
+    const Lights<F>& lane, const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
     const std::size_t at = lane.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
@@ -198,7 +198,7 @@ template <class A, class L, class F, class Make>
 void estimate_pack(const KernelCall& call, std::size_t at, LightRoom<F>& room, const Make& make) {
     using U = UintOf<F>;
     Lane<A, L, F> lane(*call.sites, at, room);
-    Gathered<F> gathered;
+    RunningSums<F> gathered;
     Totals<F> totals(room);
     const A arm = make(lane.site);
     const L brdf(lane.site.s, lane.site.alpha);
@@ -239,7 +239,7 @@ void estimate_pack(const KernelCall& call, std::size_t at, LightRoom<F>& room, c
 template <class A, class L, class F> void estimate(const KernelCall& call) {
     LightRoom<F> room(*call.sites, call.memory);
     for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
-        estimate_pack<A, L, F>(call, at, room, [](const Site<F>& site) { return A(site); });
+        estimate_pack<A, L, F>(call, at, room, [](const ShadingPoint<F>& site) { return A(site); });
 }
 
 /// One arm's kernels, [lobe + 1].
@@ -252,4 +252,4 @@ template <class F, template <class> class... A> constexpr KernelTable kernels_of
 }
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -7,7 +7,7 @@
 #include "estimator/disk_hit.h"
 #include "estimator/kernel.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace CRESCENT_ISA {
 
 template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
@@ -20,7 +20,7 @@ template <class F> Vec3<F> load_lanes(
 }
 
 /// The part that samples which meet a light add to.
-template <class F> struct Met {
+template <class F> struct LightHitSums {
     F* light_g;
     F* light_g_lobe;
     UintOf<F> hits{0u};
@@ -37,7 +37,7 @@ template <class F> struct LightRoom {
     F *met_g, *met_g_lobe;
     double *total_g, *total_g_lobe;  // lane l of light k at k * lanes + l
 
-    LightRoom(const Sites& sites, std::byte* at)
+    LightRoom(const ShadingPoints& sites, std::byte* at)
         : count(sites.light_count()),
           disks(take<LocalDisk<F>>(at, sites.disks.size())),
           facing(take<FacingDisk<F>>(at, sites.disks.size())),
@@ -68,16 +68,16 @@ private:
 /// The lights as one pack of pixels sees them: disks first.
 template <class F> struct Lights {
     using U = UintOf<F>;
-    const Sites& sites;
+    const ShadingPoints& sites;
     std::size_t at;
     std::size_t disk_count, light_count;
     LocalDisk<F>* disks;
     FacingDisk<F>* facing;
     LocalLight<F>* others;
     DiskCone<F>* cones;
-    Met<F> met;
+    LightHitSums<F> met;
 
-    [[gnu::noinline]] Lights(const Sites& all, std::size_t first, LightRoom<F>& room)
+    [[gnu::noinline]] Lights(const ShadingPoints& all, std::size_t first, LightRoom<F>& room)
         : sites(all),
           at(first),
           disk_count(all.disks.size()),
@@ -162,4 +162,4 @@ template <class F> struct Lights {
 };
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent
+}  // namespace crescent::inline estimator

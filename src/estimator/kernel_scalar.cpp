@@ -2,8 +2,8 @@
 #define CRESCENT_ISA scalar
 #include "estimator/kernel_body.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 KernelTable scalar_kernels() { return scalar::kernels_of<float>("scalar", Arms{}); }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// Nodes from the middle outwards; each second one, from the middle on, is Gauss's too.
 template <std::size_t n> struct KronrodRule {
@@ -47,4 +47,4 @@ template <std::size_t n, class F> auto by_two_rules(const KronrodRule<n>& rule, 
     return TwoRules<decltype(first + first)>{half * fine, half * (fine - coarse)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

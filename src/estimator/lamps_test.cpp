@@ -8,7 +8,7 @@
 #include "estimator/reference.h"
 #include "estimator/test_scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 void shift(Experiment& e, Vec3d by) {
@@ -39,7 +39,7 @@ constexpr double film_error = 1e-6;
 
 void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::string& arm, std::uint64_t n,
     const std::string& what) {
-    Watch watch;
+    ProgressMonitor watch;
     const Film film = estimate_films(scene, arm, {n}, 17, "", watch)[0];
     double difference = 0, variance = 0, stated = 0;
     for (std::size_t at = 0; at < film.size(); ++at) {
@@ -53,7 +53,7 @@ void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::
 
 void expect_means(const Experiment& e, const std::vector<std::string>& arms, std::uint64_t n, const std::string& what) {
     const Scene scene(e);
-    Watch watch;
+    ProgressMonitor watch;
     const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
     for (const std::string& arm : arms) expect_mean(scene, reference, arm, n, what);
 }
@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Radii, LampLaw, testing::Values(1.0, 1e-1, 1e-2, 1e-3, 
 TEST(Lamps, TheirSizeChangesNoMoreThanTheirLight) {
     const auto irradiance = [](double radius, const std::string& arm) {  // per area of lamp
         const Scene scene(lamps(radius, 0));
-        Watch watch;
+        ProgressMonitor watch;
         const Film film = estimate_films(scene, arm, {64}, 3, "", watch)[0];
         double sum = 0;
         for (const float y : film.y) sum += static_cast<double>(y);
@@ -103,7 +103,7 @@ TEST(Lamps, SixtyFourAreAllCounted) {
 }
 
 TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
-    Watch watch;
+    ProgressMonitor watch;
     const auto film_at = [&](double offset) {
         return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", watch)[0];
     };
@@ -114,4 +114,4 @@ TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

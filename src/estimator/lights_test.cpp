@@ -9,7 +9,7 @@
 #include "estimator/test_scene.h"
 #include "simd/frame.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 /// A light as the point x sees it, n = +z.
@@ -91,7 +91,7 @@ Experiment lit_by_all_kinds(const Rgb& fill) {
 
 void expect_the_reference(const Experiment& e, const std::vector<const char*>& arms, std::uint64_t n) {
     const Scene scene(e);
-    Watch watch;
+    ProgressMonitor watch;
     const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
     for (const char* arm : arms) {
         const Film film = estimate_films(scene, arm, {n}, 17, "", watch)[0];
@@ -114,7 +114,7 @@ TEST(LightKinds, EveryArmMeetsTheQuadratureUnderAllOfThem) {
 
 TEST(LightKinds, GiveTheSameFilmsOnEveryInstructionSet) {
     const Scene scene(lit_by_all_kinds({0.1, 0.2, 0.3}));
-    Watch watch;
+    ProgressMonitor watch;
     for (const char* arm : {"cosine", "light-area", "light-solid-angle", "mis-power"}) {
         const std::string scalar = hash(estimate_films(scene, arm, {16}, 5, "scalar", watch)[0]);
         for (const std::string& isa : isas())
@@ -129,4 +129,4 @@ TEST(LightKinds, StandBeforeOneAnother) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

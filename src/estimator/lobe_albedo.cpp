@@ -10,7 +10,7 @@
 #include "math/gauss.h"
 #include "lobes/all.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -126,4 +126,4 @@ double LobeAlbedo::operator()(double cos_o) const {
 
 double LobeAlbedo::error(double cos_o) const { return cell(math::acos(std::clamp(cos_o, -1.0, 1.0))).error; }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

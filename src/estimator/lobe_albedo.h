@@ -7,7 +7,7 @@
 
 #include "lobes/info.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// A at one angle by adaptive quadrature: lobes about R to about 1e-10, lobes about the half vector to about 1e-6.
 double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o);
@@ -31,4 +31,4 @@ private:
     std::vector<Cell> cells_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -6,7 +6,7 @@
 #include "estimator/kronrod.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -55,4 +55,4 @@ AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval p
     return sum;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

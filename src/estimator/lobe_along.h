@@ -4,7 +4,7 @@
 #include "estimator/disk_point.h"
 #include "scene/shadow.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// How the lobe of a point falls off, which decides where a rule's nodes must lie.
 struct LobeShape {
@@ -26,4 +26,4 @@ struct AlongLobe {
 /// Panels that double in size from al = 0 on, `width` being the first; the error is the difference of two rules.
 AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -8,7 +8,7 @@
 #define CRESCENT_ISA scalar
 #include "estimator/kernel_body.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -49,7 +49,7 @@ using SiteKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float
 template <class L> void estimate_site(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
     scalar::LightRoom<float> room(*call.sites, call.memory);
     scalar::estimate_pack<Prefetched<float>, L, float>(
-        call, at, room, [&](const Site<float>&) { return Prefetched<float>(drawn); });
+        call, at, room, [&](const ShadingPoint<float>&) { return Prefetched<float>(drawn); });
 }
 
 /// [lobe + 1]
@@ -60,7 +60,7 @@ template <template <class> class... L> constexpr std::array<SiteKernel, sizeof..
 }  // namespace
 
 void estimate_outside(const OutsideSampler& sampler, const KernelCall& call) {
-    const Sites& sites = *call.sites;
+    const ShadingPoints& sites = *call.sites;
     const std::uint64_t n = call.rungs.back();
     const auto numbers = static_cast<std::size_t>(sampler.numbers());
     const SiteKernel kernel = kernels_on(Lobes{})[static_cast<std::size_t>(sites.lobe + 1)];
@@ -83,4 +83,4 @@ void estimate_outside(const OutsideSampler& sampler, const KernelCall& call) {
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -5,9 +5,9 @@
 #include "arms/outside.h"
 #include "estimator/kernel.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// As a kernel of the table. A direction that is not unit to 1e-4, or a pdf below 0, makes a bad sample.
 void estimate_outside(const OutsideSampler& sampler, const KernelCall& call);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

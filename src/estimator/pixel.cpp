@@ -5,6 +5,7 @@
 
 #include "arms/all.h"
 #include "base/errors.h"
+#include "base/vec_cast.h"
 #include "estimator/disk_hit.h"
 #include "estimator/figure.h"
 #include "color/rgb.h"
@@ -12,24 +13,21 @@
 #include "lobes/all.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
-
-template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
-Vec3d wide(Vec3f v) { return {double(v.x), double(v.y), double(v.z)}; }
 
 Vec3f at(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
     return {x[0], y[0], z[0]};
 }
 
-float lobe_of(const Sites& sites, Vec3f wi) {
+float lobe_of(const ShadingPoints& sites, Vec3f wi) {
     const Vec3f wo = at(sites.wox, sites.woy, sites.woz);
     const float s = sites.s[0], alpha = sites.alpha[0];
     return lobe_value(static_cast<LobeKind>(sites.lobe), s, alpha, wo, wi);
 }
 
-std::vector<LocalDisk<float>> local_disks(const Sites& sites) {
+std::vector<LocalDisk<float>> local_disks(const ShadingPoints& sites) {
     std::vector<LocalDisk<float>> out;
     for (const DiskArrays& d : sites.disks) {
         const float sides = d.two_sided ? 1.0f : 0.0f;
@@ -38,7 +36,7 @@ std::vector<LocalDisk<float>> local_disks(const Sites& sites) {
     return out;
 }
 
-std::vector<LocalLight<float>> local_others(const Sites& sites) {
+std::vector<LocalLight<float>> local_others(const ShadingPoints& sites) {
     std::vector<LocalLight<float>> out;
     for (const LightArrays& from : sites.others) {
         LocalLight<float>& light = out.emplace_back();
@@ -57,7 +55,7 @@ struct Locals {
     const std::vector<LocalLight<float>>& others;
 };
 
-template <class D> int met_by(const Sites& sites, const Locals& locals, const D& drawn) {
+template <class D> int met_by(const ShadingPoints& sites, const Locals& locals, const D& drawn) {
     const auto& [disks, others] = locals;
     const Vec3f wi = drawn.wi;
     float nearest = 1e30f;
@@ -86,7 +84,7 @@ template <class D> int met_by(const Sites& sites, const Locals& locals, const D&
 struct Worth {
     float d, s;
 };
-Worth worth(const Sites& sites, int disk) {
+Worth worth(const ShadingPoints& sites, int disk) {
     if (disk < 0) return {sites.fill_d[0], sites.fill_s[0]};
     const std::size_t k = static_cast<std::size_t>(disk);
     if (k < sites.disks.size()) return {sites.disks[k].d[0], sites.disks[k].s[0]};
@@ -95,7 +93,7 @@ Worth worth(const Sites& sites, int disk) {
 }
 
 /// f, per sr, of light that is `light` bright; where there is none, of grey light.
-double reflected(const Sites& sites, const Worth& w, float lobe, double light) {
+double reflected(const ShadingPoints& sites, const Worth& w, float lobe, double light) {
     if (light > 0) return double(w.d + lobe * w.s) / light;
     return double(sites.diffuse[0]) / pi + double(sites.rho_s[0] * lobe);
 }
@@ -103,7 +101,7 @@ double reflected(const Sites& sites, const Worth& w, float lobe, double light) {
 /// Makes X of a direction, in the kernels' own order of operations.
 class Carrier {
 public:
-    Carrier(const Sites& sites, const Locals& disks, const std::vector<PixelDisk>& seen, double fill)
+    Carrier(const ShadingPoints& sites, const Locals& disks, const std::vector<PixelDisk>& seen, double fill)
         : sites_(sites), disks_(disks), seen_(seen), fill_(fill) {}
 
     template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
@@ -121,7 +119,7 @@ public:
     }
 
 private:
-    const Sites& sites_;
+    const ShadingPoints& sites_;
     const Locals disks_;
     const std::vector<PixelDisk>& seen_;
     double fill_;
@@ -158,8 +156,8 @@ PixelDisk seen_light(const Light& light, const Hit& hit) {
     return out;
 }
 
-Sites site_of(const Scene& scene, int i, int j) {
-    std::vector<Sites> groups = sites_of(scene, {i, j, i + 1, j + 1}, nullptr);
+ShadingPoints site_of(const Scene& scene, int i, int j) {
+    std::vector<ShadingPoints> groups = sites_of(scene, {i, j, i + 1, j + 1}, nullptr);
     ensure(groups.size() == 1 && groups[0].count == 1, "an opened pixel sees a surface");
     return std::move(groups[0]);
 }
@@ -172,14 +170,14 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
       sites_(site_of(scene, i, j)),
       hit_(*scene.primary(i, j)),
       surface_(scene.surface(hit_)),
-      wo_(wide(at(sites_.wox, sites_.woy, sites_.woz))),
+      wo_(widen(at(sites_.wox, sites_.woy, sites_.woz))),
       fill_(luminance(scene.fill())),
       local_(local_disks(sites_)),
       others_(local_others(sites_)) {
     for (const Light& light : scene.lights()) disks_.push_back(seen_light(light, hit_));
 }
 
-Site<float> OpenPixel::aimed_from() const {
+ShadingPoint<float> OpenPixel::aimed_from() const {
     return {at(sites_.wox, sites_.woy, sites_.woz), sites_.s[0], sites_.alpha[0], sites_.diffuse[0], sites_.rho_s[0],
         local_.data(), static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
 }
@@ -203,7 +201,7 @@ double OpenPixel::f(Vec3d wi, int disk) const {
 }
 
 double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
-    const Site<float> site = aimed_from();
+    const ShadingPoint<float> site = aimed_from();
     double out = 0;
     with_arm(sampler, [&]<template <class> class A>() {
         const A<float> arm(site);
@@ -215,7 +213,7 @@ double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
 }
 
 std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
-    const Site<float> site = aimed_from();
+    const ShadingPoint<float> site = aimed_from();
     const Carrier carry(sites_, {local_, others_}, disks_, fill_);
     std::vector<PixelSample> out;
     with_arm(sampler, [&]<template <class> class A>() {
@@ -248,4 +246,4 @@ std::vector<double> running_mean(const std::vector<PixelSample>& samples) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -13,9 +13,9 @@
 
 #include "arms/sampler.h"
 #include "base/vec.h"
-#include "estimator/sites.h"
+#include "estimator/shading_points.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// One draw. X = 0 where the direction lies under the horizon or nothing was drawn.
 struct PixelSample {
@@ -67,9 +67,9 @@ public:
     std::vector<PixelSample> samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const;
 
 private:
-    Site<float> aimed_from() const;  // points into local_
+    ShadingPoint<float> aimed_from() const;  // points into local_
     int i_, j_;
-    Sites sites_;
+    ShadingPoints sites_;
     Hit hit_;
     Surface surface_;
     Vec3d wo_{};
@@ -82,4 +82,4 @@ private:
 /// Mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.
 std::vector<double> running_mean(const std::vector<PixelSample>& samples);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

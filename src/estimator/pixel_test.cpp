@@ -9,7 +9,7 @@
 #include "estimator/estimator.h"
 #include "estimator/test_scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 constexpr std::uint64_t n = 48;
@@ -31,7 +31,8 @@ template <class Visit> void for_each_opened(Visit&& visit) {
 TEST(OpenPixel, DrawsWhatTheKernelsDrawBitForBit) {
     std::set<int> lights;
     for_each_opened([&](const Scene& scene, const OpenPixel& pixel) {
-        const std::vector<Sites> sites = sites_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
+        const std::vector<ShadingPoints> sites =
+            sites_of(scene, {pixel.i(), pixel.j(), pixel.i() + 1, pixel.j() + 1}, nullptr);
         for_each_arm(Arms{}, [&]<template <class> class A>() {
             std::vector<float> x(n);
             estimate_sites(sites[0], A<float>::name, n, 11, "", nullptr, x.data());
@@ -60,7 +61,7 @@ TEST(OpenPixel, IsTheProductOfItsParts) {
 
 TEST(OpenPixel, AveragesToTheFilm) {
     const Scene scene(test::small_scene());
-    Watch watch;
+    ProgressMonitor watch;
     for (const char* arm : {"uniform", "cosine", "phong", "mis-power"}) {
         const Film film = estimate_films(scene, arm, {n}, 11, "", watch).front();
         for (const auto& [i, j] : pixels(scene)) {
@@ -97,4 +98,4 @@ TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

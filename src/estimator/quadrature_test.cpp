@@ -8,7 +8,7 @@
 #include "lobes/all.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
@@ -167,4 +167,4 @@ TEST(LobeAlbedo, NeverReflectsMoreThanArrives) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -12,7 +12,7 @@
 #include "math/functions.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -89,8 +89,8 @@ std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& expo
 
 /// The same sites with lights that turn X into the wanted part: light k by itself, or the fill on the lobe alone. The
 /// other lights still stand before it, but carry nothing and are never aimed at.
-Sites only_light(const Scene& scene, const Sites& all, std::size_t k) {
-    Sites sites = all;
+ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size_t k) {
+    ShadingPoints sites = all;
     const auto tinted = [&](const Rgb& light, std::size_t i) {
         const Rgb& tint = all.tint[i];
         return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
@@ -113,8 +113,8 @@ Sites only_light(const Scene& scene, const Sites& all, std::size_t k) {
     return sites;
 }
 
-Sites only_lobe(const Sites& all) {
-    Sites sites = all;
+ShadingPoints only_lobe(const ShadingPoints& all) {
+    ShadingPoints sites = all;
     sites.disks.clear(), sites.others.clear();
     std::fill(sites.fill_d.begin(), sites.fill_d.end(), 0.0f);
     return sites;
@@ -123,7 +123,7 @@ Sites only_lobe(const Sites& all) {
 double variance_of_mean(double spread, double n) { return n > 1 && spread > 0 ? spread / (n * (n - 1)) : 0; }
 
 /// The centre of light k from site i, in its local frame, and the radius of a ball that holds it.
-std::pair<Vec3d, double> ball_of(const Sites& sites, std::size_t i, std::size_t k) {
+std::pair<Vec3d, double> ball_of(const ShadingPoints& sites, std::size_t i, std::size_t k) {
     if (k < sites.disks.size()) {
         const DiskArrays& disk = sites.disks[k];
         return {{disk.cx[i], disk.cy[i], disk.cz[i]}, static_cast<double>(disk.radius)};
@@ -138,7 +138,7 @@ std::pair<Vec3d, double> ball_of(const Sites& sites, std::size_t i, std::size_t 
 }
 
 /// May the lobe of site i peak in light k, and be so narrow against it that fewer than ten of n samples would meet it?
-bool may_be_missed(const Sites& sites, std::size_t i, std::size_t k, double n) {
+bool may_be_missed(const ShadingPoints& sites, std::size_t i, std::size_t k, double n) {
     const auto [c, radius] = ball_of(sites, i, k);
     const Vec3d wo = {sites.wox[i], sites.woy[i], sites.woz[i]};
     const LobeInfo& lobe = lobe_info(static_cast<LobeKind>(sites.lobe));
@@ -153,8 +153,8 @@ bool may_be_missed(const Sites& sites, std::size_t i, std::size_t k, double n) {
 /// The note's reference over one group of sites.
 class NotePixels {
 public:
-    NotePixels(
-        const Scene& scene, const Experiment& experiment, const Sites& sites, const std::string& isa, Watch& watch)
+    NotePixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& sites, const std::string& isa,
+        ProgressMonitor& watch)
         : scene_(scene), sites_(sites) {
         const ReferencePlan& plan = experiment.reference;
         const auto seed = [&](std::uint32_t k) { return reference_seed(experiment, k); };
@@ -195,15 +195,15 @@ public:
 
 private:
     const Scene& scene_;
-    const Sites& sites_;
+    const ShadingPoints& sites_;
     Moments lobe_;
     std::vector<Moments> disks_;
     double lobe_n_ = 1, disk_n_ = 1;
 };
 
 /// One film per exponent, made by calling work(tile, films) for every tile.
-template <class Work> std::vector<ReferenceFilm> by_tiles(
-    const Image& image, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper, Work&& work) {
+template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
+    ProgressMonitor& watch, TileCheckpoint* keeper, Work&& work) {
     std::vector<ReferenceFilm> films;
     for (double s : exponents) films.emplace_back(image.width, image.height, s);
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
@@ -235,7 +235,7 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
 }
 
 std::vector<ReferenceFilm> quadrature_reference(
-    const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper) {
+    const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& watch, TileCheckpoint* keeper) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     const std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
     const auto pixel = [&](int i, int j, std::vector<ReferenceFilm>& films) {
@@ -260,13 +260,13 @@ std::vector<ReferenceFilm> quadrature_reference(
         });
 }
 
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper) {
+std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
+    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* keeper) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     return by_tiles(
         scene.image(), exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < scenes.size(); ++e) {
-                for (const Sites& sites : sites_of(scenes[e], tile, nullptr)) {
+                for (const ShadingPoints& sites : sites_of(scenes[e], tile, nullptr)) {
                     if (e > 0 && sites.lobe < 0) {
                         for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
                         continue;
@@ -278,4 +278,4 @@ std::vector<ReferenceFilm> note_reference(const Scene& scene, const Experiment& 
         });
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -9,22 +9,23 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/watch.h"
-#include "estimator/tile_keeper.h"
+#include "base/progress_monitor.h"
+#include "estimator/tile_checkpoint.h"
 #include "experiment/experiment.h"
 #include "films/film.h"
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from.
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
 /// One film per exponent, in order. `keeper`: keeps finished tiles.
 std::vector<ReferenceFilm> quadrature_reference(
-    const Scene& scene, const std::vector<double>& exponents, Watch& watch, TileKeeper* keeper = nullptr);
+    const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& watch, TileCheckpoint* keeper = nullptr);
 /// `experiment`: whose reference it is; says how many samples, and which seeds.
-std::vector<ReferenceFilm> note_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, Watch& watch, TileKeeper* keeper = nullptr);
+std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
+    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch,
+    TileCheckpoint* keeper = nullptr);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -11,7 +11,7 @@
 #include "estimator/oracle_test.h"
 #include "estimator/random_scene_test.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 /// Sanitizers make all of it ten times slower.
@@ -53,7 +53,7 @@ class ReferenceOfRandomScenes : public testing::TestWithParam<std::uint32_t> {};
 
 /// Scenes of one shard, `newcomers` as RandomScene has it.
 void compare_scenes(std::uint32_t shard, std::uint32_t count, bool newcomers) {
-    Watch watch;
+    ProgressMonitor watch;
     for (std::uint32_t seed = 1000 * shard; seed < 1000 * shard + count; ++seed) {
         test::RandomScene draw(seed, newcomers);
         const Scene scene(draw());
@@ -86,4 +86,4 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthOfBallsAndRectanglesToo) {
 INSTANTIATE_TEST_SUITE_P(Shards, ReferenceOfRandomScenes, testing::Range(0u, shards));
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

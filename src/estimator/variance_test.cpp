@@ -7,7 +7,7 @@
 #include "estimator/estimator.h"
 #include "estimator/test_scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 namespace {
 
 /// The test scene with lamps of another size, and as bright as they were.
@@ -27,7 +27,7 @@ constexpr TileBox boxes[] = {{30, 8, 34, 10}, {24, 24, 28, 26}, {0, 31, 67, 32}}
 /// Where a variance is a normal number in a float.
 constexpr double least = 1e-37;
 
-void expect_two_pass(const Sites& sites, const std::string& arm, std::uint64_t n, double radius) {
+void expect_two_pass(const ShadingPoints& sites, const std::string& arm, std::uint64_t n, double radius) {
     std::vector<float> x(sites.count * n);
     const Moments m = estimate_sites(sites, arm, n, 5, "", nullptr, x.data());
     for (std::size_t i = 0; i < sites.count; ++i) {
@@ -41,7 +41,7 @@ TEST(VarianceLaw, EveryArmHasTheTwoPassVarianceOfItsSamples) {
     for (const double radius : {0.3, 1e-2, 1e-3, 1e-4, 1e-5}) {
         const Scene scene = scene_with_lamps(radius);
         for (const TileBox& box : boxes)
-            for (const Sites& sites : sites_of(scene, box, nullptr))
+            for (const ShadingPoints& sites : sites_of(scene, box, nullptr))
                 for (const std::string& arm : test::all_arms())
                     for (const std::uint64_t n : {2, 5, 16, 17, 64, 1000}) expect_two_pass(sites, arm, n, radius);
     }
@@ -49,9 +49,9 @@ TEST(VarianceLaw, EveryArmHasTheTwoPassVarianceOfItsSamples) {
 
 TEST(VarianceLaw, AFilmShowsIt) {
     const Scene scene = scene_with_lamps(1e-3);
-    Watch watch;
+    ProgressMonitor watch;
     const TileBox box = {30, 8, 34, 10};
-    const Sites sites = sites_of(scene, box, nullptr).front();
+    const ShadingPoints sites = sites_of(scene, box, nullptr).front();
     std::vector<float> x(sites.count * 64);
     estimate_sites(sites, "light-area", 64, 5, "", nullptr, x.data());
     const Film film = estimate_films(scene, "light-area", {64}, 5, "", watch)[0];
@@ -65,10 +65,10 @@ TEST(VarianceLaw, SamplesThatAreAllAlikeHaveNone) {
     Experiment e = test::small_scene();
     e.disks.clear();
     const Scene scene(e);
-    Watch watch;
+    ProgressMonitor watch;
     const Film film = estimate_films(scene, "light-area", {100}, 1, "", watch)[0];  // nothing to aim at: every X is 0
     for (const float v : film.var) EXPECT_EQ(v, 0);
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -6,7 +6,7 @@
 #include "math/functions.h"
 #include "math/gauss.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -81,4 +81,4 @@ DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

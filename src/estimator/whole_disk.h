@@ -4,10 +4,10 @@
 #include "estimator/disk_point.h"
 #include "estimator/disk_quadrature.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// `frame` has the disk's normal for its axis. For lobes that are wide against the disk: rules of rising order until
 /// two agree, and the error is the difference of the last two.
 DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const Frame<double>& frame);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -4,7 +4,7 @@
 
 #include "arms/info.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 int techniques_of(const ArmPlan& arm) {
     const ArmInfo* info = find_arm_info(arm.sampler);
@@ -29,4 +29,4 @@ bool any_tells_s(const Experiment& experiment) {
         experiment.arms, [&](const ArmPlan& arm) { return tells_s(arm.name, experiment.s(), experiment); });
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -5,7 +5,7 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 /// Directions that an arm draws a sample: 2 where it joins two techniques and N counts pairs.
 int techniques_of(const ArmPlan& arm);
@@ -19,4 +19,4 @@ bool tells_s(const std::string& arm, double s, const Experiment& experiment);
 /// The same of any arm at the experiment's own s.
 bool any_tells_s(const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -1,16 +1,16 @@
 // Every check of the file, parsed; its quantities are written out in full.
 #include <fmt/format.h>
 
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 #include "experiment/quantity_text.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
 bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
 
-void resolve(Draft& draft, AssertionPlan& plan, const std::string& path) {
+void resolve(ParseContext& draft, AssertionPlan& plan, const std::string& path) {
     std::string why;
     std::optional<Comparison> check = parse_comparison(plan.left, why);
     if (check && is_number(*check)) check.reset(), why = "expected a quantity on one side at least, found two numbers";
@@ -26,11 +26,11 @@ void resolve(Draft& draft, AssertionPlan& plan, const std::string& path) {
 
 }  // namespace
 
-void resolve_assertions(Draft& draft) {
+void resolve_assertions(ParseContext& draft) {
     for (AssertionPlan& plan : draft.e.assertions) {
         const std::string path = fmt::format("assertions.{}.check", plan.name);
-        if (draft.sound(path)) resolve(draft, plan, path);
+        if (draft.is_valid(path)) resolve(draft, plan, path);
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -7,10 +7,10 @@
 #include <map>
 
 #include "arms/info.h"
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 #include "experiment/names.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -24,20 +24,21 @@ template <class T> std::vector<std::string> names_of(const std::vector<T>& all) 
     return names;
 }
 
-void check_camera(Draft& draft) {
+void check_camera(ParseContext& draft) {
     const Camera& c = draft.e.camera;
-    if (!draft.sound("camera") || !draft.sound("camera.eye") || !draft.sound("camera.target")) return;
+    if (!draft.is_valid("camera") || !draft.is_valid("camera.eye") || !draft.is_valid("camera.target")) return;
     const Vec3d view = c.target - c.eye;
     if (length(view) < 1e-9)
         return draft.complain("camera.target", "camera.target: expected a point other than camera.eye, found the same");
-    if (draft.sound("camera.up") && length(cross(view, c.up)) < parallel * length(view))
+    if (draft.is_valid("camera.up") && length(cross(view, c.up)) < parallel * length(view))
         draft.complain(
             "camera.up", "camera.up: expected a direction that is not parallel to the view from eye to target");
 }
 
-void check_box_on_image(Draft& draft, const std::string& path, const Box& box) {
+void check_box_on_image(ParseContext& draft, const std::string& path, const Box& box) {
     const Image& image = draft.e.image;
-    if (!draft.sound(path) || !draft.sound("image") || !draft.sound("image.width") || !draft.sound("image.height"))
+    if (!draft.is_valid(path) || !draft.is_valid("image") || !draft.is_valid("image.width") ||
+        !draft.is_valid("image.height"))
         return;
     if (box.x0 >= 0 && box.y0 >= 0 && box.x1 < image.width && box.y1 < image.height) return;
     draft.complain(path,
@@ -46,13 +47,13 @@ void check_box_on_image(Draft& draft, const std::string& path, const Box& box) {
 }
 
 /// What the parameters of a kind say of each other, where all of them could be read.
-template <class Any> void check_form(Draft& draft, const std::string& path, const Any& any) {
-    if (!draft.sound(path + ".kind")) return;
+template <class Any> void check_form(ParseContext& draft, const std::string& path, const Any& any) {
+    if (!draft.is_valid(path + ".kind")) return;
     std::visit(
         [&]<class Kind>(const Kind& kind) {
             if constexpr (requires { kind.mistake(); }) {
                 for (const Parameter<Kind>& parameter : Kind::parameters())
-                    if (!draft.sound(fmt::format("{}.{}", path, parameter.name))) return;
+                    if (!draft.is_valid(fmt::format("{}.{}", path, parameter.name))) return;
                 if (const std::optional<Mistake> mistake = kind.mistake()) {
                     const std::string key = fmt::format("{}.{}", path, mistake->key);
                     draft.complain(key, fmt::format("{}: {}", key, mistake->says));
@@ -62,23 +63,23 @@ template <class Any> void check_form(Draft& draft, const std::string& path, cons
         any);
 }
 
-void check_material(Draft& draft, const Shape& shape) {
+void check_material(ParseContext& draft, const Shape& shape) {
     const std::string path = "shapes." + shape.name;
     const Material& m = shape.material;
-    if (!draft.sound(path + ".brdf") || !(m.rho_s > 0)) return;
+    if (!draft.is_valid(path + ".brdf") || !(m.rho_s > 0)) return;
     const LobeInfo& lobe = lobe_info(m.brdf);
     const bool by_alpha = lobe.parameter == LobeParameter::alpha;
-    if (by_alpha && !m.alpha && draft.sound(path + ".alpha"))
+    if (by_alpha && !m.alpha && draft.is_valid(path + ".alpha"))
         draft.complain(path + ".alpha",
             fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, above 0, up to 1", path,
                 lobe.name));
-    if (!by_alpha && !m.s && draft.sound(path + ".s"))
+    if (!by_alpha && !m.s && draft.is_valid(path + ".s"))
         draft.complain(path + ".s",
             fmt::format(
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
 }
 
-void check_light(Draft& draft) {
+void check_light(ParseContext& draft) {
     const auto& disks = draft.e.disks;
     const auto& lights = draft.e.lights;
     if (const std::size_t all = disks.size() + lights.size(); all > most_lights)
@@ -92,12 +93,12 @@ void check_light(Draft& draft) {
     };
     const bool dark =
         std::all_of(disks.begin(), disks.end(), is_dark) && std::all_of(lights.begin(), lights.end(), is_dark);
-    if (dark && draft.sound("disks") && draft.sound("lights") && draft.sound("fill") && draft.sound("fill.radiance") &&
-        fill[0] + fill[1] + fill[2] <= 0)
+    if (dark && draft.is_valid("disks") && draft.is_valid("lights") && draft.is_valid("fill") &&
+        draft.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
         draft.complain("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
 }
 
-void check_outside_arms(Draft& draft) {
+void check_outside_arms(ParseContext& draft) {
     for (const ArmPlan& arm : draft.e.arms) {
         const std::string path = "arms." + arm.name;
         if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
@@ -109,7 +110,7 @@ void check_outside_arms(Draft& draft) {
 }
 
 /// No two arms may write their films into one file.
-void check_film_files(Draft& draft) {
+void check_film_files(ParseContext& draft) {
     const Experiment& e = draft.e;
     std::map<std::string, std::string, std::less<>> taken = {{std::string(reference_file), "the references"}};
     if (e.exponent)
@@ -125,7 +126,7 @@ void check_film_files(Draft& draft) {
 
 }  // namespace
 
-void check_geometry(Draft& draft) {
+void check_geometry(ParseContext& draft) {
     check_camera(draft);
     for (const Shape& shape : draft.e.shapes)
         check_form(draft, "shapes." + shape.name, shape.form), check_material(draft, shape);
@@ -136,7 +137,7 @@ void check_geometry(Draft& draft) {
     check_light(draft);
 }
 
-void check_names(Draft& draft) {
+void check_names(ParseContext& draft) {
     const std::vector<std::string> arms = names_of(draft.e.arms), shapes = names_of(draft.e.shapes);
     for (const Reference& r : draft.references) {
         const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
@@ -166,4 +167,4 @@ void check_names(Draft& draft) {
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

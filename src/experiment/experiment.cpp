@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -30,11 +30,11 @@ std::uint64_t Experiment::n_of(const ArmPlan& arm) const {
 const ArmPlan* Experiment::find_arm(std::string_view name) const { return find_named(arms, name); }
 const Region* Experiment::find_region(std::string_view name) const { return find_named(regions, name); }
 
-Place Experiment::place_of(const std::string& path) const {
+SourceLocation Experiment::place_of(const std::string& path) const {
     for (std::string at = path;; at.resize(at.rfind('.'))) {
         if (const auto it = places.find(at); it != places.end()) return it->second;
         if (at.find('.') == std::string::npos) return {file, 0, 0};
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -15,14 +15,14 @@
 #include "experiment/published.h"
 #include "scene/scene_data.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 /// One sampler with its ladder: rungs are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
     std::string sampler;           // a word of arms/all.h; "": what exec or plugin names
     std::vector<std::uint64_t> n;  // ascending samples per pixel
-    Place at;
+    SourceLocation at;
     std::optional<std::string> exec = {}, plugin = {};  // a command, the file of a shared library
 };
 
@@ -32,13 +32,13 @@ struct ExponentControl {
     std::uint64_t n = 0;
     std::vector<double> s;
     std::string shape;  // whose s is meant: SceneData::s_of
-    Place at;
+    SourceLocation at;
 };
 
 struct Region {
     std::string name;
     Box box;
-    Place at;
+    SourceLocation at;
 };
 
 enum class ReferenceKind { quadrature, note };
@@ -61,7 +61,7 @@ struct FurnacePlan {
     FurnacePart part = FurnacePart::combined;
     std::string shape;  // whose material
     std::uint64_t n = 0;
-    Place at;
+    SourceLocation at;
 };
 
 enum class PlateKind { hero, gallery, columns, ladder, exponent, surround, reference, heat, rose, meters };
@@ -78,7 +78,7 @@ struct PlatePlan {
     std::vector<PlateRun> runs;
     std::optional<Box> crop;
     std::string caption;  // stands alone under the picture
-    Place at;
+    SourceLocation at;
 };
 
 /// A comparison that must hold. Quantities are looked up by name (see meters/quantity.h).
@@ -88,7 +88,7 @@ struct AssertionPlan {
     std::string op;       // "<", "<=", ">", ">=", "=="
     std::string right;    // a quantity or a number
     bool median = false;  // over seeds, else at the published seed
-    Place at;
+    SourceLocation at;
 };
 
 /// A scene, and what is asked of it.
@@ -109,9 +109,9 @@ struct Experiment : SceneData {
     std::vector<FurnacePlan> furnaces;
     std::vector<PlatePlan> plates;
     std::vector<AssertionPlan> assertions;
-    std::optional<std::string> published;  // path of a JSON of published figures, resolved against `file`
-    std::optional<Published> figures;      // what it says, once it is read: by load(), else by run()
-    std::map<std::string, Place> places;   // "camera.eye" -> where it was written
+    std::optional<std::string> published;          // path of a JSON of published figures, resolved against `file`
+    std::optional<Published> figures;              // what it says, once it is read: by load(), else by run()
+    std::map<std::string, SourceLocation> places;  // "camera.eye" -> where it was written
 
     /// This experiment with another s: on the shape that s() is read from and on all that inherit it.
     Experiment with_s(double s) const;
@@ -120,7 +120,7 @@ struct Experiment : SceneData {
     const ArmPlan* find_arm(std::string_view name) const;
     const Region* find_region(std::string_view name) const;
     /// Where a key was written; a key that was not, stands where its table does.
-    Place place_of(const std::string& path) const;
+    SourceLocation place_of(const std::string& path) const;
 };
 
 /// Reads and checks a whole file; throws one InputError with every mistake in it.
@@ -142,4 +142,4 @@ std::uint64_t hash(const Experiment& experiment);
 std::string schema_text();
 std::string schema_json();
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

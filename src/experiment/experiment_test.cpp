@@ -9,7 +9,7 @@
 #include "experiment/published.h"
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 namespace {
 
 using testing::ElementsAre;
@@ -157,17 +157,17 @@ std::size_t take_every_key(const Section& section, const std::string& path) {
         EXPECT_THAT(say, testing::Not(HasSubstr("unknown key"))) << at;
         EXPECT_THAT(say, testing::Not(HasSubstr(fmt::format("{}: expected {}", at, expectation(key))))) << at;
         EXPECT_FALSE(key.means.empty()) << at;
-        EXPECT_EQ(key.need == Need::required, key.fallback.empty()) << at;
+        EXPECT_EQ(key.need == Requirement::required, key.default_value.empty()) << at;
         EXPECT_THAT(schema_text(), HasSubstr(fmt::format("  {}: ", key.name)));
     }
     for (const Section& sub : section.sections) {
         const std::string name(sub.name);
         count += take_every_key(sub,
             prefix +
-                (sub.many == Many::one           ? name
-                        : sub.many == Many::list ? name + ".0"
-                        : name == "plates"       ? "plates.hero"
-                                                 : name + ".probe"));
+                (sub.many == Multiplicity::one           ? name
+                        : sub.many == Multiplicity::list ? name + ".0"
+                        : name == "plates"               ? "plates.hero"
+                                                         : name + ".probe"));
     }
     return count;
 }
@@ -180,7 +180,8 @@ TEST(TheSchema, TellsEditorsOfEveryKey) {
     for (std::size_t at = 0; (at = json.find(" Expects ", at)) != std::string::npos; ++at) ++told;
     // A titled family is described twice: as tables under names and as a list.
     std::size_t titled = 0;
-    for (const Section& section : schema().sections) titled += section.many == Many::titled ? section.keys.size() : 0;
+    for (const Section& section : schema().sections)
+        titled += section.many == Multiplicity::titled ? section.keys.size() : 0;
     EXPECT_EQ(told, take_every_key(schema(), "") + titled);
 }
 
@@ -221,4 +222,4 @@ TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -54,7 +54,7 @@ std::string toml(const Key& key, const Value& value) {
 /// A number of 0 and an empty list stand for an optional key that was not given.
 bool is_given(const Key& key, const Value& value) {
     if (key.type == Type::sampler) return !value.text.empty();
-    if (key.need != Need::optional) return true;
+    if (key.need != Requirement::optional) return true;
     if (key.type == Type::integers || key.type == Type::numbers) return !value.numbers.empty();
     return (key.type != Type::integer && key.type != Type::number) || value.number != 0;
 }
@@ -95,9 +95,9 @@ private:
         for (const auto& [key, value] : keys(section, object))
             text_ += fmt::format("{}{} = {}\n", inherits && key == "s" ? "# inherited: " : "", key, value);
         for (const Section& sub : section.sections)
-            if (sub.many == Many::list) tables_in_a_list(sub, object);
+            if (sub.many == Multiplicity::list) tables_in_a_list(sub, object);
         for (const Section& sub : section.sections)
-            if (sub.many != Many::list) family(sub, object, path);
+            if (sub.many != Multiplicity::list) family(sub, object, path);
     }
 
     void family(const Section& section, const void* parent, const std::string& path) {
@@ -106,7 +106,8 @@ private:
         for (std::size_t i = 0; i < section.family.size(parent); ++i) {
             const void* object = section.family.at(parent, i);
             table(section, object,
-                section.many == Many::one ? own : fmt::format("{}.{}", own, toml_text(section.family.name(object))));
+                section.many == Multiplicity::one ? own
+                                                  : fmt::format("{}.{}", own, toml_text(section.family.name(object))));
         }
     }
 
@@ -155,4 +156,4 @@ std::uint64_t hash(const Experiment& experiment) {
     return XXH3_64bits(text.data(), text.size());
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -7,7 +7,7 @@
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 namespace {
 
 const std::string folder = std::string(CRESCENT_SOURCE_DIR) + "/experiments/";
@@ -231,4 +231,4 @@ TEST(Identity, HoldsWhatWasPublishedNotWhere) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -7,7 +7,7 @@
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -63,7 +63,7 @@ Json type_of(const Key& key) {
 /// What an editor shows beside the key.
 std::string description(const Key& key) {
     std::string text = std::string(key.means) + " Expects " + expectation(key) + ".";
-    if (key.need != Need::required) text += " Default: " + std::string(key.fallback) + ".";
+    if (key.need != Requirement::required) text += " Default: " + std::string(key.default_value) + ".";
     if (key.type != Type::check) return text;
     text += " Quantities:";
     for (const QuantityWord& word : quantity_words()) text += " " + form_of(word) + ";";
@@ -74,7 +74,8 @@ std::string description(const Key& key) {
 Json property(const Key& key) {
     Json out = type_of(key);
     out["description"] = description(key);
-    if (key.need == Need::defaulted && key.type != Type::sampler) out["default"] = Json::parse(key.fallback);
+    if (key.need == Requirement::defaulted && key.type != Type::sampler)
+        out["default"] = Json::parse(key.default_value);
     return out;
 }
 
@@ -85,7 +86,7 @@ Json kinds_of(const Section& section, const std::vector<std::string>& kinds) {
         Json needed = Json::array(), foreign = Json::object();
         for (const Key& key : section.keys) {
             if (!has_kind(key, kind)) foreign[std::string(key.name)] = false;
-            else if (key.need == Need::required && !key.kinds.empty()) needed.push_back(key.name);
+            else if (key.need == Requirement::required && !key.kinds.empty()) needed.push_back(key.name);
         }
         rules.push_back({{"if", {{"properties", {{"kind", {{"const", kind}}}}}, {"required", {"kind"}}}},
             {"then", {{"required", needed}, {"properties", foreign}}}});
@@ -100,11 +101,11 @@ Json table(const Section& section) {
     Json required = Json::array();
     for (const Key& key : section.keys) {
         out["properties"][std::string(key.name)] = property(key);
-        if (key.need == Need::required && key.kinds.empty()) required.push_back(key.name);
+        if (key.need == Requirement::required && key.kinds.empty()) required.push_back(key.name);
     }
     for (const Section& sub : section.sections) {
         out["properties"][std::string(sub.name)] = family(sub);
-        if (sub.need == Need::required) required.push_back(sub.name);
+        if (sub.need == Requirement::required) required.push_back(sub.name);
     }
     out["additionalProperties"] = false;
     if (!required.empty()) out["required"] = required;
@@ -121,14 +122,14 @@ Json family(const Section& section) {
     const Json listed = {{"type", "array"}, {"items", one}, {"description", section.means}};
     Json named = {{"type", "object"}, {"description", section.means}};
     switch (section.many) {
-        case Many::one: return one;
-        case Many::list: return listed;
-        case Many::named:
+        case Multiplicity::one: return one;
+        case Multiplicity::list: return listed;
+        case Multiplicity::named:
             named["patternProperties"] = {{name_pattern, one}};
             named["additionalProperties"] = false;
-            if (section.need == Need::required) named["minProperties"] = 1;
+            if (section.need == Requirement::required) named["minProperties"] = 1;
             return named;
-        case Many::titled: break;
+        case Multiplicity::titled: break;
     }
     named["additionalProperties"] = one;  // [assertions."any text"], or a list whose tables say their own name
     Json item = one;
@@ -147,4 +148,4 @@ std::string json_schema_of(const Section& root, const char* title) {
 
 std::string schema_json() { return json_schema_of(schema(), "crescent experiment"); }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -8,15 +8,15 @@
 #include <map>
 #include <tuple>
 
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 #include "experiment/published.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
-Draft draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-    Draft draft;
+ParseContext draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
+    ParseContext draft;
     draft.e.file = name;
     draft.e.overrides = overrides;
     Node root = read_toml(text, name, &draft.complaints);
@@ -37,17 +37,17 @@ Draft draft_of(std::string_view text, const std::string& name, const std::vector
 }  // namespace
 
 /// In file order; overrides come after the file, as given.
-void throw_if_any(std::vector<Complaint> all) {
+void throw_if_any(std::vector<Diagnostic> all) {
     if (all.empty()) return;
-    std::multimap<std::tuple<bool, unsigned, unsigned>, Complaint> sorted;  // equals keep their order
-    for (Complaint& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
+    std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted;  // equals keep their order
+    for (Diagnostic& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
     all.clear();
     for (auto& [key, complaint] : sorted) all.push_back(std::move(complaint));
     throw InputError(std::move(all));
 }
 
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-    Draft draft = draft_of(text, name, overrides);
+    ParseContext draft = draft_of(text, name, overrides);
     throw_if_any(std::move(draft.complaints));
     return std::move(draft.e);
 }
@@ -59,7 +59,7 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
                 "expected an experiment, a TOML file: scenes of other programs cannot be read; README.md says what a "
                 "scene "
                 "can be");
-    Draft draft = draft_of(read_text(path, "an experiment file"), path, overrides);
+    ParseContext draft = draft_of(read_text(path, "an experiment file"), path, overrides);
     if (draft.e.published) {
         try {
             draft.e.figures = load_published(*draft.e.published);
@@ -94,4 +94,4 @@ std::string read_text(const std::string& path, std::string_view what) {
     return text;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -5,7 +5,7 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 namespace {
 
 using testing::HasSubstr;
@@ -89,8 +89,8 @@ TEST_P(AMistake, IsFoundWhereItStandsInWordsThatHelp) {
         (void)parse(edited(m), "x.toml");
         FAIL() << "accepted: " << m.new_text;
     } catch (const InputError& error) {
-        const Complaint& first = error.complaints().front();
-        EXPECT_EQ(to_string(first.at), to_string(Place{"x.toml", m.line, m.column})) << error.what();
+        const Diagnostic& first = error.complaints().front();
+        EXPECT_EQ(to_string(first.at), to_string(SourceLocation{"x.toml", m.line, m.column})) << error.what();
         EXPECT_THAT(first.say, HasSubstr(m.phrase)) << error.what();
         EXPECT_EQ(error.complaints().size(), m.complaints) << error.what();
     }
@@ -240,7 +240,7 @@ TEST(Mistakes, AllAreReportedAtOnceInFileOrder) {
         FAIL();
     } catch (const InputError& error) {
         std::vector<std::string> at;
-        for (const Complaint& c : error.complaints()) at.push_back(to_string(c.at));
+        for (const Diagnostic& c : error.complaints()) at.push_back(to_string(c.at));
         EXPECT_THAT(
             at, testing::ElementsAre("x.toml:4:9", "x.toml:29:8", "x.toml:31:1", "x.toml:43:7", "--set seed=-1"));
     }
@@ -256,7 +256,7 @@ TEST(Mistakes, ANameGivenTwiceDoesNotHideTheRest) {
         FAIL();
     } catch (const InputError& error) {
         std::vector<std::string> at;
-        for (const Complaint& c : error.complaints()) at.push_back(to_string(c.at));
+        for (const Diagnostic& c : error.complaints()) at.push_back(to_string(c.at));
         EXPECT_THAT(at, testing::ElementsAre("x.toml:4:9", "x.toml:11:12", "x.toml:24:1")) << error.what();
     }
 }
@@ -297,4 +297,4 @@ TEST(Mistakes, JunkIsRefusedAndDoesNotCrash) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 std::string film_file(std::string_view arm, double s, double own_s) {
     return s == own_s ? std::string(arm) : fmt::format("{}-s{}", arm, s);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

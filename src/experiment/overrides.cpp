@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -49,7 +49,7 @@ bool in_table(const Section& section, const Segments& path, std::size_t i) {
     if (i >= path.size()) return true;
     if (section.find_key(path[i])) return i + 1 == path.size() || (i + 2 == path.size() && index_of(path[i + 1]));
     const Section* sub = section.find_section(path[i]);
-    return sub && in_table(*sub, path, i + (sub->many == Many::one ? 1 : 2));
+    return sub && in_table(*sub, path, i + (sub->many == Multiplicity::one ? 1 : 2));
 }
 
 std::string name_of(const Member& member) {
@@ -65,14 +65,14 @@ Member* step(Node& node, const std::string& segment) {
     return named == node.members.end() ? nullptr : &*named;
 }
 
-void move_to(Node& node, const Place& at) {
+void move_to(Node& node, const SourceLocation& at) {
     node.at = at;
     for (Member& member : node.members) member.at = at, move_to(member.value, at);
 }
 
 class Override {
 public:
-    Override(Draft& draft, Node& root, const std::string& text)
+    Override(ParseContext& draft, Node& root, const std::string& text)
         : draft_(draft), root_(root), place_{"--set " + text, 0, 0} {}
 
     void apply(const std::string& text) {
@@ -114,7 +114,7 @@ private:
         const bool top = std::count(words.begin(), words.end(), path[0]);
         for (const Section& section : schema().sections) {
             const Member* family = root_.find(section.name);
-            if (section.many == Many::one || !family) continue;
+            if (section.many == Multiplicity::one || !family) continue;
             for (const Member& member : family->value.members) {
                 words.push_back(name_of(member));
                 if (words.back() != path[0]) continue;
@@ -158,16 +158,16 @@ private:
         *node = std::move(value);
     }
 
-    Draft& draft_;
+    ParseContext& draft_;
     Node& root_;
-    Place place_;
+    SourceLocation place_;
     std::string written_;
 };
 
 }  // namespace
 
-void apply_overrides(Draft& draft, Node& root, const std::vector<std::string>& overrides) {
+void apply_overrides(ParseContext& draft, Node& root, const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides) Override(draft, root, text).apply(text);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

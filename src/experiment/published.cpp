@@ -8,13 +8,13 @@
 
 #include "base/errors.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
 using nlohmann::json;
 
-Place place_of_byte(std::string_view text, std::size_t byte, const std::string& file) {
+SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std::string& file) {
     const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
     return {file, static_cast<unsigned>(std::count(before.begin(), before.end(), '\n') + 1),
@@ -118,4 +118,4 @@ std::optional<Published> load_published(const std::string& path) {
     return parse_published(read_text(path, "a JSON of published figures"), path);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <tuple>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 class Published {
 public:
@@ -33,4 +33,4 @@ Published parse_published(std::string_view text, const std::string& name);
 /// A whole text file of at most 4 MiB; `what` names it in the InputError where it cannot be read.
 std::string read_text(const std::string& path, std::string_view what);
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -7,9 +7,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -226,4 +226,4 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     return "";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

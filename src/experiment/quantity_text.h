@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 struct Experiment;
 
@@ -52,4 +52,4 @@ std::string to_string(const ParsedQuantity& quantity);
 /// which holds all others. Returns what is wrong with the names, "" where all of them will be measured.
 std::string resolve_quantity(ParsedQuantity& quantity, const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -31,17 +31,18 @@ std::string where(const std::string& path) { return path.empty() ? "the experime
 
 class TreeReader {
 public:
-    explicit TreeReader(Draft& draft) : draft_(draft) {}
+    explicit TreeReader(ParseContext& draft) : draft_(draft) {}
 
-    void table(const Section& section, const Node& node, const std::string& path, const Place& at, void* object) {
+    void table(
+        const Section& section, const Node& node, const std::string& path, const SourceLocation& at, void* object) {
         const std::string kind = kind_of(section, node);
         unknown_keys(section, node, path, kind);
         for (const Key& key : section.keys) {
             if (!has_kind(key, kind)) continue;
             const Member* member = node.find(key.name);
             if (member) value(key, member->value, join(path, key.name), object);
-            else if (key.need == Need::required) missing_key(key, path, at, kind);
-            else if (key.need == Need::defaulted) fallback(key, join(path, key.name), object);
+            else if (key.need == Requirement::required) missing_key(key, path, at, kind);
+            else if (key.need == Requirement::defaulted) default_value(key, join(path, key.name), object);
         }
         for (const Section& sub : section.sections) family(sub, node, join(path, sub.name), at, object);
     }
@@ -60,7 +61,7 @@ private:
         for (const Member& member : node.members) {
             const Key* key = section.find_key(member.key);
             if ((key && has_kind(*key, kind)) || section.find_section(member.key)) continue;
-            if (section.many == Many::titled && in_list_ && member.key == "name") continue;
+            if (section.many == Multiplicity::titled && in_list_ && member.key == "name") continue;
             const std::vector<std::string> valid = words_of(section, kind);
             const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
                                           : fmt::format("unknown key '{}'", member.key.substr(0, 64));
@@ -70,7 +71,7 @@ private:
         }
     }
 
-    void missing_key(const Key& key, const std::string& path, const Place& at, const std::string& kind) {
+    void missing_key(const Key& key, const std::string& path, const SourceLocation& at, const std::string& kind) {
         if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is needed
         const std::string name = path.substr(path.rfind('.') + 1);
         const bool made_by_override = at.line == 0 && !siblings.empty();
@@ -99,7 +100,7 @@ private:
             draft_.references.push_back({key.type, path, value.text});
     }
 
-    void fallback(const Key& key, const std::string& path, void* object) {
+    void default_value(const Key& key, const std::string& path, void* object) {
         if (key.type == Type::sampler) {  // the arm's own name, where nothing stands in its place
             const auto& arm = *static_cast<const ArmPlan*>(object);
             if (arm.exec || arm.plugin) return;
@@ -108,44 +109,45 @@ private:
             name.text = static_cast<const ArmPlan*>(object)->name;
             return store(key, name, path, object);
         }
-        store(key, read_toml(fmt::format("default = {}", key.fallback), "default").members.front().value, path, object);
+        store(key, read_toml(fmt::format("default = {}", key.default_value), "default").members.front().value, path,
+            object);
     }
 
     /// A table, or all tables of a family.
-    void family(
-        const Section& section, const Node& parent, const std::string& path, const Place& parent_at, void* object) {
+    void family(const Section& section, const Node& parent, const std::string& path, const SourceLocation& parent_at,
+        void* object) {
         const Member* member = parent.find(section.name);
         if (!member) return absent(section, path, parent_at, object);
         const Node& node = member->value;
         draft_.e.places[path] = member->at;
-        const bool listed = section.many == Many::list || section.many == Many::titled;
+        const bool listed = section.many == Multiplicity::list || section.many == Multiplicity::titled;
         if (!node.is_table() && !(listed && node.is_array()))
             return draft_.complain(
                 path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
-        if (section.many == Many::list && node.is_table())
+        if (section.many == Multiplicity::list && node.is_table())
             return draft_.complain(
                 path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
-        if (section.many == Many::one)
+        if (section.many == Multiplicity::one)
             return table(section, node, path, member->at,
                 section.family.add ? section.family.add(object, "", member->at) : object);
-        if (section.need == Need::required && node.members.empty())
+        if (section.need == Requirement::required && node.members.empty())
             return draft_.complain(
                 path, member->at, fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
         elements(section, node, path, object);
     }
 
     static std::string form(const Section& section, const std::string& path) {
-        if (section.many == Many::one) return fmt::format("a table [{}]", path);
-        if (section.many == Many::list) return "a list of tables";
+        if (section.many == Multiplicity::one) return fmt::format("a table [{}]", path);
+        if (section.many == Multiplicity::list) return "a list of tables";
         return fmt::format("tables [{}.NAME]", path);
     }
 
-    void absent(const Section& section, const std::string& path, const Place& parent_at, void* object) {
-        if (section.need == Need::required)
+    void absent(const Section& section, const std::string& path, const SourceLocation& parent_at, void* object) {
+        if (section.need == Requirement::required)
             return draft_.complain(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
         const bool all_default = std::none_of(
-            section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Need::required; });
-        if (section.many == Many::one && all_default)
+            section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Requirement::required; });
+        if (section.many == Multiplicity::one && all_default)
             table(section, Node{}, path, parent_at,
                 section.family.add ? section.family.add(object, "", parent_at) : object);
     }
@@ -172,17 +174,18 @@ private:
         if (!member.value.is_table())
             return draft_.complain(label, node.is_array() ? member.value.at : member.at,
                 fmt::format("{}: expected {}, found {}", label,
-                    section.many == Many::list ? "a table" : form(section, path), describe(member.value)));
+                    section.many == Multiplicity::list ? "a table" : form(section, path), describe(member.value)));
         std::string name = member.key;
-        Place at = member.at;
-        if (section.many == Many::titled && node.is_array() && !title(member, path, index, name, at)) return;
-        const std::string own = section.many == Many::list ? fmt::format("{}.{}", path, index) : join(path, name);
-        if (section.many == Many::named && !file_safe(name))
+        SourceLocation at = member.at;
+        if (section.many == Multiplicity::titled && node.is_array() && !title(member, path, index, name, at)) return;
+        const std::string own =
+            section.many == Multiplicity::list ? fmt::format("{}.{}", path, index) : join(path, name);
+        if (section.many == Multiplicity::named && !file_safe(name))
             draft_.complain(own, at,
                 fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
                             "letter, digit or '_' first: names become file names",
                     name.substr(0, 64), where(path)));
-        if (section.many == Many::titled && !one_line(name))
+        if (section.many == Multiplicity::titled && !one_line(name))
             draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
         draft_.e.places[own] = at;
         in_list_ = node.is_array();
@@ -190,7 +193,8 @@ private:
     }
 
     /// The name of a table in a list; false where it has none that is new.
-    bool title(const Member& member, const std::string& path, std::size_t index, std::string& name, Place& at) {
+    bool title(
+        const Member& member, const std::string& path, std::size_t index, std::string& name, SourceLocation& at) {
         const Member* own = member.value.find("name");
         at = member.value.at;
         if (!own || own->value.kind != Node::Kind::text) {
@@ -209,18 +213,18 @@ private:
         return fresh;
     }
 
-    Draft& draft_;
-    std::map<std::string, Place> titles_;  // names of a list so far
-    bool in_list_ = false;                 // the table that is being read stands in one, and says its own name
+    ParseContext& draft_;
+    std::map<std::string, SourceLocation> titles_;  // names of a list so far
+    bool in_list_ = false;                          // the table that is being read stands in one, and says its own name
 };
 
 }  // namespace
 
-void read_tree(Draft& draft, const Section& table, const Node& root, void* object) {
-    const Place top{draft.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
+void read_tree(ParseContext& draft, const Section& table, const Node& root, void* object) {
+    const SourceLocation top{draft.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
     TreeReader(draft).table(table, root, "", top, object);
 }
 
-void read_tree(Draft& draft, const Node& root) { read_tree(draft, schema(), root, &draft.e); }
+void read_tree(ParseContext& draft, const Node& root) { read_tree(draft, schema(), root, &draft.e); }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "arms/info.h"
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 #include "experiment/names.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -30,11 +30,11 @@ constexpr RunCount run_counts[] = {
     {PlateKind::meters, "meters", 0, 64},
 };
 
-void resolve_s(Draft& draft) {
+void resolve_s(ParseContext& draft) {
     Experiment& e = draft.e;
-    if (e.exponent && draft.sound("exponent.shape")) {
+    if (e.exponent && draft.is_valid("exponent.shape")) {
         const Shape* shape = e.find_shape(e.exponent->shape);
-        if (shape && !shape->material.s && draft.sound("shapes." + shape->name + ".s"))
+        if (shape && !shape->material.s && draft.is_valid("shapes." + shape->name + ".s"))
             draft.complain("exponent.shape",
                 fmt::format(
                     "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
@@ -44,7 +44,7 @@ void resolve_s(Draft& draft) {
     for (Shape& shape : e.shapes)
         if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
     if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
-            return !draft.sound("shapes." + x.name + ".s");
+            return !draft.is_valid("shapes." + x.name + ".s");
         }))
         return;
     for (const ArmPlan& arm : e.arms)
@@ -53,10 +53,10 @@ void resolve_s(Draft& draft) {
                 fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
 }
 
-void resolve_ladders(Draft& draft) {
+void resolve_ladders(ParseContext& draft) {
     for (ArmPlan& arm : draft.e.arms) {
         const std::string path = "arms." + arm.name;
-        if (!arm.n.empty() || !draft.sound(path + ".n") || !draft.sound("n")) continue;
+        if (!arm.n.empty() || !draft.is_valid(path + ".n") || !draft.is_valid("n")) continue;
         if (draft.e.n > 0) arm.n = {draft.e.n};
         else
             draft.complain(path + ".n",
@@ -67,7 +67,7 @@ void resolve_ladders(Draft& draft) {
 }
 
 /// The n of a run, its arm's where it names none; complains where the arm has no such rung.
-std::uint64_t rung(Draft& draft, const std::string& path, const std::string& arm_name, std::uint64_t n) {
+std::uint64_t rung(ParseContext& draft, const std::string& path, const std::string& arm_name, std::uint64_t n) {
     const ArmPlan* arm = draft.e.find_arm(arm_name);
     if (!arm || arm->n.empty()) return n;
     if (n == 0) return draft.e.n_of(*arm);
@@ -78,14 +78,14 @@ std::uint64_t rung(Draft& draft, const std::string& path, const std::string& arm
     return n;
 }
 
-void check_s(Draft& draft, const std::string& path, const PlateRun& run) {
+void check_s(ParseContext& draft, const std::string& path, const PlateRun& run) {
     std::string why = why_not_run(draft.e, run.arm, run.n, run.s);
     if (!why.empty()) draft.complain(path, fmt::format("{}: {}", path, why));
 }
 
-void resolve_plate(Draft& draft, PlatePlan& plate) {
+void resolve_plate(ParseContext& draft, PlatePlan& plate) {
     const std::string path = "plates." + plate.name;
-    if (!draft.sound(path + ".kind") || !draft.sound(path + ".runs")) return;
+    if (!draft.is_valid(path + ".kind") || !draft.is_valid(path + ".runs")) return;
     const RunCount& count = run_counts[static_cast<std::size_t>(plate.kind)];
     if (plate.runs.size() < count.least || plate.runs.size() > count.most) {
         const std::string many = count.least == count.most ? fmt::format("{}", count.least)
@@ -99,19 +99,19 @@ void resolve_plate(Draft& draft, PlatePlan& plate) {
         PlateRun run = plate.runs[i];
         const std::string own = fmt::format("{}.runs.{}", path, i);
         const ArmPlan* arm = draft.e.find_arm(run.arm);
-        const bool open = run.n == 0 && draft.sound(own + ".n") && arm && !arm->n.empty();
+        const bool open = run.n == 0 && draft.is_valid(own + ".n") && arm && !arm->n.empty();
         if (open && plate.kind == PlateKind::ladder) {
             for (const std::uint64_t n : arm->n) runs.push_back({run.arm, n, run.s});
             continue;
         }
         const auto& control = draft.e.exponent;
-        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && draft.sound(own + ".s") && control &&
+        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && draft.is_valid(own + ".s") && control &&
             control->arm == run.arm) {
             for (const double s : control->s) runs.push_back({run.arm, control->n, s});
             continue;
         }
         run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(draft, own + ".n", run.arm, run.n);
-        if (draft.sound(own + ".n") && draft.sound(own + ".s")) check_s(draft, own + ".s", run);
+        if (draft.is_valid(own + ".n") && draft.is_valid(own + ".s")) check_s(draft, own + ".s", run);
         runs.push_back(run);
     }
     plate.runs = std::move(runs);
@@ -131,14 +131,14 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
-void resolve_runs(Draft& draft) {
+void resolve_runs(ParseContext& draft) {
     resolve_s(draft);
     resolve_ladders(draft);
     if (draft.e.exponent) {
         ExponentControl& control = *draft.e.exponent;
-        if (draft.sound("exponent.n")) control.n = rung(draft, "exponent.n", control.arm, control.n);
+        if (draft.is_valid("exponent.n")) control.n = rung(draft, "exponent.n", control.arm, control.n);
     }
     for (PlatePlan& plate : draft.e.plates) resolve_plate(draft, plate);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

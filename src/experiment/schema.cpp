@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::vector<std::string> words_of(const Section& section, std::string_view kind)
     return words;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -14,7 +14,7 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 enum class Type {
     text,   // any text on one line
@@ -39,7 +39,7 @@ enum class Type {
 /// "from 0 to 1", "above 0": for messages and the manual.
 std::string to_string(const Range& range);
 
-enum class Need { required, optional, defaulted };
+enum class Requirement { required, optional, defaulted };
 
 /// A checked value on its way from the file into an Experiment; which field counts follows from the type.
 struct Value {
@@ -62,15 +62,15 @@ struct Key {
     Type type;
     Range range;
     std::string_view unit;
-    Need need;
-    std::string_view fallback;  // TOML of the default, or in words where it depends on other keys
+    Requirement need;
+    std::string_view default_value;  // TOML of the default, or in words where it depends on other keys
     std::string_view means;
     Slot slot;
     std::vector<std::string> words = {};
     std::string kinds = {};  // the kinds of shape that have this key; empty: all
 };
 
-enum class Many {
+enum class Multiplicity {
     one,     // [camera]
     named,   // [shapes.NAME]; names are file-safe
     titled,  // [assertions."any text"], or a list whose tables have a key 'name'
@@ -79,7 +79,7 @@ enum class Many {
 
 /// The objects of a section inside their parent. Without functions: the parent itself.
 struct Family {
-    void* (*add)(void* parent, const std::string& name, const Place& at) = nullptr;
+    void* (*add)(void* parent, const std::string& name, const SourceLocation& at) = nullptr;
     std::size_t (*size)(const void* parent) = nullptr;
     const void* (*at)(const void* parent, std::size_t index) = nullptr;
     std::string (*name)(const void* object) = nullptr;  // "" where it has none
@@ -88,8 +88,8 @@ struct Family {
 /// A table of the file, or a family of tables under names of the user's choice.
 struct Section {
     std::string_view name;
-    Many many;
-    Need need;
+    Multiplicity many;
+    Requirement need;
     std::string_view means;
     Family family;
     std::vector<Key> keys;
@@ -225,7 +225,7 @@ template <class T> std::span<const T> all_of(const std::vector<T>& member) { ret
 
 /// The objects that a section's keys are stored into: the member itself, or its elements.
 template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
-constexpr Family in = {[](void* parent, const std::string& name, const Place& at) -> void* {
+constexpr Family in = {[](void* parent, const std::string& name, const SourceLocation& at) -> void* {
                            auto* object = make_room(static_cast<Owner*>(parent)->*M);
                            if constexpr (requires { object->name; }) object->name = name;
                            if constexpr (requires { object->at; }) object->at = at;
@@ -241,4 +241,4 @@ constexpr Family in = {[](void* parent, const std::string& name, const Place& at
         else return "";
     }};
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -4,7 +4,7 @@
 #include "experiment/schema.h"
 #include "scene/parameter.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 /// The type of a key, from that of the member it is stored in.
 inline Type type_of(const std::type_identity<double>&, bool) { return Type::number; }
@@ -64,7 +64,7 @@ constexpr Slot parameter_slot = {[](void* object, const Value& value) {
     }};
 
 template <class List, auto Form> Key kind_key() {
-    Key key{"kind", Type::word, {}, "", Need::required, "", "What it is.", kind_slot<List, Form>};
+    Key key{"kind", Type::word, {}, "", Requirement::required, "", "What it is.", kind_slot<List, Form>};
     for (const std::string_view name : List::names) key.words.emplace_back(name);
     return key;
 }
@@ -85,10 +85,12 @@ template <class List, auto Form> std::vector<Key> parameter_keys() {
         }
         const Type type = std::visit(
             [&]<class Kind, class T>(T Kind::*) { return type_of(std::type_identity<T>{}, p.unit_vector); }, p.member);
-        const Need need = p.fallback.empty() ? Need::required : type == Type::flag ? Need::defaulted : Need::optional;
-        keys.push_back({p.name, type, p.range, p.unit, need, p.fallback, p.means, slot, {}, std::string(kind)});
+        const Requirement need = p.default_value.empty() ? Requirement::required
+            : type == Type::flag                         ? Requirement::defaulted
+                                                         : Requirement::optional;
+        keys.push_back({p.name, type, p.range, p.unit, need, p.default_value, p.means, slot, {}, std::string(kind)});
     });
     return keys;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -7,7 +7,7 @@
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -19,8 +19,8 @@ std::string join(const std::string& path, std::string_view name) {
 
 std::string path_of(const Section& section, const std::string& parent) {
     std::string path = join(parent, section.name);
-    if (section.many == Many::named || section.many == Many::titled) path += ".NAME";
-    if (section.many == Many::list) path += ".INDEX";
+    if (section.many == Multiplicity::named || section.many == Multiplicity::titled) path += ".NAME";
+    if (section.many == Multiplicity::list) path += ".INDEX";
     return path;
 }
 
@@ -40,8 +40,8 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang 
 }
 
 std::string need_text(const Key& key) {
-    if (key.need == Need::required) return "required";
-    return fmt::format("default {}", key.fallback);
+    if (key.need == Requirement::required) return "required";
+    return fmt::format("default {}", key.default_value);
 }
 
 /// "sphere disk" -> "sphere or disk".
@@ -61,8 +61,8 @@ void print(const Section& section, const std::string& parent, std::string& out) 
     const std::string path = path_of(section, parent);
     if (!path.empty()) {
         const std::string header =
-            section.many == Many::list ? "[[" + join(parent, section.name) + "]]" : "[" + path + "]";
-        out += fmt::format("\n{}{}\n", header, section.need == Need::required ? "  (required)" : "");
+            section.many == Multiplicity::list ? "[[" + join(parent, section.name) + "]]" : "[" + path + "]";
+        out += fmt::format("\n{}{}\n", header, section.need == Requirement::required ? "  (required)" : "");
     }
     out += wrapped(section.means, 0);
     for (const Key& key : section.keys) out += key_text(key);
@@ -85,4 +85,4 @@ std::string schema_text() {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -2,7 +2,7 @@
 #include "experiment/schema.h"
 #include "experiment/schema_kinds.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -16,10 +16,11 @@ constexpr Range seed_range{0, 4294967295.0};  // 32 bits
 constexpr Range pixel_range{0, 16383};
 constexpr Range none{};
 
-constexpr Need required = Need::required, optional = Need::optional, defaulted = Need::defaulted;
+constexpr Requirement required = Requirement::required, optional = Requirement::optional,
+                      defaulted = Requirement::defaulted;
 
 Section image() {
-    return {"image", Many::one, required,
+    return {"image", Multiplicity::one, required,
         "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.",
         in<&Experiment::image, Experiment>,
         {{"width", Type::integer, {1, 16384}, "pixels", required, "", "Columns.", to<&Image::width>},
@@ -28,7 +29,7 @@ Section image() {
 }
 
 Section camera() {
-    return {"camera", Many::one, required, "A pinhole camera.", in<&Experiment::camera, Experiment>,
+    return {"camera", Multiplicity::one, required, "A pinhole camera.", in<&Experiment::camera, Experiment>,
         {{"eye", Type::point, free_range, "m", required, "", "Where it stands.", to<&Camera::eye>},
             {"target", Type::point, free_range, "m", required, "", "The point in the middle of the picture.",
                 to<&Camera::target>},
@@ -71,13 +72,13 @@ Section shape_tables() {
     keys.insert(keys.end(), colors.begin(), colors.end());
     keys.push_back({"occludes", Type::flag, none, "", defaulted, "false", "Whether it stands in the way of the lights.",
         to<&Shape::occludes>});
-    return {"shapes", Many::named, required, "What the camera sees.", in<&Experiment::shapes, Experiment>,
+    return {"shapes", Multiplicity::named, required, "What the camera sees.", in<&Experiment::shapes, Experiment>,
         std::move(keys), {}};
 }
 
 Section disks() {
-    return {"disks", Many::named, optional, "Disks that shine; sampled rays meet them, the camera does not see them.",
-        in<&Experiment::disks, Experiment>,
+    return {"disks", Multiplicity::named, optional,
+        "Disks that shine; sampled rays meet them, the camera does not see them.", in<&Experiment::disks, Experiment>,
         {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
             {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
             {"radius", Type::number, length, "m", required, "", "Radius.", to<&DiskLight::radius>},
@@ -93,20 +94,20 @@ Section light_tables() {
     for (Key& key : parameter_keys<LightKinds, &Light::form>()) keys.push_back(std::move(key));
     keys.push_back(
         {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.", to<&Light::radiance>});
-    return {"lights", Many::named, optional,
+    return {"lights", Multiplicity::named, optional,
         "Lights of any kind; [disks.NAME] is another way to write a disk. They come after the disks of such tables.",
         in<&Experiment::lights, Experiment>, std::move(keys), {}};
 }
 
 Section fill() {
-    return {"fill", Many::one, optional, "Light from every direction in which no other light is met.", {},
+    return {"fill", Multiplicity::one, optional, "Light from every direction in which no other light is met.", {},
         {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
             to_owner<Experiment, &Experiment::fill>}},
         {}};
 }
 
 Section arms() {
-    return {"arms", Many::named, required,
+    return {"arms", Multiplicity::named, required,
         "The samplers on trial. All see the same random numbers; rungs are prefixes of one stream.",
         in<&Experiment::arms>,
         {{"exec", Type::text, none, "", optional, "none",
@@ -123,7 +124,7 @@ Section arms() {
 }
 
 Section exponent() {
-    return {"exponent", Many::one, optional,
+    return {"exponent", Multiplicity::one, optional,
         "The exponent control: one arm again at other s, in pdf, BRDF and reference alike.", in<&Experiment::exponent>,
         {{"arm", Type::arm, none, "", required, "", "The arm.", to<&ExponentControl::arm>},
             {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n", "A rung of that arm.",
@@ -136,14 +137,14 @@ Section exponent() {
 }
 
 Section regions() {
-    return {"regions", Many::named, optional, "Where errors are measured.", in<&Experiment::regions>,
+    return {"regions", Multiplicity::named, optional, "Where errors are measured.", in<&Experiment::regions>,
         {{"box", Type::box, pixel_range, "pixels", required, "",
             "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
         {}};
 }
 
 Section reference() {
-    return {"reference", Many::one, optional, "What the meters compare with.", in<&Experiment::reference>,
+    return {"reference", Multiplicity::one, optional, "What the meters compare with.", in<&Experiment::reference>,
         {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
              "Converged integration, or the note's Monte Carlo.", to<&ReferencePlan::kind>, {"quadrature", "note"}},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
@@ -158,7 +159,7 @@ Section reference() {
 }
 
 Section furnaces() {
-    return {"furnaces", Many::named, optional,
+    return {"furnaces", Multiplicity::named, optional,
         "White furnaces: L_i = 1 all around, R = n. Expected: rho_d + rho_s, or rho_s of the lobe alone.",
         in<&Experiment::furnaces>,
         {{"arm", Type::arm, none, "", required, "", "The arm.", to<&FurnacePlan::arm>},
@@ -170,7 +171,7 @@ Section furnaces() {
 }
 
 Section plates() {
-    const Section runs = {"runs", Many::list, optional, "What the plate shows, from left to right.",
+    const Section runs = {"runs", Multiplicity::list, optional, "What the plate shows, from left to right.",
         in<&PlatePlan::runs>,
         {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
             {"n", Type::integer, count_range, "samples/pixel", optional,
@@ -179,7 +180,7 @@ Section plates() {
             {"s", Type::number, exponent_range, "", optional, "the experiment's s; exponent: every s of the control",
                 "An exponent of the exponent control.", to<&PlateRun::s>}},
         {}};
-    return {"plates", Many::named, optional, "The pictures; a plate's name is its file's name.",
+    return {"plates", Multiplicity::named, optional, "The pictures; a plate's name is its file's name.",
         in<&Experiment::plates>,
         {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
              {"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference", "heat", "rose", "meters"}},
@@ -199,8 +200,8 @@ constexpr Slot comparison = {to<&AssertionPlan::left>.store, [](const void* obje
                              }};
 
 Section assertions() {
-    return {"assertions", Many::titled, optional, "What must hold; also written [[assertions]] with a key 'name'.",
-        in<&Experiment::assertions>,
+    return {"assertions", Multiplicity::titled, optional,
+        "What must hold; also written [[assertions]] with a key 'name'.", in<&Experiment::assertions>,
         {{"check", Type::check, none, "", required, "", "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".",
              comparison},
             {"over", Type::word, none, "", defaulted, "\"seed\"",
@@ -212,7 +213,7 @@ Section assertions() {
 }  // namespace
 
 const Section& schema() {
-    static const Section root = {"", Many::one, required, "The experiment.", {},
+    static const Section root = {"", Multiplicity::one, required, "The experiment.", {},
         {{"title", Type::text, none, "", defaulted, "\"untitled\"", "One line.", to<&Experiment::title>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "The published seed, of all arms.",
                 to<&Experiment::seed>},
@@ -234,4 +235,4 @@ const Section& schema() {
     return root;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr int most_duplicates = 64;
 constexpr std::string_view dropped = "\\u0001duplicate", dropped_key = "\1duplicate";  // as written, as read
 constexpr std::size_t most_bytes = std::size_t{4} << 20;
 
-Place place_of(const toml::source_region& region, const std::string& file) {
+SourceLocation place_of(const toml::source_region& region, const std::string& file) {
     return {file, static_cast<unsigned>(region.begin.line), static_cast<unsigned>(region.begin.column)};
 }
 
@@ -125,7 +125,7 @@ std::string describe(const Node& node) {
     return "";
 }
 
-Node read_toml(std::string_view text, const std::string& file, std::vector<Complaint>* duplicates) {
+Node read_toml(std::string_view text, const std::string& file, std::vector<Diagnostic>* duplicates) {
     refuse_junk(text, file);
     std::string left(text);
     for (int tries = 0;; ++tries) {
@@ -133,9 +133,9 @@ Node read_toml(std::string_view text, const std::string& file, std::vector<Compl
             const toml::table table = toml::parse(left, std::string_view(file));
             return convert(table, file, 0);
         } catch (const toml::parse_error& error) {
-            const Place at = place_of(error.source(), file);
+            const SourceLocation at = place_of(error.source(), file);
             const bool twice = error.description().find("cannot redefine") != std::string_view::npos;
-            std::vector<Complaint> all = duplicates ? *duplicates : std::vector<Complaint>{};
+            std::vector<Diagnostic> all = duplicates ? *duplicates : std::vector<Diagnostic>{};
             all.push_back({at,
                 fmt::format("{}{}",
                     twice ? "duplicate name; expected each to be given once: " : "not TOML: ", error.description())});
@@ -146,4 +146,4 @@ Node read_toml(std::string_view text, const std::string& file, std::vector<Compl
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 struct Member;
 
@@ -16,7 +16,7 @@ struct Member;
 struct Node {
     enum class Kind { table, array, text, integer, number, flag, date };
     Kind kind = Kind::table;
-    Place at;
+    SourceLocation at;
     std::vector<Member> members;  // table, array
     std::string text;
     std::int64_t integer = 0;
@@ -31,7 +31,7 @@ struct Node {
 
 struct Member {
     std::string key;
-    Place at;  // of the key
+    SourceLocation at;  // of the key
     Node value;
 };
 
@@ -40,6 +40,6 @@ std::string describe(const Node& node);
 
 /// Reads TOML; throws InputError where the syntax is wrong. `file` stands in every place. Where `duplicates` is given,
 /// a name that is given twice is put there and its second use passed over, so that reading goes on.
-Node read_toml(std::string_view text, const std::string& file, std::vector<Complaint>* duplicates = nullptr);
+Node read_toml(std::string_view text, const std::string& file, std::vector<Diagnostic>* duplicates = nullptr);
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "experiment/draft.h"
+#include "experiment/parse_context.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 namespace {
 
@@ -27,7 +27,7 @@ std::size_t count_of(Type type) {
 
 class ValueReader {
 public:
-    ValueReader(Draft& draft, const Key& key, const std::string& path, Value& value)
+    ValueReader(ParseContext& draft, const Key& key, const std::string& path, Value& value)
         : draft_(draft), key_(key), path_(path), value_(value) {}
 
     bool read(const Node& node) {
@@ -166,7 +166,7 @@ private:
         return true;
     }
 
-    Draft& draft_;
+    ParseContext& draft_;
     const Key& key_;
     const std::string& path_;
     Value& value_;
@@ -188,8 +188,8 @@ std::string hint(std::string_view word, const std::vector<std::string>& valid) {
     return is_beyond(word) ? "; README.md says what a scene can be" : "";
 }
 
-bool read_value(Draft& draft, const Key& key, const Node& node, const std::string& path, Value& value) {
+bool read_value(ParseContext& draft, const Key& key, const Node& node, const std::string& path, Value& value) {
     return ValueReader(draft, key, path, value).read(node);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

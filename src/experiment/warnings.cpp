@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 std::vector<std::string> warnings_of(const Experiment& experiment) {
     std::vector<std::string> out;
@@ -17,4 +17,4 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -6,9 +6,9 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 /// A line each: surfaces whose rho_d + rho_s is above 1 in a channel, so that they reflect more than they receive.
 std::vector<std::string> warnings_of(const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

@@ -12,7 +12,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 
-namespace crescent {
+namespace crescent::inline films {
 
 namespace {
 
@@ -103,4 +103,4 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
     write_parts(path, parts, attributes);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline films

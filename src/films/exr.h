@@ -11,7 +11,7 @@
 
 #include "films/film.h"
 
-namespace crescent {
+namespace crescent::inline films {
 
 /// What goes into the header as string attributes: (name, text).
 using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -22,4 +22,4 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
     const Attributes& attributes);
 
-}  // namespace crescent
+}  // namespace crescent::inline films

@@ -5,7 +5,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-namespace crescent {
+namespace crescent::inline films {
 
 namespace {
 
@@ -51,4 +51,4 @@ std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(
 
 std::string hash(const ReferenceFilm& film) { return hash_of(reference_bytes<const std::byte>(film)); }
 
-}  // namespace crescent
+}  // namespace crescent::inline films

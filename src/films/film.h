@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline films {
 
 /// What was run: an arm at n samples per pixel, exponent s, seed.
 struct RunKey {
@@ -61,4 +61,4 @@ struct ShapeMap {
 std::string hash(const Film& film);
 std::string hash(const ReferenceFilm& film);
 
-}  // namespace crescent
+}  // namespace crescent::inline films

@@ -7,7 +7,7 @@
 #include "lobes/ggx.h"
 #include "lobes/phong.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 template <template <class> class... L> struct LobeList {
     static constexpr std::size_t count = sizeof...(L);
@@ -30,4 +30,4 @@ template <class F> F lobe_value(LobeKind kind, F s, F alpha, Vec3<F> wo, Vec3<F>
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

@@ -9,7 +9,7 @@
 
 #include "lobes/lobe.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 template <class F> struct Beckmann {
     F alpha;  // (0, 1]
@@ -60,4 +60,4 @@ template <class F> struct BeckmannLobe {
     };
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

@@ -7,7 +7,7 @@
 
 #include "lobes/lobe.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 template <class F> struct BlinnPhongLobe {
     static constexpr std::string_view name = "blinn-phong";
@@ -42,4 +42,4 @@ template <class F> struct BlinnPhongLobe {
     };
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

@@ -9,7 +9,7 @@
 
 #include "lobes/lobe.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 template <class F> struct Ggx {
     F alpha;  // (0, 1]
@@ -53,4 +53,4 @@ template <class F> struct GgxLobe {
     };
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

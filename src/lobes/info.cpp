@@ -3,7 +3,7 @@
 #include "base/errors.h"
 #include "lobes/all.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 namespace {
 
@@ -44,4 +44,4 @@ LobeKind lobe_named(std::string_view name) {
     throw Bug(std::source_location::current(), "no lobe of the list is called " + std::string(name));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 /// Which of a surface's two numbers shapes a lobe: the exponent s, or the roughness alpha.
 enum class LobeParameter { s, alpha };
@@ -48,4 +48,4 @@ const LobeInfo& lobe_info(LobeKind kind);
 /// A lobe by its word, which is one of the list; "" is none.
 LobeKind lobe_named(std::string_view name);
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

@@ -6,7 +6,7 @@
 #include "math/functions.h"
 #include "simd/frame.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 /// rho_s = 0: nothing but Lambert.
 template <class F> struct NoLobe {
@@ -28,4 +28,4 @@ template <class F> CRESCENT_INLINE F both_above(Vec3<F> wo, Vec3<F> wi, F f) {
 //   density(cos)  of m at that cosine, 1/sr.
 // Any other lobe states static double albedo(s, alpha, cos_o, integrate), integrate(f, a, b) being an adaptive rule.
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

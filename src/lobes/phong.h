@@ -7,7 +7,7 @@
 
 #include "lobes/lobe.h"
 
-namespace crescent {
+namespace crescent::inline lobes {
 
 template <class F> struct PhongLobe {
     static constexpr std::string_view name = "phong";
@@ -51,4 +51,4 @@ template <class F> struct PhongLobe {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline lobes

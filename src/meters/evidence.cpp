@@ -15,7 +15,7 @@
 #include "meters/meters.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 namespace {
 
@@ -42,8 +42,8 @@ FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, co
         quantile(means, 0.75), quantile(means, 0.95)};
 }
 
-void float_furnace(const FurnaceSubject& subject, const std::string& isa, Watch& watch, Evidence& out) {
-    const Sites sites = furnace_sites(subject.surface, replicates);
+void float_furnace(const FurnaceSubject& subject, const std::string& isa, ProgressMonitor& watch, Evidence& out) {
+    const ShadingPoints sites = furnace_sites(subject.surface, replicates);
     for (std::uint64_t n : furnace_rungs) {
         const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
         std::vector<double> means;
@@ -58,7 +58,7 @@ double unit_double(std::uint64_t h, int bits) {
     return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits);
 }
 
-void double_furnace(const FurnaceSubject& subject, int bits, Watch& watch, Evidence& out) {
+void double_furnace(const FurnaceSubject& subject, int bits, ProgressMonitor& watch, Evidence& out) {
     std::vector<std::vector<double>> means(furnace_rungs.size(), std::vector<double>(replicates));
     parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
         double sum = 0;
@@ -80,7 +80,7 @@ void double_furnace(const FurnaceSubject& subject, int bits, Watch& watch, Evide
 LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
     constexpr std::uint64_t n = 100'000;
     const double theta = theta_deg * pi / 180;
-    Site<double> site{};
+    ShadingPoint<double> site{};
     site.wo = {math::sin(theta), 0, math::cos(theta)};
     site.s = subject.s;
     const Cosine<double> cosine(site);
@@ -97,7 +97,7 @@ LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
 
 /// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
 FalseRejection false_rejection(
-    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, Watch& watch) {
+    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, ProgressMonitor& watch) {
     constexpr std::uint64_t n = 100'000;
     constexpr int runs = 128;
     Surface lambert = subject.surface;
@@ -108,7 +108,7 @@ FalseRejection false_rejection(
     constexpr int share = 16;
     parallel_for(0, (runs + share - 1) / share, [&](int part) {
         const int first = part * share, count = std::min(share, runs - first);
-        Sites sites = furnace_sites(lambert, static_cast<std::size_t>(count));
+        ShadingPoints sites = furnace_sites(lambert, static_cast<std::size_t>(count));
         for (std::uint32_t& pixel : sites.pixel) pixel += static_cast<std::uint32_t>(first);
         const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
         for (int i = 0; i < count; ++i) {
@@ -134,7 +134,7 @@ const Shape* subject_shape(const Experiment& experiment) {
 
 }  // namespace
 
-Evidence measure_evidence(const Experiment& experiment, const std::string& isa, Watch& watch) {
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& watch) {
     Evidence out;
     if (!experiment.note_evidence) return out;
     const bool phong = std::any_of(
@@ -161,4 +161,4 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

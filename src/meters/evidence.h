@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "base/progress_monitor.h"
 #include "experiment/experiment.h"
 
-namespace crescent {
-
-class Watch;
+namespace crescent::inline meters {
 
 /// Quantiles over replicates of the combined white furnace of the Phong arm, R = n, at N samples.
 struct FurnaceQuantiles {
@@ -47,4 +46,4 @@ struct Evidence {
     std::vector<FalseRejection> rejections;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "meters/evidence.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 /// Nothing (empty vectors) where the experiment does not ask for it, and where it has no Phong arm or no shape with a
 /// Phong lobe.
-Evidence measure_evidence(const Experiment& experiment, const std::string& isa, Watch& watch);
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& watch);
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

@@ -11,7 +11,7 @@
 #include "estimator/lobe_albedo.h"
 #include "stats/tail.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 namespace {
 
@@ -23,8 +23,8 @@ std::optional<Tail> tail_of(std::vector<float> x) {
     return fit_tail(std::span<const float>(x.data(), length + 1));
 }
 
-FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa, Watch& watch,
-    const OutsideSamplers& outside) {
+FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
+    ProgressMonitor& watch, const OutsideSamplers& outside) {
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
@@ -32,7 +32,7 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
     ensure(shape != nullptr, "a furnace's shape is known");
     const bool lobe_only = plan.part == FurnacePart::lobe;
     const Surface surface = furnace_surface(experiment, *shape, lobe_only);
-    const Sites sites = furnace_sites(surface, 1);
+    const ShadingPoints sites = furnace_sites(surface, 1);
     std::vector<float> samples(plan.n);
     const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed,
         isa, &watch.stop, samples.data());
@@ -52,7 +52,7 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
 }  // namespace
 
 std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    Watch& watch, const OutsideSamplers& outside) {
+    ProgressMonitor& watch, const OutsideSamplers& outside) {
     std::vector<FurnaceMeter> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
         out.push_back(measure_one(experiment, plan, isa, watch, outside));
@@ -62,4 +62,4 @@ std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

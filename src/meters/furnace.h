@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "arms/outside.h"
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "experiment/experiment.h"
 #include "experiment/published.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 /// Every furnace of the experiment, measured. Throws Interrupted when the watch says stop.
 std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    Watch& watch, const OutsideSamplers& outside = {});
+    ProgressMonitor& watch, const OutsideSamplers& outside = {});
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

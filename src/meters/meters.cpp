@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 namespace {
 
@@ -77,7 +77,7 @@ ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm* note, const 
     if (note) {
         m.rms_difference = rms_difference(q.y, note->y, q.width, region.box);
         m.rms_standard_error = rms(note->error, q.width, region.box);
-        m.rmse_unlike = 0;
+        m.max_relative_rmse_change = 0;
     }
     const bool quadrature = used == ReferenceKind::quadrature;
     ensure(quadrature || note, "the reference that the meters use was computed");
@@ -85,7 +85,7 @@ ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm* note, const 
         if (key.s != q.s) continue;
         const double a = rms_difference(film.y, q.y, q.width, region.box);
         const double b = note ? rms_difference(film.y, note->y, q.width, region.box) : a;
-        if (note && a > 0) m.rmse_unlike = std::max(*m.rmse_unlike, std::fabs(b - a) / a);
+        if (note && a > 0) m.max_relative_rmse_change = std::max(*m.max_relative_rmse_change, std::fabs(b - a) / a);
         const double error = quadrature ? m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
         if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
     }
@@ -228,4 +228,4 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

@@ -9,7 +9,7 @@
 #include "films/film.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 /// All meters of one film against the reference, tails apart.
 RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
@@ -38,4 +38,4 @@ std::vector<BandMeter> bands(
 /// Ladders of RMSE for every arm with at least two rungs, in every region.
 std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunMeter>& runs);
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

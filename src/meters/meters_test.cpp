@@ -13,7 +13,7 @@
 #include "stats/tail.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 namespace {
 
 /// The tail of n Pareto samples u^-k.
@@ -111,7 +111,7 @@ TEST(Meters, ShareTheHorizonAmongTheDirectionsThatWereDrawn) {
 
 RunMeter measured(const Experiment& e, const std::string& arm) {
     const Scene scene(e);
-    Watch watch;
+    ProgressMonitor watch;
     const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
     return measure(
         e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", watch)[0], reference, shape_map(scene));
@@ -195,7 +195,7 @@ double out_of_reach(const Evidence& e, const FurnaceQuantiles& q) {
 }
 
 TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
-    Watch watch;
+    ProgressMonitor watch;
     const Evidence e = measure_evidence(test::small_scene({"note_evidence=true"}), "", watch);
     ASSERT_FALSE(e.lost.empty());
     for (const LostSupport& l : e.lost) EXPECT_NEAR(l.measured, l.theory, 4 * l.se + 1e-9) << l.theta_R_deg;
@@ -222,4 +222,4 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline meters

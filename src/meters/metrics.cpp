@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace crescent {
+namespace crescent::inline meters {
 
 const RegionMeter* RunMeter::region(const std::string& name) const {
     const auto at =
@@ -18,4 +18,4 @@ const RunMeter* Metrics::find(const std::string& arm, std::uint64_t n, double s,
 
 bool Metrics::all_hold() const { return std::ranges::none_of(assertions, &AssertionResult::failed); }
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

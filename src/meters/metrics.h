@@ -10,7 +10,7 @@
 #include "films/film.h"
 #include "stats/tail.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 struct RegionMeter {
     std::string region;
@@ -90,8 +90,8 @@ struct ReferenceMeter {
     std::optional<double> rms_standard_error;  // what the note's reference says of itself
     double quadrature_error = 0;               // rms of the quadrature's own stated error
     std::optional<double>
-        rmse_unlike;         // largest relative change of any arm's RMSE here if the note's reference is used
-    double error_share = 0;  // of the reference that the meters use: its own error over the smallest RMSE here
+        max_relative_rmse_change;  // largest relative change of any arm's RMSE here if the note's reference is used
+    double error_share = 0;        // of the reference that the meters use: its own error over the smallest RMSE here
 };
 
 /// What part of an RMSE the reference's own error may be: at a quarter the RMSE is up to 3 % too large, in squares
@@ -114,4 +114,4 @@ struct Metrics {
     bool all_hold() const;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

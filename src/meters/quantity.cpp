@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "meters/meters.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 namespace {
 
@@ -149,4 +149,4 @@ std::vector<AssertionResult> judge(
     return results;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

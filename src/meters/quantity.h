@@ -10,7 +10,7 @@
 #include "experiment/quantity_text.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline meters {
 
 /// Bytes of every plate that was drawn, by its name.
 using PlateBytes = std::map<std::string, std::size_t>;
@@ -26,4 +26,4 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 std::vector<AssertionResult> judge(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
-}  // namespace crescent
+}  // namespace crescent::inline meters

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace crescent {
+namespace crescent::inline meters {
 namespace {
 
 Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
@@ -105,4 +105,4 @@ TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline meters

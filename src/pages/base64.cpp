@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 std::string base64(const std::vector<unsigned char>& bytes) {
     static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -19,4 +19,4 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

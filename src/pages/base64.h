@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 /// RFC 4648, section 4, with padding.
 std::string base64(const std::vector<unsigned char>& bytes);
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

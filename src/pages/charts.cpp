@@ -9,7 +9,7 @@
 #include "math/functions.h"
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline pages {
 namespace {
 
 constexpr double left_margin = 58, right_margin = 16, top_margin = 12, bottom_margin = 44;
@@ -224,4 +224,4 @@ std::string strip_svg(const Strip& s) {
         w, h, w, h, words, marks);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 struct Point {
     double x = 0, y = 0;
@@ -76,4 +76,4 @@ struct Strip {
 /// A band as a strip with its median: <svg>.
 std::string strip_svg(const Strip& strip);
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

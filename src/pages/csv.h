@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 /// Quoted where it holds a comma, a quote or a line's end; quotes are doubled.
 inline std::string csv_field(std::string_view field) {
@@ -14,4 +14,4 @@ inline std::string csv_field(std::string_view field) {
     return out + "\"";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

@@ -4,7 +4,7 @@
 
 #include "pages/numbers.h"
 
-namespace crescent {
+namespace crescent::inline pages {
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(shortest(x)); }
 
@@ -16,4 +16,4 @@ Json numbers(const std::vector<double>& all) {
 
 std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

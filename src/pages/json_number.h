@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 using Json = nlohmann::ordered_json;
 
@@ -21,4 +21,4 @@ Json numbers(const std::vector<double>& all);
 /// Two blanks of indent and a newline at the end; invalid UTF-8 in a name becomes U+FFFD.
 std::string text(const Json& json);
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

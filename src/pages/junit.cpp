@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace crescent {
+namespace crescent::inline pages {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::string junit_text(const JunitSuite& suite) {
     return out + "  </testsuite>\n</testsuites>\n";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

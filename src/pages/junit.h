@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 struct JunitCase {
     enum class State { passed, failed, error, skipped };
@@ -26,4 +26,4 @@ struct JunitSuite {
 /// The file. Any text may stand in it: it is escaped here. Equal suites give equal bytes.
 std::string junit_text(const JunitSuite& suite);
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

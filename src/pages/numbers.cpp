@@ -8,7 +8,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline pages {
 namespace {
 
 bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
@@ -80,4 +80,4 @@ std::string plural(std::uint64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 /// The shortest decimal that reads back as the same double; "nan", "inf", "-inf" for what has no decimal.
 std::string shortest(double x);
@@ -36,4 +36,4 @@ std::string right(std::string_view utf8, std::size_t columns);
 /// "1 sample", "64 samples".
 std::string plural(std::uint64_t count, std::string_view noun);
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

@@ -5,7 +5,7 @@
 #include "pages/html.h"
 #include "pages/style.h"
 
-namespace crescent {
+namespace crescent::inline pages {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::string page_html(const PageFrame& frame, const std::vector<PageSection>& se
         fmt::arg("footer", frame.footer_html));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

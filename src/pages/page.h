@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline pages {
 
 struct PageSection {
     std::string id, title, html;  // a section whose html is empty has nothing to say and is left out
@@ -23,4 +23,4 @@ struct PageFrame {
 /// The whole page, XHTML-compatible where its parts are.
 std::string page_html(const PageFrame& frame, const std::vector<PageSection>& sections);
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

@@ -1,6 +1,6 @@
 #include "pages/style.h"
 
-namespace crescent {
+namespace crescent::inline pages {
 
 // Colours of c0..c5: Okabe and Ito's palette for colour-blind readers, darkened for light ground and lightened for
 // dark.
@@ -87,4 +87,4 @@ svg.strip { vertical-align: middle; } svg .reach { fill: var(--c1); opacity: 0.2
 }
 )css";
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

@@ -2,9 +2,9 @@
 // dark, and paper.
 #pragma once
 
-namespace crescent {
+namespace crescent::inline pages {
 
 /// Holds no '<' and no '&', so that it may stand in XHTML as it is.
 extern const char* const style_sheet;
 
-}  // namespace crescent
+}  // namespace crescent::inline pages

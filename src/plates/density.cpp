@@ -12,12 +12,12 @@ namespace crescent::plates {
 namespace {
 
 // The surface that the density is shown for: that of the shape whose exponent is the experiment's.
-Site<double> site_of(const Experiment& e, double s, double tilt) {
+ShadingPoint<double> site_of(const Experiment& e, double s, double tilt) {
     const Shape* shape = e.shape_of_s();
     Material material = shape ? shape->material : Material{};
     material.s = s;
     const Surface surface = surface_of(material, s);
-    Site<double> site{};
+    ShadingPoint<double> site{};
     site.wo = {-math::sin(tilt), 0, math::cos(tilt)};
     site.s = surface.s;
     site.alpha = surface.alpha;
@@ -33,7 +33,7 @@ template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a
 
 Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
     : pdf_([](const Vec3d&) { return 0.0; }) {
-    Site<double> site = site_of(e, s, tilt);
+    ShadingPoint<double> site = site_of(e, s, tilt);
     for_each_arm(Arms{}, [&]<template <class> class A>() {
         if constexpr (has_pdf<A<double>>) {
             if (sampler != A<double>::name) return;

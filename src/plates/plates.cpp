@@ -4,9 +4,7 @@
 
 #include "plates/sheet.h"
 
-namespace crescent {
-
-namespace plates {
+namespace crescent::plates {
 
 namespace {
 
@@ -40,12 +38,10 @@ void draw(Sheet& sheet) {
     ensure(false, "every kind of plate has a function that draws it");
 }
 
-}  // namespace plates
-
 Picture draw_plate(const PlatePlan& plan, const PlateInputs& in) {
-    plates::Sheet sheet(plan, in);
-    plates::draw(sheet);
+    Sheet sheet(plan, in);
+    draw(sheet);
     return sheet.canvas.picture();
 }
 
-}  // namespace crescent
+}  // namespace crescent::plates

@@ -9,7 +9,7 @@
 #include "films/film.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::plates {
 
 /// What the plates are made from. Films are looked up by key; photographs go through the display chain,
 /// instruments read the float films.
@@ -35,4 +35,12 @@ Picture draw_plate(const PlatePlan& plan, const PlateInputs& in);
 std::vector<unsigned char> encode_png(
     const Picture& picture, const std::vector<std::pair<std::string, std::string>>& text);
 
+}  // namespace crescent::plates
+
+/// What a run, compare and the doors call by these names.
+namespace crescent {
+using plates::draw_plate;
+using plates::encode_png;
+using plates::Picture;
+using plates::PlateInputs;
 }  // namespace crescent

@@ -12,7 +12,7 @@
 #include "plates/sheet.h"
 #include "plates/test_world.h"
 
-namespace crescent {
+namespace crescent::plates {
 namespace {
 
 using plates::Rect;
@@ -223,4 +223,4 @@ TEST(Font, ItsAbsenceNamesThePackage) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::plates

@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "plates/plates.h"
 
-namespace crescent {
+namespace crescent::plates {
 
 namespace {
 
@@ -80,4 +80,4 @@ std::vector<unsigned char> encode_png(
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::plates

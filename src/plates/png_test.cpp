@@ -6,7 +6,7 @@
 
 #include "plates/plates.h"
 
-namespace crescent {
+namespace crescent::plates {
 namespace {
 
 struct Decoded {
@@ -53,4 +53,4 @@ TEST(Png, CarriesThePixelsAndTheProvenanceAndNoDate) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::plates

@@ -9,7 +9,7 @@
 #include "experiment/arm_facts.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 /// Sum of log RMSE over the regions; infinite where a run or an error is missing.
@@ -102,4 +102,4 @@ std::string bias_words(const Experiment& experiment) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -6,7 +6,7 @@
 
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 
 /// An arm about the normal and one about the mirror direction that ran at one N; of several about the normal, the one
 /// that shares most rungs with the other, and then the one with the smallest errors.
@@ -31,4 +31,4 @@ std::string run_html(const RunKey& key, const Experiment& experiment);
 std::string ray_words(const Experiment& experiment);
 std::string bias_words(const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline report

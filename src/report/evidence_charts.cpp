@@ -11,7 +11,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 /// What one panel shows: an arithmetic and a resolution of u.
@@ -244,4 +244,4 @@ std::string rejection_sentence(const Evidence& evidence) {
     return html::p(out);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -5,7 +5,7 @@
 
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 
 /// Quantiles of the combined Phong furnace against N, one panel per arithmetic and resolution of u.
 std::string furnace_charts(const Page& page);
@@ -23,4 +23,4 @@ std::string rejection_chart(const Evidence& evidence);
 std::string rejection_table(const Evidence& evidence);
 std::string rejection_sentence(const Evidence& evidence);
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace crescent {
+namespace crescent::inline report {
 
 RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b) {
     RatioOfErrors c;
@@ -117,4 +117,4 @@ std::vector<std::string> headline_meters(const Experiment& experiment) {
     return all;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -9,7 +9,7 @@
 
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 
 /// "3.1 times", "the same as", with what was compared; see compare().
 struct RatioOfErrors {
@@ -61,4 +61,4 @@ private:
 /// Meters in the order in which they are told, without the whole-frame RMSE: rmse.*, var.*, fireflies, ...
 std::vector<std::string> headline_meters(const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -6,7 +6,7 @@
 #include "pages/numbers.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 JunitCase case_of(const AssertionResult& a, const std::string& group) {
@@ -32,4 +32,4 @@ std::string junit_xml(const ReportInputs& in) {
     return junit_text(suite);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -7,7 +7,7 @@
 #include "pages/numbers.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 struct Rows {
@@ -70,4 +70,4 @@ std::string metrics_csv(const ReportInputs& in) {
     return rows.out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

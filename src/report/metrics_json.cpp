@@ -5,7 +5,7 @@
 #include "report/provenance_json.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 Json optional_number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
@@ -61,7 +61,7 @@ Json furnace_json(const FurnaceMeter& f) {
 Json reference_json(const ReferenceMeter& r) {
     return {{"s", number(r.s)}, {"region", r.region}, {"rms_difference", optional_number(r.rms_difference)},
         {"rms_standard_error", optional_number(r.rms_standard_error)}, {"quadrature_error", number(r.quadrature_error)},
-        {"rmse_unlike", optional_number(r.rmse_unlike)}, {"error_share", number(r.error_share)}};
+        {"rmse_unlike", optional_number(r.max_relative_rmse_change)}, {"error_share", number(r.error_share)}};
 }
 
 Json assertion_json(const AssertionResult& a) {
@@ -126,4 +126,4 @@ std::string metrics_json(const ReportInputs& in) {
     return text(out);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 constexpr std::size_t page_limit = 14'000'000;  // bytes of base64 that may go into the page
@@ -124,4 +124,4 @@ std::string times(double ratio) {
     return std::isfinite(ratio) ? fmt::format("{:.{}f}", ratio, ratio < 10 ? 1 : 0) : "infinitely many";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

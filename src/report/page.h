@@ -15,7 +15,7 @@
 #include "pages/page.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 
 /// Numbers the figures, embeds plates, and says under each what it is and which command makes it.
 class Figures {
@@ -100,4 +100,4 @@ std::string ordering_sentence(
 /// "3.1", "12": how many times.
 std::string times(double ratio);
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -4,9 +4,9 @@
 #include "pages/json_number.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 
 /// As metrics.json has it.
 Json provenance_json(const Provenance& provenance);
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -9,7 +9,7 @@
 #include "meters/evidence.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline report {
 
 /// Where an output came from; equal for equal runs.
 struct Provenance {
@@ -64,4 +64,4 @@ std::string timing_json(const Timing& timing, const Provenance& provenance);
 std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir,
     const OutputParts& parts = {}, bool colour = false);
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -6,7 +6,7 @@
 
 #include "report/arm_words.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 std::vector<PageSection> all_sections(Page& page) {
@@ -71,4 +71,4 @@ std::string report_html(const ReportInputs& in) {
     return page_html(frame, all_sections(page));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "report/arm_words.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -213,4 +213,4 @@ PageSection provenance(Page& page) {
     return {"provenance", "Provenance", table.str() + (films.empty() ? "" : films.str())};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

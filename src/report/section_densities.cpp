@@ -7,7 +7,7 @@
 #include "base/formula.h"
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -74,4 +74,4 @@ PageSection densities(Page& page) {
         prose + table.str() + page.figures.plates(PlateKind::rose)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

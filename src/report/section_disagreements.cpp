@@ -8,7 +8,7 @@
 #include "math/functions.h"
 #include "report/arm_words.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -192,4 +192,4 @@ PageSection disagreements(Page& page) {
     return {"disagreements", "Where note and scene disagree", out};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

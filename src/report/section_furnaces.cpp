@@ -5,7 +5,7 @@
 
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -59,4 +59,4 @@ PageSection furnaces(Page& page) {
     return {"furnaces", "White furnaces", prose + table.str() + sentences};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -7,7 +7,7 @@
 #include "experiment/arm_facts.h"
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -138,4 +138,4 @@ PageSection exponent(Page& page) {
             table + page.figures.plates(PlateKind::exponent)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

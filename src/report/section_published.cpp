@@ -5,7 +5,7 @@
 
 #include "report/arm_words.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -99,4 +99,4 @@ PageSection published(Page& page) {
             page.figures.plates(PlateKind::meters)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

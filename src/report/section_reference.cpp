@@ -6,7 +6,7 @@
 
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -36,10 +36,11 @@ std::string not_good_enough(const std::vector<ReferenceMeter>& all) {
 }
 
 std::string verdict(const std::vector<ReferenceMeter>& all) {
-    const auto worst = std::ranges::max_element(all, {}, [](const ReferenceMeter& r) { return *r.rmse_unlike; });
+    const auto worst =
+        std::ranges::max_element(all, {}, [](const ReferenceMeter& r) { return *r.max_relative_rmse_change; });
     const std::string out =
         fmt::format("The choice of the reference changes an RMSE by at most {}, in region {} at <i>s</i> = {}.",
-            percent(*worst->rmse_unlike, 2), escape(worst->region), shortest(worst->s));
+            percent(*worst->max_relative_rmse_change, 2), escape(worst->region), shortest(worst->s));
     const bool explained = std::ranges::all_of(
         all, [](const ReferenceMeter& r) { return *r.rms_difference <= 2 * *r.rms_standard_error; });
     return html::p(out +
@@ -56,7 +57,7 @@ std::string table_of_both(const std::vector<ReferenceMeter>& all) {
     for (const ReferenceMeter& r : all)
         table.row({html::heading(escape(r.region)), html::figure(shortest(r.s)),
             html::figure(figures(*r.rms_difference, 3)), html::figure(figures(*r.rms_standard_error, 3)),
-            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(*r.rmse_unlike, 2))});
+            html::figure(figures(r.quadrature_error, 2)), html::figure(percent(*r.max_relative_rmse_change, 2))});
     return table.str() + verdict(all);
 }
 
@@ -76,7 +77,7 @@ PageSection reference(Page& page) {
     const ReferencePlan& plan = page.in.experiment.reference;
     const std::string plates = page.figures.plates(PlateKind::reference);
     if (all.empty() && plates.empty()) return {};
-    const bool both = !all.empty() && all.front().rmse_unlike.has_value();
+    const bool both = !all.empty() && all.front().max_relative_rmse_change.has_value();
     std::string out = quadrature_prose;
     if (both)
         out = fmt::format(both_prose, fmt::arg("lobe", plural(plan.lobe_spp, "sample")),
@@ -86,4 +87,4 @@ PageSection reference(Page& page) {
     return {"reference", "The reference", out + plates};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -5,7 +5,7 @@
 #include "experiment/arm_facts.h"
 #include "report/arm_words.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 /// The arm's name, and what is to be known of it beside its numbers.
@@ -161,4 +161,4 @@ PageSection failure_b(Page& page) {
         out + page.figures.plates(PlateKind::surround)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -6,7 +6,7 @@
 #include "experiment/warnings.h"
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using html::words;
@@ -95,4 +95,4 @@ PageSection scene(Page& page) {
     return {"scene", "The scene", out};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

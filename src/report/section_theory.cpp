@@ -7,7 +7,7 @@
 #include "lobes/info.h"
 #include "report/arm_words.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using namespace mathml;
@@ -124,4 +124,4 @@ PageSection estimator(Page& page) {
     return {"estimator", "The estimator", out};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -4,7 +4,7 @@
 
 #include "report/evidence_charts.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 using namespace mathml;
@@ -104,4 +104,4 @@ PageSection where_wrong(Page& page) {
     return {"wrong", "Where the note is wrong", html::p(intro(page)) + points};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -4,7 +4,7 @@
 
 #include "report/page.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 std::string first_words(const RatioOfErrors& c, std::uint64_t n, const std::string& meter, const std::string& seed) {
@@ -82,4 +82,4 @@ std::string ordering_sentence(
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -10,7 +10,7 @@
 #include "pages/numbers.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 constexpr std::size_t columns = 80;
@@ -139,4 +139,4 @@ std::string terminal_summary(
     return out + "\n" + speed(timing) + where(in, out_dir, parts);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

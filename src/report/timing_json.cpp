@@ -2,7 +2,7 @@
 #include "report/provenance_json.h"
 #include "report/report.h"
 
-namespace crescent {
+namespace crescent::inline report {
 namespace {
 
 Json arm_json(const ArmTiming& a) {
@@ -24,4 +24,4 @@ std::string timing_json(const Timing& timing, const Provenance& provenance) {
     return text(out);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline report

@@ -15,7 +15,7 @@
 #include "run/outside.h"
 #include "run/version.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunKey, arm, n, s, seed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeter, region, rmse, var, pixels)
@@ -73,11 +73,11 @@ bool holds_files(const std::string& folder) {
 }  // namespace
 
 Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
-    double patience_s, Watch& watch)
+    double checkpoint_after_s, ProgressMonitor& watch)
     : all_(out + "/.crescent-kept"),
       key_(key_of(experiment, instrument)),
       folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
-      patience_s_(patience_s),
+      patience_s_(checkpoint_after_s),
       watch_(watch),
       start_(std::chrono::steady_clock::now()),
       journal_(folder_ + "/meters", key_, watch) {
@@ -98,14 +98,14 @@ Checkpoint::~Checkpoint() {
         watch_.say("partial results saved in " + folder_ + ": the same command resumes from them");
 }
 
-TileKeeper Checkpoint::tiles(const Job& job) {
+TileCheckpoint Checkpoint::tiles(const Job& job) {
     const std::string ladder = fmt::format("n{}", fmt::join(job.n, ","));
     const std::string name = fmt::format("{}-s{}-seed{}", job.arm, job.s, job.seed);
     const std::string file = fmt::format("{}-{:08x}", name, XXH3_64bits(ladder.data(), ladder.size()) & 0xffffffffu);
     return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, watch_};
 }
 
-TileKeeper Checkpoint::tiles(const std::string& name) {
+TileCheckpoint Checkpoint::tiles(const std::string& name) {
     return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_};
 }
 
@@ -130,11 +130,11 @@ void Checkpoint::add(const std::vector<RunMeter>& meters) {
     written_ = meters_.size();
 }
 
-void Checkpoint::forget() {
+void Checkpoint::discard() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
     if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;
     watch_.say("what another, unfinished run kept is still in " + all_);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

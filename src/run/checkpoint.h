@@ -8,41 +8,41 @@
 #include <vector>
 
 #include "base/journal.h"
-#include "base/watch.h"
-#include "estimator/tile_keeper.h"
+#include "base/progress_monitor.h"
+#include "estimator/tile_checkpoint.h"
 #include "run/plan.h"
 #include "meters/metrics.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 class Checkpoint {
 public:
-    /// Outputs go to `out`; nothing is kept before `patience_s` seconds; `instrument` as provenance names it. Says so
-    /// where there is something to go on from.
-    Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out, double patience_s,
-        Watch& watch);
+    /// Outputs go to `out`; nothing is kept before `checkpoint_after_s` seconds; `instrument` as provenance names it.
+    /// Says so where there is something to go on from.
+    Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
+        double checkpoint_after_s, ProgressMonitor& watch);
     /// Where the run ends before forget(): says what is kept.
     ~Checkpoint();
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
 
     /// For the tiles of one pass; `name`, or what the job computes, tells it from the run's others.
-    TileKeeper tiles(const std::string& name);
-    TileKeeper tiles(const Job& job);
+    TileCheckpoint tiles(const std::string& name);
+    TileCheckpoint tiles(const Job& job);
     /// The meters of a finished pass, one a rung; none where it is not finished.
     std::vector<RunMeter> meters(const Job& job) const;
     void add(const std::vector<RunMeter>& meters);
     /// The outputs stand: nothing of this run is needed any more. What another run kept stays, and is told of.
-    void forget();
+    void discard();
 
 private:
     std::string all_, key_, folder_;  // all_: of any run into the same place
     double patience_s_;
-    Watch& watch_;
+    ProgressMonitor& watch_;
     std::chrono::steady_clock::time_point start_;
     Journal journal_;
     std::vector<RunMeter> meters_;
     std::size_t written_ = 0;  // of meters_
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -14,7 +14,7 @@
 #include "run/stopping.h"
 #include "run/version.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -48,7 +48,8 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
 
 /// The tail index of each region's samples at the first seed. It belongs to an arm and exponent, not to N, and stands
 /// beside every rung.
-void add_tails(const RunPlan& plan, const Prepared& prepared, const std::string& isa, Watch& watch, Metrics& metrics) {
+void add_tails(
+    const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& watch, Metrics& metrics) {
     for (Job job : jobs_of(plan.experiment, plan.seeds.front())) {
         if (const auto own = prepared.outside.find(job.arm); own != prepared.outside.end()) job.outside = own->second;
         const Scene scene = prepared.scene.with_s(job.s);
@@ -99,7 +100,7 @@ const ReferenceFilm* Measured::reference(double s) const {
 }
 
 std::optional<Tail> region_tail(
-    const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch) {
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& watch) {
     constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
     const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
     const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
@@ -125,7 +126,7 @@ Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, cons
 }
 
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
-    Watch& watch, const CollectOptions& options) {
+    ProgressMonitor& watch, const CollectOptions& options) {
     const Engine with = settled(engine);
     Measured out;
     out.experiment = plan.experiment;
@@ -155,4 +156,4 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

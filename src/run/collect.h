@@ -11,7 +11,7 @@
 #include "report/report.h"
 #include "run/execute.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 /// Everything that a run measured; nothing in it refers to something outside.
 struct Measured {
@@ -38,14 +38,14 @@ struct CollectOptions {
 
 /// Takes what was made; `results` need not be all of the plan's.
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
-    Watch& watch, const CollectOptions& options = {});
+    ProgressMonitor& watch, const CollectOptions& options = {});
 
 /// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
 /// few spread. May throw Interrupted.
 std::optional<Tail> region_tail(
-    const Scene& scene, const Job& job, const Box& box, const std::string& isa, Watch& watch);
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& watch);
 
 /// Where the outputs of a plan come from.
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -15,7 +15,7 @@
 #include "run/outside.h"
 #include "run/stopping.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -29,12 +29,12 @@ std::vector<RunMeter> meters_of(
     return out;
 }
 
-void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, Watch& watch, bool keep_films,
-    Checkpoint* checkpoint, JobResult& out) {
-    std::unique_ptr<TileKeeper> keeper;
+void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& watch,
+    bool keep_films, Checkpoint* checkpoint, JobResult& out) {
+    std::unique_ptr<TileCheckpoint> keeper;
     if (checkpoint) {
         out.meters = checkpoint->meters(out.job);
-        keeper.reset(new TileKeeper(checkpoint->tiles(out.job)));
+        keeper.reset(new TileCheckpoint(checkpoint->tiles(out.job)));
     }
     if (keep_films || out.meters.empty()) {
         const Scene scene = prepared.scene.with_s(out.job.s);
@@ -84,32 +84,32 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
 }
 
 void add_references(
-    const RunPlan& plan, Prepared& prepared, const Engine& engine, Watch& watch, Checkpoint* checkpoint) {
+    const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& watch, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
     const auto pixels = static_cast<double>(prepared.shapes.shape.size());
     const auto keeper = [&](const char* name) {
-        return std::unique_ptr<TileKeeper>(checkpoint ? new TileKeeper(checkpoint->tiles(name)) : nullptr);
+        return std::unique_ptr<TileCheckpoint>(checkpoint ? new TileCheckpoint(checkpoint->tiles(name)) : nullptr);
     };
     prepared.stopped = !unless_stopped(with.threads, watch, [&] {
         watch.begin("reference by quadrature", pixels);
-        const std::unique_ptr<TileKeeper> quadrature = keeper("quadrature"), note = keeper("note");
+        const std::unique_ptr<TileCheckpoint> quadrature = keeper("quadrature"), note = keeper("note");
         prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, watch, quadrature.get());
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
         watch.begin("the note's reference", pixels);
         prepared.monte_carlo =
-            note_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, watch, note.get());
+            monte_carlo_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, watch, note.get());
     });
 }
 
-Prepared prepare(const RunPlan& plan, const Engine& engine, Watch& watch) {
+Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& watch) {
     Prepared out = look(plan, engine);
     add_references(plan, out, engine, watch);
     return out;
 }
 
-JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine, Watch& watch,
-    bool keep_films, Checkpoint* checkpoint) {
+JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
+    ProgressMonitor& watch, bool keep_films, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
     const auto start = std::chrono::steady_clock::now();
     JobResult out;
@@ -121,4 +121,4 @@ JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job,
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

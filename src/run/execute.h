@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "films/film.h"
 #include "meters/metrics.h"
 #include "run/instruments.h"
 #include "run/plan.h"
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 class Checkpoint;
 
@@ -48,10 +48,10 @@ struct Prepared {
 /// OutputError where the machine has not the memory or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
 /// Adds the references that the experiment asks for. A checkpoint keeps what is finished.
-void add_references(
-    const RunPlan& plan, Prepared& prepared, const Engine& engine, Watch& watch, Checkpoint* checkpoint = nullptr);
+void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& watch,
+    Checkpoint* checkpoint = nullptr);
 /// Both of them.
-Prepared prepare(const RunPlan& plan, const Engine& engine, Watch& watch);
+Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& watch);
 
 struct JobResult {
     Job job;
@@ -63,11 +63,11 @@ struct JobResult {
 };
 
 /// One job. `keep_films` = false: its meters alone, which a checkpoint may hold already.
-JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine, Watch& watch,
-    bool keep_films = true, Checkpoint* checkpoint = nullptr);
+JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
+    ProgressMonitor& watch, bool keep_films = true, Checkpoint* checkpoint = nullptr);
 
 /// The reference that the meters of exponent s use; null where none was made.
 const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,
     const std::vector<ReferenceFilm>& monte_carlo, double s);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -2,7 +2,7 @@
 
 #include "estimator/estimator.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -10,7 +10,8 @@ class Cpu : public Instrument {
 public:
     explicit Cpu(std::string isa) : isa_(std::move(isa)) {}
     std::string name() const override { return "CPU"; }
-    std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch, TileKeeper* keeper) override {
+    std::vector<Film> films(
+        const Scene& scene, const Job& job, ProgressMonitor& watch, TileCheckpoint* keeper) override {
         return estimate_films(scene, {job.sampler, job.outside.get()}, job.n, job.seed, isa_, watch, keeper);
     }
 
@@ -33,4 +34,4 @@ std::shared_ptr<const InstrumentKind> find_instrument(const std::string& name) {
     return nullptr;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -7,15 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "films/film.h"
 #include "meters/metrics.h"
 #include "run/plan.h"
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
+class TileCheckpoint;
+}
 
-class TileKeeper;
+namespace crescent::inline runs {
 
 /// What computes films. One call at a time; what it throws ends the run.
 class Instrument {
@@ -24,7 +26,8 @@ public:
     virtual std::string name() const = 0;  // for provenance and plates
     /// One film per rung, in order. The scene already has the job's s. `keeper`: where an instrument that works tile by
     /// tile keeps finished ones; null: nowhere.
-    virtual std::vector<Film> films(const Scene& scene, const Job& job, Watch& watch, TileKeeper* keeper = nullptr) = 0;
+    virtual std::vector<Film> films(
+        const Scene& scene, const Job& job, ProgressMonitor& watch, TileCheckpoint* keeper = nullptr) = 0;
     /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
     virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
     /// Claims of its own that join the assertions ("framebuffer is RGBA32F").
@@ -61,4 +64,4 @@ std::vector<std::shared_ptr<const InstrumentKind>>& instrument_kinds();
 /// Null: this program was built without it.
 std::shared_ptr<const InstrumentKind> find_instrument(const std::string& name);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -13,7 +13,7 @@
 #include "plates/style.h"
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -74,4 +74,4 @@ void check_font(const Experiment& experiment) {
     if (!experiment.plates.empty()) const plates::Canvas font(16, 16, plates::ground);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

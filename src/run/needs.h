@@ -6,7 +6,7 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 /// Bytes that a run holds at its largest: the films of its first seed and of one pass more, the references at each
 /// exponent, what the camera sees, and what the program takes for itself.
@@ -20,4 +20,4 @@ void check_memory(const Experiment& experiment);
 /// Throws OutputError where the font that the experiment's plates are drawn with is not there.
 void check_font(const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

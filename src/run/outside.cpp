@@ -10,7 +10,7 @@
 #include "verdicts/pipe.h"
 #include "verdicts/plugin.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -101,4 +101,4 @@ bool may_change(const Experiment& experiment) {
     return std::ranges::any_of(experiment.arms, [](const ArmPlan& arm) { return arm.exec.has_value(); });
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

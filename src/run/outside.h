@@ -5,7 +5,7 @@
 #include "arms/outside.h"
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 /// Starts the programs and opens the libraries of all arms that name one. Throws OutputError, with the arm's name,
 /// where one does not start, is no sampler, or cannot be estimated with (no pdf, delta parts).
@@ -16,4 +16,4 @@ std::string marks_of(const Experiment& experiment);
 /// A program may change between two runs, and nothing shows it.
 bool may_change(const Experiment& experiment);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

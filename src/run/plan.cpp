@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 std::vector<std::uint32_t> seeds_of(const Experiment& experiment) {
     std::vector<std::uint32_t> series;
@@ -54,4 +54,4 @@ RunPlan plan(const Experiment& experiment, SeedRange range) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -10,7 +10,7 @@
 #include "arms/outside.h"
 #include "experiment/experiment.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 /// One pass over the pixels: one arm, every rung, one exponent, one seed.
 struct Job {
@@ -46,4 +46,4 @@ std::vector<std::uint32_t> seeds_of(const Experiment& experiment);
 /// Every pass of one seed: each arm at the experiment's own s, then the exponent control where it adds anything.
 std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

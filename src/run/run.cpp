@@ -12,7 +12,7 @@
 #include "run/stopping.h"
 #include "run/outside.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -35,8 +35,8 @@ double samples_of(const RunPlan& plan, std::uint32_t seed, std::uint64_t pixels)
     return samples;
 }
 
-std::vector<JobResult> execute_all(
-    const RunPlan& plan, const Prepared& prepared, const Engine& engine, Watch& watch, Checkpoint* checkpoint) {
+std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared, const Engine& engine,
+    ProgressMonitor& watch, Checkpoint* checkpoint) {
     std::vector<JobResult> results;
     for (std::size_t k = 0, seed = 0; k < plan.jobs.size(); ++k) {
         const Job& job = plan.jobs[k];
@@ -50,8 +50,8 @@ std::vector<JobResult> execute_all(
 }
 
 /// The steps up to the last; throws Interrupted.
-Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options, Watch& watch,
-    Checkpoint* checkpoint) {
+Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options,
+    ProgressMonitor& watch, Checkpoint* checkpoint) {
     const auto start = Clock::now();
     add_references(plan, prepared, engine, watch, checkpoint);
     watch.check();
@@ -71,7 +71,7 @@ Engine engine_of(const RunOptions& options) { return settled({options.threads, o
 
 }  // namespace
 
-RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
     const auto start = Clock::now();
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
@@ -85,15 +85,15 @@ RunResult run(const Experiment& experiment, const RunOptions& options, Watch& wa
     all.timing.total_s = seconds_since(start);
     on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, watch, options.parts); });
     staging.commit(watch);
-    if (checkpoint) checkpoint->forget();
+    if (checkpoint) checkpoint->discard();
     std::string summary = terminal_summary(report_inputs(all), all.timing, options.out, options.parts);
     return {std::move(all.metrics), std::move(all.timing), std::move(all.provenance), std::move(summary)};
 }
 
-Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch) {
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
     return measured(plan, look(plan, engine), engine, options, watch, nullptr);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "experiment/experiment.h"
 #include "run/collect.h"
 #include "run/execute.h"
@@ -12,7 +12,7 @@
 #include "run/plan.h"
 #include "run/write.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 struct RunOptions {
     std::string out = "out";
@@ -33,9 +33,9 @@ struct RunResult {
 };
 
 /// Runs `experiment` and writes nothing. Throws Interrupted where the watch says so.
-Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, Watch& watch);
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch);
 
 /// Runs `experiment` and writes everything under options.out; outputs appear whole or not at all. Throws Interrupted.
-RunResult run(const Experiment& experiment, const RunOptions& options, Watch& watch);
+RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -6,15 +6,15 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 /// As many of these as oneTBB has: it complains on stderr of more.
 inline int threads_to_be_had(int threads) { return std::min(threads, oneapi::tbb::info::default_concurrency()); }
 
 /// Does the work on so many threads; false where the watch stopped it, on the way or before its end.
-template <class Work> bool unless_stopped(int threads, const Watch& watch, const Work& work) {
+template <class Work> bool unless_stopped(int threads, const ProgressMonitor& watch, const Work& work) {
     try {
         on_threads(threads_to_be_had(threads), work);
         watch.check();
@@ -22,4 +22,4 @@ template <class Work> bool unless_stopped(int threads, const Watch& watch, const
     } catch (const Interrupted&) { return false; }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-namespace crescent {
+namespace crescent::inline runs {
 
 std::string version() { return CRESCENT_VERSION; }
 std::string commit() { return CRESCENT_COMMIT; }
@@ -19,4 +19,4 @@ std::string host_cpu() {
     return "";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -16,7 +16,7 @@
 #include "run/stopping.h"
 #include "run/version.h"
 
-namespace crescent {
+namespace crescent::inline runs {
 
 namespace {
 
@@ -31,7 +31,7 @@ std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attrib
 }
 
 /// One file an arm and exponent, rungs as parts.
-void write_films(const Measured& m, Staging& staging, const Watch& watch) {
+void write_films(const Measured& m, Staging& staging, const ProgressMonitor& watch) {
     std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
     for (const auto& [key, film] : m.films) {
         const std::string name = film_file(key.arm, key.s, m.experiment.s());
@@ -99,7 +99,7 @@ Attributes attributes_of(const Measured& m) {
         {"instrument", p.instrument}, {"seed", std::to_string(m.experiment.seed)}};
 }
 
-Plates draw_plates(const Measured& m, const Watch& watch) {
+Plates draw_plates(const Measured& m, const ProgressMonitor& watch) {
     const std::vector<PlatePlan>& plans = m.experiment.plates;
     std::vector<std::vector<unsigned char>> bytes(plans.size());
     parallel_for(std::size_t{0}, plans.size(), [&](std::size_t k) {
@@ -113,7 +113,7 @@ Plates draw_plates(const Measured& m, const Watch& watch) {
 
 ReportInputs report_inputs(const Measured& m) { return {m.experiment, m.metrics, m.evidence, m.provenance, m.plates}; }
 
-void write(Measured& m, Staging& staging, Watch& watch, const OutputParts& parts) {
+void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputParts& parts) {
     const auto start = Clock::now();
     side_by_side(
         [&] {
@@ -138,7 +138,7 @@ void write(Measured& m, Staging& staging, Watch& watch, const OutputParts& parts
     watch.check();
 }
 
-bool write(Measured& m, const std::string& folder, Watch& watch, const OutputParts& parts, int threads) {
+bool write(Measured& m, const std::string& folder, ProgressMonitor& watch, const OutputParts& parts, int threads) {
     Staging staging(folder);
     const bool done =
         unless_stopped(threads > 0 ? threads : usable_threads(), watch, [&] { write(m, staging, watch, parts); });
@@ -146,4 +146,4 @@ bool write(Measured& m, const std::string& folder, Watch& watch, const OutputPar
     return done;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

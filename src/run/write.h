@@ -4,31 +4,34 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "films/exr.h"
 #include "run/collect.h"
 
-namespace crescent {
-
+namespace crescent::inline base {
 class Staging;
+}
+
+namespace crescent::inline runs {
 
 /// "metrics,report" -> those alone. Throws InputError, which names the nearest word, for any other word.
 OutputParts output_parts(const std::string& words);
 
 /// Every plate of the experiment, on as many threads as on_threads() allows. Throws OutputError where the font is
 /// missing, Interrupted where the watch says so.
-Plates draw_plates(const Measured& measured, const Watch& watch);
+Plates draw_plates(const Measured& measured, const ProgressMonitor& watch);
 
 /// What a run says of itself in the header of a film or a picture: (name, text).
 Attributes attributes_of(const Measured& measured);
 
 /// Judges the assertions again, those on plates too, and writes `parts` and timing.json under `folder`, whose earlier
 /// outputs go. False where the watch stopped it: nothing has changed there then.
-bool write(Measured& measured, const std::string& folder, Watch& watch, const OutputParts& parts = {}, int threads = 0);
+bool write(Measured& measured, const std::string& folder, ProgressMonitor& watch, const OutputParts& parts = {},
+    int threads = 0);
 /// The same into a stage, which the caller commits; may throw Interrupted.
-void write(Measured& measured, Staging& staging, Watch& watch, const OutputParts& parts);
+void write(Measured& measured, Staging& staging, ProgressMonitor& watch, const OutputParts& parts);
 
 /// What the numbers stand beside in reports.
 ReportInputs report_inputs(const Measured& measured);
 
-}  // namespace crescent
+}  // namespace crescent::inline runs

@@ -6,7 +6,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 namespace {
 
@@ -60,4 +60,4 @@ Azimuths azimuths_of_corners(std::span<const Vec3d> points, const Frame<double>&
     return {math::atan2(middle.y, middle.x) + 0.5 * (lo + hi), 0.5 * (hi - lo)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -6,7 +6,7 @@
 
 #include "simd/frame.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// The azimuths [middle - half, middle + half] about the axis frame.n, counted from frame.t towards frame.b; half = pi
 /// where the axis, or its other end, meets the body.
@@ -24,4 +24,4 @@ Azimuths azimuths_of_ball(Vec3d p, double radius, const Frame<double>& frame);
 /// The hull of some points.
 Azimuths azimuths_of_corners(std::span<const Vec3d> corners, const Frame<double>& frame);
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -9,7 +9,7 @@
 #include "simd/frame.h"
 #include "scene/parameter.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// A body from the scene's origin. What a, b, c, radius and offset are is each kind's own.
 struct BodyNumbers {
@@ -33,4 +33,4 @@ template <class F> F plane_at(Vec3<F> n, F offset, Vec3<F> o, Vec3<F> d) {
 /// How far a disk of unit normal n reaches along `axis` from its centre, for radius 1.
 double disk_reach(Vec3d axis, Vec3d n);
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -3,7 +3,7 @@
 
 #include "base/vec.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 struct Image {
     int width = 0, height = 0;  // pixels
@@ -21,4 +21,4 @@ struct Camera {
     double vfov_deg = 0;  // vertical field of view
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

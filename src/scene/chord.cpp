@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent {
+namespace crescent::inline scene {
 
 Interval where_negative(double a, double b, double c, Interval range) {
     if (range.empty()) return {};
@@ -49,7 +49,7 @@ OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
     const double hx = dot(n, s.x - p), h0 = dot(n, s.d0),
                  h1 = h0 + dot(n, s.step);  // height of x; rise along the chord's ends
     const double sign = hx > 0 ? 1 : -1;
-    // Crossing point = x - d hx / (n.d): relative to p, times -n.d, which is linear in v.
+    // Intersection point = x - d hx / (n.d): relative to p, times -n.d, which is linear in v.
     const Vec3d g0 = sign * (-h0 * (s.x - p) + hx * s.d0), g1 = sign * (-h1 * (s.x - p) + hx * (s.d0 + s.step));
     const auto beyond = [&](double f, double side) {
         return where_positive(side * sign * (hx + f * h0), side * sign * (hx + f * h1));
@@ -58,4 +58,4 @@ OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
         hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// v in [lo, hi] of the chord y(v) = y0 + v (y1 - y0), v in [0, 1]; empty where lo >= hi.
 struct Interval {
@@ -52,4 +52,4 @@ struct OnPlane {
 /// A point on the plane of a light, seen from a surface point.
 OnPlane project(Vec3d p, Vec3d n, const Sight& s);
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

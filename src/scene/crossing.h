@@ -5,9 +5,9 @@
 
 #include "base/vec.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
-struct Crossing {
+struct Intersection {
     double t = std::numeric_limits<double>::infinity();      // where the surface is
     double order = std::numeric_limits<double>::infinity();  // where it takes its turn (a panel: at its opening)
     Vec3d n{};                                               // geometric normal, not yet turned to the viewer
@@ -17,7 +17,7 @@ struct Crossing {
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// A surface at t that takes its turn there.
-inline Crossing crossing_at(double t, Vec3d n) { return {t, t, n, false}; }
+inline Intersection crossing_at(double t, Vec3d n) { return {t, t, n, false}; }
 
 /// t where the ray meets the plane through `point` with normal n.
 inline double plane_t(Vec3d point, Vec3d n, Vec3d x, Vec3d d) {
@@ -36,4 +36,4 @@ inline double parallelogram_t(Vec3d corner, Vec3d u, Vec3d v, Vec3d x, Vec3d d) 
     return a >= 0 && a <= 1 && b >= 0 && b <= 1 ? t : never;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -8,7 +8,7 @@
 #include "scene/shape.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 namespace {
 
 /// Numbers in [-1, 1], one after another.
@@ -44,7 +44,7 @@ struct Sample {
     }
 };
 
-Crossing intersect(const Sample& q, Vec3d x, Vec3d d) {
+Intersection intersect(const Sample& q, Vec3d x, Vec3d d) {
     return crescent::intersect({"", q.form(), {}, false, {}}, x, d);
 }
 Vec3d quad_normal(const Sample& q) { return normalize(cross(q.edge_u, q.edge_v)); }
@@ -103,7 +103,7 @@ bool on_surface(const Sample& q, Vec3d p, bool reveal) {
 }
 
 /// The normal that the surface has there, by the shape's definition, up to its sign.
-bool normal_fits(const Sample& q, Vec3d p, const Crossing& c) {
+bool normal_fits(const Sample& q, Vec3d p, const Intersection& c) {
     const auto along = [&](Vec3d n) { return std::fabs(std::fabs(dot(c.n, n)) - 1) < 1e-9; };
     switch (q.kind) {
         case ShapeKind::sphere: return along(normalize(p - q.center)) && dot(c.n, p - q.center) > 0;
@@ -133,7 +133,7 @@ TEST(IntersectLaw, TheNearestPointLiesOnTheSurfaceWithItsUnitNormal) {
     for (const ShapeKind kind : kinds) {
         int hits = 0;
         for_each_ray(kind, [&](const Sample& q, Vec3d x, Vec3d d) {
-            const Crossing c = intersect(q, x, d);
+            const Intersection c = intersect(q, x, d);
             if (!std::isfinite(c.t)) return;
             ++hits;
             const Vec3d p = x + c.t * d;
@@ -164,7 +164,7 @@ TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
     for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box})
         for_each_ray(kind, [&, k = 0](const Sample& q, Vec3d x, Vec3d d) mutable {
             if (k++ % 10 != 0) return;
-            const Crossing c = intersect(q, x, d);
+            const Intersection c = intersect(q, x, d);
             ASSERT_FALSE(crosses_before(q, x, d, std::isfinite(c.t) ? c.t : 8)) << static_cast<int>(kind);
         });
 }
@@ -174,10 +174,10 @@ TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {
     for (int k = 0; k < 2000; ++k) {
         const Sample ball = some_shape(ShapeKind::sphere, next), box = some_shape(ShapeKind::box, next);
         const Vec3d d = normalize(next.vec());
-        const Crossing c = intersect(ball, ball.center, d);
+        const Intersection c = intersect(ball, ball.center, d);
         EXPECT_NEAR(c.t, ball.radius, 1e-12);
         const Vec3d middle = 0.5 * (box.min + box.max);
-        const Crossing wall = intersect(box, middle, d);
+        const Intersection wall = intersect(box, middle, d);
         EXPECT_TRUE(std::isfinite(wall.t) && on_surface(box, middle + wall.t * d, false));
     }
 }
@@ -192,7 +192,7 @@ TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
         const Vec3d x = in_it + (0.2 + std::fabs(next())) * n + next.vec(0.5) - 0.0 * n;
         if (dot(x - q.corner, n) <= 0) continue;
         const Vec3d d = normalize(in_it - x);
-        const Crossing c = intersect(q, x, d);
+        const Intersection c = intersect(q, x, d);
         ASSERT_TRUE(std::isfinite(c.t));
         EXPECT_GE(c.t, length(in_it - x) - 1e-9);                     // behind the opening
         EXPECT_NEAR(c.order, length(in_it - x), 1e-6);                // but in its place
@@ -204,4 +204,4 @@ TEST(IntersectLaw, APanelIsEnteredByItsOpeningFromTheFrontAlone) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline scene

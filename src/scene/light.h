@@ -8,7 +8,7 @@
 #include "color/rgb.h"
 #include "scene/lights/all.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 inline constexpr std::size_t most_lights = 64;  // in one scene
 
@@ -16,7 +16,7 @@ struct Light {
     std::string name;
     LightKinds::Any form;  // one of the kinds of lights/all.h
     Rgb radiance{};
-    Place at;
+    SourceLocation at;
     std::string_view kind() const { return LightKinds::names[form.index()]; }
 
     /// What it puts before the lights behind it.
@@ -45,8 +45,8 @@ struct DiskLight {
     double radius = 0;
     Rgb radiance{};
     bool two_sided = false;
-    Place at;
+    SourceLocation at;
     Light light() const { return {name, lights::Disk{center, normal, radius, two_sided}, radiance, at}; }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

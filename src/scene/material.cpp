@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace crescent {
+namespace crescent::inline scene {
 
 void Material::set_specular(const Rgb& color) {
     const double y = luminance(color);
@@ -18,4 +18,4 @@ Surface surface_of(const Material& m, double common_s) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

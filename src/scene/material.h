@@ -6,7 +6,7 @@
 #include "color/rgb.h"
 #include "lobes/info.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// As it is given. A Lambert surface has rho_s = 0; its s only steers the arms.
 struct Material {
@@ -40,4 +40,4 @@ struct Surface {
 /// Blinn-Phong lobe of exponent s (Walter et al. 2007), so that a GGX arm has something to aim by on any surface.
 Surface surface_of(const Material& material, double common_s);
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -13,7 +13,7 @@
 #include "base/vec.h"
 #include "color/rgb.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// Bounds of a number or of every number in a list.
 struct Range {
@@ -34,7 +34,7 @@ template <class Kind> struct Parameter {
     Range range{};
     std::string_view unit{};
     bool unit_vector = false;
-    std::string_view fallback{};  // "": it must be given; a flag is false where it is not
+    std::string_view default_value{};  // "": it must be given; a flag is false where it is not
 };
 
 namespace parameter {
@@ -57,8 +57,8 @@ template <class Kind> constexpr Parameter<Kind> flag(std::string_view name, bool
     return {name, to, means, {}, "", false, "false"};
 }
 template <class Kind> constexpr Parameter<Kind> albedo(
-    std::string_view name, std::optional<Rgb> Kind::* to, std::string_view fallback, std::string_view means) {
-    return {name, to, means, albedo_range, "", false, fallback};
+    std::string_view name, std::optional<Rgb> Kind::* to, std::string_view default_value, std::string_view means) {
+    return {name, to, means, albedo_range, "", false, default_value};
 }
 
 }  // namespace parameter
@@ -91,4 +91,4 @@ template <class... Kind> struct KindList {
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 Scene::Made::Made(SceneData from) : data(std::move(from)) {
     const Camera& c = data.camera;
@@ -76,10 +76,10 @@ std::optional<Hit> Scene::Made::trace(int i, int j) const {
     const Image& image = data.image;
     const Vec3d d = normalize(forward + (i + 0.5 - 0.5 * image.width) * right + (j + 0.5 - 0.5 * image.height) * up);
     const Vec3d eye = data.camera.eye;
-    Crossing best;
+    Intersection best;
     Hit hit;
     for (std::size_t k = 0; k < data.shapes.size(); ++k) {
-        const Crossing c = intersect(data.shapes[k], eye, d);
+        const Intersection c = intersect(data.shapes[k], eye, d);
         if (c.order < best.order) best = c, hit.shape = static_cast<int>(k);
     }
     if (hit.shape < 0) return {};
@@ -102,4 +102,4 @@ Surface Scene::surface(const Hit& hit) const {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

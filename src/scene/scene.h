@@ -9,7 +9,7 @@
 #include "scene/scene_data.h"
 #include "simd/frame.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// What a primary ray met. The normal is unit and faces the camera.
 struct Hit {
@@ -71,4 +71,4 @@ private:
     std::shared_ptr<const std::vector<Hit>> primaries_;  // shape -1: nothing met
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

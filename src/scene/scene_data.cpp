@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace crescent {
+namespace crescent::inline scene {
 
 const Shape* SceneData::shape_of_s() const {
     const auto first = [&](auto holds) {
@@ -26,4 +26,4 @@ const Shape* SceneData::find_shape(std::string_view name) const {
     return it == shapes.end() ? nullptr : &*it;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

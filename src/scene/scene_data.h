@@ -10,7 +10,7 @@
 #include "scene/light.h"
 #include "scene/shape.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 struct SceneData {
     Image image;
@@ -29,4 +29,4 @@ struct SceneData {
     const Shape* find_shape(std::string_view name) const;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -4,7 +4,7 @@
 
 #include "scene/shadow.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 double disk_reach(Vec3d axis, Vec3d n) { return std::sqrt(std::max(0.0, dot(axis, axis) - sqr(dot(axis, n)))); }
 
@@ -56,8 +56,8 @@ private:
 
 }  // namespace
 
-bool stands_clear(const Occluder& body, const Extent& from, const Bodies::Any& light) {
+bool is_separated(const Occluder& body, const Extent& from, const Bodies::Any& light) {
     return std::visit([&](const auto& b, const auto& l) { return Apart(b, from, l).by_any_plane(); }, body.body, light);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

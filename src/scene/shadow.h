@@ -9,7 +9,7 @@
 #include "scene/chord.h"
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// The v for which the way from x to y(v) crosses the body's surface within `between`: one interval where x is outside
 /// the body, at most two else (what lies in one body sees each other).
@@ -25,7 +25,7 @@ struct Extent {
 
 /// A plane parts the body from all segments between these points and the light, which has this form: it hides nothing
 /// of it from any. Never true where it does hide some; false where none of the planes that are tried parts them.
-bool stands_clear(const Occluder& body, const Extent& from, const Bodies::Any& light);
+bool is_separated(const Occluder& body, const Extent& from, const Bodies::Any& light);
 
 /// Calls f with each part of [0, 1] that no interval covers, in order. Sorts the intervals.
 template <class F> void each_open_part(std::span<Interval> hidden_parts, F&& f) {
@@ -39,4 +39,4 @@ template <class F> void each_open_part(std::span<Interval> hidden_parts, F&& f) 
     if (from < 1) f(Interval{from, 1});
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -7,7 +7,7 @@
 #include "simd/frame.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 namespace {
 
 /// Numbers in [-1, 1], one after another.
@@ -75,7 +75,7 @@ TEST(StandsClear, NeverPartsABodyFromSegmentsThatItCrosses) {
         int clear = 0, unclear = 0, in_the_way = 0;
         for (int trial = 0; trial < 1000; ++trial) {
             const Obstacle s = some_obstacle(kind, next);
-            const bool parted = stands_clear(s.body, s.from, s.disk.light().body());
+            const bool parted = is_separated(s.body, s.from, s.disk.light().body());
             const int hidden_ones = hidden_segments(s, next, 200);
             EXPECT_FALSE(parted && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
             in_the_way += hidden_ones > 0;
@@ -100,4 +100,4 @@ TEST(EachOpenPart, IsTheRestOfTheChord) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -1,8 +1,8 @@
 #include "scene/shape.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
-Crossing intersect(const Shape& shape, Vec3d x, Vec3d d) {
+Intersection intersect(const Shape& shape, Vec3d x, Vec3d d) {
     return std::visit([&](const auto& form) { return form.intersect(x, d); }, shape.form);
 }
 
@@ -25,4 +25,4 @@ std::optional<Rgb> albedo_of_reveal(const Shape& shape) {
         shape.form);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -9,7 +9,7 @@
 #include "scene/material.h"
 #include "scene/shapes/all.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// One shape: where it lies, what it reflects.
 struct Shape {
@@ -17,7 +17,7 @@ struct Shape {
     Shapes::Any form;  // one of the kinds of shapes/all.h
     Material material;
     bool occludes = false;  // whether it stands before the lights
-    Place at;
+    SourceLocation at;
     std::string_view kind() const { return Shapes::names[form.index()]; }
 };
 
@@ -28,7 +28,7 @@ struct Occluder {
 };
 
 /// Where the ray x + t d first meets the shape.
-Crossing intersect(const Shape& shape, Vec3d x, Vec3d d);
+Intersection intersect(const Shape& shape, Vec3d x, Vec3d d);
 
 /// What it puts before lights, as shape `index`.
 void add_occluders(const Shape& shape, int index, std::vector<Occluder>& out);
@@ -36,4 +36,4 @@ void add_occluders(const Shape& shape, int index, std::vector<Occluder>& out);
 /// The diffuse albedo of the sides of a recess, where the shape has one and states it.
 std::optional<Rgb> albedo_of_reveal(const Shape& shape);
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace crescent {
+namespace crescent::inline simd {
 namespace {
 
 double ulps(float got, long double want) {
@@ -57,4 +57,4 @@ TEST(ElementaryFunctions, PowClampsAtZeroAndKeepsTheEnds) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline simd

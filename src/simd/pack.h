@@ -16,7 +16,7 @@
 
 #include "simd/scalar.h"
 
-namespace crescent {
+namespace crescent::inline simd {
 namespace CRESCENT_ISA {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -124,4 +124,4 @@ template <> CRESCENT_INLINE CRESCENT_ISA::Uint load_as<CRESCENT_ISA::Uint>(const
     return {hn::LoadU(UintTag{}, p), hn::LoadU(UintTag{}, p + half_lanes)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline simd

@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "simd/scalar.h"
 
-namespace crescent {
+namespace crescent::inline simd {
 
 template <class U> struct Vec4u {
     U x, y, z, w;
@@ -54,4 +54,4 @@ inline std::uint32_t seed_of(std::uint32_t first, std::uint32_t index) {
     return index == 0 ? first : pcg4d(Vec4u<std::uint32_t>{first, index, 0x5eedu, 0u}).x;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline simd

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-namespace crescent {
+namespace crescent::inline simd {
 namespace {
 
 TEST(RandomStreams, Pcg4dGivesThePublishedFunction) {  // values from a separate implementation of the paper's listing
@@ -66,4 +66,4 @@ TEST(RandomStreams, SeriesOfSeedsStartsWithTheGivenOneAndDoesNotRepeat) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline simd

@@ -9,7 +9,7 @@
 /// For what stands inside the sample loop: a call there costs more than the work.
 #define CRESCENT_INLINE inline __attribute__((always_inline))
 
-namespace crescent {
+namespace crescent::inline simd {
 
 /// What belongs to a number type F: its mask and, for single precision, its 32-bit integers.
 template <class F> struct Lanes;
@@ -66,4 +66,4 @@ template <> inline std::uint32_t load_as<std::uint32_t>(const std::uint32_t* p) 
 inline void store(float a, float* p) { *p = a; }
 inline void store(std::uint32_t a, std::uint32_t* p) { *p = a; }
 
-}  // namespace crescent
+}  // namespace crescent::inline simd

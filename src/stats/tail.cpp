@@ -6,7 +6,7 @@
 
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline stats {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
     return std::fabs(wide->k - deep->k) > 2 * math::hypot(wide->se, deep->se) ? deep : wide;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline stats

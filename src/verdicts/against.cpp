@@ -12,20 +12,20 @@
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
 constexpr std::uint32_t other_stream = 1u << 20;  // B draws from streams that no A draws from
 
 /// Draws of every technique, by A's bins; what draws nothing is one more.
-std::vector<double> count(const Work& work, const Density& bins, int round) {
+std::vector<double> count(const TrialContext& work, const Density& bins, int round) {
     std::vector<double> out(bins.mass.bins.size() + 1);
     for (int t = 0; t < work.subject.techniques(); ++t) {
-        const Batchful fresh = round == 0 ? Batchful{} : work.draw(t, round);
-        const Batchful& b = round == 0 ? work.first(t) : fresh;
+        const SampleBatch fresh = round == 0 ? SampleBatch{} : work.draw(t, round);
+        const SampleBatch& b = round == 0 ? work.first(t) : fresh;
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
-            const bool nothing = is_nothing(b.draws[i], b.pdf[i]);
+            const bool nothing = is_null_sample(b.draws[i], b.pdf[i]);
             ++out[nothing ? out.size() - 1 : bins.bin_of(bins.map.coordinates(b.draws[i].wi))];
         }
     }
@@ -71,7 +71,7 @@ std::array<double, 3> two_sample(const Density& bins, const std::vector<double>&
     return {two_sample_p(a, b), two_sample_p(ring_a, ring_b), two_sample_p(sector_a, sector_b)};
 }
 
-Verdict same_distribution(const Work& a, const Work& b, bool expect_same) {
+Verdict same_distribution(const TrialContext& a, const TrialContext& b, bool expect_same) {
     Verdict v = a.verdict("same_distribution", State::right, "");
     const Density& bins = a.density(0);
     const std::array<double, 3> p = two_sample(bins, count(a, bins, 0), count(b, bins, 0));
@@ -98,7 +98,7 @@ Verdict same_distribution(const Work& a, const Work& b, bool expect_same) {
 }
 
 /// f of both where both are asked: all over the upper half, and where either draws.
-Verdict same_f(const Work& a, const Work& b) {
+Verdict same_f(const TrialContext& a, const TrialContext& b) {
     Verdict v = a.verdict("same_f", State::right, "");
     if (!a.subject.has_f() || !b.subject.has_f()) {
         v.state = State::skipped;
@@ -112,7 +112,7 @@ Verdict same_f(const Work& a, const Work& b) {
                      phi = 2 * pi * static_cast<double>(u.y);
         wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
     }
-    for (const Work* w : {&a, &b})
+    for (const TrialContext* w : {&a, &b})
         for (std::size_t i = 0, n = 0; i < w->first(0).draws.size() && n < 256; ++i)
             if (const Draw& d = w->first(0).draws[i]; d.pdf > 0 && w->counts(d.wi)) wi.push_back(normalize(d.wi)), ++n;
     const std::vector<double> fa = a.f(wi), fb = b.f(wi);
@@ -139,7 +139,7 @@ Verdict same_f(const Work& a, const Work& b) {
     return v;
 }
 
-Verdict variance(const Work& a, const Work& b) {
+Verdict variance(const TrialContext& a, const TrialContext& b) {
     Verdict v = a.verdict("variance", State::right, "");
     if (!a.subject.has_f() || !b.subject.has_f()) {
         v.state = State::skipped;
@@ -173,9 +173,9 @@ Verdict variance(const Work& a, const Work& b) {
     return v;
 }
 
-std::vector<Verdict> compare_one(
-    const Trial& ta, const Trial& tb, std::uint32_t index, const Rigour& rigour, bool expect_same, Tally& tally) {
-    Work a(ta, rigour, tally, index), b(tb, rigour, tally, index + other_stream);
+std::vector<Verdict> compare_one(const Trial& ta, const Trial& tb, std::uint32_t index, const TestSettings& rigour,
+    bool expect_same, TestCounts& tally) {
+    TrialContext a(ta, rigour, tally, index), b(tb, rigour, tally, index + other_stream);
     a.measure_density();
     b.measure_density();
     std::vector<Verdict> out = {same_distribution(a, b, expect_same), same_f(a, b), variance(a, b)};
@@ -185,15 +185,15 @@ std::vector<Verdict> compare_one(
 
 }  // namespace
 
-Judgement judge_against(
-    std::span<const Trial> a, std::span<const Trial> b, const Rigour& given, bool expect_same, Watch& watch) {
+Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& given, bool expect_same,
+    ProgressMonitor& watch) {
     for (const auto& trials : {a, b})
         for (const Trial& t : trials)
             if (!t.subject->traits().has_pdf)
                 throw InputError({t.arm, 0, 0}, "has no pdf(w), which two samplers are held against each other by");
-    Rigour rigour = given;
+    TestSettings rigour = given;
     rigour.share(3 * a.size());
-    Tally tally;
+    TestCounts tally;
     watch.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
     const auto one = [&](std::size_t i) {
@@ -256,4 +256,4 @@ std::string against_text(const Judgement& j) {
             "\n{}; {} statistical tests share a family-wise error of {:g}{}\n", word(j.state), j.tests, j.alpha, asked);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -9,11 +9,11 @@
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Trials of A and of B, one for one. expect_same: a difference in distribution is wrong, not only told.
-Judgement judge_against(
-    std::span<const Trial> a, std::span<const Trial> b, const Rigour& rigour, bool expect_same, Watch& watch);
+Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& rigour,
+    bool expect_same, ProgressMonitor& watch);
 
 /// Built-in arm `name` on the surface, light and w_o of each of these trials; with A's f where A is not built in.
 std::vector<Trial> arm_against(const std::string& name, std::span<const Trial> a);
@@ -23,4 +23,4 @@ std::vector<Trial> sampler_against(const std::shared_ptr<const JudgedSampler>& b
 /// A w_o a line: both states, the ratio and its interval.
 std::string against_text(const Judgement& judgement);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

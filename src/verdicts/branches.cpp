@@ -6,7 +6,7 @@
 
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -18,7 +18,7 @@ double node(std::size_t i, std::size_t nodes) {
 
 class Chooser {
 public:
-    Chooser(const Work& work, int technique, int which) : work_(work), technique_(technique), which_(which) {}
+    Chooser(const TrialContext& work, int technique, int which) : work_(work), technique_(technique), which_(which) {}
 
     std::vector<Draw> draw(std::vector<Numbers> u) const {
         std::vector<Draw> out(u.size());
@@ -26,7 +26,7 @@ public:
         return out;
     }
     bool same(const Draw& a, const Draw& b) const {
-        return b.pdf > 0 && length(a.wi - b.wi) <= 16 * work_.grain() + 1e-12;
+        return b.pdf > 0 && length(a.wi - b.wi) <= 16 * work_.direction_resolution() + 1e-12;
     }
     Numbers moved(Numbers u, double to) const {
         u[which_] = to;
@@ -36,7 +36,7 @@ public:
     std::vector<double> shares(std::span<const Numbers> at, std::span<const Draw> there, std::size_t nodes) const;
 
 private:
-    const Work& work_;
+    const TrialContext& work_;
     int technique_, which_;
     struct End {
         std::size_t of;
@@ -75,7 +75,7 @@ std::vector<double> Chooser::shares(std::span<const Numbers> at, std::span<const
 
 /// The numbers beside the first two that move the direction anywhere among these.
 std::vector<int> choosers_of(
-    const Work& work, int technique, std::span<const Numbers> at, std::span<const Draw> there) {
+    const TrialContext& work, int technique, std::span<const Numbers> at, std::span<const Draw> there) {
     std::vector<int> out;
     for (int k = 2; k < work.traits.numbers; ++k) {
         const Chooser one(work, technique, k);
@@ -93,7 +93,7 @@ std::vector<int> choosers_of(
 
 }  // namespace
 
-Branches follow_branches(const Work& work, int technique, std::span<const Numbers> all) {
+Branches follow_branches(const TrialContext& work, int technique, std::span<const Numbers> all) {
     Branches out;
     out.share.assign(all.size(), 0.0);
     const std::span<const Numbers> at = all.first(std::min<std::size_t>(all.size(), work.rigour.full ? 512 : 128));
@@ -115,4 +115,4 @@ Branches follow_branches(const Work& work, int technique, std::span<const Number
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

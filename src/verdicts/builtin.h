@@ -6,10 +6,11 @@
 #include <variant>
 
 #include "arms/all.h"
+#include "base/vec_cast.h"
 #include "lobes/all.h"
 #include "verdicts/subject.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 struct SurfaceSetup {
     LobeKind lobe = LobeKind::none;
@@ -20,13 +21,9 @@ struct SurfaceSetup {
 /// f of the surface, 1/sr, without the cosine.
 double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 
-template <class F> Vec3<F> as(Vec3d v) { return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)}; }
-template <class F> Vec3d widen(Vec3<F> v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-
 /// The site of an arm in number type F; `disks` must outlive it.
-template <class F> Site<F> site_of(const SurfaceSetup& surface, Vec3d wo, const std::vector<LocalDisk<F>>& disks) {
+template <class F>
+ShadingPoint<F> site_of(const SurfaceSetup& surface, Vec3d wo, const std::vector<LocalDisk<F>>& disks) {
     return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d),
         static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size())};
 }
@@ -111,4 +108,4 @@ protected:
     A<double> double_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

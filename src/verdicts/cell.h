@@ -6,7 +6,7 @@
 
 #include "verdicts/cubature.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 inline constexpr int rule_size = 17;
 
@@ -54,4 +54,4 @@ struct Audit {
 /// `room`: evaluations to spend on cells with jumps; 0: two a cell, whatever it holds.
 Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t round, double worth, std::size_t room);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -14,7 +14,7 @@
 #include "base/pipe.h"
 #include "verdicts/judge.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -152,4 +152,4 @@ void Child::end(int milliseconds) {
     guard_ = -1;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

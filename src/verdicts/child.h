@@ -8,7 +8,7 @@
 #include <string_view>
 #include <sys/types.h>
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 class Child {
 public:
@@ -34,4 +34,4 @@ private:
     mutable std::optional<int> status_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -4,7 +4,7 @@
 #include "math/functions.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -34,10 +34,10 @@ std::vector<Numbers> corners(int count) {
 
 }  // namespace
 
-CornerFaults corner_faults(const Work& work, int technique) {
+CornerFaults corner_faults(const TrialContext& work, int technique) {
     CornerFaults out;
     if (!work.subject.draws_at_will()) return out;
-    Batchful all;
+    SampleBatch all;
     all.u = corners(work.traits.numbers);
     all.draws.resize(all.u.size());
     work.subject.sample(technique, work.trial.wo, all.u, all.draws);
@@ -46,7 +46,7 @@ CornerFaults corner_faults(const Work& work, int technique) {
     std::array<std::array<std::pair<std::size_t, std::size_t>, std::size(ends)>, Numbers::most>
         lines{};  // tried, broken
     for (std::size_t i = 0; i < all.u.size(); ++i) {
-        Batchful one;
+        SampleBatch one;
         one.u = {all.u[i]};
         one.draws = {all.draws[i]};
         one.pdf = {all.pdf[i]};
@@ -67,4 +67,4 @@ CornerFaults corner_faults(const Work& work, int technique) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -7,7 +7,7 @@
 
 #include "simd/scalar.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -92,7 +92,7 @@ std::array<Cell, 2> halve(Cell& cell, double total) {
     return out;
 }
 
-std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const Witnesses* witnesses) {
+std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const SamplesPerBin* witnesses) {
     std::vector<Cell> cells;
     std::vector<std::vector<std::size_t>> of_bin(static_cast<std::size_t>(bins));
     for (const Rect& r : start) {
@@ -181,7 +181,7 @@ void add_up(const std::vector<Cell>& cells, int bins, const Audit& look, Integra
 }  // namespace
 
 Integral integrate(
-    std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses) {
+    std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const SamplesPerBin* witnesses) {
     const double total = witnesses ? witnesses->total : 0;
     std::vector<Cell> cells = start_cells(start, bins, witnesses);
     evaluate(cells, g);
@@ -246,15 +246,15 @@ void split(const Node& n, std::vector<Node>& stack) {
 
 }  // namespace
 
-std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> guides) {
+std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> pilot_directions) {
     std::vector<Node> stack;
     for (const Rect& r : cells) stack.push_back({r, {}, 0});
-    for (Vec3d w : guides) {
+    for (Vec3d w : pilot_directions) {
         const Vec2d at = map.coordinates(w);
         for (Node& n : stack)
             if (at.x >= n.rect.a0 && at.x < n.rect.a1 && at.y >= n.rect.b0 && at.y < n.rect.b1) n.inside.push_back(at);
     }
-    const std::size_t crowd = std::max<std::size_t>(guides.size() / 500, 3);
+    const std::size_t crowd = std::max<std::size_t>(pilot_directions.size() / 500, 3);
     std::vector<Rect> out;
     while (!stack.empty()) {
         const Node n = std::move(stack.back());
@@ -265,4 +265,4 @@ std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::spa
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -10,7 +10,7 @@
 #include "simd/frame.h"
 #include "verdicts/subject.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// A rectangle in the two coordinates, and the bin its integral counts for.
 struct Rect {
@@ -43,14 +43,14 @@ struct Witness {
     Vec2d at;
     double g = 0;
 };
-struct Witnesses {
+struct SamplesPerBin {
     std::vector<std::vector<Witness>> bins;  // by bin
     double total = 0;                        // draws, those in no bin included
 };
 
 /// The integral over cells, by Genz-Malik rules on the worst cell first, with the error it is known to.
 Integral integrate(
-    std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const Witnesses* witnesses = nullptr);
+    std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const SamplesPerBin* witnesses = nullptr);
 
 /// Sphere coordinates about an axis: a = 1 - cos of the angle to it, b = turns about it. dw = 2 pi da db.
 struct SphereMap {
@@ -63,6 +63,6 @@ struct SphereMap {
 /// Rings that narrow towards the axis, six sectors each, up to a = a_end.
 std::vector<Rect> graded_cells(double a_end = 2);
 /// The same cells halved wherever `guides` crowd, so that no sharp lobe is overlooked; bins are kept.
-std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> guides);
+std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> pilot_directions);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 #include "simd/random.h"
 #include "verdicts/cell.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -95,4 +95,4 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

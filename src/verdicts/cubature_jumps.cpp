@@ -7,7 +7,7 @@
 
 #include "verdicts/cell.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -152,4 +152,4 @@ std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edg
     return count;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -6,7 +6,7 @@
 #include "simd/scalar.h"
 #include "verdicts/cell.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 namespace {
 
 struct Known {
@@ -115,14 +115,14 @@ TEST(Cubature, SeesASpikeThatDrawsFell) {
     const auto g = [](double a, double b) {
         return std::exp(-(sqr(a - 0.3371) + sqr(b - 0.7113)) / sqr(2e-3)) / (pi * sqr(2e-3));
     };
-    Witnesses fell{{std::vector<Witness>(1000, Witness{{0.33712, 0.71127}, 0})}, 1000};
+    SamplesPerBin fell{{std::vector<Witness>(1000, Witness{{0.33712, 0.71127}, 0})}, 1000};
     EXPECT_NEAR(integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell).value, 1, 1e-4);
 }
 
 /// A sliver of a bright disc in the corner of a dark cell, where neither the rule nor its rim looks.
 TEST(Cubature, BelievesADrawThatFellHigherThanItSaw) {
     const auto g = [](double a, double b) { return in_disc(a, b, 0.52, 0.55, 0.004) * 2000 + 0.9; };
-    Witnesses fell{{{}}, 1000};
+    SamplesPerBin fell{{{}}, 1000};
     for (int i = 0; i < 100; ++i)
         fell.bins[0].push_back({{0.52 + 0.0003 * (i % 10 - 5), 0.55 + 0.0003 * (i / 10 - 5)}, 2000.9});
     const Integral found = integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell);
@@ -130,4 +130,4 @@ TEST(Cubature, BelievesADrawThatFellHigherThanItSaw) {
 }
 
 }  // namespace
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -13,7 +13,7 @@ constexpr std::size_t most_parts = 16;
 bool close(double a, double b) { return std::fabs(a - b) <= 1e-4 * std::max(std::fabs(a), std::fabs(b)); }
 bool close(Vec3d a, Vec3d b) { return close(a.x, b.x) && close(a.y, b.y) && close(a.z, b.z); }
 
-Vec3d weight_of(const Work& work, const Draw& d) {
+Vec3d weight_of(const TrialContext& work, const Draw& d) {
     const double w = d.weight.value_or(0);
     return work.traits.channels == 3 ? d.weights : Vec3d{w, w, w};
 }
@@ -33,7 +33,7 @@ Vec3d DeltaParts::energy(int side) const {
     return sum;
 }
 
-DeltaParts delta_parts(const Work& work, const Batchful& b) {
+DeltaParts delta_parts(const TrialContext& work, const SampleBatch& b) {
     DeltaParts out;
     out.of = b.draws.size();
     for (const Draw& d : b.draws) {
@@ -53,7 +53,7 @@ DeltaParts delta_parts(const Work& work, const Batchful& b) {
     return out;
 }
 
-double delta_share_p(const DeltaParts& deltas, const Batchful& b) {
+double delta_share_p(const DeltaParts& deltas, const SampleBatch& b) {
     const double n = static_cast<double>(b.draws.size());
     double seen = 0, due = 0, statistic = 0, degrees = 0;
     const auto add = [&](double saw, double expected) {
@@ -92,17 +92,17 @@ nlohmann::ordered_json evidence_of(const DeltaParts& deltas) {
     return out;
 }
 
-double delta_light(const Work& work, bool even) {
+double delta_light(const TrialContext& work, bool even) {
     double sum = 0;
     for (const DeltaPart& p : delta_parts(work, work.first(0)).parts)
         if (work.counts(p.wi)) sum += p.q * luminance(p.weight) * (even ? 1 : work.light(p.wi));
     return sum;
 }
 
-Integral due_mean(const Work& work, bool even) {
-    Integral out = work.incoming(Work::Where::reached, even);
+Integral due_mean(const TrialContext& work, bool even) {
+    Integral out = work.incoming(TrialContext::Where::reached, even);
     out.value += delta_light(work, even);
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

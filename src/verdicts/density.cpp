@@ -8,7 +8,7 @@
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -61,10 +61,10 @@ struct Fit {
     double p() const { return std::min({joint.p, rings.p, sectors.p, outside_p}); }
 };
 
-std::vector<double> count(const Density& d, const Batchful& b, double& nothing) {
+std::vector<double> count(const Density& d, const SampleBatch& b, double& nothing) {
     std::vector<double> bins(d.mass.bins.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
-        if (is_nothing(b.draws[i], b.pdf[i])) {
+        if (is_null_sample(b.draws[i], b.pdf[i])) {
             ++nothing;
             continue;
         }
@@ -73,7 +73,7 @@ std::vector<double> count(const Density& d, const Batchful& b, double& nothing) 
     return bins;
 }
 
-Fit fit(const Density& d, const Batchful& b) {
+Fit fit(const Density& d, const SampleBatch& b) {
     Fit out;
     double nothing = 0;
     out.observed = count(d, b, nothing);
@@ -123,7 +123,7 @@ std::string coordinates(const Density& d) {
 }
 
 /// Delta parts are few, and are drawn as often as they say.
-bool deltas_are_wrong(const Work& work, const DeltaParts& deltas, Verdict& v) {
+bool deltas_are_wrong(const TrialContext& work, const DeltaParts& deltas, Verdict& v) {
     if (deltas.parts.empty()) return false;
     v.evidence["delta_parts"] = evidence_of(deltas);
     if (deltas.scattered) {
@@ -137,7 +137,7 @@ bool deltas_are_wrong(const Work& work, const DeltaParts& deltas, Verdict& v) {
     const double p = delta_share_p(deltas, work.first(0));
     v.evidence["p_delta"] = p;
     if (!work.fails(p, [&](int round) {
-            const Batchful fresh = work.draw(0, round);
+            const SampleBatch fresh = work.draw(0, round);
             return delta_share_p(delta_parts(work, fresh), fresh);
         }))
         return false;
@@ -148,7 +148,7 @@ bool deltas_are_wrong(const Work& work, const DeltaParts& deltas, Verdict& v) {
 
 }  // namespace
 
-Verdict judge_normalised(const Work& work) {
+Verdict judge_normalised(const TrialContext& work) {
     if (!work.traits.has_pdf) return work.verdict("normalised", State::skipped, "There is no pdf(w) to integrate.");
     Verdict v = work.verdict("normalised", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
@@ -210,7 +210,7 @@ Verdict judge_normalised(const Work& work) {
                 fmt::format(", but the quadrature itself is only good to {:.2g} after {} evaluations.", mass.error,
                     mass.evaluations);
             v.settle = work.rigour.full
-                ? "More evaluations (Rigour::evaluations), or a p that jumps along fewer curves."
+                ? "More evaluations (TestSettings::evaluations), or a p that jumps along fewer curves."
                 : "--full, with twelve times as many evaluations.";
         }
         if (v.state == State::right && d.doubts > allowed) {
@@ -223,7 +223,7 @@ Verdict judge_normalised(const Work& work) {
     return v;
 }
 
-Verdict judge_density(Work& work) {
+Verdict judge_density(TrialContext& work) {
     Verdict v = work.verdict("density", State::right, "");
     const DeltaParts deltas = delta_parts(work, work.first(0));
     if (deltas_are_wrong(work, deltas, v)) return v;
@@ -287,4 +287,4 @@ Verdict judge_density(Work& work) {
     return v;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

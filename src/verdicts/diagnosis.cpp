@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -86,7 +86,7 @@ constexpr Turn turns[] = {{"x and y exchanged", [](Vec3d w) { return Vec3d{w.y, 
     {"above and below exchanged", [](Vec3d w) { return Vec3d{w.x, w.y, -w.z}; }}};
 
 /// What is drawn is pdf(w) of another w_o, another w_i or both.
-std::optional<Diagnosis> turned(const Work& work, int technique, std::span<const WarpPoint> points) {
+std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::span<const WarpPoint> points) {
     const std::size_t n = std::min<std::size_t>(points.size(), 256);
     for (const Turn& turn : turns)
         for (int which = 1; which < 4; ++which) {
@@ -110,7 +110,7 @@ std::optional<Diagnosis> turned(const Work& work, int technique, std::span<const
 
 }  // namespace
 
-std::optional<Diagnosis> explain(const Work& work, std::span<const Ratio> ratios) {
+std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio> ratios) {
     if (ratios.size() < least || mostly_one(ratios)) return {};
     std::optional<Diagnosis> best;
     for (const Factor& factor : usual_factors(work)) {
@@ -129,7 +129,7 @@ std::optional<Diagnosis> explain(const Work& work, std::span<const Ratio> ratios
     return best;
 }
 
-std::optional<Diagnosis> diagnose_density(const Work& work, int technique) {
+std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
     const WarpFinding warp = study_warp(work, technique);
     if (warp.points.size() < least) return diagnose_by_bins(work, technique);
     std::vector<Vec3d> wi;
@@ -154,15 +154,15 @@ std::optional<Diagnosis> diagnose_density(const Work& work, int technique) {
 namespace {
 
 /// A factor with a constant that nobody knows may be chance: weights cut off are 1 / cos up to some constant.
-bool is_told_apart(const Work& work, const Diagnosis& found) {
+bool is_told_apart(const TrialContext& work, const Diagnosis& found) {
     return found.name == "a constant" || std::fabs(found.constant - 1) < close ||
         !name_of_constant(work, found.constant).empty();
 }
 
 }  // namespace
 
-std::optional<Diagnosis> diagnose_identity(const Work& work, int technique) {
-    const Batchful& b = work.first(technique);
+std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int technique) {
+    const SampleBatch& b = work.first(technique);
     const std::size_t n = std::min<std::size_t>(b.draws.size(), 4096);
     std::vector<Ratio> pdf, weight, f;
     std::vector<Vec3d> wi;
@@ -203,7 +203,7 @@ void tell(Verdict& v, const std::optional<Diagnosis>& found) {
 
 }  // namespace
 
-void diagnose(const Work& work, std::span<Verdict> verdicts) {
+void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
     std::string first;
     std::optional<Diagnosis> density, identity;
     for (Verdict& v : verdicts) {
@@ -225,4 +225,4 @@ void diagnose(const Work& work, std::span<Verdict> verdicts) {
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

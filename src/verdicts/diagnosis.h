@@ -5,9 +5,9 @@
 #include <functional>
 #include <optional>
 
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Observed over claimed at one direction, and what that is known to, relative.
 struct Ratio {
@@ -29,21 +29,21 @@ struct Diagnosis {
 };
 
 /// The factors that people forget, double or exchange, at the work's w_o.
-std::vector<Factor> usual_factors(const Work& work);
+std::vector<Factor> usual_factors(const TrialContext& work);
 /// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows.
-std::string name_of_constant(const Work& work, double constant);
+std::string name_of_constant(const TrialContext& work, double constant);
 /// "4 (w_o.m) and a constant 0.5 = 1/2".
-std::string factor_text(const Work& work, const std::string& name, double constant);
+std::string factor_text(const TrialContext& work, const std::string& name, double constant);
 /// The first factor that explains nine of ten ratios; none where nothing differs, or nothing explains it.
-std::optional<Diagnosis> explain(const Work& work, std::span<const Ratio> ratios);
+std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio> ratios);
 /// What is drawn against pdf(w), by the warp's Jacobian, or by bins where there is none: a factor, or another frame.
-std::optional<Diagnosis> diagnose_density(const Work& work, int technique);
-std::optional<Diagnosis> diagnose_by_bins(const Work& work, int technique);
+std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique);
+std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique);
 /// c g p comes to what is drawn: a p that is right on half of the sphere and drawn nowhere else is not off by 2 there.
-bool comes_to_one(const Work& work, int technique, const Diagnosis& found);
+bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& found);
 /// What comes with the draws against what is asked: pdf, weight, f.
-std::optional<Diagnosis> diagnose_identity(const Work& work, int technique);
+std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int technique);
 /// Says of the first verdict that is wrong what explains it, or that nothing usual does; the later ones refer to it.
-void diagnose(const Work& work, std::span<Verdict> verdicts);
+void diagnose(const TrialContext& work, std::span<Verdict> verdicts);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -7,7 +7,7 @@
 #include "verdicts/diagnosis.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -19,14 +19,14 @@ struct Binned {
     double constant = 1, relative_se = 0, statistic = 0, degrees = 0, off = 0;
 };
 
-Binned weigh(const Density& d, const Batchful& b, const Factor& factor) {
+Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
     Binned out;
     out.sum.resize(d.mass.bins.size());
     out.squares = out.count = out.sum;
     const double n = static_cast<double>(b.draws.size());
     double total = 0, squares = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
-        if (is_nothing(b.draws[i], b.pdf[i])) continue;
+        if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const double g = factor.g(b.draws[i].wi);
         if (!(g > 0) || !std::isfinite(g)) continue;
         const std::size_t bin = d.bin_of(d.map.coordinates(b.draws[i].wi));
@@ -52,9 +52,9 @@ Binned weigh(const Density& d, const Batchful& b, const Factor& factor) {
 
 }  // namespace
 
-std::optional<Diagnosis> diagnose_by_bins(const Work& work, int technique) {
+std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique) {
     const Density& d = work.density(technique);
-    const Batchful& b = work.first(technique);
+    const SampleBatch& b = work.first(technique);
     if (!(d.mass.value > 0) || !std::isfinite(d.mass.value)) return {};
     const Factor one{"a constant", [](Vec3d) { return 1.0; }};
     const Binned as_is = weigh(d, b, one);
@@ -78,7 +78,7 @@ std::optional<Diagnosis> diagnose_by_bins(const Work& work, int technique) {
 
 /// c g p must come to what is drawn: a p that is right on half of the sphere and drawn nowhere else is not off by 2
 /// there.
-bool comes_to_one(const Work& work, int technique, const Diagnosis& found) {
+bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& found) {
     const Density& d = work.density(technique);
     for (const Factor& factor : usual_factors(work))
         if (factor.name == found.name)
@@ -88,4 +88,4 @@ bool comes_to_one(const Work& work, int technique, const Diagnosis& found) {
     return false;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

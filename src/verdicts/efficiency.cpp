@@ -11,7 +11,7 @@
 #include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -26,7 +26,7 @@ std::string company_of(const Trial& t) {
 double Efficiency::low() const { return value() * math::exp(-2 * math::hypot(relative_se, cost_se)); }
 double Efficiency::high() const { return value() * math::exp(2 * math::hypot(relative_se, cost_se)); }
 
-Efficiency measure_efficiency(const Work& work, std::size_t trial) {
+Efficiency measure_efficiency(const TrialContext& work, std::size_t trial) {
     Efficiency e;
     e.trial = trial;
     e.whole = work.whole();
@@ -36,8 +36,8 @@ Efficiency measure_efficiency(const Work& work, std::size_t trial) {
     for (double v : x) m4 += sqr(sqr(v - s.mean)) / s.n;
     e.variance = sqr(s.sd);
     e.relative_se = e.variance > 0 ? std::sqrt(std::max(m4 / sqr(e.variance) - 1, 0.0) / s.n) : 0;
-    e.heavy =
-        !mean_is_testable(s, tail_of(x), work.trial.theory) || (!work.guides().empty() && has_unmet_tail(work, false));
+    e.heavy = !mean_is_testable(s, tail_of(x), work.trial.theory) ||
+        (!work.pilot_directions().empty() && has_unmet_tail(work, false));
     return e;
 }
 
@@ -58,7 +58,8 @@ std::optional<double> time_once(
 
 }  // namespace
 
-void measure_costs(std::span<const Trial> trials, const Rigour& rigour, std::span<Efficiency> all, const Watch& watch) {
+void measure_costs(std::span<const Trial> trials, const TestSettings& rigour, std::span<Efficiency> all,
+    const ProgressMonitor& watch) {
     constexpr std::size_t turns = 7, n = 2048;
     std::vector<Numbers> u(n);
     for (std::size_t i = 0; i < n; ++i) u[i] = drawn_numbers(seed_of(rigour.seed, 0), 0, i, 0, Numbers::most);
@@ -130,4 +131,4 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

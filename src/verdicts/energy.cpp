@@ -8,13 +8,11 @@
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
 constexpr double allowed = 1 + 1e-4;
-
-double channel_of(Vec3d v, int c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
 
 /// What one channel gives to the upper and the lower half, and what that is known to.
 struct Given {
@@ -26,14 +24,14 @@ struct Scales {
     bool known = false;
 };
 
-Scales scales_of(const Work& work, int channel) {
+Scales scales_of(const TrialContext& work, int channel) {
     if (!work.traits.eta) return {};
     const double eta2 = sqr(channel_of(*work.traits.eta, channel));
     if (work.traits.importance) return {1, true};
     return {work.trial.wo.z > 0 ? eta2 : 1 / eta2, true};
 }
 
-bool too_much(const Work& work, const Given& g, int channel, const char* tag, Verdict& v) {
+bool too_much(const TrialContext& work, const Given& g, int channel, const char* tag, Verdict& v) {
     const bool over = work.trial.wo.z > 0;
     const double back = over ? g.above : g.below, through = over ? g.below : g.above;
     if (back - g.error > allowed) {
@@ -56,7 +54,7 @@ bool too_much(const Work& work, const Given& g, int channel, const char* tag, Ve
 }
 
 /// Where the index is not known: more than there is, in both ways of counting.
-bool too_much_either_way(const Work& work, const Given& g, Verdict& v) {
+bool too_much_either_way(const TrialContext& work, const Given& g, Verdict& v) {
     if (!work.whole() || work.trial.wo.z < 0 || work.traits.eta || g.above + g.below - g.error <= allowed) return false;
     for (Vec3d b : drawn_below(work)) {
         const Integral through = from_below(work, b);
@@ -72,7 +70,7 @@ bool too_much_either_way(const Work& work, const Given& g, Verdict& v) {
     return false;
 }
 
-Given given(const Work& work, const Integral& albedo, const DeltaParts& deltas, int channel) {
+Given given(const TrialContext& work, const Integral& albedo, const DeltaParts& deltas, int channel) {
     const auto of = [&](Vec3d v) { return channel < 0 ? luminance(v) : channel_of(v, channel); };
     Given out{work.whole() ? albedo.bins[0] : albedo.value, work.whole() ? albedo.bins[1] : 0, albedo.error};
     out.above += of(deltas.energy(1));
@@ -82,7 +80,7 @@ Given given(const Work& work, const Integral& albedo, const DeltaParts& deltas, 
 
 }  // namespace
 
-bool creates_energy(const Work& work, const Integral& albedo, Verdict& v) {
+bool creates_energy(const TrialContext& work, const Integral& albedo, Verdict& v) {
     const DeltaParts deltas = delta_parts(work, work.first(0));
     const Given all = given(work, albedo, deltas, -1);
     if (work.whole()) v.evidence["albedo_above"] = all.above, v.evidence["albedo_below"] = all.below;
@@ -100,4 +98,4 @@ bool creates_energy(const Work& work, const Integral& albedo, Verdict& v) {
     return too_much_either_way(work, all, v);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -10,7 +10,7 @@
 #include "verdicts/list.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -19,10 +19,10 @@ bool is_right(const Trial& t) {
 }
 
 /// The first verdict that is wrong of those that depend on the draws at hand.
-std::optional<Verdict> accusation(Work& work) {
-    for (auto* verdict : {+[](Work& w) { return judge_normalised(w); }, +[](Work& w) { return judge_density(w); },
-             +[](Work& w) { return judge_identity(w); }, +[](Work& w) { return judge_physics(w); },
-             +[](Work& w) { return judge_mean(w); }})
+std::optional<Verdict> accusation(TrialContext& work) {
+    for (auto* verdict : {+[](TrialContext& w) { return judge_normalised(w); },
+             +[](TrialContext& w) { return judge_density(w); }, +[](TrialContext& w) { return judge_identity(w); },
+             +[](TrialContext& w) { return judge_physics(w); }, +[](TrialContext& w) { return judge_mean(w); }})
         if (Verdict v = verdict(work); v.state == State::wrong) return v;
     return {};
 }
@@ -41,17 +41,17 @@ std::string rate_text(std::uint64_t hits, std::uint64_t of) {
         of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
 }
 
-FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& given, Watch& watch) {
+FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given, ProgressMonitor& watch) {
     std::vector<Trial> trials;
     for (Trial& t : trials_of("", {}, false))
         if (is_right(t)) trials.push_back(std::move(t));
-    Rigour rigour = given;
+    TestSettings rigour = given;
     rigour.share(count_tests(trials));
-    Tally tally;
+    TestCounts tally;
     std::vector<std::atomic<int>> alarms(seeds);
     watch.begin("false alarms", static_cast<double>(trials.size() * seeds));
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
-        Work work(trials[i], rigour, tally, static_cast<std::uint32_t>(i));
+        TrialContext work(trials[i], rigour, tally, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (std::uint64_t k = 0; k < seeds; ++k) {
             watch.check();
@@ -109,4 +109,4 @@ std::string error_rates_text(const FalseAlarms& a, const std::string& law, std::
         fmt::format("\nCaught in quick mode: {}. In full mode: {}.\n", rate_text(quick, asked), rate_text(full, asked));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -4,7 +4,7 @@
 
 #include "verdicts/judge.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Right arms of the list at three w_o each, their statistical tests alone, on `seeds` seeds; bins and integrals are
 /// made once.
@@ -15,7 +15,7 @@ struct FalseAlarms {
     double alpha = 0, screen = 0;
 };
 /// How often right arms are accused, over so many seeds. Throws Interrupted.
-FalseAlarms measure_false_alarms(std::uint64_t seeds, const Rigour& rigour, Watch& watch);
+FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& rigour, ProgressMonitor& watch);
 
 /// Clopper & Pearson 1934: the 95 % interval of a rate.
 std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of);
@@ -30,4 +30,4 @@ struct Caught {
 std::string error_rates_text(const FalseAlarms& alarms, const std::string& law, std::span<const Caught> caught,
     const std::string& command, const std::string& version);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

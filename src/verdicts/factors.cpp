@@ -7,11 +7,11 @@
 #include "lobes/all.h"
 #include "verdicts/diagnosis.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
-std::optional<double> parameter(const Work& work, std::string_view name) {
+std::optional<double> parameter(const TrialContext& work, std::string_view name) {
     for (const auto& [key, value] : work.trial.parameters)
         if (key == name) return value;
     return {};
@@ -27,7 +27,7 @@ void add(std::vector<Factor>& out, const std::string& name, std::function<double
          }});
 }
 
-void add_microfacets(std::vector<Factor>& out, const Work& work) {
+void add_microfacets(std::vector<Factor>& out, const TrialContext& work) {
     const Vec3d wo = work.trial.wo, r = mirror(wo);
     const auto half = [wo](Vec3d wi) {
         const Vec3d sum = wo + wi;
@@ -44,7 +44,7 @@ void add_microfacets(std::vector<Factor>& out, const Work& work) {
         add(out, "G1(w_i)", [alpha](Vec3d wi) { return wi.z > 0 ? Ggx<double>{alpha}.G1(wi) : 0; });
 }
 
-void add_light(std::vector<Factor>& out, const Work& work) {
+void add_light(std::vector<Factor>& out, const TrialContext& work) {
     if (work.trial.light.disks.size() != 1) return;
     const TrialDisk disk = work.trial.light.disks[0];
     add(out, "cosine at the light", [disk](Vec3d wi) { return -dot(wi, disk.normal); });
@@ -56,7 +56,7 @@ void add_light(std::vector<Factor>& out, const Work& work) {
 
 }  // namespace
 
-std::vector<Factor> usual_factors(const Work& work) {
+std::vector<Factor> usual_factors(const TrialContext& work) {
     std::vector<Factor> out = {{"a constant", [](Vec3d) { return 1.0; }}};
     const auto sin = [](Vec3d w) { return std::sqrt(std::max(1 - w.z * w.z, 0.0)); };
     add(out, "cos theta_i", [](Vec3d w) { return std::fabs(w.z); });
@@ -68,7 +68,7 @@ std::vector<Factor> usual_factors(const Work& work) {
     return out;
 }
 
-std::string name_of_constant(const Work& work, double c) {
+std::string name_of_constant(const TrialContext& work, double c) {
     std::vector<std::pair<std::string, double>> known = {
         {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}};
     if (const std::optional<double> s = parameter(work, "s")) {
@@ -83,7 +83,7 @@ std::string name_of_constant(const Work& work, double c) {
         known.push_back({name, eta * eta});
     const std::size_t techniques = static_cast<std::size_t>(work.subject.techniques());
     for (std::size_t t = 0; t < techniques; ++t) {
-        const Batchful& b = work.first(static_cast<int>(t));
+        const SampleBatch& b = work.first(static_cast<int>(t));
         const double above = 1 - static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
         if (above > 0.02 && above < 0.98 && std::fabs(c * above - 1) < 0.01) return "1 / the share above the horizon";
         if (above > 0.02 && above < 0.98 && std::fabs(c / above - 1) < 0.01) return "the share above the horizon";
@@ -99,11 +99,11 @@ std::string name_of_constant(const Work& work, double c) {
     return "";
 }
 
-std::string factor_text(const Work& work, const std::string& name, double constant) {
+std::string factor_text(const TrialContext& work, const std::string& name, double constant) {
     const std::string known = name_of_constant(work, constant);
     const std::string number = fmt::format("{:.5g}", constant) + (known.empty() ? "" : " = " + known);
     if (name == "a constant") return "a constant " + number;
     return std::fabs(constant - 1) < 2e-3 ? name : fmt::format("{} and a constant {}", name, number);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -16,7 +16,7 @@ public:
     static void Print(const S&, std::ostream* out) { *out << "a sampler"; }
 };
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 MATCHER(IsARightSampler, negation ? "is not a right sampler" : "is a right sampler") {
     const Judgement j = judge_sampler("sampler", arg);
@@ -31,11 +31,11 @@ MATCHER(IsNotAWrongSampler, negation ? "is a wrong sampler" : "is not a wrong sa
 }
 
 /// With levels, draws and seed of one's own: EXPECT_THAT(MySampler{},
-/// crescent::IsARightSamplerBy(crescent::Rigour::thorough())).
+/// crescent::IsARightSamplerBy(crescent::TestSettings::thorough())).
 MATCHER_P(IsARightSamplerBy, rigour, negation ? "is not a right sampler" : "is a right sampler") {
     const Judgement j = judge_sampler("sampler", arg, rigour);
     if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);
     return j.state == State::right;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -10,7 +10,7 @@
 #include "verdicts/print.h"
 #include "verdicts/summary.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
     return page_html(frame, {{"cases", "Case by case", out}});
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

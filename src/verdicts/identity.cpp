@@ -13,7 +13,7 @@
 #include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -24,8 +24,8 @@ std::array<Vec3d, 6> nudges(Vec3d w, double by) {
         {w.x, w.y, w.z + by}, {w.x, w.y, w.z - by}}};
 }
 
-std::vector<Pair> nudged(Vec3d wo, Vec3d wi, double grain) {
-    const double by = 4 * std::max(grain, 0x1p-50);
+std::vector<Pair> nudged(Vec3d wo, Vec3d wi, double direction_resolution) {
+    const double by = 4 * std::max(direction_resolution, 0x1p-50);
     std::vector<Pair> at;
     for (Vec3d v : nudges(wi, by)) at.push_back({wo, v});
     for (Vec3d v : nudges(wo, by)) at.push_back({v, wi});
@@ -66,9 +66,9 @@ bool close(double a, double b, double extra = 0) {
     return std::fabs(a - b) <= tolerance * std::max(std::fabs(a), std::fabs(b)) + extra;
 }
 
-Mismatch pdf_twice(const Work& work, int t) {
+Mismatch pdf_twice(const TrialContext& work, int t) {
     Mismatch m;
-    const Batchful& b = work.first(t);
+    const SampleBatch& b = work.first(t);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || !work.counts(d.wi)) continue;  // elsewhere a pdf weighs nothing
@@ -80,10 +80,8 @@ Mismatch pdf_twice(const Work& work, int t) {
     return m;
 }
 
-double channel_of(Vec3d v, int c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
-
 /// The weight of one channel beside f cos / p of it.
-Mismatch channel_twice(const Work& work, const Batchful& b, int c) {
+Mismatch channel_twice(const TrialContext& work, const SampleBatch& b, int c) {
     Mismatch m;
     work.f_of_drawn(b);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
@@ -95,7 +93,8 @@ Mismatch channel_twice(const Work& work, const Batchful& b, int c) {
         if (close(said, asked)) continue;
         if (m.count < 4096 &&
             close(said, asked,
-                g * f_conditioning(work, work.trial.wo, d.wi, f, c) + 4 * work.grain() * std::fabs(asked) / cos))
+                g * f_conditioning(work, work.trial.wo, d.wi, f, c) +
+                    4 * work.direction_resolution() * std::fabs(asked) / cos))
             continue;
         m.add(said, asked, d.wi);
     }
@@ -103,7 +102,7 @@ Mismatch channel_twice(const Work& work, const Batchful& b, int c) {
 }
 
 /// The sampler's own weight beside f cos / p, and f beside what it ought to be.
-Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
+Mismatch weight_twice(const TrialContext& work, const SampleBatch& b, bool truth) {
     Mismatch m;
     std::vector<Vec3d> wi;
     std::vector<const Draw*> draws;
@@ -123,14 +122,15 @@ Mismatch weight_twice(const Work& work, const Batchful& b, bool truth) {
         const double said = truth ? f[i] : draws[i]->weight.value_or(f[i] * g), asked = truth ? ought[i] : f[i] * g;
         if (close(said, asked)) continue;
         const double loose = f_conditioning(work, work.trial.wo, wi[i], f[i]);
-        if (m.count < 4096 && close(said, asked, truth ? loose : g * loose + 4 * work.grain() * std::fabs(asked) / cos))
+        if (m.count < 4096 &&
+            close(said, asked, truth ? loose : g * loose + 4 * work.direction_resolution() * std::fabs(asked) / cos))
             continue;
         m.add(said, asked, wi[i]);
     }
     return m;
 }
 
-Mismatch mis_sum(const Work& work, const Batchful& b) {
+Mismatch mis_sum(const TrialContext& work, const SampleBatch& b) {
     Mismatch m;
     std::vector<Pair> at;
     for (const Draw& d : b.draws)
@@ -147,26 +147,26 @@ Mismatch mis_sum(const Work& work, const Batchful& b) {
     return m;
 }
 
-Verdict wrong(const Work& work, Verdict v, const Mismatch& m, std::string_view a, std::string_view b) {
+Verdict wrong(const TrialContext& work, Verdict v, const Mismatch& m, std::string_view a, std::string_view b) {
     v.state = State::wrong;
     v.say = m.told(a, b) + ".";
     v.evidence["mismatches"] = m.count;
     v.evidence["largest_relative_difference"] = m.worst;
-    v.evidence["direction_grain"] = work.grain();
+    v.evidence["direction_grain"] = work.direction_resolution();
     return v;
 }
 
 }  // namespace
 
-double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p) {
-    const std::vector<Pair> at = nudged(work.trial.wo, wi, work.grain());
+double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, double p) {
+    const std::vector<Pair> at = nudged(work.trial.wo, wi, work.direction_resolution());
     std::vector<double> values(at.size());
     work.subject.pdf(technique, at, values);
     return 2 * largest_change(values, p);
 }
 
-double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f, int channel) {
-    const std::vector<Pair> at = nudged(wo, wi, std::max(work.grain(), 0x1p-24));
+double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, int channel) {
+    const std::vector<Pair> at = nudged(wo, wi, std::max(work.direction_resolution(), 0x1p-24));
     std::vector<double> values(at.size());
     if (work.traits.channels == 3) {
         std::vector<Vec3d> by_channel(at.size());
@@ -178,12 +178,12 @@ double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f, int channe
     return 2 * largest_change(values, f);
 }
 
-Verdict judge_identity(const Work& work) {
+Verdict judge_identity(const TrialContext& work) {
     Verdict v = work.verdict("identity", State::right, "");
     double one_to_one = 1;
     int choosers = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
-        const Batchful& b = work.first(t);
+        const SampleBatch& b = work.first(t);
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         if (const Repeated r = ask_again(work, t); r.other > 0) {
             v.state = State::wrong;
@@ -276,4 +276,4 @@ Verdict judge_identity(const Work& work) {
     return v;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

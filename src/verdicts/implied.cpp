@@ -7,13 +7,13 @@
 #include "math/functions.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
 /// Rows "wix, wiy, wiz, pdf" by the Jacobian; none where it is not at hand, or where several u lead to one direction:
 /// then the mean of |J| over u is more than the solid angle of the bins that draws fall into.
-nlohmann::ordered_json by_jacobian(const Work& work, double reached) {
+nlohmann::ordered_json by_jacobian(const TrialContext& work, double reached) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     if (work.traits.numbers != 2 || work.traits.own_random) return rows;
     const WarpFinding warp = study_warp(work, 0);
@@ -29,12 +29,12 @@ nlohmann::ordered_json by_jacobian(const Work& work, double reached) {
 
 }  // namespace
 
-Verdict implied_density(Work& work, Verdict v) {
+Verdict implied_density(TrialContext& work, Verdict v) {
     const Density& d = work.density(0);
-    const Batchful& b = work.first(0);
+    const SampleBatch& b = work.first(0);
     std::vector<double> seen(d.mass.bins.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i)
-        if (!is_nothing(b.draws[i], b.pdf[i])) ++seen[d.bin_of(d.map.coordinates(b.draws[i].wi))];
+        if (!is_null_sample(b.draws[i], b.pdf[i])) ++seen[d.bin_of(d.map.coordinates(b.draws[i].wi))];
     const double n = static_cast<double>(b.draws.size());
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     double highest = 0, reached = 0;
@@ -67,4 +67,4 @@ Verdict implied_density(Work& work, Verdict v) {
     return v;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

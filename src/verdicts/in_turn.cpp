@@ -8,7 +8,7 @@
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -19,26 +19,26 @@ std::vector<std::size_t> order_of(std::span<const Trial> trials) {
     std::vector<std::size_t> order(trials.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto rank = [&](std::size_t i) {
-        return std::tuple(trials[i].yardstick, std::fabs(trials[i].theta_deg - 45), i);
+        return std::tuple(trials[i].baseline, std::fabs(trials[i].theta_deg - 45), i);
     };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
     const auto grazing = std::find_if(
-        order.begin(), order.end(), [&](std::size_t i) { return trials[i].theta_deg == 85 && !trials[i].yardstick; });
+        order.begin(), order.end(), [&](std::size_t i) { return trials[i].theta_deg == 85 && !trials[i].baseline; });
     if (grazing != order.end() && grazing > order.begin()) std::rotate(order.begin() + 1, grazing, grazing + 1);
     return order;
 }
 
 /// `valid` from a few draws.
-Outcome look(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally) {
+Outcome look(const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally) {
     Outcome out;
     try {
-        const Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        const TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(index));
         out.verdicts.push_back(judge_valid(work));
     } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
 }
 
-Cut left_out(const Trial& trial, const Rigour& rigour) {
+Cut left_out(const Trial& trial, const TestSettings& rigour) {
     const double seconds = trial.subject->spending().allowed;
     const std::string say = fmt::format(
         "Not looked at: {:g} s are too short for this program to be asked everything at every w_o. {} --accept-few "
@@ -57,21 +57,22 @@ bool affords(const Spending& now, std::uint64_t dearest) {
 
 }  // namespace
 
-std::vector<Outcome> judge_in_turn(std::span<const Trial> trials, const Rigour& rigour, Tally& tally, Watch& watch) {
-    Rigour quick_look = rigour;
+std::vector<Outcome> judge_in_turn(
+    std::span<const Trial> trials, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
+    TestSettings quick_look = rigour;
     quick_look.draws = std::min(rigour.draws, few_draws);
     quick_look.pictures = false;
     std::vector<Outcome> outcomes(trials.size()), looks(trials.size());
     const std::vector<std::size_t> order = order_of(trials);
     for (std::size_t i : order) {
         watch.check();
-        if (!trials[i].yardstick) looks[i] = look(trials[i], i, quick_look, tally);
+        if (!trials[i].baseline) looks[i] = look(trials[i], i, quick_look, tally);
     }
     std::uint64_t dearest = 0;
     for (std::size_t i : order) {
         watch.check();
         const Spending before = trials[i].subject->spending();
-        if (looks[i].cut || !affords(before, trials[i].yardstick ? 0 : dearest)) {
+        if (looks[i].cut || !affords(before, trials[i].baseline ? 0 : dearest)) {
             outcomes[i] = std::move(looks[i]);
             const bool slow = !outcomes[i].cut || outcomes[i].cut->state == State::inconclusive;
             if (slow) outcomes[i].cut = left_out(trials[i], rigour);
@@ -89,10 +90,10 @@ std::vector<Outcome> judge_in_turn(std::span<const Trial> trials, const Rigour& 
         watch.advance(1);
     }
     std::size_t whole = 0;
-    for (std::size_t i : order) whole += !trials[i].yardstick && !outcomes[i].cut;
+    for (std::size_t i : order) whole += !trials[i].baseline && !outcomes[i].cut;
     for (Outcome& o : outcomes)  // few may be accepted, none may not
         if (whole == 0 && o.cut && o.cut->state == State::skipped) o.cut->state = State::inconclusive;
     return outcomes;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

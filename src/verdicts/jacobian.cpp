@@ -10,7 +10,7 @@
 #include "simd/math.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -41,7 +41,7 @@ struct Derivative {
 
 double area(Vec3d a, Vec3d b) { return length(cross(a, b)); }
 
-Derivative derivative(std::span<const Draw> w, double grain) {
+Derivative derivative(std::span<const Draw> w, double direction_resolution) {
     Derivative out;
     for (const Draw& d : w)
         if (!(d.pdf > 0)) return out;
@@ -53,7 +53,7 @@ Derivative derivative(std::span<const Draw> w, double grain) {
     if (!(j2 > 0)) return out;
     out.j = (4 * j2 - j1) / 3;  // Richardson
     const double lx = length(x2), ly = length(y2);
-    const double noise = grain * (1 / lx + 1 / ly) * (lx * ly / j2) / k;
+    const double noise = direction_resolution * (1 / lx + 1 / ly) * (lx * ly / j2) / k;
     const auto sided = [&](int px, int py, double s) {
         return area((w[px].wi - c) * (1 / s), (w[py].wi - c) * (1 / s));
     };
@@ -71,7 +71,7 @@ struct Quadrants {
     double largest = 0, noise = 1;
 };
 
-Quadrants quadrants(std::span<const Draw> w, double grain, double h) {
+Quadrants quadrants(std::span<const Draw> w, double direction_resolution, double h) {
     Quadrants out;
     for (const Draw& d : w)
         if (!(d.pdf > 0)) return out;
@@ -82,7 +82,7 @@ Quadrants quadrants(std::span<const Draw> w, double grain, double h) {
             const double j = area(x, y);
             if (j <= out.largest) continue;
             out.largest = j;
-            out.noise = 8 * grain / h * (1 / length(x) + 1 / length(y)) * (length(x) * length(y) / j);
+            out.noise = 8 * direction_resolution / h * (1 / length(x) + 1 / length(y)) * (length(x) * length(y) / j);
         }
     return out;
 }
@@ -95,7 +95,7 @@ struct Suspect {
 
 /// Looks at every suspect again with steps down to 2^-18, as far as rounding allows; one that reaches 1 in any quadrant
 /// is let go.
-void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects) {
+void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
     for (double h = step; h >= 0x1p-18; h /= 4) {
         std::vector<Numbers> u;
         for (const Suspect& s : suspects)
@@ -104,7 +104,7 @@ void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects
         work.subject.sample(technique, work.trial.wo, u, w);
         for (std::size_t i = 0; i < suspects.size(); ++i) {
             Suspect& s = suspects[i];
-            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), work.grain(), h);
+            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), work.direction_resolution(), h);
             const double lacking = 1 - s.p_j;
             if (h < step && 2 * q.noise > 0.25 * lacking) continue;  // lost in rounding: the wider steps decide
             if (s.p * q.largest > 1 - 0.3 * lacking) s.stands = false;
@@ -113,7 +113,7 @@ void look_closer(const Work& work, int technique, std::vector<Suspect>& suspects
 }
 
 /// u well inside the square, with their stencils.
-std::vector<Numbers> stencils_of(const Work& work, const Batchful& b, std::size_t wanted) {
+std::vector<Numbers> stencils_of(const TrialContext& work, const SampleBatch& b, std::size_t wanted) {
     std::vector<Numbers> u;
     for (std::size_t i = 0; i < b.u.size() && u.size() < wanted * stencil; ++i) {
         const Numbers& c = b.u[i];
@@ -124,10 +124,10 @@ std::vector<Numbers> stencils_of(const Work& work, const Batchful& b, std::size_
     return u;
 }
 
-void count_steps(const Work& work, const Derivative& d, std::span<const Draw> w, WarpFinding& out) {
+void count_steps(const TrialContext& work, const Derivative& d, std::span<const Draw> w, WarpFinding& out) {
     for (int axis = 0; axis < 2; ++axis) {
         const double due = d.along[axis] * tiny_step;
-        if (due < 24 * work.grain()) continue;
+        if (due < 24 * work.direction_resolution()) continue;
         ++out.steps_tried;
         if (length(w[9 + static_cast<std::size_t>(axis)].wi - w[0].wi) < 0.2 * due) ++out.stuck;
     }
@@ -135,7 +135,7 @@ void count_steps(const Work& work, const Derivative& d, std::span<const Draw> w,
 
 }  // namespace
 
-WarpFinding study_warp(const Work& work, int technique) {
+WarpFinding study_warp(const TrialContext& work, int technique) {
     WarpFinding out;
     if (!work.subject.draws_at_will() || work.traits.own_random) return out;
     const bool several = work.traits.numbers > 2;
@@ -145,7 +145,7 @@ WarpFinding study_warp(const Work& work, int technique) {
     std::vector<Derivative> derivatives;
     std::vector<Numbers> centres;
     for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
-        derivatives.push_back(derivative(std::span(w).subspan(i, stencil), work.grain()));
+        derivatives.push_back(derivative(std::span(w).subspan(i, stencil), work.direction_resolution()));
         if (derivatives.back().usable) centres.push_back(u[i]);
     }
     const Branches branches = several ? follow_branches(work, technique, centres) : Branches{};
@@ -177,4 +177,4 @@ WarpFinding study_warp(const Work& work, int technique) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -9,7 +9,7 @@
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -49,13 +49,13 @@ void expect(const Trial& trial, Verdict& v) {
 }
 
 /// Another arm on a program's own BRDF: each draw costs a question, and a variance to 3 % ranks well enough.
-Rigour for_yardstick(const Trial& trial, Rigour rigour) {
+TestSettings for_yardstick(const Trial& trial, TestSettings rigour) {
     if (trial.subject->serial()) rigour.draws = std::min<std::uint64_t>(rigour.draws, 4096);
     return rigour;
 }
 
 /// f goes on under the surface and was not followed there.
-void own_up_to_one_half(const Work& work, Verdict& v) {
+void own_up_to_one_half(const TrialContext& work, Verdict& v) {
     if (!work.below().transmits || work.whole() || v.state != State::right || (v.name != "physics" && v.name != "mean"))
         return;
     v.state = State::inconclusive;
@@ -64,7 +64,7 @@ void own_up_to_one_half(const Work& work, Verdict& v) {
 }
 
 /// One verdict with the time that it took.
-template <class Judge> void judge_next(Work& work, Outcome& out, const Watch& watch, Judge&& judge) {
+template <class Judge> void judge_next(TrialContext& work, Outcome& out, const ProgressMonitor& watch, Judge&& judge) {
     watch.check();
     const auto start = std::chrono::steady_clock::now();
     Verdict v = judge(work);
@@ -73,15 +73,15 @@ template <class Judge> void judge_next(Work& work, Outcome& out, const Watch& wa
     out.verdicts.push_back(std::move(v));
 }
 
-void judge_in_order(Work& work, std::size_t index, Outcome& out, const Watch& watch) {
+void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const ProgressMonitor& watch) {
     judge_next(work, out, watch, judge_valid);
     if (out.verdicts[0].state == State::wrong && !out.verdicts[0].evidence.contains("usable"))
         return skip_rest(work.trial, out, "The sampler is not valid here.");
     work.measure_density();
-    for (auto* verdict : {+[](Work& w) { return judge_support(w); }, +[](Work& w) { return judge_normalised(w); },
-             +[](Work& w) { return judge_density(w); }, +[](Work& w) { return judge_identity(w); },
-             +[](Work& w) { return judge_physics(w); }, +[](Work& w) { return judge_tail(w); },
-             +[](Work& w) { return judge_mean(w); }})
+    for (auto* verdict : {+[](TrialContext& w) { return judge_support(w); },
+             +[](TrialContext& w) { return judge_normalised(w); }, +[](TrialContext& w) { return judge_density(w); },
+             +[](TrialContext& w) { return judge_identity(w); }, +[](TrialContext& w) { return judge_physics(w); },
+             +[](TrialContext& w) { return judge_tail(w); }, +[](TrialContext& w) { return judge_mean(w); }})
         judge_next(work, out, watch, verdict);
     diagnose(work, out.verdicts);
     if (work.subject.has_f() && work.weighs()) out.efficiency = measure_efficiency(work, index);
@@ -103,7 +103,7 @@ void blame_yardsticks(std::span<const Trial> trials, std::span<const Outcome> ou
     std::size_t judged = 0;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const std::optional<Cut>& cut = outcomes[i].cut;
-        if (!trials[i].yardstick) judged = i;
+        if (!trials[i].baseline) judged = i;
         else if (cut && cut->state == State::error && !cut->evidence.empty())
             ranks[judged].state = State::error, ranks[judged].say = cut->first;
     }
@@ -139,15 +139,16 @@ void fill_up(const Trial& trial, Outcome& out) {
     }
 }
 
-Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally, Watch& watch) {
+Outcome judge_one(
+    const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
     Outcome out;
     try {
-        if (trial.yardstick) {
+        if (trial.baseline) {
             out.efficiency = measure_efficiency(
-                Work(trial, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
+                TrialContext(trial, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
             return out;
         }
-        Work work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(index));
         judge_in_order(work, index, out, watch);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
@@ -170,16 +171,16 @@ std::string_view word(State state) {
 std::uint64_t count_tests(std::span<const Trial> trials) {
     std::uint64_t tests = 0;
     for (const Trial& t : trials)
-        if (!t.yardstick)
+        if (!t.baseline)
             tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0) +
                 (t.subject->traits().delta ? 1 : 0);
     return tests;
 }
 
-Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch) {
-    Rigour rigour = given;
+Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& watch) {
+    TestSettings rigour = given;
     rigour.share(count_tests(trials));
-    Tally tally;
+    TestCounts tally;
     watch.begin("verdicts", static_cast<double>(trials.size()));
     const bool serial = std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); });
     std::vector<Outcome> outcomes(trials.size());
@@ -204,7 +205,7 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
     blame_yardsticks(trials, outcomes, ranks);
     for (std::size_t i = 0; i < trials.size(); ++i) {
-        if (trials[i].yardstick) continue;
+        if (trials[i].baseline) continue;
         note_left_out(trials[i], outcomes[i], out);
         if (!outcomes[i].cut) outcomes[i].verdicts.push_back(std::move(ranks[i]));
         fill_up(trials[i], outcomes[i]);
@@ -220,4 +221,4 @@ Judgement judge(std::span<const Trial> trials, const Rigour& given, Watch& watch
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// The sampler cannot be talked with any more: what happened, at which request.
 struct SubjectFault : std::runtime_error {
@@ -23,7 +23,7 @@ struct SubjectTooSlow : SubjectFault {
 };
 
 /// Throws Interrupted when the watch says stop.
-Judgement judge(std::span<const Trial> trials, const Rigour& rigour, Watch& watch);
+Judgement judge(std::span<const Trial> trials, const TestSettings& rigour, ProgressMonitor& watch);
 /// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
 std::string what_is_wrong(const Judgement& judgement);
 /// How many statistical tests the trials ask for.
@@ -41,10 +41,11 @@ struct Efficiency {
     double high() const;
 };
 /// Variance of one trial's weight and the cost of a sample.
-Efficiency measure_efficiency(const Work& work, std::size_t trial);
+Efficiency measure_efficiency(const TrialContext& work, std::size_t trial);
 /// The time of one sample of each, asked by one thread, all in turn: a slow moment of the machine falls on all alike.
-void measure_costs(std::span<const Trial> trials, const Rigour& rigour, std::span<Efficiency> all, const Watch& watch);
+void measure_costs(
+    std::span<const Trial> trials, const TestSettings& rigour, std::span<Efficiency> all, const ProgressMonitor& watch);
 /// Ranks trials that differ by the arm alone.
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

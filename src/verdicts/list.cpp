@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -41,9 +41,9 @@ Stages stages_of(const ArmInfo& arm) {
 }
 
 /// What is known of an arm on a stage at theta_R = theta.
-Theory theory_of(const ArmInfo& arm, const Stage& on, double theta_deg) {
+ExpectedBehaviour theory_of(const ArmInfo& arm, const Stage& on, double theta_deg) {
     const SurfaceSetup& f = on.surface;
-    return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : Theory{};
+    return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : ExpectedBehaviour{};
 }
 
 /// Sets what this stage has; the keys that it read are crossed out of `unread`.
@@ -180,4 +180,4 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
     return trials;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

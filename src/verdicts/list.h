@@ -4,9 +4,9 @@
 #include <map>
 
 #include "verdicts/builtin.h"
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Values given with --set: "s", "alpha", "rho_d", "rho_s".
 using Settings = std::map<std::string, double>;
@@ -43,4 +43,4 @@ Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double s_o
 Trial trial_on(
     const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 #include "simd/random.h"
 #include "simd/scalar.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -128,7 +128,7 @@ std::optional<Mesh> find_mesh(const Batch& g) {
 }
 
 std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
-    const Effort& effort, const Prepare& prepare, const Witnesses* witnesses) {
+    const Effort& effort, const Prepare& prepare, const SamplesPerBin* witnesses) {
     std::vector<double> sides;
     for (int k = 1; k < sectors; ++k) sides.push_back(static_cast<double>(k) / sectors);
     const std::vector<double> a = merged(mesh.a, rings), b = merged(mesh.b, sides);
@@ -177,4 +177,4 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

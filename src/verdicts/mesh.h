@@ -7,7 +7,7 @@
 
 #include "verdicts/cubature.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Edges of cells about n: a = 1 - cos theta ascending from 0 to 2, b = phi in turns from 0 to 1.
 struct Mesh {
@@ -24,10 +24,10 @@ std::optional<Mesh> find_mesh(const Batch& g);
 /// it.
 using Prepare = std::function<std::vector<Rect>(std::vector<Rect>)>;
 std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
-    const Effort& effort, const Prepare& prepare = {}, const Witnesses* witnesses = nullptr);
+    const Effort& effort, const Prepare& prepare = {}, const SamplesPerBin* witnesses = nullptr);
 
 /// The integral of what has too many cells to sum: points at random, spread over `cells` first and then where g varies
 /// most. Its error is three standard errors, of the whole and of each bin.
 Integral integrate_by_points(std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 #include "simd/scalar.h"
 #include "verdicts/mesh.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -87,4 +87,4 @@ Integral integrate_by_points(std::vector<Rect> cells, int bins, const Batch& g, 
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

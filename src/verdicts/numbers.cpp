@@ -7,7 +7,7 @@
 #include "math/functions.h"
 #include "simd/random.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::string told(const Numbers& u, int count, int digits) {
     return out + ")";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -4,7 +4,7 @@
 
 #include "verdicts/subject.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Sample i of a stream: pairs of numbers from pcg4d, as the estimator draws them. Blocks of dimensions are told apart
 /// by `technique`.
@@ -14,4 +14,4 @@ Numbers even_cover(std::uint64_t i, const Numbers& shift, int count);
 /// "u = (0, 0.5)".
 std::string told(const Numbers& u, int count, int digits = 9);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -2,22 +2,22 @@
 #pragma once
 
 #include "stats/tail.h"
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// The verdicts in the order in which they are given: each stands on those before it.
-Verdict judge_valid(const Work& work);
-Verdict judge_support(const Work& work);
-Verdict judge_normalised(const Work& work);
-Verdict judge_density(Work& work);
-Verdict judge_identity(const Work& work);
-Verdict judge_physics(const Work& work);
-Verdict judge_tail(Work& work);
-Verdict judge_mean(const Work& work);
+Verdict judge_valid(const TrialContext& work);
+Verdict judge_support(const TrialContext& work);
+Verdict judge_normalised(const TrialContext& work);
+Verdict judge_density(TrialContext& work);
+Verdict judge_identity(const TrialContext& work);
+Verdict judge_physics(const TrialContext& work);
+Verdict judge_tail(TrialContext& work);
+Verdict judge_mean(const TrialContext& work);
 
 /// What is wrong with the first of these draws that cannot be used, "" where all can.
-std::string first_fault(const Work& work, int technique, const Batchful& b);
+std::string first_fault(const TrialContext& work, int technique, const SampleBatch& b);
 /// Faults at corners of u, and how often a generator of 24 bits comes upon such a u.
 struct CornerFaults {
     std::string first;
@@ -25,7 +25,7 @@ struct CornerFaults {
     double chance = 0;  // of one sample
 };
 /// What comes back at the corners of u.
-CornerFaults corner_faults(const Work& work, int technique);
+CornerFaults corner_faults(const TrialContext& work, int technique);
 
 struct Spread {
     double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
@@ -36,25 +36,25 @@ Spread spread(std::span<const double> x);
 /// out.
 double johnson_t(const Spread& s, double expected);
 /// X of the screening draws; even: L = 1.
-std::vector<double> first_weights(const Work& work, bool even);
+std::vector<double> first_weights(const TrialContext& work, bool even);
 std::optional<Tail> tail_of(std::span<const double> x);
 /// k-hat surely below 1/2 and theory does not say otherwise.
-bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory);
+bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const ExpectedBehaviour& theory);
 /// Two-sided p-value of the mean, the quadrature's own error granted, and the two-stage test. Where |skew| / sqrt(n) >
 /// 0.1 the normal law is too far off: Bernstein's inequality between 0 and the largest weight, which never accuses too
 /// often.
 double mean_p(const Spread& s, const Integral& expected);
-bool mean_fails(const Work& work, double p, const Integral& expected, bool even);
+bool mean_fails(const TrialContext& work, double p, const Integral& expected, bool even);
 
 /// The mean is short, and a tail that no draw met explains it: such a mean is not accused (unmet.cpp).
-bool has_unmet_tail(const Work& work, bool even);
-Unmet look_for_unmet(const Work& work, std::span<const double> x, bool even);
+bool has_unmet_tail(const TrialContext& work, bool even);
+Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool even);
 /// "heavy tail that no draw met", with its mass and how many draws would meet it; sets `settle` too.
 void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::size_t draws);
 
 /// How far the sampler's p may move when wo and wi move by their own rounding: the largest change over twelve nudges.
-double pdf_conditioning(const Work& work, int technique, Vec3d wi, double p);
-double f_conditioning(const Work& work, Vec3d wo, Vec3d wi, double f, int channel = 0);
+double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, double p);
+double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, int channel = 0);
 
 /// See repeats.cpp.
 /// The same u in the opposite order: answers that differ come from something else than wo and u.
@@ -64,21 +64,21 @@ struct Repeated {
     Vec3d first{}, again{};
 };
 
-Repeated ask_again(const Work& work, int technique);
-std::size_t repeated_directions(const Work& work, const Batchful& b);
-std::size_t uneven_deltas(const Work& work, const Batchful& b);
+Repeated ask_again(const TrialContext& work, int technique);
+std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b);
+std::size_t uneven_deltas(const TrialContext& work, const SampleBatch& b);
 
 /// What the draws of a sampler without pdf(w) imply of its density, as a map and a table; see implied.cpp.
-Verdict implied_density(Work& work, Verdict v);
+Verdict implied_density(TrialContext& work, Verdict v);
 
 /// More than there is, granted what eta^2 may do to what comes through; says so. See energy.cpp.
-bool creates_energy(const Work& work, const Integral& albedo, Verdict& v);
+bool creates_energy(const TrialContext& work, const Integral& albedo, Verdict& v);
 
 /// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See
 /// transmission.cpp.
-Integral from_below(const Work& work, Vec3d b);
+Integral from_below(const TrialContext& work, Vec3d b);
 /// Up to three directions under the surface that the sampler draws, the one of the highest pdf first.
-std::vector<Vec3d> drawn_below(const Work& work);
+std::vector<Vec3d> drawn_below(const TrialContext& work);
 
 /// A point at which |Jacobian| of the warp is known: 1 / |J| is the density that is drawn there, where one u alone
 /// reaches it.
@@ -107,7 +107,7 @@ struct Branches {
     int choosers = 0;
 };
 /// Whether the third number and on choose between continuous branches.
-Branches follow_branches(const Work& work, int technique, std::span<const Numbers> at);
-WarpFinding study_warp(const Work& work, int technique);
+Branches follow_branches(const TrialContext& work, int technique, std::span<const Numbers> at);
+WarpFinding study_warp(const TrialContext& work, int technique);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -5,7 +5,7 @@
 
 #include "verdicts/judge.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Why a trial ended before its last verdict.
 struct Cut {
@@ -23,13 +23,15 @@ struct Outcome {
 };
 
 /// All verdicts of one trial but efficiency, which needs the other trials.
-Outcome judge_one(const Trial& trial, std::size_t index, const Rigour& rigour, Tally& tally, Watch& watch);
+Outcome judge_one(
+    const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch);
 /// Trials of a program, one after the other: first `valid` at every w_o from a few draws, then all verdicts, the middle
 /// of the hemisphere and the most grazing w_o first, as far as the program's time goes.
-std::vector<Outcome> judge_in_turn(std::span<const Trial> trials, const Rigour& rigour, Tally& tally, Watch& watch);
+std::vector<Outcome> judge_in_turn(
+    std::span<const Trial> trials, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch);
 /// What a sampler that can no more be asked leaves: an error, or too little time.
 Cut cut_by(const SubjectFault& fault);
 /// Adds the verdicts that are missing, as `cut` has them.
 void fill_up(const Trial& trial, Outcome& out);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -4,7 +4,7 @@
 #include "verdicts/against.h"
 #include "verdicts/list.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -60,7 +60,7 @@ std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>&
             {std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Uniform>>(subject, wo)),
                 std::shared_ptr<const JudgedSampler>(std::make_shared<Borrowed<Cosine>>(subject, wo))}) {
             trials.push_back(trial_of_subject(peer, theta, azimuth));
-            trials.back().yardstick = true;
+            trials.back().baseline = true;
         }
     }
     return trials;
@@ -119,4 +119,4 @@ std::vector<Trial> sampler_against(const std::shared_ptr<const JudgedSampler>& s
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

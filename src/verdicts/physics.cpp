@@ -7,7 +7,7 @@
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -29,7 +29,7 @@ Vec3d at_large(std::uint64_t i, std::uint32_t which, bool both) {
 
 /// Pairs at large, and pairs of w_o with what the sampler draws, where a lobe is high. Those across the surface only
 /// where w_o below it is answered for.
-std::vector<Pair> pairs_of(const Work& work) {
+std::vector<Pair> pairs_of(const TrialContext& work) {
     const bool both = work.traits.wo == Traits::Asked::both;
     std::vector<Pair> pairs;
     for (std::uint64_t i = 0; i < 256; ++i) pairs.push_back({at_large(i, 0, both), at_large(i, 1, both)});
@@ -44,14 +44,14 @@ std::vector<Pair> pairs_of(const Work& work) {
 
 /// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 = (n_below / n_above)^2 from above to
 /// below, for radiance, and one over that for importance (Veach 1997, (5.14)).
-double due_ratio(const Work& work, const Pair& p, int channel) {
+double due_ratio(const TrialContext& work, const Pair& p, int channel) {
     if (p.wo.z * p.wi.z > 0) return 1;
     const Vec3d eta = *work.traits.eta;
     const double eta2 = sqr(channel == 0 ? eta.x : channel == 1 ? eta.y : eta.z);
     return (p.wo.z > 0) == !work.traits.importance ? eta2 : 1 / eta2;
 }
 
-std::vector<Vec3d> f_of(const Work& work, const std::vector<Pair>& pairs) {
+std::vector<Vec3d> f_of(const TrialContext& work, const std::vector<Pair>& pairs) {
     std::vector<Vec3d> out(pairs.size());
     if (work.traits.channels == 3) {
         work.subject.f_channels(pairs, out);
@@ -63,7 +63,7 @@ std::vector<Vec3d> f_of(const Work& work, const std::vector<Pair>& pairs) {
     return out;
 }
 
-Reciprocity reciprocity(const Work& work) {
+Reciprocity reciprocity(const TrialContext& work) {
     Reciprocity out;
     if (!work.traits.reciprocal) return out;
     std::vector<Pair> pairs = pairs_of(work), swapped;
@@ -103,13 +103,13 @@ Reciprocity reciprocity(const Work& work) {
 
 }  // namespace
 
-Verdict judge_physics(const Work& work) {
+Verdict judge_physics(const TrialContext& work) {
     if (!work.subject.has_f()) return work.verdict("physics", State::skipped, "There is no BRDF.");
     Verdict v = work.verdict("physics", State::right, "");
     const Reciprocity r = reciprocity(work);
     v.evidence["reciprocity_pairs"] = r.tried;
     v.evidence["reciprocity_broken"] = r.broken;
-    const Integral albedo = work.incoming(Work::Where::everywhere, true);
+    const Integral albedo = work.incoming(TrialContext::Where::everywhere, true);
     v.evidence["albedo"] = albedo.value;
     v.evidence["albedo_error"] = albedo.error;
     if (r.broken > 0) {
@@ -173,4 +173,4 @@ Verdict judge_physics(const Work& work) {
     return v;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -7,7 +7,7 @@
 #include "math/functions.h"
 #include "simd/scalar.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::string rose_figure(const WeightPicture& w) {
         "largest value</figcaption></figure>";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

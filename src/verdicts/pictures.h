@@ -6,7 +6,7 @@
 
 #include "verdicts/verdict.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// The bin that is off by the most standard deviations.
 std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected);
@@ -15,4 +15,4 @@ std::size_t worst_bin(const std::vector<double>& observed, const std::vector<dou
 std::string map_figures(const BinMap& map);
 std::string rose_figure(const WeightPicture& weights);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -9,7 +9,7 @@
 #include "verdicts/pipe_talk.h"
 #include "verdicts/pipe_text.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -205,4 +205,4 @@ std::shared_ptr<const JudgedSampler> start_pipe(const std::string& command, cons
     return std::make_shared<PipeSubject>(command, limits);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

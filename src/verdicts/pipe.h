@@ -8,7 +8,7 @@
 
 #include "verdicts/judge.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 struct PipeLimits {
     double hello_seconds = 10;   // until the first answer
@@ -21,4 +21,4 @@ struct PipeLimits {
 /// Starts `command` with /bin/sh -c. Throws SubjectFault that says at which request, what came and what was expected.
 std::shared_ptr<const JudgedSampler> start_pipe(const std::string& command, const PipeLimits& limits = {});
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "verdicts/pipe_text.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::string read_greeting(std::string_view answer, Greeting& out) {
     return "";
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -6,7 +6,7 @@
 
 #include "verdicts/subject.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 struct Greeting {
     int protocol = 1;
@@ -20,4 +20,4 @@ struct Greeting {
 /// "" where the answer could be read; else what was got in place of it.
 std::string read_greeting(std::string_view answer, Greeting& out);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "verdicts/pipe_text.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 static_assert(std::endian::native == std::endian::little, "blocks are little-endian, and are copied as they are");
 
@@ -188,4 +188,4 @@ void Talk::take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& d
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -12,7 +12,7 @@
 #include "verdicts/child.h"
 #include "verdicts/pipe.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 class Talk {
 public:
@@ -82,4 +82,4 @@ private:
     std::string end_of_output() const;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

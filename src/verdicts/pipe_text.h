@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// What came, for a message: cut short, with what does not print shown as \xNN.
 inline std::string shown(std::string_view s) {
@@ -67,4 +67,4 @@ inline void append(std::string& to, double v) {
     to.append(buffer, end);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -16,7 +16,7 @@
 #include "verdicts/judge.h"
 #include "verdicts/sampler_plugin.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -133,4 +133,4 @@ std::uint64_t plugin_mark(const std::string& path) {
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 #include "arms/outside.h"
 #include "verdicts/subject.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Drawn for any surface point as an arm; judged on one surface.
 class PluginSampler : public OutsideSampler, public JudgedSampler {
@@ -24,4 +24,4 @@ std::shared_ptr<const PluginSampler> open_plugin(
 /// XXH3 of the file: films of another library are other films.
 std::uint64_t plugin_mark(const std::string& path);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

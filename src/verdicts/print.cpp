@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "verdicts/summary.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::string verdict_junit(const Judgement& judgement) {
     return junit_text(suite);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -6,7 +6,7 @@
 
 #include "verdicts/verdict.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Where a judgement comes from; equal calls have equal ones.
 struct JudgementSource {
@@ -28,4 +28,4 @@ void can_write(const std::string& path);
 /// Writes beside the place and renames; throws OutputError.
 void write_whole(const std::string& path, const std::string& text);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

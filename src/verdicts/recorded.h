@@ -5,7 +5,7 @@
 
 #include "verdicts/subject.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 class RecordedSubject : public JudgedSampler {
 public:
@@ -26,4 +26,4 @@ protected:
     std::vector<Draw> draws_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -7,11 +7,11 @@
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Draws with the very direction of another, where that is no chance: rounding brings together as many pairs as N^2 / 2
 /// times the mean of p times the solid angle of a rounding. 0: none worth telling.
-std::size_t repeated_directions(const Work& work, const Batchful& b) {
+std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b) {
     std::vector<std::array<double, 3>> all;
     double p = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
@@ -21,24 +21,25 @@ std::size_t repeated_directions(const Work& work, const Batchful& b) {
         p += b.pdf[i];
     }
     if (all.empty() || !work.traits.has_pdf || !work.subject.draws_at_will()) return 0;
-    const double n = static_cast<double>(all.size()), chance = 0.5 * n * p * 16 * work.grain() * work.grain();
+    const double n = static_cast<double>(all.size()),
+                 chance = 0.5 * n * p * 16 * work.direction_resolution() * work.direction_resolution();
     std::sort(all.begin(), all.end());
     std::size_t out = 0;
     for (std::size_t i = 1; i < all.size(); ++i) out += all[i] == all[i - 1];
     return static_cast<double>(out) > std::max(64.0, 20 * chance + 1e-3 * n) ? out : 0;
 }
 
-std::size_t uneven_deltas(const Work& work, const Batchful& b) {
+std::size_t uneven_deltas(const TrialContext& work, const SampleBatch& b) {
     std::size_t out = 0;
     for (const DeltaPart& p : delta_parts(work, b).parts) out += p.otherwise;
     return out;
 }
 
 /// The same u in the opposite order: answers that differ come from something else than wo and u.
-Repeated ask_again(const Work& work, int technique) {
+Repeated ask_again(const TrialContext& work, int technique) {
     Repeated out;
     if (!work.subject.draws_at_will() || work.traits.own_random) return out;
-    const Batchful& b = work.first(technique);
+    const SampleBatch& b = work.first(technique);
     out.tried = std::min<std::size_t>(b.u.size(), 256);
     std::vector<Numbers> u(b.u.begin(), b.u.begin() + static_cast<std::ptrdiff_t>(out.tried));
     std::reverse(u.begin(), u.end());
@@ -58,4 +59,4 @@ Repeated ask_again(const Work& work, int technique) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

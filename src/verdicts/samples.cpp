@@ -9,7 +9,7 @@
 #include "simd/scalar.h"
 #include "verdicts/table_file.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -150,9 +150,9 @@ double SampleFile::of_cell(Vec3d w) const {
         : values_[cell_of(row_edges_, w.z) * columns_.size() + cell_of(column_edges_, turned(w))];
 }
 
-SampleFile::Spot SampleFile::spot(Vec3d w) const {
+SampleFile::GridCell SampleFile::spot(Vec3d w) const {
     const auto row = std::upper_bound(rows_.begin(), rows_.end(), w.z) - rows_.begin();
-    Spot at{};
+    GridCell at{};
     at.i0 =
         static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row - 1, 0, static_cast<std::ptrdiff_t>(rows_.size()) - 2));
     at.i1 = at.i0 + 1;
@@ -168,7 +168,7 @@ SampleFile::Spot SampleFile::spot(Vec3d w) const {
     return at;
 }
 
-double SampleFile::between(const Spot& at) const {
+double SampleFile::between(const GridCell& at) const {
     const std::size_t n = columns_.size();
     const double low = (1 - at.t) * values_[at.i0 * n + at.j0] + at.t * values_[at.i0 * n + at.j1];
     const double high = (1 - at.t) * values_[at.i1 * n + at.j0] + at.t * values_[at.i1 * n + at.j1];
@@ -184,15 +184,15 @@ void SampleFile::pdf(int, std::span<const Pair> at, std::span<double> out) const
 
 double SampleFile::doubt(Vec3d w) const {
     if (cells_ || w.z < row_edges_.front()) return 0;
-    const Spot at = spot(w);
+    const GridCell at = spot(w);
     const std::size_t n = columns_.size();
     return std::max(
         {bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
 }
 
 /// In pieces that are small beside any bin.
-std::vector<Doubt> SampleFile::doubts() const {
-    std::vector<Doubt> out;
+std::vector<TabulationError> SampleFile::doubts() const {
+    std::vector<TabulationError> out;
     if (cells_) return out;
     const std::size_t rows = 1 + 192 / rows_.size(), columns = 1 + 64 / columns_.size();
     for (std::size_t i = 0; i < rows_.size() * rows; ++i)
@@ -215,4 +215,4 @@ std::string SampleFile::place(int round, std::size_t draw) const {
     return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

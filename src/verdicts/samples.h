@@ -12,7 +12,7 @@
 
 #include "verdicts/recorded.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 class SampleFile : public RecordedSubject {
 public:
@@ -21,12 +21,12 @@ public:
     std::string name() const override { return name_; }
     bool has_drawn_f() const override { return has_drawn_f_; }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override;
-    std::vector<Doubt> doubts() const override;
+    std::vector<TabulationError> doubts() const override;
     double doubt(Vec3d w) const override;
     std::string place(int round, std::size_t draw) const override;
 
 private:
-    struct Spot {  // between rows i and i + 1, columns j and j + 1
+    struct GridCell {  // between rows i and i + 1, columns j and j + 1
         std::size_t i0, i1, j0, j1;
         double s, t;
     };
@@ -41,8 +41,8 @@ private:
     void find_bends();
     bool agrees_as_cells() const;
     double of_cell(Vec3d w) const;
-    Spot spot(Vec3d w) const;
-    double between(const Spot& at) const;
+    GridCell spot(Vec3d w) const;
+    double between(const GridCell& at) const;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -6,7 +6,7 @@
 #include "math/functions.h"
 #include "simd/scalar.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 std::optional<double> TrialDisk::distance(Vec3d wi) const {
     const double c = dot(center, normal), v = dot(wi, normal);
@@ -46,4 +46,4 @@ Vec3d tilt(double theta_deg, double azimuth_deg) {
     return {math::sin(t) * math::cos(a), math::sin(t) * math::sin(a), math::cos(t)};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -13,7 +13,7 @@
 #include "arms/info.h"
 #include "base/vec.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 using Vec2d = Vec2<double>;
 
@@ -57,7 +57,7 @@ struct Draw {
 };
 
 /// How much of p's mass about a direction is not known, where p was tabulated.
-struct Doubt {
+struct TabulationError {
     Vec3d at;
     double mass;
 };
@@ -106,7 +106,7 @@ public:
     /// f is known at the draws, though not elsewhere: their weights can be looked at, but compared with no integral.
     virtual bool has_drawn_f() const { return has_f(); }
     /// A tabulated p is known to this much, over the sphere and at one direction, 1/sr.
-    virtual std::vector<Doubt> doubts() const { return {}; }
+    virtual std::vector<TabulationError> doubts() const { return {}; }
     virtual double doubt(Vec3d /*w*/) const { return 0; }
     /// Where a recorded draw stands, "samples.csv:17"; "" where it was asked for.
     virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
@@ -128,6 +128,8 @@ struct TrialDisk {
 };
 
 /// Rec. 709, linear.
+/// Channel 0, 1 or 2 of a colour.
+inline double channel_of(Vec3d c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
 inline double luminance(Vec3d c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 /// What shines on the surface: an even fill of the upper hemisphere, and disks that hide it and one another.
@@ -149,8 +151,8 @@ struct Trial {
     double theta_deg = 0, azimuth_deg = 0;
     Parameters parameters;
     TrialLight light;
-    Theory theory;
-    bool yardstick = false;  // only its efficiency counts, for others to be ranked against
+    ExpectedBehaviour theory;
+    bool baseline = false;  // only its efficiency counts, for others to be ranked against
     std::shared_ptr<const JudgedSampler> subject;
     std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"
 };
@@ -158,4 +160,4 @@ struct Trial {
 /// The direction theta from n, phi from x, in degrees.
 Vec3d tilt(double theta_deg, double azimuth_deg = 0);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

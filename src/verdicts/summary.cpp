@@ -8,7 +8,7 @@
 
 #include "verdicts/judge.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::string summary_of(const Judgement& j) {
 
 std::string what_is_wrong(const Judgement& judgement) { return summary_of(judgement); }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

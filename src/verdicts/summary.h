@@ -8,7 +8,7 @@
 
 #include "verdicts/verdict.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// One verdict of one arm in one state other than right or skipped, over all its cases.
 struct Finding {
@@ -36,4 +36,4 @@ std::string first_sentence(const std::string& text);
 /// All findings but the expected ones, a line each, then what was left out, then the details.
 std::string summary_of(const Judgement& judgement);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

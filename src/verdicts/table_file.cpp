@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "verdicts/pipe_text.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -185,4 +185,4 @@ NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::s
     return t;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

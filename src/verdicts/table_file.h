@@ -8,12 +8,12 @@
 
 #include "base/errors.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Collects the mistakes of one file; throws InputError at the tenth, or when asked to settle.
 struct Complaints {
     std::string path;
-    std::vector<Complaint> all;
+    std::vector<Diagnostic> all;
     void add(unsigned line, unsigned column, const std::string& say) {
         all.push_back({{path, line, column}, say});
         if (all.size() >= 10) throw InputError(all);
@@ -36,4 +36,4 @@ struct NumberTable {
 /// others.
 NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::string>>& layouts);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

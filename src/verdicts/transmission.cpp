@@ -11,12 +11,12 @@
 #include "math/functions.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
 /// All over the lower half, straight through, and where a smooth surface of common indices would refract to.
-std::vector<Vec3d> directions_below(const Work& work) {
+std::vector<Vec3d> directions_below(const TrialContext& work) {
     std::vector<Vec3d> out;
     for (double z : {-0.02, -0.1, -0.25, -0.4, -0.6, -0.8, -0.95, -1.0})
         for (int k = 0; k < 8; ++k) {
@@ -33,14 +33,14 @@ std::vector<Vec3d> directions_below(const Work& work) {
 
 }  // namespace
 
-void Work::look_below() {
+void TrialContext::look_below() {
     std::vector<Vec3d> drawn;
-    for (const Batchful& b : first_)
+    for (const SampleBatch& b : first_)
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
             const Draw& d = b.draws[i];
             if (!(d.wi.z < 0) || !is_finite(d.wi)) continue;
             if (d.delta > 0 && d.weight.value_or(0) > 0) below_ = {true, true, d.wi, 0};
-            if (is_nothing(d, b.pdf[i])) continue;
+            if (is_null_sample(d, b.pdf[i])) continue;
             const double told = d.f ? *d.f : d.weight.value_or(0);
             if (!subject.has_f() && told > 0) below_ = {true, true, d.wi, told};
             if (drawn.size() < 64) drawn.push_back(d.wi);
@@ -62,14 +62,14 @@ void Work::look_below() {
         below_.reached || !drawn.empty() || std::any_of(p.begin(), p.end(), [](double v) { return v > 0; });
 }
 
-Integral from_below(const Work& work, Vec3d b) {
+Integral from_below(const TrialContext& work, Vec3d b) {
     const SphereMap map(Vec3d{0, 0, 1}), about(work.trial.wo);
-    std::vector<Vec3d> guides;  // f(., b) is high about the w_o for which b was drawn
+    std::vector<Vec3d> pilot_directions;  // f(., b) is high about the w_o for which b was drawn
     for (int i = 0; i < 256; ++i) {
         const double turns = 0.618033988749895 * i;
-        guides.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
+        pilot_directions.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
     }
-    return integrate(guided(graded_cells(1), map, guides), 1,
+    return integrate(guided(graded_cells(1), map, pilot_directions), 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Pair> pairs;
             for (Vec2d v : at) pairs.push_back({map.direction(v), b});
@@ -79,13 +79,13 @@ Integral from_below(const Work& work, Vec3d b) {
         {5e-6, work.affordable(work.rigour.evaluations / 2)});
 }
 
-std::vector<Vec3d> drawn_below(const Work& work) {
-    const Batchful& b = work.first(0);
+std::vector<Vec3d> drawn_below(const TrialContext& work) {
+    const SampleBatch& b = work.first(0);
     std::vector<Vec3d> out;
     double highest = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const Draw& d = b.draws[i];
-        if (!(d.wi.z < 0) || is_nothing(d, b.pdf[i])) continue;
+        if (!(d.wi.z < 0) || is_null_sample(d, b.pdf[i])) continue;
         if (out.size() < 3) out.push_back(normalize(d.wi));
         if (d.pdf > highest) highest = d.pdf, out.front() = normalize(d.wi);
     }
@@ -93,4 +93,4 @@ std::vector<Vec3d> drawn_below(const Work& work) {
     return out;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

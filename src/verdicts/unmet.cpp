@@ -15,7 +15,7 @@
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -29,7 +29,7 @@ struct Part {
     double p = 0;
 };
 
-std::vector<Part> parts_of(const Work& work, int technique, std::span<const Vec3d> wi, bool even) {
+std::vector<Part> parts_of(const TrialContext& work, int technique, std::span<const Vec3d> wi, bool even) {
     const std::vector<double> f = work.f(wi, true), p = work.pdf(technique, wi, true);
     std::vector<Pair> at;
     for (Vec3d w : wi) at.push_back({work.trial.wo, w});
@@ -46,7 +46,7 @@ std::vector<Part> parts_of(const Work& work, int technique, std::span<const Vec3
 }
 
 /// int p over the whole sphere where X > W.
-double chance_of(const Work& work, int technique, double threshold, bool even) {
+double chance_of(const TrialContext& work, int technique, double threshold, bool even) {
     const SphereMap map(Vec3d{0, 0, 1});
     const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
         std::vector<Vec3d> wi;
@@ -54,7 +54,7 @@ double chance_of(const Work& work, int technique, double threshold, bool even) {
         const std::vector<Part> parts = parts_of(work, technique, wi, even);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
     };
-    return integrate(guided(graded_cells(work.whole() ? 2 : 1), map, work.guides()), 1, g,
+    return integrate(guided(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
         {1e-7, work.affordable(work.rigour.evaluations)})
         .value;
 }
@@ -66,7 +66,7 @@ double bernstein_p(double off, double n, double variance, double range) {
 
 }  // namespace
 
-Unmet look_for_unmet(const Work& work, std::span<const double> x, bool even) {
+Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool even) {
     const Spread s = spread(x);
     const Integral expected = due_mean(work, even);
     Unmet out;
@@ -102,14 +102,14 @@ Unmet look_for_unmet(const Work& work, std::span<const double> x, bool even) {
     return out;
 }
 
-const Unmet& Work::unmet(bool even) const {
+const Unmet& TrialContext::unmet(bool even) const {
     even = even && (!trial.light.disks.empty() || trial.light.fill != 1);
     auto& kept = unmet_[even ? 1 : 0];
     if (!kept) kept = look_for_unmet(*this, first_weights(*this, even), even);
     return *kept;
 }
 
-bool has_unmet_tail(const Work& work, bool even) {
+bool has_unmet_tail(const TrialContext& work, bool even) {
     if (!work.traits.has_pdf) return false;  // which weights a direction would have is not known
     const Spread s = spread(first_weights(work, even));
     return mean_p(s, due_mean(work, even)) < work.rigour.screen && work.unmet(even).heavy;
@@ -132,4 +132,4 @@ void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::s
     v.settle[0] = unmet.chance > 0 ? 'A' : 'M';
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -24,9 +24,7 @@
 #include "verdicts/list.h"
 #include "verdicts/user_call.h"
 
-namespace crescent {
-
-namespace user {
+namespace crescent::user {
 
 template <class S> consteval bool takes_directions() {
     if constexpr (!HasPdf<S>) return true;
@@ -118,7 +116,9 @@ template <class S> Traits traits_of(const S& s) {
     return t;
 }
 
-}  // namespace user
+}  // namespace crescent::user
+
+namespace crescent::inline verdicts {
 
 template <class S> class UserSubject : public JudgedSampler {
 public:
@@ -180,17 +180,17 @@ private:
     }
 };
 
-/// Judges a sampler over a grid of w_o under an even light. Rigour::thorough() looks harder, and takes minutes. Where
-/// `watch` says stop, Interrupted is thrown.
-template <class S>
-Judgement judge_sampler(std::string name, S sampler, const Rigour& rigour = Rigour::quick(), Watch* watch = nullptr) {
+/// Judges a sampler over a grid of w_o under an even light. TestSettings::thorough() looks harder, and takes minutes.
+/// Where `watch` says stop, Interrupted is thrown.
+template <class S> Judgement judge_sampler(
+    std::string name, S sampler, const TestSettings& rigour = TestSettings::quick(), ProgressMonitor* watch = nullptr) {
     if constexpr (user::must_be_judgeable<S>()) {
         const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));
-        Watch alone;
+        ProgressMonitor alone;
         return judge(trials_of_subject(subject, rigour.full, rigour.wo), rigour, watch ? *watch : alone);
     } else {
         return {};
     }
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -7,7 +7,7 @@
 #include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -33,14 +33,14 @@ std::string fault_of(const Draw& d, double pdf_there) {
 }
 
 /// "samples.csv:17, " for a draw that stands in a file.
-std::string at_place(const Work& work, const Batchful& b, std::size_t i) {
+std::string at_place(const TrialContext& work, const SampleBatch& b, std::size_t i) {
     const std::string place = work.subject.place(&b == &work.first(0) ? 0 : 1, i);
     return place.empty() ? "" : place + ", ";
 }
 
 }  // namespace
 
-std::string first_fault(const Work& work, int technique, const Batchful& b) {
+std::string first_fault(const TrialContext& work, int technique, const SampleBatch& b) {
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const std::string fault = fault_of(b.draws[i], b.pdf[i]);
         if (!fault.empty())
@@ -63,7 +63,7 @@ std::string first_fault(const Work& work, int technique, const Batchful& b) {
 namespace {
 
 /// pdf(w) and f(w) all over the sphere, near the horizon on both sides and near the normal, whether drawn or not.
-std::string fault_all_over(const Work& work, int technique) {
+std::string fault_all_over(const TrialContext& work, int technique) {
     std::vector<Vec3d> wi;
     constexpr int turns = 16;
     for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1,
@@ -84,14 +84,15 @@ std::string fault_all_over(const Work& work, int technique) {
 }
 
 /// Seen from below, a surface that is opaque there.
-bool reflects_nothing(const Work& work) {
-    return work.trial.wo.z < 0 && work.subject.has_f() && work.incoming(Work::Where::everywhere, false).value == 0;
+bool reflects_nothing(const TrialContext& work) {
+    return work.trial.wo.z < 0 && work.subject.has_f() &&
+        work.incoming(TrialContext::Where::everywhere, false).value == 0;
 }
 
 /// What is wrong at corners of u or for a few draws alone leaves the rest to be judged.
-std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
+std::optional<Verdict> judge_rare_faults(const TrialContext& work, int technique) {
     const CornerFaults at = corner_faults(work, technique);
-    const Batchful& b = work.first(technique);
+    const SampleBatch& b = work.first(technique);
     if (at.count == 0 && b.dropped.empty()) return {};
     Verdict v = work.verdict("valid", State::wrong, "");
     v.evidence["usable"] = true;
@@ -118,7 +119,7 @@ std::optional<Verdict> judge_rare_faults(const Work& work, int technique) {
 
 }  // namespace
 
-Verdict judge_valid(const Work& work) {
+Verdict judge_valid(const TrialContext& work) {
     std::uint64_t draws = 0, drawn = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
         std::string fault = first_fault(work, t, work.first(t));
@@ -143,16 +144,16 @@ Verdict judge_valid(const Work& work) {
                     "u, over {} draws and all over the sphere.",
             draws));
     v.evidence["draws"] = draws;
-    v.evidence["direction_grain"] = work.grain();
+    v.evidence["direction_grain"] = work.direction_resolution();
     return v;
 }
 
-Verdict judge_support(const Work& work) {
+Verdict judge_support(const TrialContext& work) {
     if (!work.traits.has_pdf)
         return work.verdict("support", State::skipped, "There is no pdf(w) to tell where it is 0.");
     if (!work.subject.has_f())
         return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
-    const Work::Below& below = work.below();
+    const TrialContext::Below& below = work.below();
     if (below.transmits && !below.reached) {
         Verdict v = work.verdict("support", State::inconclusive,
             fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f "
@@ -163,8 +164,8 @@ Verdict judge_support(const Work& work) {
         v.evidence["f_below"] = below.f;
         return v;
     }
-    const Integral all = work.incoming(Work::Where::everywhere, false);
-    const Integral lost = work.incoming(Work::Where::lost, false);
+    const Integral all = work.incoming(TrialContext::Where::everywhere, false);
+    const Integral lost = work.incoming(TrialContext::Where::lost, false);
     if (!(all.value > 0))
         return work.verdict("support", State::skipped, "f L cos is 0 everywhere: nothing can be lost.");
     const double fraction = lost.value / all.value;
@@ -174,7 +175,7 @@ Verdict judge_support(const Work& work) {
         ? fmt::format("p is 0 over directions that carry {:.4g} % of f L cos: no number of samples ever finds it.",
               100 * fraction)
         : "Wherever f L cos is not 0, p is not 0 either: no light is out of reach.";
-    const Theory& theory = work.trial.theory;
+    const ExpectedBehaviour& theory = work.trial.theory;
     if (wrong && theory.lost)
         say += fmt::format(" Theory: {:.4g} % of the diffuse part, (1 - cos theta_R)/2; measured: {:.4g} %.",
             100 * *theory.lost, 100 * lost.value / theory.lost_of);
@@ -189,4 +190,4 @@ Verdict judge_support(const Work& work) {
     return v;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

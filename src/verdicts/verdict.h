@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// error: the sampler could not be asked; it crashed, threw, spoke another language or fell silent.
 enum class State { right, wrong, inconclusive, skipped, error };
@@ -68,4 +68,4 @@ struct Judgement {
     bool as_expected = true;                               // of everything beside what the list expects
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

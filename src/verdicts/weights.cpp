@@ -9,11 +9,11 @@
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
-WeightPicture picture(const Work& work, const std::vector<double>& x, const std::optional<Tail>& tail) {
+WeightPicture picture(const TrialContext& work, const std::vector<double>& x, const std::optional<Tail>& tail) {
     WeightPicture out;
     out.arm = work.trial.arm;
     out.trial = work.trial.text();
@@ -51,10 +51,10 @@ WeightPicture picture(const Work& work, const std::vector<double>& x, const std:
 }
 
 /// Where a recorded file has no more to give, and where sixteen times as many can be asked for.
-std::string more_draws(const Work& work) {
+std::string more_draws(const TrialContext& work) {
     const std::size_t n = work.first(0).draws.size();
     if (!work.subject.draws_at_will()) return fmt::format("More samples in the file than these {}", n);
-    return work.rigour.full ? fmt::format("More draws than {} (Rigour::draws)", n)
+    return work.rigour.full ? fmt::format("More draws than {} (TestSettings::draws)", n)
                             : fmt::format("--full, with sixteen times as many draws as these {}", n);
 }
 
@@ -103,7 +103,7 @@ std::optional<Tail> tail_of(std::span<const double> x) {
 /// bounded, whatever a fit to the few weights that stand out may say.
 bool is_bounded(const Spread& s) { return s.n >= 1000 && s.largest <= std::min(4.0, 0.1 * std::sqrt(s.n)) * s.mean; }
 
-bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Theory& theory) {
+bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const ExpectedBehaviour& theory) {
     const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
     const bool seen = s.skew < 0 || s.skew / std::sqrt(s.n) < 0.1;  // rare large weights have been met often enough
     return !infinite && seen && (!tail || tail->k + 2 * tail->se < 0.5 || is_bounded(s));
@@ -121,15 +121,15 @@ double mean_p(const Spread& s, const Integral& expected) {
     return normal_p(std::max(z, 0.0));
 }
 
-std::vector<double> first_weights(const Work& work, bool even) {
-    std::vector<Batchful> b;
+std::vector<double> first_weights(const TrialContext& work, bool even) {
+    std::vector<SampleBatch> b;
     for (int t = 0; t < work.subject.techniques(); ++t) b.push_back(work.first(t));
     return work.weights(b, even);
 }
 
-bool mean_fails(const Work& work, double p, const Integral& expected, bool even) {
+bool mean_fails(const TrialContext& work, double p, const Integral& expected, bool even) {
     return work.fails(p, [&](int round) {
-        std::vector<Batchful> fresh;
+        std::vector<SampleBatch> fresh;
         for (int t = 0; t < work.subject.techniques(); ++t) fresh.push_back(work.draw(t, round));
         const std::vector<double> x = work.weights(fresh, even);
         const double p_fresh = mean_p(spread(x), expected);
@@ -140,7 +140,7 @@ bool mean_fails(const Work& work, double p, const Integral& expected, bool even)
 constexpr const char* no_weights =
     "There is neither a pdf nor a weight with the draws, hence nothing to weigh them by.";
 
-Verdict judge_tail(Work& work) {
+Verdict judge_tail(TrialContext& work) {
     if (!work.subject.has_drawn_f())
         return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
     if (!work.weighs()) return work.verdict("tail", State::skipped, no_weights);
@@ -148,7 +148,7 @@ Verdict judge_tail(Work& work) {
     const Spread s = spread(x);
     const std::optional<Tail> tail = tail_of(x);
     const double highest = *std::max_element(x.begin(), x.end());
-    const Theory& theory = work.trial.theory;
+    const ExpectedBehaviour& theory = work.trial.theory;
     Verdict v = work.verdict("tail", State::right, "");
     if (work.rigour.pictures) work.pictures.push_back(picture(work, x, tail));
     v.evidence["relative_sd"] = s.mean > 0 ? s.sd / s.mean : 0;
@@ -196,7 +196,7 @@ Verdict judge_tail(Work& work) {
     return v;
 }
 
-Verdict judge_mean(const Work& work) {
+Verdict judge_mean(const TrialContext& work) {
     if (!work.subject.has_f())
         return work.verdict("mean", State::skipped,
             work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with."
@@ -239,4 +239,4 @@ Verdict judge_mean(const Work& work) {
     return v;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

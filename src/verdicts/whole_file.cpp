@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "verdicts/print.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -87,4 +87,4 @@ void write_whole(const std::string& path, const std::string& text) {
     close(file);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

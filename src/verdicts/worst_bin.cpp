@@ -7,7 +7,7 @@
 #include "verdicts/ordered.h"
 #include "verdicts/pictures.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected) {
     const auto off = [&](std::size_t i) {
@@ -33,4 +33,4 @@ void tell_worst(
         {"theta_deg", theta}, {"phi_deg", phi}, {"seen", observed[worst]}, {"due", expected[worst]}};
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 #include "scene/lights/rectangle.h"
 #include "scene/lights/sphere.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 using LightKinds = KindList<lights::Disk, lights::Sphere, lights::Rectangle>;
 
@@ -21,4 +21,4 @@ template <class F> void with_light_kind(std::size_t index, F&& f) {
     among(LightKinds{});
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -9,7 +9,7 @@
 
 #include "scene/shapes/all.h"
 
-namespace crescent {
+namespace crescent::inline scene {
 
 /// A flat figure that is seen in the directions of a light.
 using Figure = std::variant<shapes::Disk, shapes::Quad>;
@@ -41,4 +41,4 @@ template <class F> struct Aimed {
     F pdf;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline scene

@@ -34,7 +34,7 @@ struct Box {
         return {};
     }
 
-    Crossing intersect(Vec3d x, Vec3d d) const {
+    Intersection intersect(Vec3d x, Vec3d d) const {
         double near = -never, far = never;
         Vec3d near_n{}, far_n{};
         const auto slab = [&](double lo, double hi, double o, double v, Vec3d axis) {

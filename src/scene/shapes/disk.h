@@ -16,11 +16,11 @@ struct Disk {
             parameter::direction("normal", &Disk::normal, "Where the face looks.")};
     }
 
-    Crossing intersect(Vec3d x, Vec3d d) const {
+    Intersection intersect(Vec3d x, Vec3d d) const {
         const double t = plane_t(center, normal, x, d);
         if (t == never) return {};
         const Vec3d p = x + t * d - center;
-        return dot(p, p) <= radius * radius ? crossing_at(t, normal) : Crossing{};
+        return dot(p, p) <= radius * radius ? crossing_at(t, normal) : Intersection{};
     }
 
     std::array<Interval, 2> hidden(const Sight& s) const {

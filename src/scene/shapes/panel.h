@@ -21,12 +21,12 @@ struct Panel {
     }
     std::optional<Mistake> mistake() const { return mistake_of_edges(edge_u, edge_v); }
 
-    Crossing intersect(Vec3d x, Vec3d d) const {
+    Intersection intersect(Vec3d x, Vec3d d) const {
         const Vec3d n = normalize(cross(edge_u, edge_v));
         const double opening = parallelogram_t(corner, edge_u, edge_v, x, d);
         if (opening == never || dot(n, d) >= 0) return {};
         const Vec3d down = -depth * n;
-        Crossing best = crossing_at(parallelogram_t(corner + down, edge_u, edge_v, x, d), n);
+        Intersection best = crossing_at(parallelogram_t(corner + down, edge_u, edge_v, x, d), n);
         const auto side = [&](Vec3d from, Vec3d edge) {
             const double t = parallelogram_t(from, edge, down, x, d);
             if (t >= opening && t < best.t) best = {t, t, normalize(cross(edge, down)), true};

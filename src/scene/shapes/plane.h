@@ -16,7 +16,7 @@ struct Plane {
             parameter::direction("normal", &Plane::normal, "Where the face looks.")};
     }
 
-    Crossing intersect(Vec3d x, Vec3d d) const { return crossing_at(plane_t(point, normal, x, d), normal); }
+    Intersection intersect(Vec3d x, Vec3d d) const { return crossing_at(plane_t(point, normal, x, d), normal); }
 
     std::array<Interval, 2> hidden(const Sight& s) const { return {project(point, normal, s).sides, {}}; }
     bool holds(Vec3d) const { return false; }

@@ -31,7 +31,7 @@ struct Quad {
     }
     std::optional<Mistake> mistake() const { return mistake_of_edges(edge_u, edge_v); }
 
-    Crossing intersect(Vec3d x, Vec3d d) const {
+    Intersection intersect(Vec3d x, Vec3d d) const {
         return crossing_at(parallelogram_t(corner, edge_u, edge_v, x, d), normalize(cross(edge_u, edge_v)));
     }
 

@@ -17,7 +17,7 @@ struct Sphere {
             parameter::length("radius", &Sphere::radius, "Radius.")};
     }
 
-    Crossing intersect(Vec3d x, Vec3d d) const {
+    Intersection intersect(Vec3d x, Vec3d d) const {
         const Vec3d o = x - center;
         const double a = dot(d, d), b = dot(o, d), c = dot(o, o) - radius * radius;
         const double discriminant = b * b - a * c;

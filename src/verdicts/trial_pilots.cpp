@@ -5,9 +5,9 @@
 #include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/numbers.h"
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -26,7 +26,7 @@ std::optional<Vec3d> axis_of_circle(std::span<const Vec3d> rim) {
 }  // namespace
 
 /// Where the sampler draws, by an even cover of u, and where a mirror lobe would be, at every scale.
-void Work::find_guides() {
+void TrialContext::find_guides() {
     for (int t = 0; t < subject.techniques(); ++t) {
         std::vector<Draw> pilot;
         if (subject.draws_at_will()) {
@@ -57,7 +57,7 @@ void Work::find_guides() {
 
 /// Where the sides of the unit square go: for most warps the rim of what is drawn, to the last digit. What chooses
 /// among lobes is held at a few values.
-void Work::find_rims(int technique) {
+void TrialContext::find_rims(int technique) {
     constexpr std::size_t along = 32;
     const std::uint64_t choices = traits.numbers > 2 ? 4 : 1;
     std::vector<Numbers> u;
@@ -84,20 +84,20 @@ void Work::find_rims(int technique) {
     }
 }
 
-void Work::share_nothing(int technique, Density& d) const {
-    const Batchful& b = first(technique);
-    if (b.nothing > 0 && subject.draws_at_will()) find_nothing(technique, d, rigour.full ? 16384 : 2048);
+void TrialContext::share_nothing(int technique, Density& d) const {
+    const SampleBatch& b = first(technique);
+    if (b.nothing > 0 && subject.draws_at_will()) estimate_null_fraction(technique, d, rigour.full ? 16384 : 2048);
     else {
         d.nothing = static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
         d.delta = static_cast<double>(b.deltas) / static_cast<double>(b.draws.size());
     }
     // Too rare to have been met: half a million draws show a share of 5e-5 twenty times over.
     if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 && d.mass.value < 1 && subject.draws_at_will())
-        find_nothing(technique, d, 32768);
+        estimate_null_fraction(technique, d, 32768);
 }
 
 /// Sixteen random shifts of an even cover give the share of u that draws nothing and its standard error.
-void Work::find_nothing(int technique, Density& d, std::uint64_t wanted) const {
+void TrialContext::estimate_null_fraction(int technique, Density& d, std::uint64_t wanted) const {
     constexpr int shifts = 16;
     const std::uint64_t n = affordable(2 * shifts * wanted, for_later) / (2 * shifts);  // a draw, and p at it
     double sum = 0, square = 0, deltas = 0;
@@ -111,7 +111,7 @@ void Work::find_nothing(int technique, Density& d, std::uint64_t wanted) const {
         const std::vector<double> p = pdf_of_drawn(technique, draws);
         double none = 0;
         for (std::size_t i = 0; i < n; ++i)
-            if (is_nothing(draws[i], p[i])) ++none, deltas += draws[i].delta > 0;
+            if (is_null_sample(draws[i], p[i])) ++none, deltas += draws[i].delta > 0;
         sum += none / static_cast<double>(n);
         square += sqr(none / static_cast<double>(n));
     }
@@ -120,4 +120,4 @@ void Work::find_nothing(int technique, Density& d, std::uint64_t wanted) const {
     d.nothing_se = std::sqrt(std::max(square / shifts - sqr(d.nothing), 0.0) / (shifts - 1));
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -1,4 +1,4 @@
-#include "estimator/sites.h"
+#include "estimator/shading_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "color/rgb.h"
 #include "scene/shadow.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -56,8 +56,8 @@ std::vector<TileBox> tiles_of(int width, int height) {
     return tiles;
 }
 
-Sites empty_sites(const Scene& scene, int lobe) {
-    Sites sites;
+ShadingPoints empty_sites(const Scene& scene, int lobe) {
+    ShadingPoints sites;
     sites.lobe = lobe;
     double total = 0;
     for (const Light& light : scene.lights()) total += light.power();
@@ -88,7 +88,7 @@ Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
     }
 }
 
-void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading) {
+void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading) {
     const Frame<double> frame = frame_about(hit.n);
     const std::size_t i = count++;
     pixel[i] = pixel_index;
@@ -122,7 +122,7 @@ void Sites::add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, c
     tint[i] = shading.surface.tint;
 }
 
-template <class Work> void Sites::each_array(Work&& work) {
+template <class Work> void ShadingPoints::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
     all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
         fill_s, rho_d, rho_s_exact, tint);
@@ -133,15 +133,15 @@ template <class Work> void Sites::each_array(Work&& work) {
     }
 }
 
-void Sites::reserve(std::size_t sites) {
+void ShadingPoints::reserve(std::size_t sites) {
     each_array([&](auto& array) { array.reserve(whole_packs(sites)); });
 }
 
-void Sites::make_room(std::size_t more) {
+void ShadingPoints::make_room(std::size_t more) {
     each_array([&](auto& array) { array.resize(count + more); });
 }
 
-void Sites::pad() {
+void ShadingPoints::pad() {
     if (count == 0) return;
     each_array([&](auto& array) {
         array.resize(whole_packs(count));
@@ -149,7 +149,7 @@ void Sites::pad() {
     });
 }
 
-void Sites::prune(const Scene& scene) {
+void ShadingPoints::prune(const Scene& scene) {
     const auto range = [](const std::vector<float>& v) {
         const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
         return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));
@@ -163,7 +163,7 @@ void Sites::prune(const Scene& scene) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_sites made them
         const bool clear = std::all_of(scene.lights().begin(), scene.lights().end(),
-            [&](const Light& light) { return stands_clear(scene.occluders()[k], extent, light.body()); });
+            [&](const Light& light) { return is_separated(scene.occluders()[k], extent, light.body()); });
         if (!clear) occluders[kept++] = occluders[k];
     }
     occluders.resize(kept);
@@ -180,7 +180,7 @@ public:
           area_(columns_ * static_cast<std::size_t>(tile.y1 - tile.y0)) {}
 
     void next_row() {
-        for (Sites& group : groups) group.make_room(columns_);
+        for (ShadingPoints& group : groups) group.make_room(columns_);
     }
 
     void add(std::uint32_t pixel, const Hit& hit) {
@@ -189,7 +189,7 @@ public:
             shape_ = hit.shape, reveal_ = hit.reveal;
         }
         const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
-        auto group = std::find_if(groups.begin(), groups.end(), [&](const Sites& g) { return g.lobe == lobe; });
+        auto group = std::find_if(groups.begin(), groups.end(), [&](const ShadingPoints& g) { return g.lobe == lobe; });
         if (group == groups.end()) {
             group = groups.insert(group, empty_sites(scene_, lobe));
             group->reserve(area_);
@@ -198,7 +198,7 @@ public:
         group->add(scene_, pixel, hit, *shading_);
     }
 
-    std::vector<Sites> groups;
+    std::vector<ShadingPoints> groups;
 
 private:
     const Scene& scene_;
@@ -210,7 +210,7 @@ private:
 
 }  // namespace
 
-std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
+std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map) {
     Sorter sorter(scene, tile);
     const int width = scene.image().width;
     for (int j = tile.y0; j < tile.y1; ++j) {
@@ -223,11 +223,11 @@ std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_
             if (hit) sorter.add(static_cast<std::uint32_t>(index), *hit);
         }
     }
-    for (Sites& group : sorter.groups) {
+    for (ShadingPoints& group : sorter.groups) {
         group.pad();
         group.prune(scene);
     }
     return std::move(sorter.groups);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

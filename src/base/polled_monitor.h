@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 
-namespace crescent {
+namespace crescent::inline base {
 
-class PolledWatch : public Watch {
+class PolledMonitor : public ProgressMonitor {
 public:
     /// What is under way ("seed 3 of 16"), and how much of it is done: `done` of `total` units of its own.
     struct State {
@@ -53,4 +53,4 @@ private:
     std::vector<std::string> lines_;
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline base

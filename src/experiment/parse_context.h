@@ -10,7 +10,7 @@
 #include "experiment/schema.h"
 #include "experiment/tree.h"
 
-namespace crescent {
+namespace crescent::inline experiment {
 
 /// A value that names something else in the file.
 struct Reference {
@@ -18,45 +18,45 @@ struct Reference {
     std::string path, name;
 };
 
-struct Draft {
+struct ParseContext {
     Experiment e;
-    std::vector<Complaint> complaints;
-    std::set<std::string> broken;  // paths whose values cannot be used
+    std::vector<Diagnostic> complaints;
+    std::set<std::string> invalid_paths;  // paths whose values cannot be used
     std::vector<Reference> references;
 
     void complain(const std::string& path, const std::string& say);
-    void complain(const std::string& path, const Place& at, const std::string& say);
-    bool sound(const std::string& path) const { return !broken.contains(path); }
+    void complain(const std::string& path, const SourceLocation& at, const std::string& say);
+    bool is_valid(const std::string& path) const { return !invalid_paths.contains(path); }
 };
 
 /// "; did you mean 'phong'?", or nothing where no valid word is near.
 std::string hint(std::string_view word, const std::vector<std::string>& valid);
 
 /// Checks one value against its key; complains and returns false where it does not fit.
-bool read_value(Draft& draft, const Key& key, const Node& node, const std::string& path, Value& value);
+bool read_value(ParseContext& draft, const Key& key, const Node& node, const std::string& path, Value& value);
 
 /// Walks the table over the tree: unknown and missing keys, types, ranges; fills draft.e.
-void read_tree(Draft& draft, const Node& root);
+void read_tree(ParseContext& draft, const Node& root);
 /// The same over another table: values go into `object`, places and complaints into the draft.
-void read_tree(Draft& draft, const Section& table, const Node& root, void* object);
+void read_tree(ParseContext& draft, const Section& table, const Node& root, void* object);
 
 /// Throws one InputError with all complaints in file order; returns where there is none.
-void throw_if_any(std::vector<Complaint> all);
+void throw_if_any(std::vector<Diagnostic> all);
 
 /// Puts "path=value" overrides into the tree.
-void apply_overrides(Draft& draft, Node& root, const std::vector<std::string>& overrides);
+void apply_overrides(ParseContext& draft, Node& root, const std::vector<std::string>& overrides);
 
 /// What keys say of each other: names that must exist, regions on the image, the camera, degenerate shapes.
-void check_geometry(Draft& draft);
-void check_names(Draft& draft);
+void check_geometry(ParseContext& draft);
+void check_names(ParseContext& draft);
 
 /// Fills in what depends on other keys (s, n, the rungs of ladder plates) and checks runs against arms and exponents.
-void resolve_runs(Draft& draft);
+void resolve_runs(ParseContext& draft);
 
 /// Why the experiment makes no run of this arm at this s (0: its own); "" where it does. The rung is checked apart.
 std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s);
 
 /// Parses every check and makes sure that all it names will be measured.
-void resolve_assertions(Draft& draft);
+void resolve_assertions(ParseContext& draft);
 
-}  // namespace crescent
+}  // namespace crescent::inline experiment

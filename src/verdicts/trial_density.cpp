@@ -5,11 +5,11 @@
 #include "math/functions.h"
 #include "verdicts/mesh.h"
 #include "verdicts/recorded.h"
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
-void Work::measure_density() {
+void TrialContext::measure_density() {
     find_guides();
     if (!traits.has_pdf) {  // bins alone
         density_.push_back(bins_about({0, 0, 1}, true));
@@ -18,7 +18,7 @@ void Work::measure_density() {
         return;
     }
     for (int t = 0; t < subject.techniques(); ++t) {
-        const Batchful& b = first(t);
+        const SampleBatch& b = first(t);
         Vec3d mean{};
         Vec3d peak{0, 0, 1};
         double highest = 0, count = 0;
@@ -62,7 +62,7 @@ void Work::measure_density() {
 
 /// A density that jumps along heights and azimuths about an axis: the normal, or for a sky any axis of the frame. Its
 /// cells are summed, or sampled where a program would be asked too often.
-std::optional<Density> Work::table_density(int t) const {
+std::optional<Density> TrialContext::table_density(int t) const {
     std::vector<Vec3d> axes = {{0, 0, 1}};
     if (traits.wo == Traits::Asked::none) axes.insert(axes.end(), {{0, 1, 0}, {1, 0, 0}});
     for (Vec3d axis : axes) {
@@ -70,7 +70,7 @@ std::optional<Density> Work::table_density(int t) const {
         const Batch g = batch_of(t, d.map);
         const std::optional<Mesh> mesh = find_mesh(g);
         if (!mesh) continue;
-        const Witnesses seen = witnesses_of(t, d);
+        const SamplesPerBin seen = witnesses_of(t, d);
         const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
         const std::size_t most = subject.serial() && !rigour.full ? affordable(400000, for_later) / 2 : 10000000;
         std::optional<Integral> mass;
@@ -90,7 +90,7 @@ std::optional<Density> Work::table_density(int t) const {
 }
 
 /// 2 pi p over coordinates about an axis.
-Batch Work::batch_of(int technique, const SphereMap& map) const {
+Batch TrialContext::batch_of(int technique, const SphereMap& map) const {
     return [this, technique, map](std::span<const Vec2d> at, std::span<double> out) {
         std::vector<Vec3d> wi;
         for (Vec2d v : at) wi.push_back(map.direction(v));
@@ -99,23 +99,23 @@ Batch Work::batch_of(int technique, const SphereMap& map) const {
     };
 }
 
-void Work::grant_doubts(int technique, Density& d) const {
-    for (const Doubt& doubt : subject.doubts()) {
+void TrialContext::grant_doubts(int technique, Density& d) const {
+    for (const TabulationError& doubt : subject.doubts()) {
         d.doubt.resize(d.mass.bins.size());
         d.doubt[d.bin_of(d.map.coordinates(doubt.at))] += doubt.mass;
         d.doubts += doubt.mass;
     }
-    if (!d.doubt.empty()) sharpen(technique, d);
+    if (!d.doubt.empty()) refine_table(technique, d);
 }
 
-Witnesses Work::witnesses_of(int technique, const Density& d) const {
-    Witnesses out;
-    const Batchful& b = first(technique);
+SamplesPerBin TrialContext::witnesses_of(int technique, const Density& d) const {
+    SamplesPerBin out;
+    const SampleBatch& b = first(technique);
     out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
     const std::size_t n = std::min<std::size_t>(b.draws.size(), 32768);
     out.total = static_cast<double>(n);
     for (std::size_t i = 0; i < n; ++i) {
-        if (is_nothing(b.draws[i], b.pdf[i])) continue;
+        if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
         out.bins[d.bin_of(at)].push_back({at, 2 * pi * b.pdf[i]});
     }
@@ -133,14 +133,14 @@ std::size_t Density::bin_of(Vec2d at) const {
 /// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral /
 /// p's. The bin is set right by that, as far as its doubt reaches, and is then known to the spread of table / p: twice
 /// the standard error of its mean, and a tenth for draws that do not follow p.
-void Work::sharpen(int technique, Density& d) const {
+void TrialContext::refine_table(int technique, Density& d) const {
     struct Ratio {
         double n = 0, sum = 0, squares = 0;
     };
     std::vector<Ratio> ratio(d.doubt.size());
-    const Batchful& b = first(technique);
+    const SampleBatch& b = first(technique);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
-        if (is_nothing(b.draws[i], b.pdf[i])) continue;
+        if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         Ratio& r = ratio[d.bin_of(d.map.coordinates(b.draws[i].wi))];
         const double v = b.pdf[i] / b.draws[i].pdf;
         ++r.n;
@@ -160,7 +160,7 @@ void Work::sharpen(int technique, Density& d) const {
 }
 
 /// An edge at the nearest and the farthest rim: what lies beyond expects nothing.
-void Work::add_rims(Density& d) const {
+void TrialContext::add_rims(Density& d) const {
     if (rims_.empty()) return;
     double least = 2, most = 0;
     for (Vec3d w : rims_) {
@@ -176,7 +176,7 @@ void Work::add_rims(Density& d) const {
 }
 
 /// Rings and sectors about an axis, narrow where draws crowd and where samplers go wrong.
-Density Work::bins_about(Vec3d axis, bool about_n) const {
+Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     Density d;
     d.map = SphereMap(axis);
     d.about_n = about_n;
@@ -210,7 +210,7 @@ Density Work::bins_about(Vec3d axis, bool about_n) const {
     return d;
 }
 
-std::vector<Rect> Work::cells_of(const Density& d) const {
+std::vector<Rect> TrialContext::cells_of(const Density& d) const {
     std::vector<Rect> cells;
     const int rings = static_cast<int>(d.rings.size()) - 1;
     for (int i = 0; i < rings; ++i)
@@ -220,15 +220,16 @@ std::vector<Rect> Work::cells_of(const Density& d) const {
     return cells;
 }
 
-Density Work::density_about(int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
+Density TrialContext::density_about(
+    int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
     const std::size_t evaluations = affordable(wanted, for_later);
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
-    const Witnesses witnesses = witnesses_of(technique, d);
+    const SamplesPerBin witnesses = witnesses_of(technique, d);
     d.mass = integrate(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
         {edge_mass / 20, evaluations, edge_mass}, &witnesses);
     grant_doubts(technique, d);
     return d;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -4,11 +4,11 @@
 #include <functional>
 
 #include "math/functions.h"
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
-const Integral& Work::incoming(Where where, bool even) const {
+const Integral& TrialContext::incoming(Where where, bool even) const {
     even = even && (!trial.light.disks.empty() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
     if (!kept)
@@ -19,7 +19,7 @@ const Integral& Work::incoming(Where where, bool even) const {
 
 namespace {
 
-using OfLight = Work::OfLight;
+using OfLight = TrialContext::OfLight;
 constexpr std::size_t for_confirmation = 90000;  // questions: 30,000 fresh draws with p and f at each
 
 /// Another disk stands before y.
@@ -61,9 +61,9 @@ void add_disk(
 
 }  // namespace
 
-Integral Work::albedo_of(int channel) const { return integrate_incoming(Where::everywhere, true, channel); }
+Integral TrialContext::albedo_of(int channel) const { return integrate_incoming(Where::everywhere, true, channel); }
 
-Integral Work::integrate_incoming(Where where, bool even, int channel) const {
+Integral TrialContext::integrate_incoming(Where where, bool even, int channel) const {
     return integrate_light(
         [&](std::span<const Vec3d> wi, std::span<double> out) {
             const std::vector<double> value = channel < 0 ? f(wi, true) : f_of_channel(wi, channel);
@@ -77,7 +77,7 @@ Integral Work::integrate_incoming(Where where, bool even, int channel) const {
         even);
 }
 
-Integral Work::integrate_light(const OfLight& of_light, bool even) const {
+Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const {
     const TrialLight& light = trial.light;
     const double fill = even ? 1 : light.fill;
     Integral total;
@@ -100,4 +100,4 @@ Integral Work::integrate_light(const OfLight& of_light, bool even) const {
     return total;
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 
@@ -58,7 +58,7 @@ struct OccluderF {
 OccluderF occluder_about(const Occluder& o, Vec3d origin);
 
 /// Sites of one BRDF kind. `lobe` is -1 where rho_s = 0.
-struct Sites {
+struct ShadingPoints {
     int lobe = -1;
     std::size_t count = 0;                    // without padding
     std::vector<std::uint32_t> pixel, shape;  // index in the image, index of the shape
@@ -89,9 +89,9 @@ private:
 };
 
 /// A scene's lights and occluders without any site yet.
-Sites empty_sites(const Scene& scene, int lobe);
+ShadingPoints empty_sites(const Scene& scene, int lobe);
 
 /// All geometry pixels of a tile, grouped by lobe; also which shape each pixel sees.
-std::vector<Sites> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
+std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

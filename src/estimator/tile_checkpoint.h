@@ -9,10 +9,10 @@
 
 #include "base/journal.h"
 #include "base/parallel.h"
-#include "base/watch.h"
-#include "estimator/sites.h"
+#include "base/progress_monitor.h"
+#include "estimator/shading_points.h"
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 /// What the tiles of a pass write into.
 struct TileOutputs {
@@ -32,10 +32,10 @@ template <class F> TileOutputs outputs_of(std::vector<F>& films, std::span<std::
     return out;
 }
 
-class TileKeeper {
+class TileCheckpoint {
 public:
-    /// Nothing is written before the pass has taken `patience_s` seconds; then all finished tiles are.
-    TileKeeper(std::string path, std::string key, double patience_s, Watch& watch);
+    /// Nothing is written before the pass has taken `checkpoint_after_s` seconds; then all finished tiles are.
+    TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& watch);
 
     /// The pass begins: tiles that an earlier run finished are put back into the outputs, which must outlive it.
     void begin(std::vector<TileBox> tiles, TileOutputs outputs);
@@ -55,7 +55,7 @@ private:
 
     Journal journal_;
     double patience_s_;
-    Watch& watch_;
+    ProgressMonitor& watch_;
     std::vector<TileBox> tiles_;
     TileOutputs outputs_;
     std::vector<double> units_;  // of each finished tile; -1: not finished
@@ -65,4 +65,4 @@ private:
     std::vector<std::size_t> waiting_;  // finished, not yet written
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

@@ -1,8 +1,8 @@
-#include "estimator/tile_keeper.h"
+#include "estimator/tile_checkpoint.h"
 
 #include <cstring>
 
-namespace crescent {
+namespace crescent::inline estimator {
 
 namespace {
 
@@ -24,10 +24,13 @@ template <class Work> void each_row(const TileOutputs& outputs, const TileBox& t
 
 }  // namespace
 
-TileKeeper::TileKeeper(std::string path, std::string key, double patience_s, Watch& watch)
-    : journal_(std::move(path), std::move(key), watch), patience_s_(patience_s), watch_(watch), start_(Clock::now()) {}
+TileCheckpoint::TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& watch)
+    : journal_(std::move(path), std::move(key), watch),
+      patience_s_(checkpoint_after_s),
+      watch_(watch),
+      start_(Clock::now()) {}
 
-void TileKeeper::begin(std::vector<TileBox> tiles, TileOutputs outputs) {
+void TileCheckpoint::begin(std::vector<TileBox> tiles, TileOutputs outputs) {
     tiles_ = std::move(tiles);
     outputs_ = std::move(outputs);
     units_.assign(tiles_.size(), -1.0);
@@ -36,12 +39,12 @@ void TileKeeper::begin(std::vector<TileBox> tiles, TileOutputs outputs) {
     watch_.skip(restored_);
 }
 
-std::size_t TileKeeper::record_size(const TileBox& tile) const {
+std::size_t TileCheckpoint::record_size(const TileBox& tile) const {
     const std::size_t area = static_cast<std::size_t>(tile.x1 - tile.x0) * static_cast<std::size_t>(tile.y1 - tile.y0);
     return sizeof(Head) + 8 * outputs_.counts.size() + 4 * area * outputs_.planes.size();
 }
 
-void TileKeeper::restore(Journal::Bytes record) {
+void TileCheckpoint::restore(Journal::Bytes record) {
     Head head;
     if (record.size() < sizeof head) return;
     std::memcpy(&head, record.data(), sizeof head);
@@ -59,7 +62,7 @@ void TileKeeper::restore(Journal::Bytes record) {
     restored_ += head.units;
 }
 
-void TileKeeper::add(std::size_t tile, double units) {
+void TileCheckpoint::add(std::size_t tile, double units) {
     const Guard guard(lock_);
     units_[tile] = units;
     waiting_.push_back(tile);
@@ -68,7 +71,7 @@ void TileKeeper::add(std::size_t tile, double units) {
     waiting_.clear();
 }
 
-void TileKeeper::write(std::size_t tile) {
+void TileCheckpoint::write(std::size_t tile) {
     const Head head = {tile, units_[tile]};
     std::vector<Journal::Bytes> parts = {std::as_bytes(std::span(&head, 1))};
     for (const std::span<std::uint64_t> counts : outputs_.counts)
@@ -77,4 +80,4 @@ void TileKeeper::write(std::size_t tile) {
     journal_.append(parts);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline estimator

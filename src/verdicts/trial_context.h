@@ -9,15 +9,15 @@
 #include <optional>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress_monitor.h"
 #include "verdicts/cubature.h"
 #include "verdicts/subject.h"
 #include "verdicts/verdict.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 /// Sample counts, quadrature budget and significance levels of the tests.
-struct Rigour {
+struct TestSettings {
     bool full = false;
     double alpha = 1e-3;  // family-wise, for everything tested in one call
     std::uint32_t seed = 1;
@@ -25,25 +25,25 @@ struct Rigour {
     int rings = 20, sectors = 16;
     std::size_t evaluations = 80000;  // of one integral, at most
     bool pictures = false;            // keep maps and weights for the HTML page
-    std::size_t questions = 2000000;   // that a program is asked at one w_o, at most; pictures and times apart
+    std::size_t questions = 2000000;  // that a program is asked at one w_o, at most; pictures and times apart
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees in place of the grid; empty: the grid
     bool accept_few = false;  // a program too slow for every w_o is judged by those that were looked at
     // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
     double screen = 1e-3, confirm = 1e-4;
-    static Rigour quick() { return {}; }
-    static Rigour thorough();
+    static TestSettings quick() { return {}; }
+    static TestSettings thorough();
     /// Levels for `tests` statistical tests: screen * confirm = 1 - (1 - alpha)^(1/tests) (Sidak), confirm = screen
     /// / 10.
     void share(std::uint64_t tests);
 };
 
 /// Counted over a whole call, from many threads.
-struct Tally {
+struct TestCounts {
     std::atomic<std::uint64_t> tests{0}, screened{0}, confirmed{0};
 };
 
 /// Draws of one technique on one seed.
-struct Batchful {
+struct SampleBatch {
     std::vector<Numbers> u;
     std::vector<Draw> draws;
     std::vector<double> pdf;        // pdf(w) asked afterwards, as the sampler's own arithmetic says it
@@ -59,7 +59,9 @@ struct Batchful {
 inline bool is_finite(Vec3d w) { return std::isfinite(w.x + w.y + w.z); }
 
 /// Nothing drawn as a density: pdf 0, or a direction under the horizon at which pdf(w) is 0.
-inline bool is_nothing(const Draw& d, double pdf_there) { return !(d.pdf > 0) || (d.wi.z <= 0 && !(pdf_there > 0)); }
+inline bool is_null_sample(const Draw& d, double pdf_there) {
+    return !(d.pdf > 0) || (d.wi.z <= 0 && !(pdf_there > 0));
+}
 
 /// The bins of one technique's density and their expected mass.
 struct Density {
@@ -85,27 +87,27 @@ struct Unmet {
     bool heavy = false;          // it explains what the mean lacks, and so many draws need not have met it
 };
 
-class Work {
+class TrialContext {
 public:
-    Work(const Trial& trial, const Rigour& rigour, Tally& tally, std::uint32_t index);
+    TrialContext(const Trial& trial, const TestSettings& rigour, TestCounts& tally, std::uint32_t index);
     /// So many of the wanted questions as a program may still be asked here, `keep` of them left for later; 2000 at
     /// least.
     std::size_t affordable(std::size_t wanted, std::size_t keep = 0) const;
 
     const Trial& trial;
-    const Rigour& rigour;
-    Tally& tally;
+    const TestSettings& rigour;
+    TestCounts& tally;
     const JudgedSampler& subject;
     const Traits traits;
 
     /// Fresh draws for another seed; bins and integrals stay.
     void redraw(std::uint32_t seed);
-    Batchful draw(int technique, int round) const;  // round 0: the screening seed, 1: the confirming one
-    const Batchful& first(int technique) const { return first_[static_cast<std::size_t>(technique)]; }
+    SampleBatch draw(int technique, int round) const;  // round 0: the screening seed, 1: the confirming one
+    const SampleBatch& first(int technique) const { return first_[static_cast<std::size_t>(technique)]; }
     const Density& density(int technique) const { return density_[static_cast<std::size_t>(technique)]; }
     /// Rounding of the directions that come back: 2^-24 for floats, 2^-52 for doubles, or that of short decimals.
-    double grain() const { return grain_; }
-    std::span<const Vec3d> guides() const { return guides_; }
+    double direction_resolution() const { return grain_; }
+    std::span<const Vec3d> pilot_directions() const { return guides_; }
 
     /// Under the surface: whether f is not 0 there, most at `at` of those tried, and whether the sampler reaches it.
     struct Below {
@@ -124,7 +126,7 @@ public:
     double light(Vec3d wi) const { return wi.z < 0 && whole() ? trial.light.fill : trial.light(wi); }
 
     /// f of every draw above the horizon, 0 elsewhere; a program behind a pipe is asked once.
-    const std::vector<double>& f_of_drawn(const Batchful& b) const;
+    const std::vector<double>& f_of_drawn(const SampleBatch& b) const;
     std::vector<double> pdf_of_drawn(int technique, std::span<const Draw> draws) const;
     std::vector<double> pdf(int technique, std::span<const Vec3d> wi, bool exact = false) const;
     /// Sum over techniques.
@@ -134,7 +136,7 @@ public:
     std::vector<double> f_of_channel(std::span<const Vec3d> wi, int channel) const;
 
     /// X = sum over techniques of w f L cos / p, sample by sample; even: L = 1 in place of the light.
-    std::vector<double> weights(std::span<const Batchful> pair, bool even) const;
+    std::vector<double> weights(std::span<const SampleBatch> pair, bool even) const;
     /// int f L |cos| over what counts, or only where any_pdf is (not) positive. bins: the upper and the lower half of
     /// the fill's part.
     enum class Where { everywhere, reached, lost };
@@ -165,7 +167,7 @@ public:
 private:
     std::uint32_t index_, seed_;
     std::uint64_t asked_before_ = 0;  // of a program, when this trial began
-    std::vector<Batchful> first_;
+    std::vector<SampleBatch> first_;
     std::vector<Density> density_;
     static constexpr std::size_t for_later =
         170000;  // questions for the verdicts after the density and its confirmation
@@ -183,15 +185,15 @@ private:
     void add_rims(Density& d) const;
     std::optional<Density> table_density(int technique) const;
     std::vector<Rect> cells_of(const Density& d) const;
-    void sharpen(int technique, Density& d) const;
-    Witnesses witnesses_of(int technique, const Density& d) const;
+    void refine_table(int technique, Density& d) const;
+    SamplesPerBin witnesses_of(int technique, const Density& d) const;
     Density density_about(
         int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
     Density bins_about(Vec3d axis, bool about_n) const;
     Batch batch_of(int technique, const SphereMap& map) const;
     void grant_doubts(int technique, Density& d) const;
     void share_nothing(int technique, Density& d) const;
-    void find_nothing(int technique, Density& d, std::uint64_t points) const;
+    void estimate_null_fraction(int technique, Density& d, std::uint64_t points) const;
 };
 
 /// p-values.
@@ -199,4 +201,4 @@ double chi_squared_p(double statistic, double degrees);
 double normal_p(double z);  // two-sided
 double student_p(double t, double degrees);
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

@@ -1,4 +1,4 @@
-#include "verdicts/work.h"
+#include "verdicts/trial_context.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "verdicts/numbers.h"
 #include "verdicts/recorded.h"
 
-namespace crescent {
+namespace crescent::inline verdicts {
 
 namespace {
 
@@ -44,7 +44,7 @@ bool is_usable(const Draw& d) {
 }
 
 /// Up to one draw in ten thousand hides no other fault: it is put aside, and `valid` tells of it.
-void drop_unusable(Batchful& b) {
+void drop_unusable(SampleBatch& b) {
     std::size_t bad = 0;
     for (const Draw& d : b.draws) bad += !is_usable(d);
     if (bad == 0 || 10000 * bad > b.draws.size()) return;
@@ -63,8 +63,8 @@ void drop_unusable(Batchful& b) {
 
 }  // namespace
 
-Rigour Rigour::thorough() {
-    Rigour r;
+TestSettings TestSettings::thorough() {
+    TestSettings r;
     r.full = true;
     r.draws = std::uint64_t{1} << 19;
     r.rings = 30;
@@ -74,13 +74,13 @@ Rigour Rigour::thorough() {
     return r;
 }
 
-void Rigour::share(std::uint64_t tests) {
+void TestSettings::share(std::uint64_t tests) {
     const double each = -math::expm1(math::log1p(-alpha) / static_cast<double>(std::max<std::uint64_t>(tests, 1)));
     screen = std::min(std::sqrt(10 * each), 0.05);
     confirm = std::min(each / screen, screen / 10);
 }
 
-Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index)
+TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& counts, std::uint32_t index)
     : trial(t),
       rigour(r),
       tally(counts),
@@ -94,20 +94,20 @@ Work::Work(const Trial& t, const Rigour& r, Tally& counts, std::uint32_t index)
     look_below();
 }
 
-std::size_t Work::affordable(std::size_t wanted, std::size_t keep) const {
+std::size_t TrialContext::affordable(std::size_t wanted, std::size_t keep) const {
     if (!subject.serial()) return wanted;
     const std::size_t asked = static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep;
     return std::min(wanted, std::max<std::size_t>(rigour.questions > asked ? rigour.questions - asked : 0, 2000));
 }
 
-void Work::redraw(std::uint32_t seed) {
+void TrialContext::redraw(std::uint32_t seed) {
     seed_ = seed;
     unmet_ = {};
     for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }
 
-Batchful Work::draw(int technique, int round) const {
-    Batchful b;
+SampleBatch TrialContext::draw(int technique, int round) const {
+    SampleBatch b;
     if (const auto* tape = dynamic_cast<const RecordedSubject*>(&subject)) {
         tape->half(round, b.u, b.draws);
     } else {
@@ -124,11 +124,11 @@ Batchful Work::draw(int technique, int round) const {
     drop_unusable(b);
     b.pdf = pdf_of_drawn(technique, b.draws);
     for (std::size_t i = 0; i < b.draws.size(); ++i)
-        if (is_nothing(b.draws[i], b.pdf[i])) ++b.nothing, b.deltas += b.draws[i].delta > 0;
+        if (is_null_sample(b.draws[i], b.pdf[i])) ++b.nothing, b.deltas += b.draws[i].delta > 0;
     return b;
 }
 
-const std::vector<double>& Work::f_of_drawn(const Batchful& b) const {
+const std::vector<double>& TrialContext::f_of_drawn(const SampleBatch& b) const {
     if (b.f.size() == b.draws.size()) return b.f;
     std::vector<Vec3d> wi;
     if (!subject.has_f()) {
@@ -153,7 +153,7 @@ const std::vector<double>& Work::f_of_drawn(const Batchful& b) const {
 }
 
 /// A draw of nothing, or of NaN, has no direction to ask about: 0.
-std::vector<double> Work::pdf_of_drawn(int technique, std::span<const Draw> draws) const {
+std::vector<double> TrialContext::pdf_of_drawn(int technique, std::span<const Draw> draws) const {
     std::vector<Vec3d> wi;
     for (const Draw& d : draws)
         if (d.pdf > 0 && is_finite(d.wi)) wi.push_back(d.wi);
@@ -165,7 +165,7 @@ std::vector<double> Work::pdf_of_drawn(int technique, std::span<const Draw> draw
     return p;
 }
 
-std::vector<double> Work::pdf(int technique, std::span<const Vec3d> wi, bool exact) const {
+std::vector<double> TrialContext::pdf(int technique, std::span<const Vec3d> wi, bool exact) const {
     std::vector<Pair> at(wi.size());
     for (std::size_t i = 0; i < wi.size(); ++i) at[i] = {trial.wo, wi[i]};
     std::vector<double> out(wi.size(), 1.0);
@@ -175,7 +175,7 @@ std::vector<double> Work::pdf(int technique, std::span<const Vec3d> wi, bool exa
     return out;
 }
 
-std::vector<double> Work::any_pdf(std::span<const Vec3d> wi) const {
+std::vector<double> TrialContext::any_pdf(std::span<const Vec3d> wi) const {
     std::vector<double> sum(wi.size());
     for (int t = 0; t < subject.techniques(); ++t) {
         const std::vector<double> p = pdf(t, wi, true);
@@ -184,7 +184,7 @@ std::vector<double> Work::any_pdf(std::span<const Vec3d> wi) const {
     return sum;
 }
 
-std::vector<double> Work::f(std::span<const Vec3d> wi, bool truth) const {
+std::vector<double> TrialContext::f(std::span<const Vec3d> wi, bool truth) const {
     std::vector<Pair> at(wi.size());
     for (std::size_t i = 0; i < wi.size(); ++i) at[i] = {trial.wo, wi[i]};
     std::vector<double> out(wi.size());
@@ -193,7 +193,7 @@ std::vector<double> Work::f(std::span<const Vec3d> wi, bool truth) const {
     return out;
 }
 
-std::vector<Vec3d> Work::f_channels(std::span<const Vec3d> wi) const {
+std::vector<Vec3d> TrialContext::f_channels(std::span<const Vec3d> wi) const {
     std::vector<Pair> at(wi.size());
     for (std::size_t i = 0; i < wi.size(); ++i) at[i] = {trial.wo, wi[i]};
     std::vector<Vec3d> out(wi.size());
@@ -201,23 +201,23 @@ std::vector<Vec3d> Work::f_channels(std::span<const Vec3d> wi) const {
     return out;
 }
 
-std::vector<double> Work::f_of_channel(std::span<const Vec3d> wi, int channel) const {
+std::vector<double> TrialContext::f_of_channel(std::span<const Vec3d> wi, int channel) const {
     std::vector<double> out;
     for (Vec3d v : f_channels(wi)) out.push_back(channel == 0 ? v.x : channel == 1 ? v.y : v.z);
     return out;
 }
 
-bool Work::weighs() const {
+bool TrialContext::weighs() const {
     if (!subject.has_drawn_f()) return false;
     const std::vector<Draw>& draws = first_[0].draws;
     return traits.has_pdf ||
         std::any_of(draws.begin(), draws.end(), [](const Draw& d) { return d.weight.has_value(); });
 }
 
-std::vector<double> Work::weights(std::span<const Batchful> techniques, bool even) const {
+std::vector<double> TrialContext::weights(std::span<const SampleBatch> techniques, bool even) const {
     std::vector<double> x(techniques[0].draws.size());
     for (std::size_t t = 0; t < techniques.size(); ++t) {
-        const Batchful& b = techniques[t];
+        const SampleBatch& b = techniques[t];
         std::vector<Pair> at;
         for (const Draw& d : b.draws) at.push_back({trial.wo, d.pdf > 0 && counts(d.wi) ? d.wi : Vec3d{0, 0, 1}});
         std::vector<double> mis(at.size());
@@ -233,7 +233,7 @@ std::vector<double> Work::weights(std::span<const Batchful> techniques, bool eve
     return x;
 }
 
-Verdict Work::verdict(std::string_view name, State state, std::string say) const {
+Verdict TrialContext::verdict(std::string_view name, State state, std::string say) const {
     Verdict v;
     v.arm = trial.arm;
     v.trial = trial.text();
@@ -253,4 +253,4 @@ double student_p(double t, double degrees) {
     return math::student_two_sided(degrees, t);
 }
 
-}  // namespace crescent
+}  // namespace crescent::inline verdicts

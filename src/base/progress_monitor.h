@@ -5,7 +5,7 @@
 #include <exception>
 #include <string_view>
 
-namespace crescent {
+namespace crescent::inline base {
 
 /// The work was asked to stop (Ctrl-C, SIGTERM): exit code 130, nothing half-written.
 struct Interrupted : std::exception {
@@ -17,9 +17,9 @@ struct Interrupted : std::exception {
 enum class Outputs { untouched, moving, stand };
 
 /// Someone who watches long work. Called from many threads at once; every call is cheap.
-class Watch {
+class ProgressMonitor {
 public:
-    virtual ~Watch() = default;
+    virtual ~ProgressMonitor() = default;
     /// A new stretch of work begins: `total` units, named for the reader ("seed 3 of 16").
     virtual void begin(std::string_view /*what*/, double /*total*/) {}
     /// `units` more are done.
@@ -38,4 +38,4 @@ public:
     }
 };
 
-}  // namespace crescent
+}  // namespace crescent::inline base
