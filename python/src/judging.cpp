@@ -21,7 +21,7 @@ struct Trials {
     Subject subject;  // null: an arm of the list
     std::size_t size() const {
         std::size_t judged = 0;
-        for (const Trial& t : all) judged += !t.yardstick;
+        for (const Trial& t : all) judged += !t.baseline;
         return judged;
     }
 };
@@ -60,10 +60,10 @@ struct Judged {
     bool against = false;
 };
 
-Rigour rigour_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
+TestSettings rigour_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
     if (!(alpha > 0 && alpha < 1))
         throw nb::value_error(fmt::format("alpha is {:g}: expected a number between 0 and 1", alpha).c_str());
-    Rigour r = full ? Rigour::thorough() : Rigour::quick();
+    TestSettings r = full ? TestSettings::thorough() : TestSettings::quick();
     r.alpha = alpha;
     r.seed = seed;
     r.pictures = true;
@@ -81,8 +81,8 @@ bool is_serial(const Trials& trials) {
 
 Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
     bool expect_same, int threads, const std::string& command, const nb::object& progress) {
-    const Rigour rigour = rigour_of(alpha, seed, full, accept_few);
-    PolledWatch watch;
+    const TestSettings rigour = rigour_of(alpha, seed, full, accept_few);
+    PolledMonitor watch;
     Raised raised(watch);
     Judged out{{}, {version(), commit(), command}, other != nullptr};
     const auto work = [&] {
@@ -91,7 +91,7 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
             return;
         }
         std::vector<Trial> a = trials.all, b = other->all;
-        for (std::vector<Trial>* side : {&a, &b}) std::erase_if(*side, [](const Trial& t) { return t.yardstick; });
+        for (std::vector<Trial>* side : {&a, &b}) std::erase_if(*side, [](const Trial& t) { return t.baseline; });
         if (other->subject) b = sampler_against(other->subject, a);
         out.judgement = judge_against(a, b, rigour, expect_same, watch);
     };
@@ -195,7 +195,7 @@ void add_judging(nb::module_& m) {
         "arm_beside",
         [](const std::string& arm, const Trials& a) {
             std::vector<Trial> judged = a.all;
-            std::erase_if(judged, [](const Trial& t) { return t.yardstick; });
+            std::erase_if(judged, [](const Trial& t) { return t.baseline; });
             return Trials{arm_against(arm, judged), nullptr};
         },
         "arm"_a, "trials"_a);

@@ -11,18 +11,18 @@ namespace crescent::python {
 namespace {
 
 /// With the lock held: a Ctrl-C, or what the progress callable raises, asks the work to stop.
-void look_around(PolledWatch& watch, Raised& raised, const nb::object& progress) {
+void look_around(PolledMonitor& watch, Raised& raised, const nb::object& progress) {
     try {
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (progress.is_none() || watch.stop) return;
-        const PolledWatch::State state = watch.state();
+        const PolledMonitor::State state = watch.state();
         progress(state.what, state.done, state.total);
     } catch (...) { raised.keep(); }
 }
 
 }  // namespace
 
-void watched(PolledWatch& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
+void watched(PolledMonitor& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
     const std::function<void()>& work) {
     const auto guarded = [&] {
         try {

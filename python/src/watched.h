@@ -16,7 +16,7 @@ namespace nb = nanobind;
 /// What a Python callable raised while C++ was asking it: the first one counts, and asks the work to stop.
 class Raised {
 public:
-    explicit Raised(Watch& watch) : watch_(watch) {}
+    explicit Raised(ProgressMonitor& watch) : watch_(watch) {}
     /// Inside a catch block.
     void keep() {
         const std::lock_guard guard(lock_);
@@ -29,7 +29,7 @@ public:
     void check() const { watch_.check(); }
 
 private:
-    Watch& watch_;
+    ProgressMonitor& watch_;
     std::mutex lock_;
     std::exception_ptr first_;
 };
@@ -37,7 +37,7 @@ private:
 /// Calls `work` without the interpreter's lock. on_this_thread: for callables that want one thread, the caller's own;
 /// else in a thread of its own, and this one looks for Ctrl-C and calls progress(what, done, total) some times a
 /// second.
-void watched(PolledWatch& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
+void watched(PolledMonitor& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
     const std::function<void()>& work);
 
 }  // namespace crescent::python
