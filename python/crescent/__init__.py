@@ -11,5 +11,10 @@ f in 1/sr without the cosine.
 from ._check import Sampler, check
 from ._crescent import __version__, commit
 from ._judgement import Judgement, Verdict
+from .arms import Tail, arm, arm_names, brdf_names, pdf_of, tail
+from .experiments import Experiment, Film, Measured, load, parse, run
 
-__all__ = ["Judgement", "Sampler", "Verdict", "__version__", "check", "commit"]
+__all__ = [
+    "Experiment", "Film", "Judgement", "Measured", "Sampler", "Tail", "Verdict", "__version__", "arm", "arm_names",
+    "brdf_names", "check", "commit", "load", "parse", "pdf_of", "run", "tail",
+]

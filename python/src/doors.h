@@ -5,6 +5,8 @@
 
 namespace crescent::python {
 
-void add_judging(nanobind::module_& m);  // judging.cpp
+void add_judging(nanobind::module_& m);      // judging.cpp
+void add_experiments(nanobind::module_& m);  // experiments.cpp
+void add_arms(nanobind::module_& m);         // arms.cpp
 
 }  // namespace crescent::python

@@ -24,4 +24,6 @@ NB_MODULE(_crescent, m) {
     m.attr("__version__") = crescent::version();
     m.attr("commit") = crescent::commit();
     crescent::python::add_judging(m);
+    crescent::python::add_experiments(m);
+    crescent::python::add_arms(m);
 }

@@ -9,8 +9,6 @@
 #include "base/machine.h"
 #include "films/film.h"
 #include "run/plan.h"
-#include "plates/canvas.h"
-#include "plates/style.h"
 #include "scene/scene.h"
 
 namespace crescent::inline runs {
@@ -68,10 +66,6 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
 
 void check_memory(const Experiment& experiment) {
     if (const std::string why = why_too_large(experiment, available_memory()); !why.empty()) throw OutputError(why);
-}
-
-void check_font(const Experiment& experiment) {
-    if (!experiment.plates.empty()) const plates::Canvas font(16, 16, plates::ground);
 }
 
 }  // namespace crescent::inline runs

@@ -1,4 +1,4 @@
-// GoogleTest matchers: a sampler judged in one line of a user's own suite.
+// GoogleTest matchers: a sampler judged in one line of a user's own suite. gtest_alpha.h shares one alpha over a suite.
 //
 //   EXPECT_THAT(MySampler{}, crescent::IsARightSampler());        // nothing wrong, nothing left open
 //   EXPECT_THAT(MySampler{}, crescent::IsNotAWrongSampler());     // a heavy tail is allowed
@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "verdicts/gtest_alpha.h"
 #include "verdicts/user.h"
 
 /// In place of the bytes of a struct that has no operator<<.
@@ -19,13 +20,13 @@ public:
 namespace crescent::inline verdicts {
 
 MATCHER(IsARightSampler, negation ? "is not a right sampler" : "is a right sampler") {
-    const Judgement j = judge_sampler("sampler", arg);
+    const Judgement j = judge_sampler("sampler", arg, shared_rigour());
     if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);
     return j.state == State::right;
 }
 
 MATCHER(IsNotAWrongSampler, negation ? "is a wrong sampler" : "is not a wrong sampler") {
-    const Judgement j = judge_sampler("sampler", arg);
+    const Judgement j = judge_sampler("sampler", arg, shared_rigour());
     if (j.state == State::wrong) *result_listener << "\n" << what_is_wrong(j);
     return j.state != State::wrong;
 }
@@ -33,7 +34,7 @@ MATCHER(IsNotAWrongSampler, negation ? "is a wrong sampler" : "is not a wrong sa
 /// With levels, draws and seed of one's own: EXPECT_THAT(MySampler{},
 /// crescent::IsARightSamplerBy(crescent::TestSettings::thorough())).
 MATCHER_P(IsARightSamplerBy, rigour, negation ? "is not a right sampler" : "is a right sampler") {
-    const Judgement j = judge_sampler("sampler", arg, rigour);
+    const Judgement j = judge_sampler("sampler", arg, shared_rigour(rigour));
     if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);
     return j.state == State::right;
 }

@@ -1,0 +1,58 @@
+"""Diffuse lobes that were drawn otherwise than their density says."""
+
+import numpy as np
+from parts import above, cosine, cosine_pdf, drawn_with, lambert, polar, unit
+
+from crescent import Sampler
+from crescent.field import Fault
+
+COSINE = Sampler(lambda wo, u: cosine(u), lambda wo, wi: cosine_pdf(wi), lambert(), name="cosine")
+
+
+def of(sample, pdf, u=2):
+    return Sampler(drawn_with(sample, pdf), pdf, lambert(), name="cosine", u=u)
+
+
+def twice_as_long(wo, u):
+    r, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
+    return unit(np.stack([2 * r * np.cos(phi), 2 * r * np.sin(phi), np.sqrt(1 - u[:, 0])], -1))
+
+
+def from_a_ball(wo, u):
+    """n + a point in the unit ball, rather than on it."""
+    point = np.cbrt(u[:, 2])[:, None] * polar(1 - 2 * u[:, 0], 2 * np.pi * u[:, 1])
+    return unit(point + [0, 0, 1 + 1e-12])
+
+
+def from_a_sphere(wo, u):
+    return unit(polar(1 - 2 * u[:, 0], 2 * np.pi * u[:, 1]) + [0, 0, 1 + 1e-12])
+
+
+def even_pdf(wo, wi):
+    return above(wi, np.full(len(wi), 0.5 / np.pi))
+
+
+def even(wo, u):
+    return polar(u[:, 0], 2 * np.pi * u[:, 1])
+
+
+FAULTS = [
+    Fault(
+        "x and y of the cosine's warp twice as long", "Ray Tracing: The Rest of Your Life",
+        "https://github.com/RayTracing/TheRestOfYourLife/pull/8",
+        "The disk's coordinates are multiplied by 2 before they are lifted: directions crowd towards the horizon, p says cos / pi.",
+        ("density",), of(twice_as_long, lambda wo, wi: cosine_pdf(wi)), COSINE,
+    ),
+    Fault(
+        "a point in the ball for one on the sphere", "Ray Tracing in One Weekend",
+        "https://github.com/RayTracing/raytracing.github.io/issues/145",
+        "n plus a random point in the unit ball is drawn, which is narrower than Lambert's cosine; the point belongs on the sphere.",
+        ("density",), of(from_a_ball, lambda wo, wi: cosine_pdf(wi), u=3), of(from_a_sphere, lambda wo, wi: cosine_pdf(wi)),
+    ),
+    Fault(
+        "an even pdf for cosine draws", "Ray Tracing: The Rest of Your Life",
+        "https://github.com/RayTracing/raytracing.github.io/issues/933",
+        "p was changed to 1 / (2 pi) and the draws stayed proportional to the cosine.",
+        ("density",), of(from_a_sphere, even_pdf), of(even, even_pdf),
+    ),
+]

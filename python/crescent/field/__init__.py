@@ -1,0 +1,5 @@
+"""The field, judged: faults of public projects, written anew, and what ships in Mitsuba. ``python -m crescent.field``."""
+
+from ._faults import Fault, faults_in
+
+__all__ = ["Fault", "faults_in"]

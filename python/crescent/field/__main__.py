@@ -1,0 +1,148 @@
+"""``python -m crescent.field``: judges what ships in Mitsuba 3 and the faults of laws/field, and writes docs/field.md.
+
+    python -m crescent.field [--faults laws/field] [--out docs/field.md] [--only PLUGIN ...]
+
+Needs mitsuba from PyPI. Equal versions give equal texts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import crescent
+from crescent.adapters import mitsuba, mitsuba_emitter
+
+from ._faults import Fault, faults_in
+from ._notes import Note, note_on
+from ._scripts import output_of, script_for
+from ._shipped import ABOVE, BELOW, LEFT_OUT, Shipped, bsdfs, emitters
+
+OPEN = ("wrong", "inconclusive", "error")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The verdicts of one name on one plugin that have one explanation."""
+
+    it: Shipped
+    verdicts: tuple[crescent.Verdict, ...]
+    note: Note | None
+
+    def kind(self) -> str:
+        if self.note:
+            return self.note.kind
+        return "bug" if any(v.state == "wrong" for v in self.verdicts) else "open"
+
+
+def judged(it: Shipped) -> crescent.Judgement:
+    """One plugin over the field's w_o."""
+    if it.kind == "emitter":
+        return crescent.check(mitsuba_emitter(it.plugin, **it.known))
+    sampler = mitsuba(it.plugin, **it.known)
+    return crescent.check(sampler, wo_deg=ABOVE + (BELOW if sampler.wo == "both" else []))
+
+
+def findings(it: Shipped, judgement: crescent.Judgement) -> list[Finding]:
+    """What is not right, by verdict and explanation; the first verdict of each is the worst w_o's or the first."""
+    groups: dict[tuple[str, str], list[crescent.Verdict]] = {}
+    notes: dict[tuple[str, str], Note | None] = {}
+    for v in judgement:
+        if v.state in OPEN and v.name != "efficiency":
+            note = note_on(it.title(), v)
+            key = (v.name, note.because if note else "")
+            groups.setdefault(key, []).append(v)
+            notes[key] = note
+    return [Finding(it, tuple(vs), notes[key]) for key, vs in groups.items()]
+
+
+def _wo_of(case: str) -> tuple[float, float, float]:
+    found = re.match(r"w_o ([\d.]+) deg(?: az ([\d.]+))?", case)
+    theta, azimuth = (np.radians(float(v or 0)) for v in found.groups()) if found else (0.0, 0.0)
+    return float(np.sin(theta) * np.cos(azimuth)), float(np.sin(theta) * np.sin(azimuth)), float(np.cos(theta))
+
+
+def _corner(say: str) -> tuple[float, float, float] | None:
+    found = re.search(r"at u = \(([^)]*)\)", say)
+    numbers = tuple(float(v) for v in found.group(1).split(",")) if found else ()
+    return numbers if len(numbers) == 3 else None  # type: ignore[return-value]
+
+
+def _section(finding: Finding) -> Iterator[str]:
+    first = finding.verdicts[0]
+    cases = ", ".join(v.case for v in finding.verdicts)
+    yield f"### `{finding.it.title()}`: {first.name}, {finding.kind()}"
+    yield f"At {cases}. {first.say}"
+    if finding.note:
+        yield finding.note.because
+    if finding.it.kind == "bsdf" and first.name != "identity":
+        script = script_for(finding.it, first.name, _wo_of(first.case), _corner(first.say) if first.name == "valid" else None)
+        yield f"```python\n{script}\n```\n```\n{output_of(script)}\n```"
+
+
+def _shipped_text(only: list[str]) -> Iterator[str]:
+    import mitsuba as mi
+
+    mi.set_variant("llvm_ad_rgb")
+    table = ["| plugin | state | not right |", "|---|---|---|"]
+    sections: dict[str, Finding] = {}
+    for it in bsdfs() + emitters():
+        if only and it.plugin["type"] not in only:
+            continue
+        judgement = judged(it)
+        found = findings(it, judgement)
+        print(f"{it.title()}: {judgement.state} {judgement.broken()}", file=sys.stderr, flush=True)
+        told = "; ".join(f"{f.verdicts[0].name}: {f.kind()}" for f in found)
+        table.append(f"| `{it.title()}` | {judgement.state} | {told or '-'} |")
+        for f in found:  # one section an explanation, at the plugin where it is first met; bugs each
+            sections.setdefault(f.note.because if f.note else f"{it.title()} {f.verdicts[0].name}", f)
+    yield f"## What ships in Mitsuba {mi.__version__}"
+    yield "\n".join(table)
+    yield "Left out: " + "; ".join(f"{names} ({why})" for names, why in LEFT_OUT.items()) + "."
+    yield "## What explains it"
+    for finding in sections.values():
+        yield from _section(finding)
+
+
+def _faults_text(faults: list[Fault]) -> Iterator[str]:
+    yield "## Faults of public projects, written anew"
+    yield (
+        "Each is a sampler of a few lines in `laws/field/`, written from the public description that its link leads to, beside "
+        "the same sampler mended. The tests hold that the verdicts named catch it, and that nothing accuses the mended one."
+    )
+    rows = ["| fault | project | caught by | mended |", "|---|---|---|---|"]
+    for fault in faults:
+        caught = ", ".join(fault.judged().broken())
+        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {fault.judged(mended=True).state} |")
+        print(f"{fault.name}: {caught}", file=sys.stderr, flush=True)
+    yield "\n".join(rows)
+
+
+def main(argv: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser("python -m crescent.field", description=(__doc__ or "").partition("\n\n")[0])
+    parser.add_argument("--faults", default="laws/field", metavar="FOLDER")
+    parser.add_argument("--out", default="docs/field.md", metavar="FILE")
+    parser.add_argument("--only", nargs="*", default=[], metavar="PLUGIN")
+    args = parser.parse_args(argv)
+    parts = [
+        "# The field, judged",
+        "Written by `python -m crescent.field`, which anyone can run again: `pip install crescent[mitsuba]`. Verdicts are those of "
+        "[verdicts.md](verdicts.md) at four w_o above the surface and three below; levels are shared within a plugin at "
+        "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; *no "
+        "picture changes*: sample and pdf differ where eval is 0; *corner*: at random numbers that hardly ever come; "
+        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; *open*: not decided.",
+        *_shipped_text(args.only),
+        *(_faults_text(faults_in(args.faults)) if Path(args.faults).is_dir() else []),
+    ]
+    crescent._crescent.write_whole(args.out, "\n\n".join(parts) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

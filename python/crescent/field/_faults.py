@@ -1,0 +1,50 @@
+"""Faults of public projects: each is written anew from its public description, beside the same sampler mended."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from .._check import Sampler, check
+from .._judgement import Judgement
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A sampler as a project had it."""
+
+    name: str  #: a few words
+    project: str
+    source: str  #: where the project or its users tell of it
+    says: str  #: what was wrong, in a sentence
+    caught_by: tuple[str, ...]  #: verdicts that accuse it
+    sampler: Sampler
+    mended: Sampler
+
+    def judged(self, mended: bool = False) -> Judgement:
+        """The judgement of the fault, or of what it became."""
+        return check(self.mended if mended else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
+
+
+W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: where each is looked at, in degrees
+
+
+def faults_in(folder: str | Path) -> list[Fault]:
+    """FAULTS of every file of a folder, laws/field of the repository, in the order of their names."""
+    path = Path(folder).resolve()
+    if not path.is_dir():
+        raise ValueError(f"{folder}: no such folder")
+    sys.path.insert(0, str(path))
+    try:
+        out: list[Fault] = []
+        for file in sorted(path.glob("*.py")):
+            spec = importlib.util.spec_from_file_location(file.stem, file)
+            assert spec and spec.loader
+            module = sys.modules[file.stem] = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(module)
+            out += getattr(module, "FAULTS", [])
+    finally:
+        sys.path.remove(str(path))
+    return out

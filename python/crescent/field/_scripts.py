@@ -1,0 +1,36 @@
+"""Scripts of five lines that show a finding with Mitsuba and NumPy alone, and what they print."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+
+from ._shipped import Shipped
+
+_HEAD = """import mitsuba as mi, numpy as np; mi.set_variant("llvm_ad_rgb")
+b, si, n = mi.load_dict({code}), mi.SurfaceInteraction3f(), 1 << 22
+si.wi, si.sh_frame, rng = mi.Vector3f({wo}), mi.Frame3f(mi.Vector3f(0, 0, 1)), np.random.default_rng(1)
+"""
+
+_MASS = """w = np.float32(rng.normal(size=(3, n))); w /= np.linalg.norm(w, axis=0); bs, weight = b.sample(mi.BSDFContext(), si, mi.Float(np.float32(rng.random(n))), mi.Point2f(np.float32(rng.random((2, n)))))
+print("pdf integrates to", 4 * np.pi * np.mean(b.pdf(mi.BSDFContext(), si, mi.Vector3f(w))), "and draws of weight 0 are", np.mean(np.all(np.array(weight) == 0, axis=0)))"""
+
+_CORNER = """bs, weight = b.sample(mi.BSDFContext(), si, mi.Float([{u2}]), mi.Point2f([{u0}], [{u1}]))
+print("pdf", bs.pdf, "direction", bs.wo)"""
+
+_ALBEDO = """bs, weight = b.sample(mi.BSDFContext(), si, mi.Float(np.float32(rng.random(n))), mi.Point2f(np.float32(rng.random((2, n)))))
+print("reflects", np.mean(np.array(weight), axis=1))"""
+
+
+def script_for(it: Shipped, verdict: str, wo: tuple[float, float, float], u: tuple[float, float, float] | None) -> str:
+    """The script for one verdict at one w_o; u: the corner that it is about."""
+    body = _ALBEDO if verdict == "physics" else _CORNER.format(u0=u[0], u1=u[1], u2=u[2]) if u else _MASS
+    return _HEAD.format(code=it.code(), wo=", ".join(f"{v:.6g}" for v in wo)) + body
+
+
+def output_of(script: str) -> str:
+    """What the script prints."""
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        exec(script, {})
+    return out.getvalue().strip()

@@ -1,0 +1,153 @@
+"""load, parse and run: films without a copy, records, and the file's own checks; arms, BRDFs and tails as functions."""
+
+import os
+import signal
+
+import numpy as np
+import pytest
+from samplers import cosine, cosine_pdf
+
+import crescent
+
+TINY = """
+title = "a ball"
+seed = 7
+seeds = 2
+[image]
+width = 48
+height = 32
+[camera]
+eye = [0, 0.8, 3.2]
+target = [0, 0.5, 0]
+vfov_deg = 42
+[shapes.ball]
+kind = "sphere"
+center = [0, 0.65, 0]
+radius = 0.65
+rho_d = [0.2, 0.2, 0.2]
+rho_s = 0.12
+s = 32
+[disks.key]
+center = [1.2, 2.9, 1.3]
+normal = [-0.48, -0.81, -0.3369]
+radius = 0.3
+radiance = [90, 90, 90]
+[fill]
+radiance = [1.2, 1.2, 1.2]
+[arms.cosine]
+n = [4, 16]
+[arms.phong]
+n = 4
+[regions.ball]
+box = [16, 8, 32, 24]
+[assertions."the lobe is better"]
+check = "rmse.ball(phong, n=4) < 100"
+"""
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return crescent.run(crescent.parse(TINY))
+
+
+def test_an_experiment_is_read_and_changed_with_the_files_own_checks(tmp_path):
+    e = crescent.parse(TINY, "tiny.toml")
+    assert e["image.width"] == 48 and e["shapes.ball"]["s"] == 32
+    before = e.hash
+    e["shapes.ball.s"] = 8
+    assert e["shapes.ball.s"] == 8 and e.hash != before
+    assert e.with_({"shapes.ball.s": 32}).hash == before
+    with pytest.raises(ValueError, match="widht"):
+        e["image.widht"] = 9
+    with pytest.raises(ValueError, match="image.width"):
+        e["image.width"] = -1
+    with pytest.raises(KeyError, match="image has width, height"):
+        e["image.depth"]
+    (tmp_path / "tiny.toml").write_text(e.text)
+    assert crescent.load(tmp_path / "tiny.toml") == e
+    with pytest.raises(ValueError, match="t.toml:1:"):
+        crescent.parse("x = ", "t.toml")
+
+
+def test_films_are_the_memory_of_the_run(measured):
+    film = measured.films["cosine", 16]
+    assert film.y.shape == (32, 48) and film.y.dtype == np.float32 and film.rgb.shape == (32, 48, 3)
+    assert not film.y.flags.owndata and not film.y.flags.writeable
+    assert set(measured.films) == {("cosine", 4, 32.0), ("cosine", 16, 32.0), ("phong", 4, 32.0)}
+    reference = measured.references[32.0]["y"]
+    assert reference.shape == (32, 48)
+    box = np.s_[8:25, 16:33]  # both ends of a region's box are inside
+    rmse = float(np.sqrt(np.mean((film.y[box].astype(float) - reference[box]) ** 2)))
+    told = [r for r in measured.records() if (r["arm"], r["n"], r["seed"], r["meter"]) == ("cosine", 16, 7, "rmse")]
+    assert told[0]["region"] == "ball" and told[0]["value"] == pytest.approx(rmse, rel=1e-5)
+    with pytest.raises(KeyError, match="there are cosine n=4"):
+        measured.films["phong", 5]
+
+
+def test_films_outlive_their_run_and_threads_change_no_bit(measured):
+    one = crescent.run(crescent.parse(TINY), threads=1).films["phong", 4]
+    assert np.array_equal(one.y, measured.films["phong", 4].y)
+
+
+def test_metrics_are_records_json_and_xarray(measured):
+    assert measured.holds and measured.metrics["bands"]
+    assert len({r["seed"] for r in measured.records()}) == 2
+    xarray = pytest.importorskip("xarray")
+    data = measured.to_xarray()
+    assert isinstance(data, xarray.Dataset) and data.rmse.dims == ("arm", "n", "s", "seed", "region")
+    assert np.isnan(data.rmse.sel(arm="phong", n=16)).all() and (data.rmse.sel(arm="phong", n=4) > 0).all()
+
+
+def test_a_folder_is_written_as_one(measured, tmp_path):
+    measured.write(tmp_path / "out")
+    names = {str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.*") if p.is_file() and "/." not in str(p)}
+    assert {"metrics.json", "metrics.csv", "junit.xml", "films/cosine.exr", "films/phong.exr"} <= names
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError):
+        measured.write(tmp_path / "file")
+
+
+def test_ctrl_c_ends_a_run():
+    e = crescent.parse(TINY).with_({"arms.cosine.n": [1 << 20], "image.width": 480, "image.height": 320})
+    asked = []
+
+    def once(what, done, total):
+        if not asked:
+            asked.append(what)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        crescent.run(e, progress=once)
+
+
+def test_arms_are_vectorised_functions():
+    rng = np.random.default_rng(1)
+    u, wo = rng.random((1000, 2)), [0.6, 0.0, 0.8]
+    phong = crescent.arm("phong", brdf="phong", s=32)
+    wi, p = phong.sample(wo, u)
+    assert wi.shape == (1000, 3) and np.allclose(np.linalg.norm(wi, axis=1), 1, atol=1e-6)
+    up = wi[:, 2] > 0
+    assert np.allclose(phong.pdf(wo, wi)[up], p[up], rtol=1e-4)
+    assert np.allclose(crescent.arm("cosine").f(wo, wi)[up], 0.5 / np.pi)
+    assert crescent.check(phong, wo_deg=[30]).of("density")[0].state == "right"
+    assert "phong" in crescent.arm_names() and "ggx" in crescent.brdf_names()
+    for bad in (dict(name="phon"), dict(name="light-area"), dict(name="phong", brdf="gxg")):
+        with pytest.raises(ValueError):
+            crescent.arm(**bad)
+    with pytest.raises(ValueError, match="3 rows beside 2"):
+        phong.pdf(np.ones((3, 3)), np.ones((2, 3)))
+
+
+def test_the_tail_of_weights():
+    u = np.random.default_rng(5).random(100_000)
+    heavy = crescent.tail(u**-0.8)  # Pareto with k = 0.8
+    assert abs(heavy.k - 0.8) < 4 * heavy.se and heavy.heavy
+    assert not crescent.tail(u).heavy and crescent.tail(np.ones(1000)) is None
+    with pytest.raises(ValueError, match="row 2"):
+        crescent.tail([1, 2, np.nan])
+
+
+def test_the_density_of_a_warp_by_differences():
+    u = np.random.default_rng(2).uniform(0.05, 0.95, (1000, 2))
+    wi, p = crescent.pdf_of(cosine)(np.tile([0, 0, 1.0], (1000, 1)), u)
+    assert np.allclose(p, cosine_pdf(None, wi), rtol=1e-4)

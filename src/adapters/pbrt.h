@@ -1,0 +1,58 @@
+// A class of pbrt-v4's shape, judged: crescent::judge_sampler("mine", crescent::adapters::Pbrt(bxdf)).
+//
+//   f(wo, wi, mode)                -> a spectrum, 1/sr, without the cosine
+//   Sample_f(wo, uc, u, mode, ...) -> an optional of something with .f, .wi, .pdf, .flags or IsSpecular()
+//   PDF(wo, wi, mode, ...)         -> 1/sr
+//
+// Local frame, n = +z; Vector3f and Point2f are built from floats, a spectrum has Average() or is a number. Nothing of
+// pbrt is included: types follow from the class.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "verdicts/user.h"
+
+namespace crescent::adapters {
+
+/// What every adapter gives for a draw.
+struct Drawn {
+    std::array<double, 3> wi{};
+    double pdf = 0;
+    double weight = 0;  // f |cos| / pdf
+    bool delta = false;
+};
+
+template <class Spectrum> double average_of(const Spectrum& f) {
+    if constexpr (requires { f.Average(); }) return static_cast<double>(f.Average());
+    else return static_cast<double>(f);
+}
+
+template <class BxDF> class Pbrt {
+    using Parameters = typename user::Signature<decltype(&BxDF::Sample_f)>::Parameters;
+    template <std::size_t i> using Parameter = std::remove_cvref_t<std::tuple_element_t<i, Parameters>>;
+    using Vector = Parameter<0>;
+    using Point = Parameter<2>;
+    using Mode = Parameter<3>;
+    using Direction = std::array<double, 3>;
+
+public:
+    explicit Pbrt(BxDF bxdf) : bxdf_(std::move(bxdf)) {}
+
+    std::optional<Drawn> sample(Direction wo, double uc, std::array<double, 2> u) const {
+        const auto s = bxdf_.Sample_f(vector(wo), static_cast<float>(uc), Point{float(u[0]), float(u[1])}, Mode{});
+        if (!s) return {};
+        const double pdf = static_cast<double>(s->pdf), cosine = std::fabs(static_cast<double>(s->wi.z));
+        return Drawn{{s->wi.x, s->wi.y, s->wi.z}, pdf, pdf > 0 ? average_of(s->f) * cosine / pdf : 0, s->IsSpecular()};
+    }
+    double pdf(Direction wo, Direction wi) const { return bxdf_.PDF(vector(wo), vector(wi), Mode{}); }
+    double f(Direction wo, Direction wi) const { return average_of(bxdf_.f(vector(wo), vector(wi), Mode{})); }
+
+private:
+    BxDF bxdf_;
+    static Vector vector(Direction w) { return Vector{float(w[0]), float(w[1]), float(w[2])}; }
+};
+
+}  // namespace crescent::adapters
