@@ -23,7 +23,7 @@ template <class Error, class Call> std::string what_of(Call&& call) {
 TEST(Shaders, EveryArmHasItsFileAndCompilesOnEveryLobe) {
     for (const std::string& arm : test::all_arms())
         for (const int lobe : {-1, 0, 1, 2})
-            EXPECT_NO_THROW(Program(test::context(), estimator_source(arm, lobe, 2, {1, 1, 1, 1, 1})))
+            EXPECT_NO_THROW(Program(test::context(), estimator_source(arm, lobe, {2}, {1, 1, 1, 1, 1})))
                 << arm << " on lobe " << lobe;
 }
 
@@ -114,7 +114,7 @@ TEST(Rectangles, CoverTheImageOnceAndStaySmall) {
     for (const auto& [width, height, disks, side] :
         {std::tuple{960, 540, 1, 16384}, {7680, 4320, 64, 4096}, {5, 3, 0, 2}, {100000, 1, 2, 16384}}) {
         std::vector<int> times(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-        const auto all = rectangles_of(width, height, static_cast<std::size_t>(disks), side);
+        const auto all = rectangles_of(width, height, {static_cast<std::size_t>(disks)}, side);
         for (const TileBox& box : all) {
             EXPECT_LE(box.x1 - box.x0, side);
             EXPECT_LE(box.y1 - box.y0, side);
@@ -125,7 +125,7 @@ TEST(Rectangles, CoverTheImageOnceAndStaySmall) {
         }
         EXPECT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(times.size()));
     }
-    EXPECT_EQ(rectangles_of(960, 540, 1, 16384).size(), 1u) << "the beauty is one film framebuffer";
+    EXPECT_EQ(rectangles_of(960, 540, {1}, 16384).size(), 1u) << "the beauty is one film framebuffer";
 }
 
 }  // namespace

@@ -10,14 +10,20 @@ namespace crescent::gl {
 
 namespace {
 
+/// "sphere" -> "SPHERE_LIGHT".
+std::string light_word(std::string_view kind) {
+    std::string out(kind);
+    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::toupper(c); });
+    return out + "_LIGHT";
+}
 std::string lobe_word(int lobe) { return glsl_word(std::string(lobe_info(static_cast<LobeKind>(lobe)).name)); }
 
 }  // namespace
 
 ShaderSource estimator_source(
-    const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies) {
+    const std::string& sampler, int lobe, const LightCounts& lights, const std::array<std::size_t, 5>& bodies) {
     ShaderSource source;
-    const std::size_t recorded = recorded_disks(disks);
+    const std::size_t recorded = recorded_lights(lights.all());
     std::size_t body_count = 0;
     constexpr std::array<const char*, 5> kinds = {"SPHERES", "BOXES", "QUADS", "PLATES", "PLANES"};
     for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -27,8 +33,11 @@ ShaderSource estimator_source(
     source.define("BODY_SLOTS", std::max<std::size_t>(body_count, 1));  // GLSL has no empty arrays
     source.define("LOBE", std::to_string(lobe + 1));
     if (lobe >= 0) source.define("lobe_here", "lobe_" + lobe_word(lobe));
-    source.define("DISKS", disks);
-    source.define("DISK_SLOTS", std::max<std::size_t>(disks, 1));
+    source.define("DISKS", lights.disks);
+    source.define("DISK_SLOTS", std::max<std::size_t>(lights.disks, 1));
+    source.define("OTHERS", lights.others);
+    source.define("OTHER_SLOTS", std::max<std::size_t>(lights.others, 1));
+    for (std::size_t k = 1; k < LightKinds::names.size(); ++k) source.define(light_word(LightKinds::names[k]), k);
     source.define("RECORDED", recorded);
     source.define("RECORDED_SLOTS", std::max<std::size_t>((recorded + 1) / 2 * 2, 2));
     source.define("sample_arm", "sample_" + glsl_word(sampler));
@@ -53,8 +62,9 @@ double Estimator::longest_draw_s() const {
     return longest;
 }
 
-Estimator::Kernel& Estimator::kernel(const std::string& sampler, int lobe, std::size_t disks, const Bodies& bodies) {
-    const ShaderSource source = estimator_source(sampler, lobe, disks, bodies.counts);
+Estimator::Kernel& Estimator::kernel(
+    const std::string& sampler, int lobe, const LightCounts& lights, const Bodies& bodies) {
+    const ShaderSource source = estimator_source(sampler, lobe, lights, bodies.counts);
     std::unique_ptr<Kernel>& kernel = kernels_[source.text()];
     if (!kernel) kernel = std::make_unique<Kernel>(context_, source);
     return *kernel;
@@ -100,7 +110,7 @@ void set_scene(const Program& program, const ShadingPoints& lights, const Bodies
 
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
     std::vector<Film>& films, ProgressMonitor& watch) {
-    const std::size_t disks = scene.disk_count();
+    const LightCounts counts = count_lights(scene);
     const SiteTexture& here = sites(scene, box, watch);
     if (here.groups().empty()) return;
     const ShadingPoints lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
@@ -110,15 +120,15 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
         if (lobe >= 0 && !shader_text("lobes/" + lobe_word(lobe) + ".glsl"))
             throw OutputError("the GL instrument has no copy of the lobe '" +
                 std::string(lobe_info(static_cast<LobeKind>(lobe)).name) + "': use the cpu");
-        Kernel& k = kernel(sampler, lobe, disks, bodies);
+        Kernel& k = kernel(sampler, lobe, counts, bodies);
         set_scene(k.program, lights, bodies, box, scene.image().width, seed);
         parts.push_back({&k.program, &k.pacer, here.pixels_of(lobe)});
     }
-    const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(disks));
+    const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(counts.all()));
     context_.gl().BindVertexArray(vertex_array_);  // core profiles draw nothing without one
     here.bind();
     target.bind();
-    Pass pass(context_, here, target, std::move(parts), disks, watch);
+    Pass pass(context_, here, target, std::move(parts), counts.all(), watch);
     for (Film& film : films) {
         pass.advance_to(film.n);
         for (std::size_t g = 0; g < here.groups().size(); ++g) {
@@ -134,14 +144,15 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
     if (!(find_arm_info(sampler)->gl.relative > 0))
         throw OutputError("the GL instrument has no copy of the sampler '" + sampler + "': use the cpu");
     for (const Light& light : scene.lights())
-        if (!light.is_disk())
+        if (std::string(shader_text("lights.glsl")).find(light_word(light.kind())) == std::string::npos &&
+            !light.is_disk())
             throw OutputError(fmt::format(
-                "the GL instrument has disk lights alone; '{}' is a {}: use the cpu", light.name, light.kind()));
+                "the GL instrument has no light of the kind '{}' ({}): use the cpu", light.kind(), light.name));
     const Image& image = scene.image();
     std::vector<Film> out;
     for (const std::uint64_t rung : n)
         out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
-    for (const TileBox& box : rectangles_of(image.width, image.height, scene.disk_count(), largest_texture_))
+    for (const TileBox& box : rectangles_of(image.width, image.height, count_lights(scene), largest_texture_))
         estimate(scene, box, sampler, seed, out, watch);
     return out;
 }

@@ -35,7 +35,7 @@ private:
         Kernel(const Context& context, const ShaderSource& source) : program(context, source) {}
     };
 
-    Kernel& kernel(const std::string& sampler, int lobe, std::size_t disks, const Bodies& bodies);
+    Kernel& kernel(const std::string& sampler, int lobe, const LightCounts& lights, const Bodies& bodies);
     const SiteTexture& sites(const Scene& scene, const TileBox& box, ProgressMonitor& watch);
     const Framebuffer& framebuffer(int width, int height, std::size_t attachments);
     void estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
@@ -52,6 +52,6 @@ private:
 
 /// The fragment shader of one arm on one lobe, its place in the list or -1.
 ShaderSource estimator_source(
-    const std::string& sampler, int lobe, std::size_t disks, const std::array<std::size_t, 5>& bodies);
+    const std::string& sampler, int lobe, const LightCounts& lights, const std::array<std::size_t, 5>& bodies);
 
 }  // namespace crescent::gl

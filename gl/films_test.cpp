@@ -43,6 +43,35 @@ TEST_P(FilmLaw, ASampleIsTheCpusAndChangesSidesOfAnEdgeSeldom) {
 INSTANTIATE_TEST_SUITE_P(
     EveryArm, FilmLaw, testing::ValuesIn(test::all_arms()), [](const auto& each) { return glsl_word(each.param); });
 
+/// The test scene with a ball and a rectangle of light beside its disks, or alone.
+Scene with_other_lights(bool disks) {
+    std::string text = test::scene_text;
+    if (!disks) text = text.substr(0, text.find("[disks.left]")) + text.substr(text.find("[arms.uniform]"));
+    text += R"(
+[lights.ball]
+kind = "sphere"
+center = [-1.4, 1.9, 1.2]
+radius = 0.3
+radiance = [12.0, 10.0, 8.0]
+[lights.window]
+kind = "rectangle"
+corner = [1.0, 1.2, 1.6]
+edge_u = [0.0, 0.9, 0.0]
+edge_v = [0.6, 0.0, -0.6]
+radiance = [6.0, 8.0, 10.0]
+two_sided = true
+)";
+    return Scene(parse(text, "lights.toml", {}));
+}
+
+TEST_P(FilmLaw, LightsThatAreNoDisksAreTheCpus) {
+    Estimator gl(test::context());
+    const bool software = test::context().software();
+    const GlTolerance& tolerance = find_arm_info(GetParam())->gl;
+    for (const bool disks : {false, true})
+        expect_within(differences(with_other_lights(disks), gl, GetParam(), 16, 12), tolerance, 16, software);
+}
+
 TEST(FilmLaw, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
     for (const ArmInfo& arm : arm_infos())
         EXPECT_EQ(arm.gl.relative > 0, shader_text("arms/" + glsl_word(std::string(arm.name)) + ".glsl") != nullptr)

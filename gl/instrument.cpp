@@ -68,8 +68,8 @@ std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Progre
     if (!claimed_film_) {
         const Image& image = scene.image();
         const TileBox first =
-            rectangles_of(image.width, image.height, scene.disk_count(), estimator_.largest_texture()).front();
-        claim_framebuffer("film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(scene.disk_count()));
+            rectangles_of(image.width, image.height, count_lights(scene), estimator_.largest_texture()).front();
+        claim_framebuffer("film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(count_lights(scene).all()));
         claims_.push_back(claim("the random integers are the CPU's", unlike_integers_here(*context_, job.seed), "==", 0,
             "integers that differ"));
         claimed_film_ = true;

@@ -15,17 +15,17 @@ constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may 
 }  // namespace
 
 Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer,
-    std::vector<LobePart> parts, std::size_t disks, ProgressMonitor& watch)
+    std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& watch)
     : context_(context),
       sites_(sites),
       framebuffer_(framebuffer),
       parts_(std::move(parts)),
-      disks_(disks),
+      lights_(lights),
       watch_(watch),
       moments_(sites.groups().size()),
       met_(framebuffer.attachments() - 2) {
     for (std::size_t g = 0; g < moments_.size(); ++g)
-        moments_[g].resize(sites.groups()[g].count, disks), means_.emplace_back(sites.groups()[g].count);
+        moments_[g].resize(sites.groups()[g].count, lights), means_.emplace_back(sites.groups()[g].count);
 }
 
 void Pass::advance_to(std::uint64_t n) {
@@ -47,7 +47,7 @@ int Pass::samples_per_draw(std::uint64_t left) const {
 }
 
 void Pass::take(int samples) {
-    for (std::size_t first = 0; first == 0 || first < disks_; first += most_recorded) {
+    for (std::size_t first = 0; first == 0 || first < lights_; first += most_recorded) {
         for (LobePart& part : parts_) {
             part.program->use();
             if (part.pacer->untried()) warm_up(part);
@@ -95,20 +95,20 @@ void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
 }
 
 /// Adds what the last draws of all parts wrote.
-void Pass::gather(std::size_t first_disk, int samples) {
+void Pass::gather(std::size_t first_light, int samples) {
     const double before = static_cast<double>(done_), more = samples;
-    if (first_disk == 0) {
+    if (first_light == 0) {
         framebuffer_.read(0, sums_);
         framebuffer_.read(1, counts_);
     }
     for (std::size_t k = 0; k < met_.size(); ++k) framebuffer_.read(2 + k, met_[k]);
-    const std::size_t disks = std::min(disks_ - std::min(first_disk, disks_), most_recorded);
+    const std::size_t lights = std::min(lights_ - std::min(first_light, lights_), most_recorded);
     tbb::parallel_for(std::size_t{0}, moments_.size(), [&](std::size_t g) {
         const ShadingPoints& group = sites_.groups()[g];
         Moments& m = moments_[g];
         for (std::size_t i = 0; i < group.count; ++i) {
             const std::size_t at = 4 * sites_.texel(group, i);
-            if (first_disk == 0) {
+            if (first_light == 0) {
                 m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
                 const double by = static_cast<double>(counts_[at + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983
                 m.spread[i] += static_cast<double>(sums_[at + 2]) + by * by * (before * more / (before + more));
@@ -118,10 +118,10 @@ void Pass::gather(std::size_t first_disk, int samples) {
                     m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
                 m.bad[i] += static_cast<std::uint32_t>(counts_[at + 2]);
             }
-            for (std::size_t k = 0; k < disks; ++k) {
+            for (std::size_t k = 0; k < lights; ++k) {
                 const float* pair = met_[k / 2].data() + at + 2 * (k % 2);
-                m.disk_g[first_disk + k][i] += static_cast<double>(pair[0]),
-                    m.disk_g_lobe[first_disk + k][i] += static_cast<double>(pair[1]);
+                m.disk_g[first_light + k][i] += static_cast<double>(pair[0]),
+                    m.disk_g_lobe[first_light + k][i] += static_cast<double>(pair[1]);
             }
         }
     });

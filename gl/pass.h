@@ -12,11 +12,11 @@
 
 namespace crescent::gl {
 
-/// Disks whose sums one draw can write beside the two attachments that it always has: 8 draw buffers are what core 3.3
+/// Lights whose sums one draw can write beside the two attachments that it always has: 8 draw buffers are what core 3.3
 /// promises.
 constexpr std::size_t most_recorded = 12;
-constexpr std::size_t recorded_disks(std::size_t disks) { return disks < most_recorded ? disks : most_recorded; }
-constexpr std::size_t attachments_for(std::size_t disks) { return 2 + (recorded_disks(disks) + 1) / 2; }
+constexpr std::size_t recorded_lights(std::size_t lights) { return lights < most_recorded ? lights : most_recorded; }
+constexpr std::size_t attachments_for(std::size_t lights) { return 2 + (recorded_lights(lights) + 1) / 2; }
 
 /// The pixels of one lobe in the rectangle, with the program that draws them.
 struct LobePart {
@@ -28,27 +28,27 @@ struct LobePart {
 class Pass {
 public:
     Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts,
-        std::size_t disks, ProgressMonitor& watch);
+        std::size_t lights, ProgressMonitor& watch);
 
     /// Takes samples [done, n); then moments() are those of n samples.
     void advance_to(std::uint64_t n);
     const std::vector<Moments>& moments() const { return moments_; }
 
 private:
-    /// How often each sample is drawn, so that every disk has its sums.
-    std::size_t passes() const { return disks_ == 0 ? 1 : (disks_ + most_recorded - 1) / most_recorded; }
+    /// How often each sample is drawn, so that every light has its sums.
+    std::size_t passes() const { return lights_ == 0 ? 1 : (lights_ + most_recorded - 1) / most_recorded; }
     int samples_per_draw(std::uint64_t left) const;
     void take(int samples);
     void draw_part(LobePart& part, int samples);
     void draw_strips(const LobePart& part, std::size_t from, std::size_t to);
     void warm_up(const LobePart& part);
-    void gather(std::size_t first_disk, int samples);
+    void gather(std::size_t first_light, int samples);
 
     const Context& context_;
     const SiteTexture& sites_;
     const Framebuffer& framebuffer_;
     std::vector<LobePart> parts_;
-    std::size_t disks_;
+    std::size_t lights_;
     ProgressMonitor& watch_;
     std::uint64_t done_ = 0;
     std::vector<Moments> moments_;            // one a group of the sites

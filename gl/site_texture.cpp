@@ -32,7 +32,7 @@ SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileB
         for (ShadingPoints& group : groups) groups_.push_back(std::move(group));
 
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
-                      layer_count = site_layers(scene.disk_count());
+                      layer_count = site_layers(count_lights(scene));
     std::vector<float> layers(4 * texels * layer_count, 0.0f);
     for (std::size_t k = 0; k < texels; ++k) layers[4 * (layer_of_lobe * texels + k) + 3] = -1;
     tbb::parallel_for(std::size_t{0}, groups_.size(), [&](std::size_t g) {
@@ -59,6 +59,14 @@ void SiteTexture::fill_site(std::vector<float>& layers, const ShadingPoints& s, 
     for (const DiskArrays& d : s.disks) {
         put(d.cx[i], d.cy[i], d.cz[i], d.d[i]);
         put(d.nx[i], d.ny[i], d.nz[i], d.s[i]);
+    }
+    for (const LightArrays& l : s.others) {
+        const auto& n = l.numbers;
+        put(n[0][i], n[1][i], n[2][i], l.d[i]);
+        put(n[3][i], n[4][i], n[5][i], l.s[i]);
+        put(n[6][i], n[7][i], n[8][i], n[9][i]);
+        put(n[10][i], n[11][i], n[12][i], n[13][i]);
+        put(n[14][i], n[15][i], static_cast<float>(l.kind), l.power);
     }
 }
 
@@ -108,8 +116,12 @@ LobePixels SiteTexture::pixels_of(int lobe) const {
     return out;
 }
 
-std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int largest_texture) {
-    const int texels = static_cast<int>((std::size_t{256} << 20) / (16 * site_layers(disks)));
+LightCounts count_lights(const Scene& scene) {
+    return {scene.disk_count(), scene.lights().size() - scene.disk_count()};
+}
+
+std::vector<TileBox> rectangles_of(int width, int height, const LightCounts& lights, int largest_texture) {
+    const int texels = static_cast<int>((std::size_t{256} << 20) / (16 * site_layers(lights)));
     const int across = std::min(width, largest_texture);
     const int up = std::clamp(texels / across, 1, std::min(height, largest_texture));
     std::vector<TileBox> out;

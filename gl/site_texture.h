@@ -1,5 +1,5 @@
 // The sites of a rectangle of pixels, in the CPU's arrays and as the array texture that gl/shaders/site.glsl reads: one
-// texel a pixel, six layers and two more a disk light. The numbers are the same floats.
+// texel a pixel, six layers and two more a disk light, five more any other light. The numbers are the same floats.
 #pragma once
 
 #include <array>
@@ -51,11 +51,18 @@ private:
     GLuint texture_ = 0;
 };
 
-/// Texture layers for so many disks.
-constexpr std::size_t site_layers(std::size_t disks) { return 6 + 2 * disks; }
+/// How many lights a scene has: disks, and others, which come after them.
+struct LightCounts {
+    std::size_t disks = 0, others = 0;
+    std::size_t all() const { return disks + others; }
+};
+LightCounts count_lights(const Scene& scene);
+
+/// Texture layers for so many lights.
+constexpr std::size_t site_layers(const LightCounts& lights) { return 6 + 2 * lights.disks + 5 * lights.others; }
 
 /// The image in rectangles whose textures stay under about 256 MiB and the driver's largest texture.
-std::vector<TileBox> rectangles_of(int width, int height, std::size_t disks, int largest_texture);
+std::vector<TileBox> rectangles_of(int width, int height, const LightCounts& lights, int largest_texture);
 
 /// The bodies that stand before lights, in the order that gl/shaders/disk_hit.glsl expects.
 struct Bodies {

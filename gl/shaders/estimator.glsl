@@ -16,7 +16,7 @@ uniform ivec2 corner;        // of this framebuffer in the image, pixels
 uniform int image_width;     // pixels
 uniform uint seed;
 uniform int first_sample, samples;
-uniform int first_recorded;  // the first disk whose sums are written
+uniform int first_recorded;  // the first light whose sums are written
 
 layout(location = 0) out vec4 sums;
 layout(location = 1) out vec4 counts;
@@ -69,6 +69,10 @@ bool meets(int k, vec3 wi, int aimed, bool met, out float v) {
     bool hit = meets_disk(facing[k], wi, v);
     return k == aimed ? met && v < 0.0 : hit;
 }
+bool meets_light(int k, vec3 wi, int aimed, bool met, out float t) {
+    bool hit = meets_other(others[k], wi, t);
+    return DISKS + k == aimed ? met && shines(others[k]) : hit;
+}
 
 // A sample that met a disk: the nearest disk first, and of two as near as rounding can tell the one that stands first in the
 // file; then what stands before it. Returns X where one was met, else x.
@@ -83,11 +87,19 @@ float meet(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
         index = nearer ? k : index;
         nearest = nearer ? t : nearest;
     }
+    for (int k = 0; k < OTHERS; ++k) {
+        float t;
+        bool nearer = meets_light(k, wi, aimed, met, t) && t < nearest * (1.0 - 1e-5);
+        index = nearer ? DISKS + k : index;
+        nearest = nearer ? t : nearest;
+    }
     if (index < 0 || blocked(around.point, to_world(around.frame, wi), nearest, around.shape)) return x;
     for (int k = 0; k < RECORDED; ++k)
         if (index == first_recorded + k) block.disk[k] += g * vec2(1.0, lobe);
     for (int k = 0; k < DISKS; ++k)
         if (index == k) x = g * (disk_worth[k].x + lobe * disk_worth[k].y);
+    for (int k = 0; k < OTHERS; ++k)
+        if (index == DISKS + k) x = g * (light_worth[k].x + lobe * light_worth[k].y);
     ++hits;
     return x;
 }
@@ -106,6 +118,10 @@ float carry(Drawn drawn, float weight, int aimed, bool met) {
     for (int k = 0; k < DISKS; ++k) {
         float v;
         any = meets(k, drawn.wi, aimed, met, v) || any;
+    }
+    for (int k = 0; k < OTHERS; ++k) {
+        float t;
+        any = meets_light(k, drawn.wi, aimed, met, t) || any;
     }
     if (any && up) x = meet(drawn.wi, g, lobe, x, aimed, met);
     return x;

@@ -6,7 +6,8 @@
 //   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
 //      rho_s, -               5  its n, lobe + 1 (-1: no surface)
 //   2  the point (from the scene's origin, world), shape
-#include "frame.glsl"
+// and after the disks five a light that is no disk: a, d;  b, s;  c, number 0;  numbers 1 to 4;  numbers 5 and 6, kind, power.
+#include "lights.glsl"
 
 uniform sampler2DArray sites;
 uniform vec3 disk_kind[DISK_SLOTS];  // radius; 1: emits from both sides; power, Y(L) pi r^2 relative to all disks
@@ -47,6 +48,13 @@ Surroundings load_site(ivec2 at) {
         bool apart = abs(height) > 1e-6 * (length(center.xyz) + disk_kind[k].x);
         disks[k] = LocalDisk(center.xyz, normal.xyz, disk_kind[k].x, disk_kind[k].y, disk_kind[k].z, apart ? height : 0.0);
         disk_worth[k] = vec2(center.w, normal.w);
+    }
+    for (int k = 0; k < OTHERS; ++k) {
+        vec4 n[5];
+        for (int j = 0; j < 5; ++j) n[j] = texelFetch(sites, ivec3(at, 6 + 2 * DISKS + 5 * k + j), 0);
+        others[k] = LocalLight(int(n[4].z), n[4].w, n[0].xyz, n[1].xyz, n[2].xyz,
+            float[7](n[2].w, n[3].x, n[3].y, n[3].z, n[3].w, n[4].x, n[4].y));
+        light_worth[k] = vec2(n[0].w, n[1].w);
     }
     return Surroundings(Frame(t.xyz, u.xyz, n.xyz), c.xyz, c.w, t.w, u.w, n.w);
 }

@@ -1,13 +1,13 @@
 // light-area, as src/arms/light_area.h: next-event estimation (NEE), a disk light by area, the disk chosen by its power
 // Y(L) pi r^2.
 //   y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2);  p_A = 1/(pi r^2);  p = p_A |y - x|^2 / cos(light).
-// It reaches nothing but the disks.
+// Other kinds of light: lights.glsl. It reaches nothing but the lights.
 #include "sampler.glsl"
 
 float disk_density(LocalDisk d, float r2, float cos_light) { return (1.0 / pi) / sqr(d.radius) * r2 / cos_light; }
 
-// The density with which the disks but for one draw wi.
-float density_of_other_disks(vec3 wi, int but) {
+// The density with which the lights but for one draw wi.
+float density_of_other_lights(vec3 wi, int but) {
     float sum = 0.0;
     for (int k = 0; k < DISKS; ++k) {
         LocalDisk d = disks[k];
@@ -17,9 +17,11 @@ float density_of_other_disks(vec3 wi, int but) {
         float t = c / (met ? v : 1.0);
         sum += met ? d.power * disk_density(d, sqr(t), abs(v)) : 0.0;
     }
+    for (int k = 0; k < OTHERS; ++k)
+        sum += DISKS + k != but ? others[k].power * other_area_pdf(others[k], wi) : 0.0;
     return sum;
 }
-float pdf_light_area(vec3 wo, vec3 wi) { return density_of_other_disks(wi, -1); }
+float pdf_light_area(vec3 wo, vec3 wi) { return density_of_other_lights(wi, -1); }
 
 Drawn on_disk(LocalDisk d, vec2 u) {
     float r = sqrt(u.x);
@@ -36,7 +38,7 @@ Drawn sample_light_area(vec3 wo, vec2 u) {
     float below = 0.0;
     aimed_disk = -1;
     for (int k = 0; k < DISKS; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
-        float above = k + 1 < DISKS ? below + disks[k].power : 1.0;
+        float above = k + 1 < DISKS + OTHERS ? below + disks[k].power : 1.0;
         if (u.x >= below && u.x < above) {
             drawn = on_disk(disks[k], vec2((u.x - below) / (above - below), u.y));
             drawn.pdf *= above - below;
@@ -44,8 +46,18 @@ Drawn sample_light_area(vec3 wo, vec2 u) {
         }
         below = above;
     }
-    if (DISKS > 1 && drawn.pdf > 0.0)  // disks may stand one behind another: every one that wi meets could have drawn it
-        drawn.pdf += density_of_other_disks(drawn.wi, aimed_disk);
+    for (int k = 0; k < OTHERS; ++k) {
+        float above = k + 1 < OTHERS ? below + others[k].power : 1.0;
+        if (u.x >= below && u.x < above) {
+            Aimed aimed = other_by_area(others[k], vec2((u.x - below) / max(above - below, 1e-30), u.y));
+            drawn = Drawn(aimed.wi, (above - below) * aimed.pdf);
+            aimed_disk = DISKS + k;
+        }
+        below = above;
+    }
+    // Lights may stand one behind another: every one that wi meets could have drawn it.
+    if (DISKS + OTHERS > 1 && drawn.pdf > 0.0)
+        drawn.pdf += density_of_other_lights(drawn.wi, aimed_disk);
     aimed_met = drawn.pdf > 0.0;
     return drawn;
 }

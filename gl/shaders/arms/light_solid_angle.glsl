@@ -38,26 +38,31 @@ Drawn towards(LocalDisk d, Cap cap, vec2 u) {
     return Drawn(wi, cap.density);
 }
 
-// The density with which the caps but for one draw wi.
-float density_of_other_caps(vec3 wi, int but) {
+// The density with which the lights but for one draw wi.
+float density_by_others(vec3 wi, int but) {
     float sum = 0.0, below = 0.0;
     for (int k = 0; k < DISKS; ++k) {
-        float share = k + 1 < DISKS ? disks[k].power : 1.0 - below;
+        float share = k + 1 < DISKS + OTHERS ? disks[k].power : 1.0 - below;
         Cap cap = cap_of(disks[k]);
         vec3 off = wi - cap.axis;
         sum += 0.5 * dot(off, off) <= cap.height && k != but ? share * cap.density : 0.0;
         below += share;
     }
+    for (int k = 0; k < OTHERS; ++k) {
+        float share = k + 1 < OTHERS ? others[k].power : 1.0 - below;
+        sum += DISKS + k != but ? share * other_angle_pdf(others[k], wi) : 0.0;
+        below += share;
+    }
     return sum;
 }
-float pdf_light_solid_angle(vec3 wo, vec3 wi) { return density_of_other_caps(wi, -1); }
+float pdf_light_solid_angle(vec3 wo, vec3 wi) { return density_by_others(wi, -1); }
 
 Drawn sample_light_solid_angle(vec3 wo, vec2 u) {
     Drawn drawn = Drawn(vec3(0.0, 0.0, 1.0), 0.0);
     float below = 0.0;
     aimed_disk = -1;
     for (int k = 0; k < DISKS; ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
-        float above = k + 1 < DISKS ? below + disks[k].power : 1.0;
+        float above = k + 1 < DISKS + OTHERS ? below + disks[k].power : 1.0;
         if (u.x >= below && u.x < above) {
             drawn = towards(disks[k], cap_of(disks[k]), vec2((u.x - below) / max(above - below, 1e-30), u.y));
             drawn.pdf *= above - below;
@@ -65,6 +70,17 @@ Drawn sample_light_solid_angle(vec3 wo, vec2 u) {
         }
         below = above;
     }
-    if (DISKS > 1 && drawn.pdf > 0.0) drawn.pdf += density_of_other_caps(drawn.wi, aimed_disk);  // caps may overlap
+    for (int k = 0; k < OTHERS; ++k) {
+        float above = k + 1 < OTHERS ? below + others[k].power : 1.0;
+        if (u.x >= below && u.x < above) {
+            Aimed aimed = other_by_angle(others[k], vec2((u.x - below) / max(above - below, 1e-30), u.y));
+            drawn = Drawn(aimed.wi, (above - below) * aimed.pdf);
+            aimed_disk = DISKS + k;
+            aimed_met = aimed.pdf > 0.0;
+        }
+        below = above;
+    }
+    // Caps may overlap: every light whose directions hold wi could have drawn it.
+    if (DISKS + OTHERS > 1 && drawn.pdf > 0.0) drawn.pdf += density_by_others(drawn.wi, aimed_disk);
     return drawn;
 }
