@@ -23,7 +23,8 @@ packages_of() {
 
 # missing PACKAGE...: those that are not installed.
 missing() {
-    dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "$@" 2>/dev/null |
+    # An empty line first: without a line of dpkg's, awk would take the names for what dpkg knows.
+    { echo; dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "$@" 2>/dev/null; } |
         awk 'NR == FNR { if ($1 == "ii") have[$2] = 1; next } !($1 in have)' - <(printf '%s\n' "$@")
 }
 

@@ -1,0 +1,23 @@
+#!/bin/bash
+# What ./run installs: every package that dpkg does not call installed, also on a machine where it knows none of them.
+. "$(dirname "$0")/common.sh"
+
+root="$work/tree"
+mkdir -p "$root/tools" bin
+cp "$CRESCENT_SOURCE/tools/setup.sh" "$CRESCENT_SOURCE/tools/packages.txt" "$root/tools/"
+. "$root/tools/setup.sh"
+PATH="$work/bin:$PATH"
+
+# dpkg_says LINE...: a dpkg-query that prints these.
+dpkg_says() {
+    printf '#!/bin/sh\ncat <<END\n%s\nEND\n' "$(printf '%s\n' "$@")" >bin/dpkg-query
+    chmod +x bin/dpkg-query
+}
+
+printf '#!/bin/sh\nexit 1\n' >bin/dpkg-query
+chmod +x bin/dpkg-query
+[ "$(missing cmake g++ | xargs)" = "cmake g++" ] || die "of two unknown packages these are missing: $(missing cmake g++ | xargs)"
+dpkg_says "ii  cmake" "rc  g++"
+[ "$(missing cmake g++ ninja-build | xargs)" = "g++ ninja-build" ] || die "missing: $(missing cmake g++ ninja-build | xargs)"
+dpkg_says "ii  cmake" "ii  g++"
+[ -z "$(missing cmake g++)" ] || die "missing: $(missing cmake g++ | xargs)"
