@@ -10,7 +10,6 @@ compare_memory.py" and "end of compare_memory.py". Needs NumPy.
 import argparse
 import os
 import re
-import resource
 import struct
 import subprocess
 import tempfile
@@ -82,20 +81,35 @@ def read_alone(folder):
     return time.monotonic() - start
 
 
-def measured(args, folder, out):
-    read = read_alone(folder)
+def row(args, folder, out, more, words):
+    """One call, as a line of the table."""
     command = [args.crescent, "compare", "--arm", f"a={folder}/a*.exr", "--arm", f"b={folder}/b*.exr", "--out", out]
     start = time.monotonic()
-    subprocess.run(command + ["--quiet"], check=True, stdout=subprocess.DEVNULL)
-    seconds = time.monotonic() - start
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with subprocess.Popen(command + more + ["--quiet"], stdout=subprocess.DEVNULL) as process:
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise SystemExit(f"{' '.join(command)}: exit {process.returncode}")
+    return (f"| {words} | {time.monotonic() - start:.0f} s | {used.ru_utime + used.ru_stime:.0f} s | "
+            f"{used.ru_maxrss / 1e6:.2f} GB |")
+
+
+def measured(args, folder, out):
+    read = read_alone(folder)
     total = sum(os.path.getsize(f"{folder}/{name}") for name in os.listdir(folder))
-    kind = "ZIP" if args.zip else "uncompressed"
+    reference = f"{out}-reference.exr"
+    write(reference, np.ones((HEIGHT, 3, WIDTH), np.float16), args.zip)
+    plain = f"{out}.toml"
+    with open(plain, "w", encoding="utf-8") as file:
+        file.write("flip = false\n")
+    referred = ["--reference", reference]
     return "\n".join([
-        "| renders | bytes | time | processor time | reading alone, once, cached | peak memory |",
-        "|---|---|---|---|---|---|",
-        f"| {args.renders} of {WIDTH} x {HEIGHT}, half, {kind} | {total / 1e9:.1f} GB | {seconds:.0f} s | "
-        f"{used.ru_utime + used.ru_stime:.0f} s | {read:.1f} s | {used.ru_maxrss / 1e6:.2f} GB |"])
+        f"{os.cpu_count()} processors; {args.renders} renders of {WIDTH} x {HEIGHT}, half, "
+        f"{'ZIP' if args.zip else 'uncompressed'}, {total / 1e9:.1f} GB, which are read in {read:.1f} s, once, cached:", "",
+        "| call | time | processor time | peak memory |", "|---|---|---|---|",
+        row(args, folder, out, [], "two arms"),
+        row(args, folder, out, [plain] + referred, "and a reference, `flip = false`"),
+        row(args, folder, out, referred, "and a reference, with FLIP of the first render of each arm")])
 
 
 def main():
@@ -110,7 +124,7 @@ def main():
         os.mkdir(f"{work}/renders")
         for k in range(args.renders):
             write(f"{work}/renders/{'ab'[k % 2]}{k:02}.exr", render(noise, (0.2, 0.1)[k % 2], k + 1), args.zip)
-        text = f"{os.cpu_count()} processors:\n\n" + measured(args, f"{work}/renders", f"{work}/out")
+        text = measured(args, f"{work}/renders", f"{work}/out")
     print(text)
     if not args.write:
         return

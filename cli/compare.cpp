@@ -35,9 +35,13 @@ void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std
         for (const std::string& arm : arms_of(flags))
             out.push_back({{"arms", arm, key}, text, true, flag + " " + text});
     }
+    const std::vector<std::string> arms = arms_of(flags);
     for (const std::string& text : all) {
         if (text.find('=') == std::string::npos) continue;
         const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
+        if (std::find(arms.begin(), arms.end(), arm) == arms.end())
+            throw InputError(
+                {flag + " " + text, 0, 0}, fmt::format("no arm '{}': expected one of {}", arm, fmt::join(arms, ", ")));
         out.push_back({{"arms", arm, key}, value, true, flag + " " + text});
     }
 }
@@ -66,10 +70,11 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     per_arm(out, f, f.seconds, "--seconds", "seconds");
     for (const std::string& text : f.assertions)
         out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
+    if (!f.theme.empty()) out.push_back({{"theme"}, f.theme, false, "--theme " + f.theme});
     if (f.pair) out.push_back({{"pair"}, "true", true, "--pair"});
     if (!f.expect.empty()) out.push_back({{"expect"}, f.expect, false, "--expect " + f.expect});
     const std::pair<const char*, std::string> numbers[] = {
-        {"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}};
+        {"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}, {"brightest", f.brightest}};
     for (const auto& [key, text] : numbers)
         if (!text.empty()) out.push_back({{key}, text, true, std::string("--") + key + " " + text});
     if (!f.smallest.empty()) {
@@ -91,7 +96,8 @@ std::string command_of(const CompareFlags& f) {
     all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
     if (f.pair) out += " --pair";
     const std::pair<const char*, std::string> rest[] = {{"--expect", f.expect}, {"--smallest", f.smallest},
-        {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}};
+        {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}, {"--brightest", f.brightest},
+        {"--theme", f.theme}};
     for (const auto& [flag, value] : rest)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     return out;

@@ -40,6 +40,9 @@ void add_compare(CLI::App& app, Work& work) {
     c->add_option("--exposure", f->exposure, "of photographs; default 1")->type_name("E");
     c->add_option("--alpha", f->alpha, "chance of a false alarm; default 0.01")->type_name("P");
     c->add_option("--trim", f->trim, "share of pixels relMSE and MAPE leave out; default 0")->type_name("SHARE");
+    c->add_option("--brightest", f->brightest, "the most that Y of a pixel of one render can be, e.g. a clamp")
+        ->type_name("Y");
+    c->add_option("--theme", f->theme, "of plates: dark, light")->type_name("THEME");
     c->add_option("--out", f->out, "where the outputs go; default: out/compare")->type_name("DIR")->check(told);
     auto* schema = c->add_flag("--schema", f->schema, "every key of FILE");
     c->add_flag("--json", f->json, "with --schema: as a JSON Schema")->needs(schema);

@@ -26,11 +26,16 @@ done
 expect 0 /usr/bin/python3 -c 'import sys, xml.etree.ElementTree as e; [e.parse(f) for f in sys.argv[1:]]' one/junit.xml
 
 expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'rmse.ball(u) < 1e-9' --out failing --quiet
+expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'efficiency.ball(u) > 1' --out failing --quiet
+grep -q 'a side of it was not measured' printed || die "a claim that cannot be measured is not said to be: $(cat printed)"
 grep -q '<failure' failing/junit.xml || die "the failing assertion is not in junit.xml"
 expect 4 "$CRESCENT" compare "${arms[@]}" --expect same --out few --quiet
 printf 'title = "From a file"\n[arms.u]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n' >plan.toml
 expect 0 "$CRESCENT" compare plan.toml --out from-file --quiet
 grep -q 'From a file' from-file/report.html || die "the title is not in the report"
+mkdir elsewhere  # paths of a file are relative to it, those of flags to the current folder
+printf 'reference = "../s7/films/reference.exr"\nreference_layer = "quadrature s=32"\n[arms.u]\nfiles = ["../s[789]/films/uniform.exr"]\nlayer = "n=16"\n' >elsewhere/plan.toml
+expect 0 "$CRESCENT" compare elsewhere/plan.toml --arm 'c=s[789]/films/cosine.exr' --layer c=n=16 --out from-elsewhere --quiet
 expect 0 "$CRESCENT" compare --arm 'a=s%d/films/uniform.exr' --arm 'b=s%02d/films/cosine.exr' --layer a=n=16 --layer b=n=16 \
     --pair --alpha 0.05 --exposure 2 --out paired --quiet
 grep -q '"paired": true' paired/metrics.json || die "--pair did not pair"
@@ -40,7 +45,10 @@ expect 0 "$CRESCENT" compare --schema
 printf '[arms.u-16]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n[arms.u-4]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=4"\n' >ladder.toml
 expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --reference s7/films/reference.exr \
     --layer 'reference=quadrature s=32' --region ball=40,20,56,34 --out ladder --quiet
+expect 0 /usr/bin/python3 -c 'import xml.etree.ElementTree as e; e.parse("ladder/plates/ladders.svg")'
+[ -s ladder/plates/ladders.png ] || die "no plate of the ladders"
 expect 0 "$CRESCENT" compare ladder.toml --spp 16 --out alike --quiet
+[ ! -e alike/plates/ladders.png ] || die "a plate of no ladder"
 expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
 import json, sys
 import jsonschema
@@ -75,6 +83,8 @@ bad "did you mean 'rmse'?" "${arms[@]}" --assert 'rsme.ball(u) < 1'
 bad "did you mean 'ball'?" "${arms[@]}" --assert 'rmse.bal(u) < 1'
 bad "expected a box on the image" "${arms[@]}" --region big=0,0,4000,2
 bad "expected a number above 0" "${arms[@]}" --spp many
+bad "no arm 'x': expected one of u, c" "${arms[@]}" --seconds x=2
+bad "expected a number above 0" "${arms[@]}" --brightest none
 sed -i 's/^files/flies/' plan.toml
 bad "plan.toml:3:1: " plan.toml
 cp s7/films/uniform.exr copy.exr

@@ -10,6 +10,7 @@
 #include "compare/judge.h"
 #include "compare/pixel_tests.h"
 #include "compare/sides.h"
+#include "pages/numbers.h"
 
 namespace crescent::inline comparing {
 
@@ -55,6 +56,16 @@ MeanTest region_test(const Sides& sides, std::size_t r, double level) {
     return t;
 }
 
+/// p is small, and events no brighter than some render's or than the files' bound could have been missed.
+std::string doubted(const Sides& sides, const MeanTest& t, double pixels, double level) {
+    const auto events = sides.needed({{}, t.a, t.b, t.welch.p}, pixels, level);
+    if (!events) return {};
+    return fmt::format(
+        "heavy tail: {} is darker by {}, which events brighter than {} in one of {:.0f} pixels could make up that none "
+        "of its renders met",
+        events->arm, percent(std::fabs(t.a - t.b) / std::max(t.a, t.b), 2), figures(events->size, 2), events->one_in);
+}
+
 void test_regions(const Sides& sides, double alpha, BiasResult& out) {
     const double level = alpha / static_cast<double>(sides.all.regions.size());
     Values p;
@@ -67,7 +78,9 @@ void test_regions(const Sides& sides, double alpha, BiasResult& out) {
         MeanTest& t = out.regions[r];
         if (!differs[r]) continue;
         const SetNoise noise = sides.noise_of(sides.all.regions[r]);
-        t.differs = std::fabs(t.a - t.b) >= sides.blind(t.a, t.b, noise.pixels, noise.a + noise.b, level);
+        const double d = t.a - t.b;
+        t.differs = std::fabs(d) >= sides.blind(t.a, t.b, noise.pixels, noise.a + noise.b, level);
+        if (std::fabs(d) < sides.unseen(d, noise.pixels, level)) t.doubt = doubted(sides, t, noise.pixels, level);
     }
 }
 
@@ -114,6 +127,10 @@ void test_tiles(const Sides& sides, double alpha, BiasResult& result) {
 
 }  // namespace
 
+bool CompareResult::differs() const {
+    return std::any_of(bias.begin(), bias.end(), [](const BiasResult& b) { return b.differs(); });
+}
+
 bool BiasResult::differs() const {
     return tiles.different > 0 || pixels_different > 0 ||
         std::any_of(regions.begin(), regions.end(), [](const MeanTest& t) { return t.differs; });
@@ -124,6 +141,23 @@ std::string reference_error_from(const ArmReadings& reference) {
     if (!reference.film.told_variance.empty()) return "as the file says it: " + reference.files[0].variance_channels;
     return "one file that does not say it: taken from how its difference from the arms varies between neighbouring "
            "pixels";
+}
+
+std::optional<MissedEvents> missed_events(const Sides& sides, const BiasResult& found, double alpha) {
+    std::optional<MissedEvents> hardest;
+    const auto look = [&](const Found& place, double pixels, double level) {
+        const auto events = sides.needed(place, pixels, level);
+        if (events && (!hardest || events->size > hardest->size)) hardest = events;
+    };
+    for (std::size_t r = 0; r < found.regions.size(); ++r) {
+        const MeanTest& t = found.regions[r];
+        const double pixels = static_cast<double>(sides.all.regions[r].pixels.size());
+        if (t.differs) look({{}, t.a, t.b, 0}, pixels, alpha / static_cast<double>(found.regions.size()));
+    }
+    for (const Found& tile : found.tiles_found)
+        look(tile, sides.noise_of(tile.box).pixels, found.place_alpha / static_cast<double>(found.tiles.p.size()));
+    for (const Found& pixel : found.pixels_found) look(pixel, 1, pixel_level(sides, found.place_alpha));
+    return hardest;
 }
 
 BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
@@ -139,6 +173,7 @@ BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const Compar
         test_tiles(sides, out.place_alpha, out);
         test_pixels(sides, out.place_alpha, out);
     }
+    if (out.differs()) out.unless = missed_events(sides, out, alpha / 2);
     out.sentence = sentence_of(out, alpha / 2);
     return out;
 }

@@ -22,6 +22,7 @@ CompareResult compare(const ComparePlan& plan, const CompareOptions& options, co
     watch.check();
     Staging staging(options.out);
     for (const auto& [name, png] : pictures) staging.write("plates/" + name + ".png", png);
+    if (!result.ladders.empty()) staging.write("plates/ladders.svg", ladders_svg(result, plan.theme));
     staging.write("metrics.json", compare_json(plan, all, result, provenance));
     staging.write("metrics.csv", compare_csv(result));
     staging.write("junit.xml", compare_junit(plan, result));

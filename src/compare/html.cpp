@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pages/base64.h"
+#include "compare/judge.h"
 #include "compare/outputs.h"
 #include "compare/page.h"
 #include "pages/html.h"
@@ -26,17 +27,19 @@ std::string lead(const CompareResult& result) {
             "\n";
     else if (!result.assertions.empty()) out += "<p class=\"verdict good\">All assertions hold.</p>\n";
     std::vector<std::string> found;
-    for (const BiasResult& b : result.bias) found.push_back(escape(b.sentence));
+    for (const std::string& sentence : found_about_means(result)) found.push_back(escape(sentence));
     return out + (found.empty() ? "" : html::list(found));
 }
 
+/// All but the ladders, whose chart stands in a section of its own.
 std::string pictures(const std::map<std::string, std::vector<unsigned char>>& plates) {
     std::string out;
     for (const auto& [name, png] : plates)
-        out += fmt::format(
-            "<figure id=\"{0}\"><img alt=\"{0}\" width=\"1280\" height=\"720\" src=\"data:image/png;base64,{1}\" "
-            "/></figure>\n",
-            escape(name), base64(png));
+        if (name != "ladders")
+            out += fmt::format(
+                "<figure id=\"{0}\"><img alt=\"{0}\" width=\"1280\" height=\"720\" src=\"data:image/png;base64,{1}\" "
+                "/></figure>\n",
+                escape(name), base64(png));
     return out;
 }
 

@@ -65,6 +65,7 @@ AssertionResult asserted(const AssertionPlan& plan, CompareResult& result) {
 /// With expect = "same": what was not seen well enough to say so; "" where all was.
 std::string not_seen(const ComparePlan& plan, const BiasResult& bias) {
     for (const MeanTest& t : bias.regions) {
+        if (!t.doubt.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.doubt);
         if (!t.why.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.why);
         if (t.smallest > plan.smallest)
             return fmt::format(
@@ -80,8 +81,10 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
     for (const AssertionResult& a : result.assertions)
         if (!a.pass)
             result.state = State::fails,
-            result.say = fmt::format(
-                "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
+            result.say = std::isnan(a.measured) || std::isnan(a.bound)
+                ? fmt::format("An assertion does not pass: {}: a side of it was not measured.", a.text)
+                : fmt::format(
+                      "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
     if (plan.expect != Expectation::same) return;
     for (const BiasResult& bias : result.bias)
         if (bias.differs()) result.state = State::fails, result.say = bias.sentence;

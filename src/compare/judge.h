@@ -35,6 +35,9 @@ BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const Compar
 /// What it found, in one sentence; `alpha` is that of its regions.
 std::string sentence_of(const BiasResult& bias, double alpha);
 
+/// The sentences of all pairs; of many pairs those in which nothing was found are one sentence.
+std::vector<std::string> found_about_means(const CompareResult& result);
+
 /// Where the variance of arm a differs from that of b.
 NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_t a, std::size_t b, double alpha);
 

@@ -7,9 +7,13 @@ namespace crescent::inline comparing {
 
 /// Noise of mean 1 + bias. normal: of this sd. lognormal: sd is that of the logarithm. events: 0.9, and with this
 /// chance a bright event that is exponentially distributed and makes up the rest: what a caustic or a missed lamp does.
+/// Rules are chosen on these three. The next three stand by to measure what was chosen: pareto: of this tail index (>
+/// 1; the variance is infinite up to 2). hits: the mean of 16 samples, each of which meets a lamp with this chance.
+/// sparks: 0.9, and in a sixteenth of the frame with this chance a pixel a spark of one size, which makes up the rest
+/// there.
 struct MadeNoise {
-    enum class Kind { normal, lognormal, events } kind = Kind::normal;
-    double size = 0;  // sd, sd of the logarithm, or chance a pixel
+    enum class Kind { normal, lognormal, events, pareto, hits, sparks } kind = Kind::normal;
+    double size = 0;  // sd, sd of the logarithm, tail index, or chance
     double bias = 0;
 };
 /// "normal noise", for tables.
@@ -19,10 +23,15 @@ std::string to_string(const MadeNoise& noise);
 struct MadeWorld {
     MadeNoise a, b;
     int renders = 8, width = 32;
+    bool referred = true;  // false: the arms alone
 };
 
-/// Luminance of one pixel of a render: a pure function of its arguments.
-double made_pixel(const MadeNoise& noise, std::uint32_t seed, std::uint32_t pixel);
+/// Luminance of one pixel of a render `width` pixels wide: a pure function of its arguments.
+double made_pixel(const MadeNoise& noise, std::uint32_t seed, std::uint32_t pixel, int width);
+/// Whether each arm whose noise is events or sparks met one in some pixel of some render.
+bool met_events(const MadeWorld& world, std::uint32_t seed);
+/// How bright an event or a spark is on average; 0 of noise that has none.
+double event_size(const MadeNoise& noise);
 
 /// The world compared as files would be; equal seeds give equal renders. `more` flags stand over its own.
 CompareResult compare_made(const MadeWorld& world, std::uint32_t seed, const std::vector<CompareFlag>& more = {});

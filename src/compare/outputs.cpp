@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/judge.h"
 #include "compare/schema.h"
 #include "base/text.h"
 #include "pages/csv.h"
@@ -74,11 +75,15 @@ Json bias_json(const BiasResult& b) {
     if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
     for (const MeanTest& t : b.regions) {
         Json& at = out["regions"][t.region] = {{"a", number(t.a)}, {"b", number(t.b)}, {"differs", t.differs}};
+        if (!t.doubt.empty()) at["doubt"] = t.doubt;
         if (!t.why.empty()) at["why"] = t.why;
         else
             at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
             at["smallest"] = number(t.smallest);
     }
+    if (b.unless)
+        out["unless_missed"] = {{"arm", b.unless->arm}, {"brighter_than", number(b.unless->size)},
+            {"times_mean", number(b.unless->of_mean)}, {"one_in", number(b.unless->one_in)}};
     out["tiles"] = {{"tested", b.tiles.tested}, {"left_out", b.tiles.left_out}, {"different", b.tiles.different},
         {"first", found_json(b.tiles_found)}};
     out["pixels"] = {{"tested", b.pixels_tested}, {"different", b.pixels_different},
@@ -176,7 +181,9 @@ std::string compare_summary(
     std::string out = plan.title + "\n";
     for (const std::string& w : result.warnings) out += "warning: " + w + "\n";
     if (!result.say.empty()) out += result.say + "\n";
-    else if (!result.assertions.empty()) out += fmt::format("All {} assertions hold.\n", result.assertions.size());
+    else if (!result.assertions.empty())
+        out += fmt::format(
+            "{} assertion{}.\n", result.assertions.size(), result.assertions.size() == 1 ? " holds" : "s hold");
     for (const PixelSet& set : all.regions) {
         out += fmt::format("\n{} ({} pixels)\n  {} {} {} {} {}\n", set.name, set.pixels.size(), left("arm", 18),
             right("renders", 8), right("RMSE", 32), right("variance", 12), right("mean Y", 12));
@@ -186,14 +193,14 @@ std::string compare_summary(
             std::string spread = rmse.value ? figures(*rmse.value) : "-";
             if (rmse.interval)
                 spread += fmt::format(" ({}..{})", figures(rmse.interval->first, 3), figures(rmse.interval->second, 3));
-            else if (rmse.value && !rmse.why.empty()) spread += fmt::format(" ({})", rmse.why);
+            else if (rmse.value && r.heavy()) spread += " (heavy tail)";
             out += fmt::format("  {} {} {} {} {}\n", left(arm.name, 18), right(std::to_string(arm.renders), 8),
                 right(spread, 32), right(var.value ? figures(*var.value) : "-", 12),
                 right(y.value ? figures(*y.value) : "-", 12));
         }
     }
     out += "\n";
-    for (const BiasResult& b : result.bias) out += b.sentence + "\n";
+    for (const std::string& sentence : found_about_means(result)) out += sentence + "\n";
     if (!result.rankings.empty()) out += "\n";
     for (const Ranking& r : result.rankings) out += r.sentence + "\n";
     return out + "\n" + out_dir + "/report.html tells the rest.\n";

@@ -21,7 +21,9 @@ std::string region_table(const BiasResult& b) {
             words("verdict")});
     for (const MeanTest& t : b.regions) {
         const bool tested = t.why.empty();
-        const char* verdict = t.differs ? "<b class=\"bad\">differs</b>" : "no difference found";
+        const std::string verdict = t.differs ? "<b class=\"bad\">differs</b>"
+            : t.doubt.empty()                 ? "no difference found"
+                                              : escape(t.doubt);
         table.row({html::heading(escape(t.region)), html::figure(figures(t.a)), html::figure(figures(t.b)),
             html::figure(tested ? figures(t.welch.p, 2) : ""), html::figure(tested ? percent(t.smallest, 2) : ""),
             words(tested ? verdict : escape(t.why))});

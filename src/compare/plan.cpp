@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "compare/schema.h"
@@ -67,6 +68,26 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     to.members.push_back({"", at, std::move(value)});
 }
 
+/// Paths of a file are read from its own folder; those of flags from where the command runs.
+void from_folder(Node* node, const std::filesystem::path& folder) {
+    if (!node) return;
+    if (node->kind == Node::Kind::text && !node->text.empty()) node->text = (folder / node->text).string();
+    for (Member& member : node->members)
+        if (node->kind == Node::Kind::array) from_folder(&member.value, folder);
+}
+void from_folder(Node& root, const std::string& file) {
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    if (folder.empty()) return;
+    const auto at = [](Node& node, const char* key) {
+        Member* found = node.find(key);
+        return found ? &found->value : nullptr;
+    };
+    from_folder(at(root, "reference"), folder);
+    for (const auto& [table, key] : {std::pair{"arms", "files"}, std::pair{"masks", "file"}})
+        if (Node* named = at(root, table))
+            for (Member& member : named->members) from_folder(at(member.value, key), folder);
+}
+
 void check_names(ParseContext& draft, const ComparePlan& plan) {
     std::vector<std::string> regions{whole_frame}, arms;
     for (const Region& r : plan.regions) regions.push_back(r.name);
@@ -124,7 +145,10 @@ ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& fi
     ParseContext draft;
     draft.e.file = file.empty() ? "crescent compare" : file;
     Node root;
-    if (!file.empty()) root = read_toml(read_text(file, "a compare file"), file, &draft.complaints);
+    if (!file.empty()) {
+        root = read_toml(read_text(file, "a compare file"), file, &draft.complaints);
+        from_folder(root, file);
+    }
     return read_plan(std::move(root), draft, flags);
 }
 

@@ -18,7 +18,6 @@ using namespace plates;
 
 namespace {
 
-Box frame_of(const Readings& all) { return {0, 0, all.width - 1, all.height - 1}; }
 std::size_t pixel(const Readings& all, int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
 }
@@ -34,11 +33,11 @@ Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {
 double visible(double t) { return std::copysign(0.2 + 0.8 * std::min(1.0, std::fabs(t)), t); }
 
 /// A value a tile, `told` ones in their colour, the others grey; in the left of two slots, or in one.
-Block tile_block(
-    const Readings& all, const Fit& f, const std::vector<double>& value, const std::vector<bool>& told, double top) {
-    return nearest_block(frame_of(all), f, [&](int x, int y) {
+Block tile_block(const Readings& all, const Fit& f, const std::vector<double>& value, const std::vector<bool>& told,
+    double top, Theme theme) {
+    return nearest_block(all.frame(), f, [&](int x, int y) {
         const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
-        return std::isnan(value[t]) ? ground_bytes : diverging(told[t] ? visible(value[t] / top) : 0.0);
+        return diverging(std::isnan(value[t]) ? value[t] : told[t] ? visible(value[t] / top) : 0.0, theme);
     });
 }
 
@@ -55,8 +54,8 @@ double scale_of(const Sides& s) {
 
 }  // namespace
 
-Picture difference_plate(const Sides& s, const std::string& a, const std::string& b) {
-    Canvas c(sheet_width, sheet_height, ground);
+Picture difference_plate(const Sides& s, const std::string& a, const std::string& b, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, fmt::format("mean <i>Y</i> of {} less that of {}", escaped(a), escaped(b)));
     Rect band = content_band;
     band.w -= bar_room;
@@ -66,8 +65,8 @@ Picture difference_plate(const Sides& s, const std::string& a, const std::string
         const std::size_t i = pixel(s.all, x, y);
         return s.all.bad[i] ? std::nan("") : (s.a.film.y[i] - s.b.film.y[i]) / top;
     };
-    framed(c, diverging_block(frame_of(s.all), f, value), band);
-    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour, ends(top));
+    framed(c, diverging_block(s.all.frame(), f, theme, value), band);
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme), ends(top));
     return finished(c,
         fmt::format(
             "Orange: {} is brighter. Blue: {} is brighter. Noise is in it: the bias map says what is told apart.",
@@ -76,8 +75,8 @@ Picture difference_plate(const Sides& s, const std::string& a, const std::string
             "means over {} and {} renders; the scale ends at the 98th percentile", s.a.files.size(), s.b.files.size()));
 }
 
-Picture bias_plate(const Sides& s, const BiasResult& found, double alpha) {
-    Canvas c(sheet_width, sheet_height, ground);
+Picture bias_plate(const Sides& s, const BiasResult& found, double alpha, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, fmt::format("where mean <i>Y</i> of {} and {} differs", escaped(found.a), escaped(found.b)));
     Rect band = content_band;
     band.w -= bar_room;
@@ -90,22 +89,22 @@ Picture bias_plate(const Sides& s, const BiasResult& found, double alpha) {
     const Rect left = titled(
         c, column(band, by_pixel ? 2 : 1, 0), fmt::format("{} of {} tiles", found.tiles.different, found.tiles.tested));
     const Fit f = fit(s.all.width, s.all.height, std::floor(left.w), std::floor(left.h));
-    framed(c, tile_block(s.all, f, found.tiles.difference, found.tiles.differs, top), left);
+    framed(c, tile_block(s.all, f, found.tiles.difference, found.tiles.differs, top, theme), left);
     if (by_pixel) {
         const Rect right =
             titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", found.pixels_different, found.pixels_tested));
         const double level = pixel_level(s, alpha);
         framed(c,
-            nearest_block(frame_of(s.all), f,
+            nearest_block(s.all.frame(), f,
                 [&](int x, int y) {
                     const std::size_t i = pixel(s.all, x, y);
-                    if (s.all.bad[i]) return ground_bytes;
+                    if (s.all.bad[i]) return ground_pixel(theme);
                     const bool told = found.pixels_different && pixel_p(s, i, level) <= found.pixel_level;
-                    return diverging(told ? visible((s.a.film.y[i] - s.b.film.y[i]) / top) : 0);
+                    return diverging(told ? visible((s.a.film.y[i] - s.b.film.y[i]) / top) : 0, theme);
                 }),
             right);
     }
-    bar(c, {band.right() + gap, band.y + 40, 24, 360}, signed_colour, ends(top));
+    bar(c, {band.right() + gap, band.y + 40, 24, 360}, signed_colours(theme), ends(top));
     return finished(c,
         fmt::format(
             "Orange: {} is brighter. Blue: {} is brighter. Grey: not told apart.", escaped(found.a), escaped(found.b)),
@@ -115,8 +114,8 @@ Picture bias_plate(const Sides& s, const BiasResult& found, double alpha) {
             found.tiles.left_out));
 }
 
-Picture noise_plate(const Readings& all, const NoiseResult& n) {
-    Canvas c(sheet_width, sheet_height, ground);
+Picture noise_plate(const Readings& all, const NoiseResult& n, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, fmt::format("log<sub>2</sub> of the variance of {} over that of {}", escaped(n.a), escaped(n.b)));
     Rect band = content_band;
     band.w -= bar_room;
@@ -125,11 +124,11 @@ Picture noise_plate(const Readings& all, const NoiseResult& n) {
         if (n.told_apart[t]) sizes.push_back(std::fabs(n.log2_ratio[t]));
     const double top = std::ceil(quantile(std::move(sizes), 0.95));
     const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
-    framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top), band);
+    framed(c, tile_block(all, f, n.log2_ratio, n.told_apart, top, theme), band);
     const auto ratio = [](double log2) {
         return log2 < 0 ? fmt::format("1/{:.0f}", math::exp2(-log2)) : fmt::format("{:.0f}", math::exp2(log2));
     };
-    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colour,
+    bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme),
         {{0, "≤ " + ratio(-top)}, {0.5, "1"}, {1, "≥ " + ratio(top)}});
     return finished(c,
         fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: not told apart from 1. Ground: one of them has "

@@ -12,15 +12,22 @@ void header(Canvas& c, bool instrument, const std::string& label) {
         (instrument ? "INSTRUMENT / " : "Khronos PBR Neutral / PHOTO-ONLY / ") + label, label_text);
 }
 
-Picture finished(Canvas& c, const std::string& caption, const std::string& note) {
+void finish(Canvas& c, const std::string& caption, const std::string& note) {
     c.text(caption_band, caption, with_lines(body_text, 2));
     c.text(footer_band, note, small_text);
+}
+
+Picture finished(Canvas& c, const std::string& caption, const std::string& note) {
+    finish(c, caption, note);
     return c.picture();
 }
 
-Srgb8 diverging(double t) {
-    if (std::isnan(t)) return ground_bytes;
-    constexpr double middle[3] = {52, 55, 60}, low[3] = {70, 150, 240}, high[3] = {250, 150, 50};
+Srgb8 diverging(double t, Theme theme) {
+    if (std::isnan(t)) return ground_pixel(theme);
+    constexpr double middles[2][3] = {{52, 55, 60}, {226, 228, 230}};
+    constexpr double lows[2][3] = {{70, 150, 240}, {20, 90, 190}}, highs[2][3] = {{250, 150, 50}, {200, 90, 0}};
+    const bool light = theme == Theme::light;
+    const double *middle = middles[light], *low = lows[light], *high = highs[light];
     const double a = std::min(1.0, std::fabs(t));
     Srgb8 out{};
     for (std::size_t k = 0; k < 3; ++k)
@@ -36,15 +43,15 @@ Block nearest_block(const Box& box, const Fit& f, const std::function<Srgb8(int,
     return out;
 }
 
-Block diverging_block(const Box& box, const Fit& f, const std::function<double(int, int)>& value) {
+Block diverging_block(const Box& box, const Fit& f, Theme theme, const std::function<double(int, int)>& value) {
     return nearest_block(box, f, [&](int x, int y) {
-        if (!f.reduced) return diverging(value(x, y));
+        if (!f.reduced) return diverging(value(x, y), theme);
         const int across = std::max(1, f.in_w / f.out_w), down = std::max(1, f.in_h / f.out_h);
         double sum = 0, count = 0;
         for (int j = y; j > std::max(box.y0 - 1, y - down); --j)
             for (int i = x; i < std::min(box.x1 + 1, x + across); ++i)
                 if (const double v = value(i, j); !std::isnan(v)) sum += v, count += 1;
-        return diverging(count > 0 ? sum / count : std::nan(""));
+        return diverging(count > 0 ? sum / count : std::nan(""), theme);
     });
 }
 
@@ -65,6 +72,10 @@ void bar(Canvas& c, const Rect& at, const std::function<Srgb8(double)>& colour, 
     for (const auto& [share, text] : ticks)
         c.text({at.right() + 10, at.y + at.h * (1 - share) - 12, 84, 24}, text,
             with(with(with_px(small_text, 15), bright), Vertical::middle));
+}
+
+std::function<Srgb8(double)> signed_colours(Theme theme) {
+    return [theme](double t) { return diverging(2 * t - 1, theme); };
 }
 
 }  // namespace crescent::plates

@@ -11,15 +11,17 @@ namespace crescent::plates {
 
 inline constexpr double bar_room = 116;
 
-/// The header of a sheet; finished() sets caption and footer.
+/// The header of a sheet; finish() sets caption and footer.
 void header(Canvas& c, bool instrument, const std::string& label);
+void finish(Canvas& c, const std::string& caption, const std::string& note);
+/// The same, and what was drawn.
 Picture finished(Canvas& c, const std::string& caption, const std::string& note);
 
-/// Dark in the middle, blue below, orange above; t in [-1, 1], NaN: the ground.
-Srgb8 diverging(double t);
+/// Blue below, orange above, towards the ground in the middle; t in [-1, 1], NaN: the ground.
+Srgb8 diverging(double t, Theme theme);
 
 /// value(x, y) of the box through diverging(); where it is reduced, means of what a pixel covers.
-Block diverging_block(const Box& box, const Fit& fit, const std::function<double(int, int)>& value);
+Block diverging_block(const Box& box, const Fit& fit, Theme theme, const std::function<double(int, int)>& value);
 /// colour(x, y) of the box, the nearest pixel's.
 Block nearest_block(const Box& box, const Fit& fit, const std::function<Srgb8(int, int)>& colour);
 
@@ -29,6 +31,7 @@ Rect framed(Canvas& c, const Block& block, const Rect& slot);
 using Ticks = std::vector<std::pair<double, std::string>>;  // share of the bar, words
 /// A vertical bar of colour(t), t from 0 below to 1 above.
 void bar(Canvas& c, const Rect& at, const std::function<Srgb8(double)>& colour, const Ticks& ticks);
-inline Srgb8 signed_colour(double t) { return diverging(2 * t - 1); }
+/// diverging() over such a bar.
+std::function<Srgb8(double)> signed_colours(Theme theme);
 
 }  // namespace crescent::plates

@@ -23,12 +23,10 @@ using namespace plates;
 
 constexpr std::size_t most_columns = 5;
 
-Box frame_of(const Readings& all) { return {0, 0, all.width - 1, all.height - 1}; }
-
 Box crop_of(const Readings& all) {
     for (const PixelSet& set : all.regions)
         if (set.box && set.name != whole_frame) return *set.box;
-    return frame_of(all);
+    return all.frame();
 }
 
 /// A column of a sheet: the whole frame above, the first region below it, at the same scale in every column.
@@ -81,8 +79,8 @@ double scale_of(const std::vector<Residual>& residuals) {
     return top > 0 ? top : 1;
 }
 
-Picture errors(const Readings& all, const std::vector<Residual>& residuals, const std::string& about) {
-    Canvas c(sheet_width, sheet_height, ground);
+Picture errors(const Readings& all, const std::vector<Residual>& residuals, const std::string& about, Theme theme) {
+    Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, "|Y − " + about + "| of one render of each arm, linear, one scale");
     Rect band = content_band;
     band.w -= bar_room;
@@ -96,7 +94,7 @@ Picture errors(const Readings& all, const std::vector<Residual>& residuals, cons
                 top;
         };
         columns.push_back(
-            {r.name, turbo_block(frame_of(all), f.whole, value), turbo_block(crop_of(all), f.close, value)});
+            {r.name, turbo_block(all.frame(), f.whole, value), turbo_block(crop_of(all), f.close, value)});
     }
     draw(c, all, band, columns);
     bar(c, {band.right() + gap, band.y + 40, 24, 360}, [](double t) { return turbo(t); },
@@ -113,7 +111,7 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
     std::vector<Column> columns;
     std::vector<Residual> residuals;
     const auto add = [&](const std::string& name, const View& view) {
-        columns.push_back({name, photograph_block(view, frame_of(all), f.whole, plan.exposure),
+        columns.push_back({name, photograph_block(view, all.frame(), f.whole, plan.exposure),
             photograph_block(view, crop_of(all), f.close, plan.exposure)});
     };
     for (std::size_t a = 0; a < arms; ++a) {
@@ -130,14 +128,14 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
         const MeanFilm& ref = all.reference->film;
         add("reference", {all.width, all.height, ref.r.data(), ref.g.data(), ref.b.data(), nullptr});
     }
-    Canvas c(sheet_width, sheet_height, ground);
+    Canvas c(sheet_width, sheet_height, ground, 1, plan.theme);
     header(c, false, "one render of each arm");
     draw(c, all, content_band, columns);
     const char* rest = arms < all.arms.size() ? "; further arms are not shown" : "";
     out["renders"] = finished(c, "The whole frame and, below it, the first region, enlarged alike in every column.",
         fmt::format("exposure {}; {}{}", figures(plan.exposure), crop_words(all), rest));
     if (!residuals.empty())
-        out["errors"] = errors(all, residuals, all.reference ? "Y<sub>ref</sub>" : "mean over renders");
+        out["errors"] = errors(all, residuals, all.reference ? "Y<sub>ref</sub>" : "mean over renders", plan.theme);
 }
 
 /// Of many arms, every one beside the first alone: a page of a hundred maps is read by nobody.
@@ -153,16 +151,17 @@ std::map<std::string, Picture> compare_plates(
     const ComparePlan& plan, const Readings& all, const CompareResult& result) {
     std::map<std::string, Picture> out;
     shown_renders(plan, all, out);
+    if (!result.ladders.empty()) out["ladders"] = ladders_plate(result, plan.theme);
     for (std::size_t k = 0; k < result.bias.size(); ++k) {
         const BiasResult& found = result.bias[k];
         if (!shown_pair(result, found.a, found.b)) continue;
         const Sides sides(plan, all, result, found.arm_a, found.arm_b);
         const std::string pair = fmt::format("{}-{}", found.a, sides.referred ? "reference" : found.b);
-        out["difference-" + pair] = difference_plate(sides, found.a, found.b);
-        if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, found.place_alpha);
+        out["difference-" + pair] = difference_plate(sides, found.a, found.b, plan.theme);
+        if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, found.place_alpha, plan.theme);
     }
     for (const NoiseResult& n : result.noise)
-        if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(all, n);
+        if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(all, n, plan.theme);
     return out;
 }
 

@@ -20,23 +20,38 @@ using Kind = MadeNoise::Kind;
 const std::vector<CompareFlag> costs{
     {{"arms", "a", "seconds"}, "2", true, "seconds"}, {{"arms", "a", "spp"}, "16", true, "spp"}};
 
-std::vector<CompareResult> calls(
-    const MadeWorld& world, std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
-    std::vector<CompareResult> out(repeats);
+/// Calls of one kind: what came out, and in which of them some render of arm a met what is rare in it.
+struct Calls {
+    MadeWorld world;
+    std::vector<CompareResult> results;
+    std::vector<bool> met;
+    std::vector<CompareFlag> more;
+};
+
+void call(Calls& to, std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
+    std::vector<CompareFlag> flags = costs;
+    flags.insert(flags.end(), to.more.begin(), to.more.end());
+    to.results.resize(repeats);
     parallel_for(std::uint32_t{0}, repeats, [&](std::uint32_t k) {
         watch.check();
-        out[k] = compare_made(world, seed_of(seed, k), costs);
+        to.results[k] = compare_made(to.world, seed_of(seed, k), flags);
         watch.advance(1);
     });
-    return out;
+    for (std::uint32_t k = 0; k < repeats; ++k) to.met.push_back(met_events(to.world, seed_of(seed, k)));
 }
 
 template <class Is> std::uint64_t count(const std::vector<CompareResult>& all, Is is) {
     return static_cast<std::uint64_t>(std::count_if(all.begin(), all.end(), is));
 }
 
-bool told(const CompareResult& r) {
-    return std::any_of(r.bias.begin(), r.bias.end(), [](const BiasResult& b) { return b.differs(); });
+bool differs(const CompareResult& r) { return r.differs(); }
+/// Some mean was not tested, or not judged, because of a heavy tail.
+bool heavy(const CompareResult& r) {
+    const auto said = [](const MeanTest& t) {
+        return t.why.starts_with("heavy tail") || t.doubt.starts_with("heavy tail");
+    };
+    return std::any_of(r.bias.begin(), r.bias.end(),
+        [&](const BiasResult& b) { return std::any_of(b.regions.begin(), b.regions.end(), said); });
 }
 
 /// The noisy arm's intervals of one meter: how many there were, and how many held the truth, which is what the meter is
@@ -62,19 +77,27 @@ std::string coverage(const std::vector<CompareResult>& all, const std::string& m
     return stated == values ? share : fmt::format("{} of {} stated", share, stated);
 }
 
-std::string false_alarms(const std::vector<std::pair<MadeWorld, std::vector<CompareResult>>>& worlds) {
+std::string false_alarms(const std::vector<Calls>& worlds) {
     std::string out =
-        "| noise of A | of B | renders | calls that tell of a difference (alpha 0.05) | heavy tail said "
-        "|\n|---|---|---|---|---|\n";
-    for (const auto& [world, all] : worlds)
-        out += fmt::format("| {} | {} | {} | {} | {} |\n", to_string(world.a), to_string(world.b), world.renders,
-            rate_text(count(all, told), all.size()),
-            rate_text(
-                count(all, [](const CompareResult& r) { return r.arms[0].region(whole_frame).heavy(); }), all.size()));
+        "| noise of A | of B | renders | calls that tell of a difference | of those in which each arm met what is rare "
+        "in "
+        "it | of the others | heavy tail said |\n|---|---|---|---|---|---|---|\n";
+    for (const Calls& c : worlds) {
+        std::uint64_t met = 0, alarms = 0;
+        for (std::size_t k = 0; k < c.met.size(); ++k)
+            if (c.met[k]) ++met, alarms += c.results[k].differs();
+        const std::uint64_t of = c.results.size(), told = count(c.results, differs);
+        out += fmt::format("| {} | {} | {} | {} | {} | {} | {} of {} |\n", to_string(c.world.a), to_string(c.world.b),
+            c.world.renders, rate_text(told, of),
+            met == of ? "all"
+                : met ? rate_text(alarms, met)
+                      : "–",
+            met == of ? "–" : fmt::format("{} of {}", told - alarms, of - met), count(c.results, heavy), of);
+    }
     return out;
 }
 
-std::string covered(const std::vector<std::pair<MadeWorld, std::vector<CompareResult>>>& worlds) {
+std::string covered(const std::vector<Calls>& worlds) {
     const std::vector<std::string> meters{
         "y_mean", "var", "rmse", "bias2", "relmse", "mape", "fireflies", "efficiency", "unit_time", "sample_var"};
     std::string out = "| noise | renders |";
@@ -82,10 +105,44 @@ std::string covered(const std::vector<std::pair<MadeWorld, std::vector<CompareRe
     out += "\n|---|---|";
     for (std::size_t k = 0; k < meters.size(); ++k) out += "---|";
     out += "\n";
-    for (const auto& [world, all] : worlds) {
-        out += fmt::format("| {} | {} |", to_string(world.a), world.renders);
-        for (const std::string& m : meters) out += fmt::format(" {} |", coverage(all, m));
+    for (const Calls& c : worlds) {
+        out += fmt::format("| {} | {} |", to_string(c.world.a), c.world.renders);
+        for (const std::string& m : meters) out += fmt::format(" {} |", coverage(c.results, m));
         out += "\n";
+    }
+    return out;
+}
+
+constexpr MadeNoise normal{Kind::normal, 0.2}, coarse{Kind::normal, 0.5};
+
+/// Why one column of the table is not at most alpha.
+const std::string no_test_can =
+    "Where an arm's light comes by bright events that none of its renders met, its renders are those of an arm that is "
+    "darker: no test can tell the two apart. (Renders of the two agree with at least the probability q that none is "
+    "met, "
+    "so a test that is wrong about the one in at most alpha of all calls is right about the other in at most alpha + 1 "
+    "- "
+    "q.) Such calls are counted apart. Only what is known beside the renders helps, such as `brightest`, a bound on "
+    "what "
+    "a pixel of one render can be.\n\n";
+
+std::vector<Calls> worlds_of(const std::vector<MadeNoise>& noises, bool both, const std::vector<int>& renders,
+    const std::vector<CompareFlag>& more = {}) {
+    std::vector<Calls> out;
+    for (const MadeNoise& noise : noises)
+        for (const int k : renders) out.push_back({{noise, both ? noise : normal, k, 32, !both}, {}, {}, more});
+    return out;
+}
+
+std::string powers(const std::vector<Calls>& biased) {
+    std::string out = "| bias | renders | found | would have been, as calls without it say |\n|---|---|---|---|\n";
+    for (const Calls& c : biased) {
+        double smallest = 0;
+        for (const CompareResult& r : c.results)
+            smallest += r.bias[1].regions.back().smallest / static_cast<double>(c.results.size());
+        out += fmt::format("| {:g} % | {} | {} | {:.2g} % |\n", 100 * c.world.b.bias, c.world.renders,
+            rate_text(count(c.results, [](const CompareResult& r) { return r.bias[1].differs(); }), c.results.size()),
+            100 * smallest);
     }
     return out;
 }
@@ -93,39 +150,46 @@ std::string covered(const std::vector<std::pair<MadeWorld, std::vector<CompareRe
 }  // namespace
 
 std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
-    const MadeNoise normal{Kind::normal, 0.2}, coarse{Kind::normal, 0.5}, skewed{Kind::lognormal, 1};
-    std::vector<std::pair<MadeWorld, std::vector<CompareResult>>> right, biased;
-    for (const MadeNoise& noise :
-        {coarse, skewed, MadeNoise{Kind::events, 0.01}, MadeNoise{Kind::events, 1e-3}, MadeNoise{Kind::events, 1e-4}})
-        for (const int renders : {4, 16}) right.push_back({{noise, normal, renders, 32}, {}});
+    const std::vector<int> few_and_many{4, 16};
+    const std::vector<MadeNoise> chosen{
+        coarse, {Kind::lognormal, 1}, {Kind::events, 0.01}, {Kind::events, 1e-3}, {Kind::events, 1e-4}};
+    const std::vector<MadeNoise> held_out{
+        {Kind::pareto, 2.5}, {Kind::pareto, 1.5}, {Kind::hits, 0.02}, {Kind::sparks, 0.02}, {Kind::sparks, 2e-3}};
+    std::vector<Calls> right = worlds_of(chosen, false, few_and_many), other = worlds_of(held_out, false, few_and_many),
+                       alike = worlds_of({{Kind::lognormal, 1}, {Kind::events, 1e-3}, {Kind::events, 1e-4},
+                                             {Kind::pareto, 1.5}, {Kind::hits, 0.02}, {Kind::sparks, 2e-3}},
+                           true, few_and_many),
+                       bounded = worlds_of({{Kind::events, 1e-4}, {Kind::sparks, 2e-3}}, false, few_and_many,
+                           {{{"brightest"}, "10000", true, ""}});
+    std::vector<Calls> biased;
     for (const double bias : {0.01, 0.02, 0.05})
-        for (const int renders : {4, 8, 16}) biased.push_back({{coarse, {Kind::normal, 0.2, bias}, renders, 32}, {}});
-    watch.begin("comparisons", static_cast<double>(repeats) * static_cast<double>(right.size() + biased.size()));
-    for (auto* worlds : {&right, &biased})
-        for (auto& [world, all] : *worlds) all = calls(world, repeats, seed, watch);
+        for (const int renders : {4, 8, 16})
+            biased.push_back({{coarse, {Kind::normal, 0.2, bias}, renders, 32}, {}, {}, {}});
+    const auto all = {&right, &other, &alike, &bounded, &biased};
+    std::size_t kinds = 0;
+    for (const auto* worlds : all) kinds += worlds->size();
+    watch.begin("comparisons", static_cast<double>(repeats) * static_cast<double>(kinds));
+    for (auto* worlds : all)
+        for (Calls& c : *worlds) call(c, repeats, seed, watch);
     std::string out = fmt::format(
         "{} calls each, of two arms of 32 x 32 pixels whose mean is 1 and a reference without error: three comparisons "
-        "a call.\n\n",
+        "a call, which share alpha = 0.05.\n\n",
         repeats);
-    out += "### How often equal arms are told apart\n\n" + false_alarms(right);
+    out += "### How often equal arms are told apart\n\n" + no_test_can;
+    out += "Noise that the rules were chosen on:\n\n" + false_alarms(right);
+    out += "\nNoise that no rule was chosen on:\n\n" + false_alarms(other);
+    out += "\nTwo arms with the same noise, as two versions of a renderer have it, and no reference:\n\n" +
+        false_alarms(alike);
+    out += "\nWith `brightest = 10000`, a bound on a pixel of one render:\n\n" + false_alarms(bounded);
     out +=
         "\n### How often a bias is found\n\nB is brighter by so much everywhere; its noise is 20 %, A's 50 % a "
-        "pixel.\n\n"
-        "| bias | renders | found | would have been, as calls without it say |\n|---|---|---|---|\n";
-    for (const auto& [world, all] : biased) {
-        double smallest = 0;
-        for (const CompareResult& r : all)
-            smallest += r.bias[1].regions.back().smallest / static_cast<double>(all.size());
-        out += fmt::format("| {:g} % | {} | {} | {:.2g} % |\n", 100 * world.b.bias, world.renders,
-            rate_text(count(all, [](const CompareResult& r) { return r.bias[1].differs(); }), all.size()),
-            100 * smallest);
-    }
+        "pixel.\n\n" +
+        powers(biased);
     out +=
         "\n### How often a 95 % interval holds the truth\n\nStudent's t over renders, bias2 by the jackknife; of arm "
-        "A, over the frame. Where a heavy tail "
-        "is said there is no interval.\n\n" +
-        covered(right);
-    return out;
+        "A, over the frame. Where a heavy tail is said there is no interval.\n\n";
+    right.insert(right.end(), other.begin(), other.end());
+    return out + covered(right);
 }
 
 }  // namespace crescent::inline comparing

@@ -51,7 +51,7 @@ void regions(const ComparePlan& plan, Readings& all) {
         add_set(all, boxed(r.name, r.box, all.width), r.at);
     }
     for (const MaskPlan& m : plan.masks) add_set(all, masked(all, m), m.at);
-    add_set(all, boxed(whole_frame, {0, 0, all.width - 1, all.height - 1}, all.width), {plan.file, 0, 0});
+    add_set(all, boxed(whole_frame, all.frame(), all.width), {plan.file, 0, 0});
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ protected:
     Render& put(const std::string& name, std::uint32_t seed, int side = 16) {
         Render r(name, side, side);
         for (std::size_t i = 0; i < r.size(); ++i)
-            r.r[i] = r.g[i] = r.b[i] =
-                static_cast<float>(made_pixel({MadeNoise::Kind::normal, 0.1, 0}, seed, static_cast<std::uint32_t>(i)));
+            r.r[i] = r.g[i] = r.b[i] = static_cast<float>(
+                made_pixel({MadeNoise::Kind::normal, 0.1, 0}, seed, static_cast<std::uint32_t>(i), side));
         return renders_[name] = r;
     }
     Readings read(std::vector<CompareFlag> flags = {}) const {

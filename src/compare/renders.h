@@ -96,6 +96,7 @@ struct Readings {
     std::vector<bool> bad;  // pixels that are not finite in some render: left out everywhere
     std::uint64_t bad_pixels = 0;
     std::vector<std::string> warnings;
+    Box frame() const { return {0, 0, width - 1, height - 1}; }
 };
 
 /// Reads everything twice. Throws InputError where files do not fit each other.

@@ -57,6 +57,7 @@ struct MeanTest {
     bool differs = false;
     double smallest = 0;  // the relative difference that would have been seen nine times out of ten
     std::string why;      // why it was not tested; "" where it was
+    std::string doubt;    // p is small, and what else than a bias may be the reason; "" where nothing is
 };
 
 /// Tests of many places at once, their false discoveries controlled.
@@ -71,6 +72,15 @@ struct PlaceTests {
 struct Found {
     Box box;
     double a = 0, b = 0, p = 0;
+};
+
+/// What else than a bias could have made a difference: events of the darker side that none of its renders met, with the
+/// probability of a false alarm.
+struct MissedEvents {
+    std::string arm;
+    double size = 0;     // at least so bright a pixel
+    double of_mean = 0;  // the same over the mean Y of the place
+    double one_in = 0;   // at most one pixel of so many meets one
 };
 
 /// Two arms, or an arm and the reference: are their expectations the same?
@@ -88,6 +98,7 @@ struct BiasResult {
     double pixel_level = 0;              // p at or below which a pixel is told to differ; 0: none is
     std::vector<std::uint64_t> pixel_p;  // histogram of p over pixels, in twentieths
     bool differs() const;
+    std::optional<MissedEvents> unless;  // of the place that is hardest to explain by them; where something differs
     std::string sentence;
 };
 
@@ -130,6 +141,8 @@ struct CompareResult {
     std::vector<std::string> warnings;
     std::string reference_error_from;               // how it is known
     std::map<std::string, double> reference_error;  // region -> rms standard error of the reference's Y; NaN: not known
+    /// Some pair of arms, or an arm and the reference, differs.
+    bool differs() const;
     enum class State { holds, fails, inconclusive } state = State::holds;
     std::string say;  // one sentence for the state
 };

@@ -15,7 +15,8 @@ Section arms() {
     return {"arms", Multiplicity::named, required,
         "Sets of independent renders of one view: several seeds of A, several of B.", in<&ComparePlan::arms>,
         {{"files", Type::texts, none, "", required, "",
-             "Paths or patterns (*, ?, [a-z], %d for digits) of the renders.", to<&RenderArm::files>},
+             "Paths or patterns (*, ?, [a-z], %d for digits) of the renders, relative to this file.",
+             to<&RenderArm::files>},
             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
                 to<&RenderArm::layer>},
             {"spp", Type::number, positive, "samples/pixel", optional, "what the files say",
@@ -35,7 +36,8 @@ Section regions() {
 Section masks() {
     return {"masks", Multiplicity::named, optional, "Sets of pixels in which errors are measured.",
         in<&ComparePlan::masks>,
-        {{"file", Type::text, none, "", required, "", "A picture of the renders' size; pixels above 0 belong to it.",
+        {{"file", Type::text, none, "", required, "",
+            "A picture of the renders' size, relative to this file; pixels above 0 belong to it.",
             to<&MaskPlan::file>}},
         {}};
 }
@@ -53,8 +55,8 @@ Section assertions() {
 const Section& compare_schema() {
     static const Section root = {"", Multiplicity::one, required, "Renders of other programs, compared.", {},
         {{"title", Type::text, none, "", defaulted, "\"renders compared\"", "One line.", to<&ComparePlan::title>},
-            {"reference", Type::texts, none, "", optional, "none", "Paths or patterns of the converged image.",
-                to<&ComparePlan::reference>},
+            {"reference", Type::texts, none, "", optional, "none",
+                "Paths or patterns of the converged image, relative to this file.", to<&ComparePlan::reference>},
             {"reference_layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of it.",
                 to<&ComparePlan::reference_layer>},
             {"pair", Type::flag, none, "", defaulted, "false",
@@ -62,8 +64,14 @@ const Section& compare_schema() {
                 to<&ComparePlan::pair>},
             {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1", "Of photographs.",
                 to<&ComparePlan::exposure>},
+            {"theme", Type::word, none, "", defaulted, "\"dark\"", "Ground and inks of plates.",
+                to<&ComparePlan::theme>, {"dark", "light"}},
             {"alpha", Type::number, {1e-9, 0.5}, "", defaulted, "0.01",
                 "Chance that a call tells of a difference where there is none.", to<&ComparePlan::alpha>},
+            {"brightest", Type::number, positive, "", optional, "not known",
+                "The most that Y of a pixel of one render can be, where something bounds it, such as a clamp: a "
+                "difference that rarer events up to it could make is not called one.",
+                to<&ComparePlan::brightest>},
             {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
                 "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&ComparePlan::firefly_k>},
             {"trim", Type::number, share, "", defaulted, "0",

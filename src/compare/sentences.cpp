@@ -1,6 +1,7 @@
 // What was found about means, in one sentence.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "compare/judge.h"
@@ -12,7 +13,8 @@ namespace {
 
 std::string relative(double a, double b) {
     if (!(b > 0)) return fmt::format("{} beside {}", figures(a, 2), figures(b, 2));
-    return a / b < 2 ? fmt::format("{:+.2g} %", 100 * (a / b - 1)) : fmt::format("{:.2g} times", a / b);
+    if (a / b >= 2) return fmt::format("{} times", figures(a / b, 2));
+    return (a < b ? "−" : "+") + percent(std::fabs(a / b - 1), 2);
 }
 
 std::string place(const Found& f) {
@@ -41,13 +43,27 @@ std::vector<std::string> differences(const BiasResult& b) {
     return out;
 }
 
+/// A t-test is blind to events that no render met; how rare and bright they would have to be is for the reader to
+/// judge.
+std::string unless(const BiasResult& b) {
+    if (!b.unless) return {};
+    const std::string times =
+        b.unless->of_mean > 0 ? fmt::format(", {} times its mean there,", figures(b.unless->of_mean, 2)) : "";
+    return fmt::format(
+        " Without a bias {} would have to meet events brighter than {}{} in fewer than one of {:.0f} "
+        "pixels, none of which its renders met.",
+        b.unless->arm, figures(b.unless->size, 2), times, std::max(1.0, b.unless->one_in));
+}
+
 }  // namespace
 
 std::string sentence_of(const BiasResult& b, double alpha) {
-    if (b.differs()) return fmt::format("{} differs from {}: {}.", b.a, b.b, fmt::join(differences(b), "; "));
+    if (b.differs())
+        return fmt::format("{} differs from {}: {}.{}", b.a, b.b, fmt::join(differences(b), "; "), unless(b));
     std::vector<std::string> seen, not_seen;
     for (const MeanTest& t : b.regions) {
-        if (t.why.empty()) seen.push_back(fmt::format("{} in {}", percent(t.smallest, 2), t.region));
+        if (!t.doubt.empty()) not_seen.push_back(fmt::format("{}: {}", t.region, t.doubt));
+        else if (t.why.empty()) seen.push_back(fmt::format("{} in {}", percent(t.smallest, 2), t.region));
         else not_seen.push_back(fmt::format("{}: {}", t.region, t.why));
     }
     std::string out = seen.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
@@ -55,8 +71,31 @@ std::string sentence_of(const BiasResult& b, double alpha) {
                                          "No difference between {} and {} was found; one of {} of mean Y would "
                                          "have been, nine times out of ten (alpha {})",
                                          b.a, b.b, fmt::join(seen, ", "), figures(alpha, 2));
-    if (!not_seen.empty()) out += fmt::format("; not tested: {}", fmt::join(not_seen, "; "));
+    if (!not_seen.empty()) out += fmt::format("; not told: {}", fmt::join(not_seen, "; "));
     return out + ".";
+}
+
+std::vector<std::string> found_about_means(const CompareResult& result) {
+    constexpr std::size_t few = 6;
+    const auto quiet = [](const BiasResult& b) {
+        return !b.differs() && std::all_of(b.regions.begin(), b.regions.end(), [](const MeanTest& t) {
+            return t.why.empty() && t.doubt.empty();
+        });
+    };
+    std::vector<std::string> out;
+    std::size_t rest = 0;
+    double smallest = 0;
+    for (const BiasResult& b : result.bias) {
+        if (result.bias.size() <= few || !quiet(b)) out.push_back(b.sentence);
+        else ++rest, smallest = std::max(smallest, b.regions.back().smallest);
+    }
+    if (rest)
+        out.push_back(
+            fmt::format("In {} of {} pairs no difference was found; one of {} of mean Y in {} would have been in each "
+                        "of them, nine "
+                        "times out of ten.",
+                rest, result.bias.size(), percent(smallest, 2), result.bias[0].regions.back().region));
+    return out;
 }
 
 }  // namespace crescent::inline comparing

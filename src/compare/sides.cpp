@@ -78,6 +78,7 @@ Sides::Sides(const ComparePlan& plan, const Readings& readings, const CompareRes
       b(second < readings.arms.size() ? readings.arms[second] : *readings.reference),
       arm(measured.arms[first]) {
     referred = second >= readings.arms.size();
+    brightest = plan.brightest.value_or(0);
     if (!referred) other = &measured.arms[second];
     if (plan.pair && !referred) pairs = pairs_of(a, b);
     const RegionResult& frame = arm.region(whole_frame);
@@ -119,7 +120,20 @@ Welch Sides::test(
 double Sides::unseen(double difference, double pixels, double level) const {
     const ArmReadings& lower = difference < 0 ? a : b;
     if (lower.files.size() < 2) return 0;
-    return -math::log(level) * lower.rare_event / (pixels * static_cast<double>(lower.files.size()));
+    return -math::log(level) * std::max(brightest, lower.rare_event) /
+        (pixels * static_cast<double>(lower.files.size()));
+}
+
+std::optional<MissedEvents> Sides::needed(const Found& place, double pixels, double level) const {
+    const bool ours = place.a < place.b;
+    const ArmReadings& lower = ours ? a : b;
+    if (lower.files.size() < 2) return {};
+    MissedEvents out{ours ? arm.name : other ? other->name : the_reference, 0, 0, 0};
+    out.one_in = pixels * static_cast<double>(lower.files.size()) / -math::log(level);
+    out.size = std::fabs(place.a - place.b) * out.one_in;
+    const double mean = std::min(place.a, place.b);
+    out.of_mean = mean > 0 ? out.size / mean : 0;
+    return out;
 }
 
 double Sides::blind(double mean_a, double mean_b, double pixels, double variance, double level) const {

@@ -34,6 +34,9 @@ struct Sides {
     /// The difference of a mean that events as large as the rarest seen would make up, on the side that is lower, where
     /// they are so rare that its renders met none with a probability of `level`. Below it a t-test is blind.
     double unseen(double difference, double pixels, double level) const;
+    /// The events that would be needed for a difference of the means of so many pixels, and missed with a probability
+    /// of `level`; nothing where the darker side is one file.
+    std::optional<MissedEvents> needed(const Found& place, double pixels, double level) const;
     /// The larger of that and of what the files' rounding makes of two means: all of it where there is no noise to
     /// spread it, less and less under noise of this variance a pixel.
     double blind(double mean_a, double mean_b, double pixels, double variance, double level) const;
@@ -42,11 +45,16 @@ struct Sides {
     const ArmReadings &a, &b;
     const ArmResult& arm;
     const ArmResult* other = nullptr;  // none: the reference
+    double brightest = 0;              // the most that a pixel of one render can be; 0: not known
     bool referred = false, dependent = false;
     double low_frequencies = 1;                              // of the noise's power, over that of its high ones
     std::vector<std::pair<std::size_t, std::size_t>> pairs;  // of renders; empty: independent
     std::vector<double> tile_a, tile_b;                      // variance of a pixel of one render, mean over a tile
 };
+
+/// What events that no render met would have to be to make up all that was found, of which the place that asks for the
+/// brightest counts; `alpha` is that of regions.
+std::optional<MissedEvents> missed_events(const Sides& sides, const BiasResult& found, double alpha);
 
 /// The reference's own squared error a pixel where it is one file that does not say it: what the mean of an arm less
 /// the reference varies from one pixel to the next, less the arm's own share; a bias is taken to be smooth.

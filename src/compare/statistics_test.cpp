@@ -48,7 +48,7 @@ TEST(CompareStatistics, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
 TEST(CompareStatistics, ASpectrumTellsFilteredNoiseFromWhite) {
     std::vector<double> white, filtered;
     const auto noise = [](int x, int y) {
-        return made_pixel({MadeNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x)) - 1;
+        return made_pixel({MadeNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x), 65) - 1;
     };
     const Box box{0, 0, 63, 63};
     add_spectrum(white, box, noise);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "plates/canvas_surface.h"
+#include "plates/style.h"
 
 namespace crescent::plates {
 
@@ -15,8 +16,11 @@ std::string escaped(std::string_view plain) {
     return text.get();
 }
 
-Canvas::Canvas(int width, int height, const Colour& ground, double scale)
-    : width_(width), height_(height), surface_(std::make_unique<Surface>(width, height, scale)) {
+Canvas::Canvas(int width, int height, const Colour& ground, double scale, Theme theme, Medium medium)
+    : width_(width),
+      height_(height),
+      surface_(std::make_unique<Surface>(width, height, scale, theme, medium)),
+      theme_(theme) {
     clear(ground);
 }
 
@@ -70,7 +74,7 @@ Rect Canvas::text(const Rect& box, const std::string& markup, const Text& how) {
     cairo_move_to(surface_->cr, box.x, y);
     if (!text_hidden_) pango_cairo_show_layout(surface_->cr, l);
     Rect took{box.x + double(r.x) / PANGO_SCALE, y, double(r.width) / PANGO_SCALE, h};
-    settings_.push_back({markup, box, took, px, cut, how.ink});
+    settings_.push_back({markup, box, took, px, cut, themed(how.ink, theme_)});
     return took;
 }
 
@@ -78,6 +82,17 @@ const unsigned char* Canvas::pixels(int& stride) const {
     cairo_surface_flush(surface_->image);
     stride = cairo_image_surface_get_stride(surface_->image);
     return cairo_image_surface_get_data(surface_->image);
+}
+
+std::string Canvas::svg() {
+    cairo_surface_finish(surface_->image);
+    std::string out = std::move(surface_->document);
+    const std::string counted = "id=\"surface";  // and how many surfaces the process has made
+    if (const auto at = out.find(counted); at != std::string::npos) {
+        const auto from = at + counted.size();
+        out.erase(from, out.find_first_not_of("0123456789", from) - from);
+    }
+    return out;
 }
 
 Picture Canvas::picture() const {

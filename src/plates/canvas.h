@@ -9,6 +9,7 @@
 
 #include "color/tone.h"
 #include "plates/plates.h"
+#include "plates/theme.h"
 
 typedef struct _cairo cairo_t;
 
@@ -64,10 +65,15 @@ struct Block {
     }
 };
 
+enum class Medium { pixels, svg };
+
 class Canvas {
 public:
     /// Throws OutputError where the font Inter is missing. `scale`: pixels a unit; all that is drawn is given in units.
-    Canvas(int width, int height, const Colour& ground, double scale = 1);
+    /// Colours of style.h are shown as the theme has them; blocks of pixels, and all other colours, as they are.
+    /// Medium::svg: lines, and letters as outlines, which svg() gives; blocks of pixels cannot be painted there.
+    Canvas(int width, int height, const Colour& ground, double scale = 1, Theme theme = Theme::dark,
+        Medium medium = Medium::pixels);
     ~Canvas();
     Canvas(const Canvas&) = delete;
     Canvas& operator=(const Canvas&) = delete;
@@ -104,6 +110,7 @@ public:
     /// Text takes its place but leaves no ink: for tests, which ask what stands behind it.
     void hide_text(bool hidden) { text_hidden_ = hidden; }
 
+    Theme theme() const { return theme_; }
     int width() const { return width_; }
     int height() const { return height_; }
     /// Rows of 32-bit pixels 0x??RRGGBB, top-down, `stride` bytes apart; until the next drawing.
@@ -111,11 +118,14 @@ public:
     const std::vector<Setting>& settings() const { return settings_; }
     const std::vector<Rect>& pictures() const { return pictures_; }
     Picture picture() const;
+    /// The document, of a canvas of Medium::svg, which cannot be drawn on after.
+    std::string svg();
 
 private:
     struct Surface;
     int width_, height_;
     std::unique_ptr<Surface> surface_;
+    Theme theme_;
     bool text_hidden_ = false;
     std::vector<Setting> settings_;
     std::vector<Rect> pictures_;

@@ -65,6 +65,7 @@ void Canvas::arrow(Point from, Point to, const Colour& c, double width) {
 }
 
 void Canvas::paint(const Block& block, int x, int y) {
+    ensure(cairo_surface_get_type(surface_->image) == CAIRO_SURFACE_TYPE_IMAGE, "a canvas of pixels takes blocks");
     ensure(x >= 0 && y >= 0 && x + block.width <= width_ && y + block.height <= height_, "a block lies on the canvas");
     cairo_surface_flush(surface_->image);
     unsigned char* data = cairo_image_surface_get_data(surface_->image);

@@ -1,11 +1,13 @@
 #include "plates/canvas_surface.h"
 
+#include <cairo-svg.h>
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstring>
 
 #include "base/errors.h"
+#include "plates/style.h"
 
 namespace crescent::plates {
 
@@ -66,11 +68,19 @@ PangoAlignment to_pango(Align a) {
     return a == Align::left ? PANGO_ALIGN_LEFT : a == Align::right ? PANGO_ALIGN_RIGHT : PANGO_ALIGN_CENTER;
 }
 
+cairo_status_t append(void* document, const unsigned char* bytes, unsigned int count) {
+    static_cast<std::string*>(document)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+}
+
 }  // namespace
 
-Canvas::Surface::Surface(int width, int height, double pixels_a_unit) : scale(pixels_a_unit) {
+Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how, Medium medium)
+    : scale(pixels_a_unit), theme(how) {
     require_font(pango_cairo_font_map_get_default());
-    image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    image = medium == Medium::svg ? cairo_svg_surface_create_for_stream(append, &document, width, height)
+                                  : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    if (medium == Medium::svg) cairo_svg_surface_set_document_unit(image, CAIRO_SVG_UNIT_PX);
     cr = cairo_create(image);
     cairo_scale(cr, scale, scale);
     layout.reset(pango_cairo_create_layout(cr));
@@ -85,6 +95,11 @@ Canvas::Surface::Surface(int width, int height, double pixels_a_unit) : scale(pi
     pango_context_set_round_glyph_positions(context, FALSE);
     pango_context_set_language(context, pango_language_from_string("en"));
 }
+void Canvas::Surface::ink(const Colour& c) {
+    const Colour shown = themed(c, theme);
+    cairo_set_source_rgba(cr, shown.r, shown.g, shown.b, shown.a);
+}
+
 Canvas::Surface::~Surface() {
     layout.reset();
     cairo_destroy(cr);

@@ -18,14 +18,17 @@ struct Canvas::Surface {
     cairo_surface_t* image = nullptr;
     cairo_t* cr = nullptr;
     double scale = 1;
+    Theme theme = Theme::dark;
     std::unique_ptr<PangoLayout, Unref> layout;
 
-    Surface(int width, int height, double scale);
+    std::string document;  // of Medium::svg, once it is finished
+
+    Surface(int width, int height, double scale, Theme theme, Medium medium);
     ~Surface();
     Surface(const Surface&) = delete;
     Surface& operator=(const Surface&) = delete;
 
-    void ink(const Colour& c) { cairo_set_source_rgba(cr, c.r, c.g, c.b, c.a); }
+    void ink(const Colour& c);
     /// Lays markup out at `px`; width < 0: unbounded.
     Rect lay(const std::string& markup, const Text& how, double px, double width);
 };

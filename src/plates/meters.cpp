@@ -159,7 +159,8 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
         if (any && regions.size() < 2) regions.push_back(r.name);
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
-        draw_ladder_chart(sheet, column(slot, regions.size(), i), regions[i]);
+        draw_ladder_chart(sheet.canvas, column(slot, regions.size(), i),
+            "RMSE<sub>" + escaped(regions[i]) + "</sub> against N", ladder_curves(sheet, regions[i]));
     }
 }
 

@@ -38,6 +38,13 @@ void draw(Sheet& sheet) {
     ensure(false, "every kind of plate has a function that draws it");
 }
 
+std::string draw_plate_svg(const PlatePlan& plan, const PlateInputs& in) {
+    if (plan.kind != PlateKind::meters) return {};
+    Sheet sheet(plan, in, Medium::svg);
+    draw(sheet);
+    return sheet.canvas.svg();
+}
+
 Picture draw_plate(const PlatePlan& plan, const PlateInputs& in) {
     Sheet sheet(plan, in);
     draw(sheet);

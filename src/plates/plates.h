@@ -8,6 +8,7 @@
 #include "experiment/experiment.h"
 #include "films/film.h"
 #include "meters/metrics.h"
+#include "plates/theme.h"
 
 namespace crescent::plates {
 
@@ -20,6 +21,7 @@ struct PlateInputs {
     std::function<const Film*(const RunKey&)> film;           // nullptr: not run
     std::function<const ReferenceFilm*(double s)> reference;  // the one the meters use
     std::string instrument;                                   // "CPU" or the GL strings, for the instrument plates
+    Theme theme = Theme::dark;
 };
 
 /// A finished picture: 8-bit sRGB, 3 bytes a pixel, rows top-down.
@@ -31,6 +33,9 @@ struct Picture {
 /// Draws one plate. Throws OutputError where the font Inter is missing.
 Picture draw_plate(const PlatePlan& plan, const PlateInputs& in);
 
+/// The same plate as an SVG document, of a kind that is lines and text alone (meters); "" of the others.
+std::string draw_plate_svg(const PlatePlan& plan, const PlateInputs& in);
+
 /// PNG bytes with the provenance as text chunks.
 std::vector<unsigned char> encode_png(
     const Picture& picture, const std::vector<std::pair<std::string, std::string>>& text);
@@ -40,6 +45,7 @@ std::vector<unsigned char> encode_png(
 /// What a run, compare and the doors call by these names.
 namespace crescent {
 using plates::draw_plate;
+using plates::draw_plate_svg;
 using plates::encode_png;
 using plates::Picture;
 using plates::PlateInputs;

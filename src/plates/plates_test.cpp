@@ -51,6 +51,43 @@ void expect_apart(const std::vector<Setting>& settings) {
     }
 }
 
+double luminance_of(const plates::Colour& c) {
+    const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+}
+
+// WCAG 2.2: text and lines that tell something at 4.5:1.
+TEST(Plates, InksOfTheLightThemeStandOutFromItsGround) {
+    using namespace plates;
+    const double paper = luminance_of(themed(ground, Theme::light));
+    EXPECT_GT(paper, 0.9);
+    for (const Colour& c : {bright, muted, photograph_accent, instrument_accent, alert, series[0], series[1], series[2],
+             series[3], series[4], series[5]})
+        EXPECT_GE((paper + 0.05) / (luminance_of(themed(c, Theme::light)) + 0.05), 4.5)
+            << c.r << " " << c.g << " " << c.b;
+    EXPECT_EQ(themed(bright, Theme::dark).r, bright.r);
+}
+
+TEST(Plates, TheLightThemeKeepsEveryWordAndHasALightGround) {
+    World world(96, 54);
+    for (PlateKind kind : all_kinds) {
+        PlateInputs in = world.inputs();
+        in.theme = Theme::light;
+        const Picture p = draw_plate(world.plan(kind, 2), in);
+        EXPECT_GE(p.rgb[0], 250) << static_cast<int>(kind);
+        EXPECT_GE(p.rgb[p.rgb.size() - 1], 250) << static_cast<int>(kind);
+    }
+}
+
+TEST(Plates, APlateOfLinesIsAnSvgToo) {
+    World world(96, 54);
+    const std::string svg = draw_plate_svg(world.plan(PlateKind::meters, 2), world.inputs());
+    EXPECT_EQ(svg.find("<?xml"), 0u);
+    EXPECT_NE(svg.find("</svg>"), std::string::npos);
+    EXPECT_TRUE(svg == draw_plate_svg(world.plan(PlateKind::meters, 2), world.inputs()));
+    EXPECT_EQ(draw_plate_svg(world.plan(PlateKind::heat, 2), world.inputs()), "");
+}
+
 TEST(Plates, EveryKindIs1280By720AndTheSameBytesTwiceOnAnyThread) {
     World world(96, 54);
     for (PlateKind kind : all_kinds) {

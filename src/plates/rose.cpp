@@ -40,14 +40,14 @@ Direction from_angles(double theta, double phi) {
 }
 
 // The dome's pixels: what lies on the sphere towards the viewer and above the surface.
-Block dome_block(const Density& p, double peak, int r) {
+Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
     Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
     for (int j = 0; j < block.height; ++j) {
         for (int i = 0; i < block.width; ++i) {
             double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
             double w = w2 > 0 ? std::sqrt(w2) : 0;
             Direction d{u, v * up - w * away, v * away + w * up};
-            block.set(i, j, w2 > 0 && d.z >= 0 ? turbo(p.at(d) / peak) : ground_bytes);
+            block.set(i, j, w2 > 0 && d.z >= 0 ? turbo(p.at(d) / peak) : nothing);
         }
     }
     return block;
@@ -106,7 +106,8 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
     int r = static_cast<int>(std::min((slot.w - bar_room - 24) / 2, (slot.h - head) / (1 + up)));
     if (r < 8) return;
     Dome dome{std::floor(slot.x + (slot.w - bar_room) / 2), slot.y + head + r, double(r)};
-    sheet.canvas.paint(dome_block(part.p, part.peak, r), int(dome.x) - r, int(slot.y + head));
+    sheet.canvas.paint(
+        dome_block(part.p, part.peak, r, ground_pixel(sheet.canvas.theme())), int(dome.x) - r, int(slot.y + head));
     draw_grid(sheet.canvas, dome);
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
     draw_arrow(sheet.canvas, dome, {math::sin(tilt), 0, math::cos(tilt)}, "R", 1);

@@ -20,7 +20,8 @@ void header(Sheet& sheet, const Colour& accent, const std::string& label, const 
     sheet.canvas.text({b.x + 17, b.y, b.w - 17 - w - gap, b.h}, label, label_text);
 }
 
-std::string tinted(const std::string& text, const Colour& c) {
+std::string tinted(const std::string& text, const Colour& plain, Theme theme) {
+    const Colour c = themed(plain, theme);
     auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
     return fmt::format(
         "<span foreground='#{:02x}{:02x}{:02x}' weight='600'>{}</span>", byte(c.r), byte(c.g), byte(c.b), text);
@@ -38,13 +39,15 @@ std::string reference_stream(const Experiment& e) {
 }
 
 void photograph_header(Sheet& sheet, const std::string& what, const std::string& stream) {
-    header(sheet, photograph_accent, "Khronos PBR Neutral / " + tinted("PHOTO-ONLY", photograph_accent) + " / " + what,
+    header(sheet, photograph_accent,
+        "Khronos PBR Neutral / " + tinted("PHOTO-ONLY", photograph_accent, sheet.canvas.theme()) + " / " + what,
         stream);
 }
 
 void instrument_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films) {
-    header(sheet, instrument_accent, tinted("INSTRUMENT " + name, instrument_accent) + " / " + what, stream);
+    header(sheet, instrument_accent,
+        tinted("INSTRUMENT " + name, instrument_accent, sheet.canvas.theme()) + " / " + what, stream);
     if (of_films)
         for (const ReferenceMeter& r : sheet.in.metrics.references)
             if (r.error_share > most_error_share) {

@@ -12,14 +12,15 @@ namespace crescent::plates {
 
 /// A plate being drawn.
 struct Sheet {
-    Canvas canvas{sheet_width, sheet_height, ground};
     const PlatePlan& plan;
     const PlateInputs& in;
+    Canvas canvas;
     std::uint64_t not_finite = 0;    // pixels shown that are not numbers
     std::vector<std::string> notes;  // for the footer, markup
     std::vector<Rect> tags;          // name tags of regions so far
 
-    Sheet(const PlatePlan& p, const PlateInputs& i) : plan(p), in(i) {}
+    Sheet(const PlatePlan& p, const PlateInputs& i, Medium medium = Medium::pixels)
+        : plan(p), in(i), canvas(sheet_width, sheet_height, ground, 1, i.theme, medium) {}
     const Experiment& experiment() const { return in.experiment; }
 };
 

@@ -25,6 +25,30 @@ inline constexpr std::size_t series_count = sizeof series / sizeof series[0];
 /// For regions, in the order of the experiment.
 constexpr Colour region_colour(std::size_t i) { return series[1 + i % (series_count - 1)]; }
 
+/// The same colours on a light ground, text on it at 15:1 and 6:1, lines and names of arms at 4.5:1 or more.
+struct Themed {
+    Colour dark, light;
+};
+inline constexpr Themed light_theme[] = {{ground, {0.988, 0.988, 0.984}}, {panel, {0.941, 0.945, 0.949}},
+    {rule, {0.804, 0.816, 0.831}}, {bright, {0.098, 0.106, 0.118}}, {muted, {0.345, 0.369, 0.400}},
+    {photograph_accent, {0.604, 0.357, 0.000}}, {instrument_accent, {0.000, 0.408, 0.498}},
+    {alert, {0.741, 0.000, 0.741}}, {series[0], {0.392, 0.392, 0.392}}, {series[3], {0.710, 0.161, 0.176}},
+    {series[4], {0.184, 0.455, 0.118}}, {series[5], {0.439, 0.290, 0.690}}};
+/// A colour of this file as a theme shows it, its opacity kept; another stays as it is.
+constexpr Colour themed(const Colour& c, Theme theme) {
+    if (theme == Theme::light)
+        for (const Themed& t : light_theme)
+            if (t.dark.r == c.r && t.dark.g == c.g && t.dark.b == c.b) return {t.light.r, t.light.g, t.light.b, c.a};
+    return c;
+}
+/// The ground as a pixel of a block.
+inline Srgb8 ground_pixel(Theme theme) {
+    if (theme == Theme::dark) return ground_bytes;
+    const auto byte = [](double v) { return static_cast<unsigned char>(255 * v + 0.5); };
+    const Colour c = themed(ground, theme);
+    return {byte(c.r), byte(c.g), byte(c.b)};
+}
+
 // Margins, and the bands of the sheet from top to bottom.
 inline constexpr double margin = 32, gap = 20;
 inline constexpr double sheet_inner = sheet_width - 2 * margin;

@@ -23,9 +23,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+PlateInputs plate_inputs(const Measured& m) {
+    return {m.experiment, m.metrics, m.shapes, [&m](const RunKey& key) { return m.film(key); },
+        [&m](double s) { return m.reference(s); }, m.provenance.instrument};
+}
+
 std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attributes text) {
-    const PlateInputs in{m.experiment, m.metrics, m.shapes, [&](const RunKey& key) { return m.film(key); },
-        [&](double s) { return m.reference(s); }, m.provenance.instrument};
+    const PlateInputs in = plate_inputs(m);
     text.emplace_back("plate", plan.name);
     return encode_png(draw_plate(plan, in), text);
 }
@@ -49,6 +53,14 @@ void write_references(const Measured& m, Staging& staging) {
     for (const ReferenceFilm& film : m.quadrature) parts.emplace_back(fmt::format("quadrature s={}", film.s), &film);
     for (const ReferenceFilm& film : m.monte_carlo) parts.emplace_back(fmt::format("note s={}", film.s), &film);
     if (!parts.empty()) write_exr(staging.path(fmt::format("films/{}.exr", reference_file)), parts, attributes_of(m));
+}
+
+/// Each as PNG; those of lines alone as SVG too.
+void write_plates(const Measured& m, Staging& staging) {
+    for (const auto& [name, png] : m.plates) staging.write("plates/" + name + ".png", png);
+    for (const PlatePlan& plan : m.experiment.plates)
+        if (const std::string svg = draw_plate_svg(plan, plate_inputs(m)); !svg.empty())
+            staging.write("plates/" + plan.name + ".svg", svg);
 }
 
 /// The experiment's own assertions stand first; those of the instrument stay as they are.
@@ -124,8 +136,7 @@ void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputPa
         [&] {
             if (parts.draws()) m.plates = draw_plates(m, watch);
         });
-    if (parts.plates)
-        for (const auto& [name, png] : m.plates) staging.write("plates/" + name + ".png", png);
+    if (parts.plates) write_plates(m, staging);
     m.timing.stages.emplace_back("plates and films on disk", seconds_since(start));
     if (parts.draws()) judge_plates(m);
     const auto report = Clock::now();
