@@ -161,7 +161,8 @@ class Noticed:
 
 
 def who_notices(sampler: Sampler, tests: Iterable[Callable[[Sampler], Any]]) -> Noticed:
-    """Runs tests that take a sampler on every mutant of it: a test notices a mutant by raising or returning False."""
+    """Runs tests that take a sampler on every mutant of it: a test notices a mutant by raising, or by
+    returning something that is false and not None."""
     tests = tuple(tests)
     names = tuple(getattr(t, "__name__", str(t)) for t in tests)
     for test, name in zip(tests, names):
@@ -173,6 +174,7 @@ def who_notices(sampler: Sampler, tests: Iterable[Callable[[Sampler], Any]]) -> 
 
 def _passes(test: Callable[[Sampler], Any], sampler: Sampler) -> bool:
     try:
-        return test(sampler) is not False
+        result = test(sampler)
     except Exception:
         return False
+    return result is None or bool(result)

@@ -63,7 +63,7 @@ def test_who_notices_says_which_tests_see_which_fault():
         import numpy as np
 
         wi, _ = sampler.sample(np.tile([0.0, 0.0, 1.0], (64, 1)), np.full((64, 2), 0.5))[:2]
-        return bool(np.all(wi[:, 2] > 0))
+        return np.all(wi[:, 2] > 0)  # a bool of NumPy's own
 
     def judges(sampler):
         return check(sampler, wo_deg=[(45, 130)]).state == "right"
@@ -71,6 +71,7 @@ def test_who_notices_says_which_tests_see_which_fault():
     noticed = who_notices(MINE, [looks_at_z, judges])
     assert not noticed.missed() and "directions lean by 5 degrees" in noticed.by
     assert any("looks_at_z" not in tests for tests in noticed.by.values())
+    assert "looks_at_z" in noticed.by["a direction in 100 is no number"]
     assert "planted faults are noticed" in str(noticed)
     with pytest.raises(ValueError, match="fails with the sampler as it is"):
         who_notices(MINE, [lambda sampler: False])

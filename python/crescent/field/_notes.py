@@ -54,6 +54,11 @@ NOTES = [
         "angle and the horizon most of its digits cancel.",
     ),
     Note(
+        "cylinder", "identity|normalised|density", "", "single precision",
+        "pdf(w) is found by sending a ray back; where it grazes the cylinder the cosine there is lost to the rounding of the "
+        "direction and of the intersection, and p divides by it. The ratio of both is 1 in the middle of the lamp.",
+    ),
+    Note(
         "principled.*sheen", "physics", "creates energy", "the model",
         "Disney's sheen is added on top of the other lobes and takes nothing from them: at grazing w_o more leaves the "
         "surface than arrives. Burley 2012 and 2015 say so of it.",
