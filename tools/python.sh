@@ -28,7 +28,7 @@ make_environment() {
 # and leaves it out where that cannot be had: nothing else stands on it.
 add_python_module() {
     local python
-    python=$(find_python) && (make_environment "$1" "$python" nanobind numpy pytest matplotlib) ||
+    python=$(find_python) && (make_environment "$1" "$python" nanobind numpy pytest matplotlib xarray mitsuba) ||
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
         grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return

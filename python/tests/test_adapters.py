@@ -1,0 +1,100 @@
+"""Samplers of other libraries: triples of NumPy, JAX and PyTorch, and Mitsuba's own."""
+
+import numpy as np
+import pytest
+
+import crescent
+from crescent import adapters
+
+WO = [(30.0, 0.0), (75.0, 310.0)]
+
+
+def triple(xp, pi=np.pi):
+    """Lambert of 0.5 as renderers have it, in any array library: eval holds the cosine."""
+
+    def sample(wo, u):
+        r, phi = xp.sqrt(u[:, 0]), 2 * pi * u[:, 1]
+        z = xp.sqrt(1 - u[:, 0])
+        return xp.stack([r * xp.cos(phi), r * xp.sin(phi), z], -1), z / pi, 0.5 + 0 * z
+
+    def pdf(wo, wi):
+        return xp.where(wi[:, 2] > 0, wi[:, 2], 0 * wi[:, 2]) / pi
+
+    def eval(wo, wi):
+        return 0.5 * pdf(wo, wi)
+
+    return sample, eval, pdf
+
+
+def test_a_triple_in_numpy_is_right_and_one_whose_eval_lacks_the_cosine_is_not():
+    sample, eval, pdf = triple(np)
+    assert crescent.check(adapters.numpy(sample, eval, pdf), wo_deg=WO).state == "right"
+    bare = adapters.numpy(sample, lambda wo, wi: eval(wo, wi) / np.maximum(wi[:, 2], 1e-6), pdf)
+    assert "identity" in crescent.check(bare, wo_deg=WO).broken()
+
+
+def test_a_triple_in_single_precision_is_right():
+    assert crescent.check(adapters.numpy(*triple(np), dtype=np.float32), wo_deg=WO).state == "right"
+
+
+def test_a_triple_in_jax_is_compiled_for_few_shapes():
+    jax = pytest.importorskip("jax")
+    sample, eval, pdf = triple(jax.numpy)
+    shapes = set()
+
+    def noted(wo, wi):
+        shapes.add(wi.shape)
+        return pdf(wo, wi)
+
+    mine = adapters.jax(jax.jit(sample), jax.jit(eval), jax.jit(noted))
+    assert crescent.check(mine, wo_deg=WO).state == "right"
+    assert shapes and all(n & (n - 1) == 0 for n, _ in shapes)
+    off = adapters.jax(sample, eval, lambda wo, wi: 1.02 * pdf(wo, wi))
+    assert "normalised" in crescent.check(off, wo_deg=WO).broken()
+
+
+def test_a_triple_in_torch():
+    torch = pytest.importorskip("torch")
+    sample, eval, pdf = triple(torch)
+    assert crescent.check(adapters.torch(sample, eval, pdf), wo_deg=WO).state == "right"
+
+
+@pytest.fixture(scope="module")
+def mi():
+    library = pytest.importorskip("mitsuba")
+    library.set_variant("llvm_ad_rgb")
+    return library
+
+
+@pytest.mark.parametrize("plugin", ["diffuse", "dielectric", "plastic", "conductor"])
+def test_plugins_of_mitsuba_are_right(mi, plugin):
+    sampler = adapters.mitsuba({"type": plugin})
+    assert crescent.check(sampler, wo_deg=WO + ([(150.0, 0.0)] if sampler.wo == "both" else [])).state == "right"
+
+
+def test_a_plugin_of_ones_own_with_a_fault_is_found(mi):
+    class Doubled(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            self.nested = mi.load_dict({"type": "diffuse"})
+            self.m_components = [mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide]
+            self.m_flags = self.m_components[0]
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            bs, weight = self.nested.sample(ctx, si, sample1, sample2, active)
+            return bs, weight
+
+        def eval(self, ctx, si, wo, active=True):
+            return self.nested.eval(ctx, si, wo, active)
+
+        def pdf(self, ctx, si, wo, active=True):
+            return 1.05 * self.nested.pdf(ctx, si, wo, active)
+
+    mi.register_bsdf("doubled", lambda props: Doubled(props))
+    broken = crescent.check(adapters.mitsuba({"type": "doubled"}), wo_deg=WO).broken()
+    assert {"normalised", "identity"} <= set(broken)
+
+
+def test_an_emitter_of_mitsuba_is_right(mi):
+    light = {"type": "sphere", "center": [0.0, 1.0, 2.0], "radius": 0.5, "emitter": {"type": "area"}}
+    assert crescent.check(adapters.mitsuba_emitter(light)).state == "right"
