@@ -36,9 +36,7 @@ class Finding:
     note: Note | None
 
     def kind(self) -> str:
-        if self.note:
-            return self.note.kind
-        return "bug" if any(v.state == "wrong" for v in self.verdicts) else "open"
+        return self.note.kind if self.note else "open"
 
 
 def judged(it: Shipped) -> crescent.Judgement:
@@ -81,8 +79,9 @@ def _section(finding: Finding) -> Iterator[str]:
     yield f"At {cases}. {first.say}"
     if finding.note:
         yield finding.note.because
-    if finding.it.kind == "bsdf" and first.name != "identity":
-        script = script_for(finding.it, first.name, _wo_of(first.case), _corner(first.say) if first.name == "valid" else None)
+    own = finding.note.script if finding.note else ""
+    if own or (finding.it.kind == "bsdf" and first.name != "identity"):
+        script = own or script_for(finding.it, first.name, _wo_of(first.case), _corner(first.say) if first.name == "valid" else None)
         yield f"```python\n{script}\n```\n```\n{output_of(script)}\n```"
 
 
@@ -136,7 +135,7 @@ def main(argv: list[str] | None = None) -> int:
         "[verdicts.md](verdicts.md) at four w_o above the surface and three below; levels are shared within a plugin at "
         "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; *no "
         "picture changes*: sample and pdf differ where eval is 0; *corner*: at random numbers that hardly ever come; "
-        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; *open*: not decided.",
+        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; *the bench*: crescent is wrong there; *open*: not decided.",
         *_shipped_text(args.only),
         *(_faults_text(faults_in(args.faults)) if Path(args.faults).is_dir() else []),
     ]

@@ -42,7 +42,7 @@ def _told(value: Any) -> str:
 def _code(value: Any) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f'"{k}": {_code(v)}' for k, v in value.items()) + "}"
-    return repr(value)
+    return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
 def bsdfs() -> list[Shipped]:
