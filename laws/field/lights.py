@@ -21,8 +21,10 @@ def cell_of(wi):
 
 
 def sky(with_sine=True, pmf=1.0, shift=0.0, reached=None):
-    """Cells by radiance and sin theta, evenly inside in theta and phi; `with_sine`: p is divided by it. `pmf`: of this light among others, drawn and
-    left out of p; `shift`: of the draws, in columns; `reached`: the columns that are drawn."""
+    """Cells by radiance and sin theta, evenly inside in theta and phi; `with_sine`: p is divided by it.
+
+    `pmf`: of this light among others, drawn and left out of p; `shift`: of the draws, in columns; `reached`: the
+    columns that are drawn."""
     weights = SKY * SINE if reached is None else SKY * SINE * reached
     share = (weights / weights.sum()).ravel()
     told = (SKY * SINE / (SKY * SINE).sum()).ravel()
@@ -77,29 +79,49 @@ def disk(solid_angle=True):
 
 FAULTS = [
     Fault(
-        "the sky's pdf without sin theta", "Tauray", "https://github.com/vga-group/tauray/pull/5",
+        "the sky's pdf without sin theta",
+        "Tauray",
+        "https://github.com/vga-group/tauray/pull/5",
         "The density over the picture is not divided by sin theta: the poles come out too dark.",
-        ("normalised", "density"), sky(with_sine=False), RIGHT,
+        ("normalised", "density"),
+        sky(with_sine=False),
+        RIGHT,
     ),
     Fault(
-        "the probability of choosing the light left out", "redner", "https://github.com/BachiLi/redner/issues/56",
+        "the probability of choosing the light left out",
+        "redner",
+        "https://github.com/BachiLi/redner/issues/56",
         "The sky is one of several lights; its pdf is given as if it were always chosen.",
-        ("normalised",), sky(pmf=0.6), RIGHT,
+        ("normalised",),
+        sky(pmf=0.6),
+        RIGHT,
     ),
     Fault(
-        "the sky's cells off by half a texel", "pbrt-v3", "https://github.com/mmp/pbrt-v3/issues/62",
+        "the sky's cells off by half a texel",
+        "pbrt-v3",
+        "https://github.com/mmp/pbrt-v3/issues/62",
         "The pdf of a texel is that of the area about its corner, the draws are of the area beside it.",
-        ("density",), sky(shift=0.5), RIGHT,
+        ("density",),
+        sky(shift=0.5),
+        RIGHT,
     ),
     Fault(
-        "texels at the border that are never drawn", "three-gpu-pathtracer",
+        "texels at the border that are never drawn",
+        "three-gpu-pathtracer",
         "https://github.com/gkjohnson/three-gpu-pathtracer/issues/541",
         "The first and last texels cannot be sampled; p says that they are.",
-        ("density",), sky(reached=(COLUMN > 0) & (COLUMN < COLUMNS - 1)), RIGHT,
+        ("density",),
+        sky(reached=(COLUMN > 0) & (COLUMN < COLUMNS - 1)),
+        RIGHT,
     ),
     Fault(
-        "area measure on one side of MIS", "Bevy (Solari)", "https://github.com/bevyengine/bevy/pull/24671",
-        "The density of a point on the light is given per area where that of a direction is due: cos / distance^2 is missing.",
-        ("normalised", "density"), disk(solid_angle=False), disk(),
+        "area measure on one side of MIS",
+        "Bevy (Solari)",
+        "https://github.com/bevyengine/bevy/pull/24671",
+        "The density of a point on the light is given per area where that of a direction is due: cos / distance^2 is "
+        "missing.",
+        ("normalised", "density"),
+        disk(solid_angle=False),
+        disk(),
     ),
 ]

@@ -1,8 +1,21 @@
 """Microfacets: Jacobians, shadowing, and which direction is which."""
 
 import numpy as np
-from parts import (above, dot, drawn_with, ggx_d, ggx_f, ggx_g1, ggx_pdf, half, polar, reflect, sample_ggx_m,
-                   sample_ggx_visible, visible_pdf)
+from parts import (
+    above,
+    dot,
+    drawn_with,
+    ggx_d,
+    ggx_f,
+    ggx_g1,
+    ggx_pdf,
+    half,
+    polar,
+    reflect,
+    sample_ggx_m,
+    sample_ggx_visible,
+    visible_pdf,
+)
 
 from crescent import Sampler
 from crescent.field import Fault
@@ -90,32 +103,53 @@ CLEARCOAT = of(gtr1, gtr1_pdf, gtr1_f, "clearcoat")
 
 FAULTS = [
     Fault(
-        "the density of visible normals without G1", "NVIDIA Donut", "https://github.com/NVIDIA-RTX/Donut/issues/23",
+        "the density of visible normals without G1",
+        "NVIDIA Donut",
+        "https://github.com/NVIDIA-RTX/Donut/issues/23",
         "p lacks the factor G1 of the distribution of visible normals.",
-        ("normalised",), of(visible, without_g1), of(visible, visible_pdf(ALPHA)),
+        ("normalised",),
+        of(visible, without_g1),
+        of(visible, visible_pdf(ALPHA)),
     ),
     Fault(
-        "no Jacobian from the half vector to w_i", "pbrt-v3 (DisneyClearcoat)", "https://github.com/mmp/pbrt-v3/pull/172",
+        "no Jacobian from the half vector to w_i",
+        "pbrt-v3 (DisneyClearcoat)",
+        "https://github.com/mmp/pbrt-v3/pull/172",
         "The density of the half vector is given for that of the direction: 1 / (4 (w_o.m)) is missing.",
-        ("normalised", "density"), of(by_d, without_jacobian), of(by_d, ggx_pdf(ALPHA)),
+        ("normalised", "density"),
+        of(by_d, without_jacobian),
+        of(by_d, ggx_pdf(ALPHA)),
     ),
     Fault(
-        "sin theta of the half vector without its root", "NVISII", "https://github.com/owl-project/NVISII/issues/144",
+        "sin theta of the half vector without its root",
+        "NVISII",
+        "https://github.com/owl-project/NVISII/issues/144",
         "sin theta is 1 - cos^2 theta where its root is meant; normalising the vector hides it.",
-        ("density",), of(gtr1_without_root, gtr1_pdf, gtr1_f, "clearcoat"), CLEARCOAT,
+        ("density",),
+        of(gtr1_without_root, gtr1_pdf, gtr1_f, "clearcoat"),
+        CLEARCOAT,
     ),
     Fault(
-        "w_o and w_i exchanged in pdf and f, not in sample", "pbrt-v4 (MeasuredBxDF)", "https://github.com/mmp/pbrt-v4/pull/215",
+        "w_o and w_i exchanged in pdf and f, not in sample",
+        "pbrt-v4 (MeasuredBxDF)",
+        "https://github.com/mmp/pbrt-v4/pull/215",
         "Visible normals are those seen from w_o in sample and from w_i in pdf and f.",
         ("density",),
-        Sampler(lambda wo, u: (visible(wo, u), visible_pdf(ALPHA)(wo, visible(wo, u))), exchanged(visible_pdf(ALPHA)),
-                ggx_f(ALPHA), name="measured"),
+        Sampler(
+            lambda wo, u: (visible(wo, u), visible_pdf(ALPHA)(wo, visible(wo, u))),
+            exchanged(visible_pdf(ALPHA)),
+            ggx_f(ALPHA),
+            name="measured",
+        ),
         of(visible, visible_pdf(ALPHA), name="measured"),
     ),
     Fault(
-        "a weight that is not divided by the pdf", "Mitsuba 3, a user's plugin",
+        "a weight that is not divided by the pdf",
+        "Mitsuba 3, a user's plugin",
         "https://github.com/mitsuba-renderer/mitsuba3/issues/1011",
         "sample() gives f cos where f cos / p is asked for.",
-        ("identity",), weight(False), weight(True),
+        ("identity",),
+        weight(False),
+        weight(True),
     ),
 ]

@@ -15,6 +15,22 @@ from .arms import Tail, arm, arm_names, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, load, parse, run
 
 __all__ = [
-    "Experiment", "Film", "Judgement", "Measured", "Sampler", "Tail", "Verdict", "__version__", "arm", "arm_names",
-    "brdf_names", "check", "commit", "load", "parse", "pdf_of", "run", "tail",
+    "Experiment",
+    "Film",
+    "Judgement",
+    "Measured",
+    "Sampler",
+    "Tail",
+    "Verdict",
+    "__version__",
+    "arm",
+    "arm_names",
+    "brdf_names",
+    "check",
+    "commit",
+    "load",
+    "parse",
+    "pdf_of",
+    "run",
+    "tail",
 ]

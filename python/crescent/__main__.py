@@ -58,7 +58,7 @@ def sampler_at(where: str) -> Sampler:
 
 def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
     """The trials, and whether they are of the whole list of arms."""
-    grid = _grid([tuple(map(float, word.split(",")))[:2] if "," in word else float(word) for word in args.wo])
+    grid = _grid([(float(theta), float(azimuth or 0)) for theta, _, azimuth in (w.partition(",") for w in args.wo)])
     if args.exec:
         return _crescent.trials_of_program(args.exec, args.patience, args.full, grid), False
     if args.plugin:
@@ -72,8 +72,12 @@ def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
 
 def _parser() -> argparse.ArgumentParser:
     about, _, _ = (__doc__ or "").partition("\n\n")
-    parser = argparse.ArgumentParser("crescent", description=about, epilog=(__doc__ or "").partition("\n\n")[2],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        "crescent",
+        description=about,
+        epilog=(__doc__ or "").partition("\n\n")[2],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--version", action="version", version=f"crescent {__version__} ({commit})")
     check = parser.add_subparsers(dest="command", required=True).add_parser("check", help="judge a sampler")
     check.add_argument("sampler", nargs="?", help="an arm of the list, FILE.py:NAME or module:NAME")

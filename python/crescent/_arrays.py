@@ -56,7 +56,9 @@ def _numbers(value: Any, what: str) -> NDArray[Any]:
 
 def _rows(array: NDArray[Any], n: int, what: str) -> None:
     if len(array) < n:
-        raise ValueError(f"{what}: {len(array)} rows for {n} that were asked: row {len(array)} is the first without one")
+        raise ValueError(
+            f"{what}: {len(array)} rows for {n} that were asked: row {len(array)} is the first without one"
+        )
     if len(array) > n:
         raise ValueError(f"{what}: {len(array)} rows for {n} that were asked: row {n} is the first too many")
 
@@ -105,7 +107,9 @@ def draws(answer: Any, n: int, name: str) -> Parts:
         answer = tuple(answer.get(key) for key in ("wi", "pdf", "weight", "delta"))
     if not isinstance(answer, (tuple, list)) or not 2 <= len(answer) <= 4:
         got = f"{len(answer)} values" if isinstance(answer, (tuple, list)) else type(answer).__name__
-        raise ValueError(f"{name}: sample gave {got}, expected (wi, pdf), (wi, pdf, weight) or (wi, pdf, weight, delta)")
+        raise ValueError(
+            f"{name}: sample gave {got}, expected (wi, pdf), (wi, pdf, weight) or (wi, pdf, weight, delta)"
+        )
     wi, pdf, weight, delta = (*answer, None, None)[:4]
     told = f"{name}: sample's "
     p = column(pdf, n, told + "pdf")

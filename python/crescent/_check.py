@@ -72,7 +72,7 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
     wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
     u = (np.arange(n)[:, None] + 0.5) / n * np.ones((1, s.u)) * np.linspace(1, 0.6, s.u)
     wi, _, weight, delta = _arrays.asks_sample(s.sample, s.title(), takes_wo)(wo, u)
-    up = np.where(np.isfinite(wi).all(axis=1)[:, None], wi, [[0.0, 0.0, 1.0]])
+    up = np.where(np.all(np.isfinite(wi), axis=1, keepdims=True), wi, [[0.0, 0.0, 1.0]])
     if s.pdf is not None:
         _arrays.asks_pdf(s.pdf, s.title(), takes_wo)(wo, up)
     counts = [weight.shape[1]] if weight is not None else []
@@ -90,20 +90,46 @@ def _trials(s: Sampler, full: bool, grid: list[tuple[float, float]]) -> _crescen
         sample=_arrays.asks_sample(s.sample, s.title(), takes_wo),
         pdf=None if s.pdf is None else _arrays.asks_pdf(s.pdf, s.title(), takes_wo),
         f=None if s.f is None else _arrays.asks_f(s.f, s.title(), count),
-        name=s.title(), numbers=s.u, channels=count, wo=s.wo, delta=delta if s.delta is None else s.delta,
-        weighs=weighs, upper_only=s.domain == "hemisphere", serial=s.serial, reciprocal=s.reciprocal, eta=eta,
-        importance=s.importance, full=full, grid=grid,
+        name=s.title(),
+        numbers=s.u,
+        channels=count,
+        wo=s.wo,
+        delta=delta if s.delta is None else s.delta,
+        weighs=weighs,
+        upper_only=s.domain == "hemisphere",
+        serial=s.serial,
+        reciprocal=s.reciprocal,
+        eta=eta,
+        importance=s.importance,
+        full=full,
+        grid=grid,
     )
 
 
 def _judge(
-    trials: _crescent.Trials, command: str, *, alpha: float = 1e-3, seed: int = 1, full: bool = False,
-    accept_few: bool = False, threads: int = 0, other: _crescent.Trials | None = None, expect_same: bool = False,
+    trials: _crescent.Trials,
+    command: str,
+    *,
+    alpha: float = 1e-3,
+    seed: int = 1,
+    full: bool = False,
+    accept_few: bool = False,
+    threads: int = 0,
+    other: _crescent.Trials | None = None,
+    expect_same: bool = False,
     progress: Progress | None = None,
 ) -> Judgement:
     judged = _crescent.judge(
-        trials, other, alpha=alpha, seed=seed, full=full, accept_few=accept_few, expect_same=expect_same,
-        threads=threads, command=command, progress=progress,
+        trials,
+        other,
+        alpha=alpha,
+        seed=seed,
+        full=full,
+        accept_few=accept_few,
+        expect_same=expect_same,
+        threads=threads,
+        command=command,
+        progress=progress,
     )
     return Judgement(judged)
 
@@ -151,6 +177,13 @@ def check(
     elif against is not None:
         other = _trials(against, full, grid)
     return _judge(
-        trials, f"crescent.check({title!r})", alpha=alpha, seed=seed, full=full, threads=threads, other=other,
-        expect_same=expect_same, progress=progress,
+        trials,
+        f"crescent.check({title!r})",
+        alpha=alpha,
+        seed=seed,
+        full=full,
+        threads=threads,
+        other=other,
+        expect_same=expect_same,
+        progress=progress,
     )

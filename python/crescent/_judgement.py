@@ -31,8 +31,15 @@ class Verdict:
 
 def _verdict(raw: dict[str, Any]) -> Verdict:
     return Verdict(
-        raw["arm"], raw["case"], raw["name"], raw["state"], raw["say"], raw["settle"], raw["expected"],
-        _json.loads(raw["evidence"]), raw["seconds"],
+        raw["arm"],
+        raw["case"],
+        raw["name"],
+        raw["state"],
+        raw["say"],
+        raw["settle"],
+        raw["expected"],
+        _json.loads(raw["evidence"]),
+        raw["seconds"],
     )
 
 

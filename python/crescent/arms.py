@@ -1,8 +1,8 @@
 """The built-in arms and BRDFs as vectorised functions, and numbers about samples.
 
-    phong = crescent.arm("phong", brdf="phong", s=32)
-    wi, p = phong.sample(wo, u)
-    crescent.tail(phong.f(wo, wi) * wi[:, 2] / p)
+phong = crescent.arm("phong", brdf="phong", s=32)
+wi, p = phong.sample(wo, u)
+crescent.tail(phong.f(wo, wi) * wi[:, 2] / p)
 """
 
 from __future__ import annotations
@@ -88,6 +88,6 @@ def pdf_of(sample: Callable[..., Any], *, step: float = 1e-4) -> Callable[[Array
             return np.asarray(sample(wo, u + np.asarray(shift))[0], np.float64)
 
         along = [(drawn(h) - drawn(-np.asarray(h))) / (2 * step) for h in ([step, 0.0], [0.0, step])]
-        return np.asarray(sample(wo, u)[0], np.float64), 1 / np.linalg.norm(np.cross(*along), axis=1)
+        return np.asarray(sample(wo, u)[0], np.float64), 1 / np.linalg.norm(np.cross(along[0], along[1]), axis=1)
 
     return density

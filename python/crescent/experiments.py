@@ -1,9 +1,9 @@
 """Experiments and runs in memory: :func:`load`, :func:`parse`, :func:`run`.
 
-    e = crescent.load("experiments/gallery.toml")
-    e["image.width"] = 320                      # checked as the file is; ValueError names what is wrong
-    measured = crescent.run(e)
-    measured.films["phong", 64].y               # [height, width], the memory of the run itself
+e = crescent.load("experiments/gallery.toml")
+e["image.width"] = 320                      # checked as the file is; ValueError names what is wrong
+measured = crescent.run(e)
+measured.films["phong", 64].y               # [height, width], the memory of the run itself
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ def _toml(value: Any) -> str:
         return repr(value.item() if isinstance(value, np.number) else value)
     if isinstance(value, Iterable) and not isinstance(value, Mapping):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
-    raise TypeError(f"{type(value).__name__} is no value of an experiment: expected a number, a text, or a list of them")
+    raise TypeError(
+        f"{type(value).__name__} is no value of an experiment: expected a number, a text, or a list of them"
+    )
 
 
 class Experiment:
@@ -120,7 +122,9 @@ class Films(Mapping[tuple[str, int], Film]):
     def __getitem__(self, key: tuple[Any, ...]) -> Film:
         arm, n, s = (*key, self._s)[:3]
         if (arm, n, s) not in self._films:
-            raise KeyError(f"no film {arm} n={n} s={s:g}: there are {', '.join(f'{a} n={m} s={t:g}' for a, m, t in self._films)}")
+            raise KeyError(
+                f"no film {arm} n={n} s={s:g}: there are {', '.join(f'{a} n={m} s={t:g}' for a, m, t in self._films)}"
+            )
         return self._films[arm, n, s]
 
     def __iter__(self) -> Iterator[Any]:

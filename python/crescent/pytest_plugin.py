@@ -19,7 +19,10 @@ from . import testing
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.getgroup("crescent").addoption(
-        "--crescent-alpha", type=float, default=testing.ALPHA, metavar="A",
+        "--crescent-alpha",
+        type=float,
+        default=testing.ALPHA,
+        metavar="A",
         help="how often a suite of right samplers may fail, over all tests of the session (default %(default)g)",
     )
 

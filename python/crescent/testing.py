@@ -60,12 +60,14 @@ def assert_sampler(
 ) -> Judgement:
     """Raises AssertionError unless the sampler is right; arguments as of :func:`crescent.check`.
 
-    `allow`: names of verdicts that may be inconclusive, as ("tail", "mean") of a sampler that is known to be heavy-tailed.
+    `allow`: names of verdicts that may be inconclusive, as ("tail", "mean") of a sampler known to be heavy-tailed.
     """
     share = alpha if alpha is not None else _session.share() if _session else ALPHA
     judgement = check(sample, pdf, f, alpha=share, **known)
     allowed = set(allow)
-    bad = [v for v in judgement if v.state in ("wrong", "error") or (v.state == "inconclusive" and v.name not in allowed)]
+    bad = [
+        v for v in judgement if v.state in ("wrong", "error") or (v.state == "inconclusive" and v.name not in allowed)
+    ]
     if bad:
         raise AssertionError(f"the sampler is not right\n{judgement}")
     return judgement
@@ -118,6 +120,11 @@ def _leant(wi: Any) -> Any:
     return wi @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
 
 
+def _with_nan(wi: Any) -> Any:
+    """Every hundredth row is no number."""
+    return np.where(np.arange(len(wi))[:, None] % 100, wi, np.nan)
+
+
 def mutants(sampler: Sampler) -> Iterator[Mutant]:
     """The sampler with one fault planted at a time, as samplers are broken: what a suite of tests ought to notice."""
     s = sampler
@@ -125,19 +132,26 @@ def mutants(sampler: Sampler) -> Iterator[Mutant]:
     def of(name: str, **bends: Any) -> Mutant:
         return Mutant(name, _bent(s, **bends))
 
-    yield of("half of the first random number's range is never used", u=lambda u: u * np.where(np.arange(s.u) == 0, 0.5, 1))
+    yield of(
+        "half of the first random number's range is never used", u=lambda u: u * np.where(np.arange(s.u) == 0, 0.5, 1)
+    )
     yield of("the first random number is squared", u=lambda u: np.where(np.arange(s.u) == 0, u**2, u))
     yield of("directions lean by 5 degrees", draw=lambda wo, d: _moved(d, _leant))
-    yield of("a direction in 100 is no number", draw=lambda wo, d: _moved(d, lambda w: np.where(np.arange(len(w))[:, None] % 100, w, np.nan)))
+    yield of("a direction in 100 is no number", draw=lambda wo, d: _moved(d, _with_nan))
     yield of("directions are not of unit length", draw=lambda wo, d: _moved(d, lambda w: w * 1.01))
     yield of("the density that comes with a draw is 3 % too large", draw=lambda wo, d: _scaled(d, 1.03))
     if s.pdf:
-        yield of("both densities are 3 % too large", draw=lambda wo, d: _scaled(d, 1.03), pdf=lambda wo, wi, p: p * 1.03)
+        yield of(
+            "both densities are 3 % too large", draw=lambda wo, d: _scaled(d, 1.03), pdf=lambda wo, wi, p: p * 1.03
+        )
         yield of("a cosine is forgotten in the pdf", pdf=lambda wo, wi, p: p / np.maximum(np.abs(wi[:, 2]), 1e-9))
-        yield of("the pdf is 0 below 20 degrees of elevation", pdf=lambda wo, wi, p: np.where(np.abs(wi[:, 2]) < 0.342, 0, p))
+        yield of(
+            "the pdf is 0 below 20 degrees of elevation", pdf=lambda wo, wi, p: np.where(np.abs(wi[:, 2]) < 0.342, 0, p)
+        )
         if s.wo != "none":
             sampled_pdf = s.pdf
-            yield Mutant("w_o and w_i are exchanged in the pdf", replace(s, pdf=lambda wo, wi: sampled_pdf(wi, wo), name=s.title()))
+            swapped = replace(s, pdf=lambda wo, wi: sampled_pdf(wi, wo), name=s.title())
+            yield Mutant("w_o and w_i are exchanged in the pdf", swapped)
     if s.f:
         yield of("f holds the cosine", f=lambda wo, wi, f: f * np.abs(wi[:, 2:3]))
         yield of("f is 5 times too large", f=lambda wo, wi, f: f * 5)

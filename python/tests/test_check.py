@@ -166,7 +166,9 @@ def test_built_in_arms_alone_and_against_each_other():
         crescent.check("cosin")
 
 
-@pytest.mark.parametrize("known", [{"u": 9}, {"channels": 2}, {"domain": "disk"}, {"wo": "left"}, {"wo_deg": [90]}, {"alpha": 2}])
+@pytest.mark.parametrize(
+    "known", [{"u": 9}, {"channels": 2}, {"domain": "disk"}, {"wo": "left"}, {"wo_deg": [90]}, {"alpha": 2}]
+)
 def test_what_is_declared_wrongly_is_a_value_error(known):
     with pytest.raises(ValueError):
         crescent.check(cosine, cosine_pdf, **known)

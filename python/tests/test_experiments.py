@@ -100,7 +100,11 @@ def test_metrics_are_records_json_and_xarray(measured):
 
 def test_a_folder_is_written_as_one(measured, tmp_path):
     measured.write(tmp_path / "out")
-    names = {str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.*") if p.is_file() and "/." not in str(p)}
+    names = {
+        str(p.relative_to(tmp_path / "out"))
+        for p in (tmp_path / "out").rglob("*.*")
+        if p.is_file() and "/." not in str(p)
+    }
     assert {"metrics.json", "metrics.csv", "junit.xml", "films/cosine.exr", "films/phong.exr"} <= names
     (tmp_path / "file").write_text("")
     with pytest.raises(OSError):

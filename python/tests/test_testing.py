@@ -1,5 +1,7 @@
 """assert_sampler, the pytest plugin that shares one alpha, and mutants."""
 
+from importlib.metadata import entry_points
+
 import pytest
 from samplers import cosine, cosine_pdf, lambert
 
@@ -7,6 +9,8 @@ from crescent import Sampler, check
 from crescent.testing import Session, assert_sampler, mutants, who_notices
 
 pytest_plugins = ["pytester"]
+#: An installed package's plugin is loaded by itself.
+LOAD = () if entry_points(group="pytest11", name="crescent") else ("-p", "crescent.pytest_plugin")
 MINE = Sampler(cosine, cosine_pdf, lambert, name="mine")
 
 
@@ -27,8 +31,7 @@ def test_the_shares_of_a_session_come_to_alpha_at_most():
 
 
 def test_the_plugin_shares_alpha_over_the_tests_of_a_session_and_says_so(pytester):
-    pytester.makepyfile(
-        """
+    pytester.makepyfile("""
         import numpy as np
         from crescent import testing
 
@@ -46,9 +49,8 @@ def test_the_plugin_shares_alpha_over_the_tests_of_a_session_and_says_so(pyteste
 
         def test_nothing():
             pass
-        """
-    )
-    result = pytester.runpytest_subprocess("-p", "crescent.pytest_plugin", "--crescent-alpha", "0.02")
+        """)
+    result = pytester.runpytest_subprocess(*LOAD, "--crescent-alpha", "0.02")
     result.assert_outcomes(passed=2, failed=1)
     result.stdout.fnmatch_lines(["*crescent: 2 samplers judged in 3 tests, which share alpha = 0.02*at most once in*"])
 

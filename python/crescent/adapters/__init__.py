@@ -1,8 +1,8 @@
 """Samplers of other libraries, as :class:`crescent.Sampler`: ``crescent.check(crescent.adapters.mitsuba(bsdf))``.
 
-    mitsuba(bsdf)                             any mi.BSDF, or a dictionary or XML that mi.load_dict or load_string takes
-    mitsuba_emitter(emitter)                  directions towards an emitter, as they are sampled from a point
-    numpy, torch, jax (sample, eval, pdf)     callables in the form that renderers have: eval holds the cosine
+mitsuba(bsdf)                             any mi.BSDF, or a dictionary or XML that mi.load_dict or load_string takes
+mitsuba_emitter(emitter)                  directions towards an emitter, as they are sampled from a point
+numpy, torch, jax (sample, eval, pdf)     callables in the form that renderers have: eval holds the cosine
 """
 
 from ._mitsuba import mitsuba, mitsuba_emitter

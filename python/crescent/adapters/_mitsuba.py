@@ -1,7 +1,8 @@
 """Mitsuba 3: its BSDFs and emitters, whole. Any variant of three channels or one; llvm_ad_rgb where none is set.
 
-Mitsuba's `wi` is the given direction and its `wo` the drawn one; its eval holds the cosine, its weight is f cos / p, and
-the pdf of a delta part is the probability with which it was chosen. Directions are local, n = +z, in single precision.
+Mitsuba's `wi` is the given direction and its `wo` the drawn one; its eval holds the cosine, its weight is f cos / p,
+and the pdf of a delta part is the probability with which it was chosen. Directions are local, n = +z, in
+single precision.
 """
 
 from __future__ import annotations
@@ -147,11 +148,9 @@ class _Emitter:
         return _column(self.scene.pdf_emitter_direction(it, ds, lit), len(wi))
 
 
-def mitsuba_emitter(
-    emitter: Any, *, point: tuple[float, float, float] = (0.0, 0.0, 0.0), **known: Any
-) -> Sampler:
-    """Directions towards an emitter as a renderer samples them from `point`: a mi.Scene, or a dictionary of an emitter or
-    of a shape that holds one."""
+def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0.0, 0.0), **known: Any) -> Sampler:
+    """Directions towards an emitter as a renderer samples them from `point`: a mi.Scene, or a dictionary of an emitter
+    or of a shape that holds one."""
     mi = _library()
     scene = emitter
     if isinstance(emitter, dict):

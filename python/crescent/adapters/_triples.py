@@ -29,9 +29,15 @@ def _f_of(eval: Call) -> Call:
     return f
 
 
-def _sampler(into: Callable[[Array], Any], outof: Callable[[Any, int], Any], sample: Call, eval: Call | None,
-             pdf: Call | None, known: dict[str, Any]) -> Sampler:
-    """Callables of a library that `into` hands arrays to; `outof(answer, n)` takes the first n rows of what they give."""
+def _sampler(
+    into: Callable[[Array], Any],
+    outof: Callable[[Any, int], Any],
+    sample: Call,
+    eval: Call | None,
+    pdf: Call | None,
+    known: dict[str, Any],
+) -> Sampler:
+    """Callables of a library that `into` hands arrays to; `outof(answer, n)` takes its first n rows."""
 
     def of(call: Call) -> Call:
         def asked(*arrays: Array) -> Any:
@@ -47,13 +53,21 @@ def _as_it_is(answer: Any, n: int) -> Any:
     return answer
 
 
-def numpy(sample: Call, eval: Call | None = None, pdf: Call | None = None, *, dtype: Any = np.float64, **known: Any) -> Sampler:
+def numpy(
+    sample: Call, eval: Call | None = None, pdf: Call | None = None, *, dtype: Any = np.float64, **known: Any
+) -> Sampler:
     """NumPy callables; `known`: fields of :class:`crescent.Sampler`."""
     return _sampler(lambda a: np.asarray(a, dtype), _as_it_is, sample, eval, pdf, known)
 
 
 def torch(
-    sample: Call, eval: Call | None = None, pdf: Call | None = None, *, device: Any = "cpu", dtype: Any = None, **known: Any
+    sample: Call,
+    eval: Call | None = None,
+    pdf: Call | None = None,
+    *,
+    device: Any = "cpu",
+    dtype: Any = None,
+    **known: Any,
 ) -> Sampler:
     """PyTorch callables: tensors on `device`, of torch.float32 where no dtype is given. Called by one thread."""
     import torch as library
@@ -61,7 +75,12 @@ def torch(
     known.setdefault("serial", True)
     kind = dtype or library.float32
     return _sampler(
-        lambda a: library.from_numpy(np.ascontiguousarray(a)).to(device=device, dtype=kind), _as_it_is, sample, eval, pdf, known
+        lambda a: library.from_numpy(np.ascontiguousarray(a)).to(device=device, dtype=kind),
+        _as_it_is,
+        sample,
+        eval,
+        pdf,
+        known,
     )
 
 
@@ -71,7 +90,8 @@ def jax(sample: Call, eval: Call | None = None, pdf: Call | None = None, *, dtyp
 
     def into(a: Array) -> Any:
         rows = 1 << max(len(a) - 1, 63).bit_length()
-        return library.asarray(np.concatenate([a, np.broadcast_to(a[-1:], (rows - len(a), a.shape[1]))]), dtype or library.float32)
+        filled = np.concatenate([a, np.broadcast_to(a[-1:], (rows - len(a), a.shape[1]))])
+        return library.asarray(filled, dtype or library.float32)
 
     def outof(answer: Any, n: int) -> Any:
         if isinstance(answer, dict):

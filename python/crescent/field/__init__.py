@@ -1,4 +1,4 @@
-"""The field, judged: faults of public projects, written anew, and what ships in Mitsuba. ``python -m crescent.field``."""
+"""Faults of public projects, written anew, and what ships in Mitsuba, judged. ``python -m crescent.field``."""
 
 from ._faults import Fault, faults_in
 

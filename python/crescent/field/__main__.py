@@ -81,7 +81,8 @@ def _section(finding: Finding) -> Iterator[str]:
         yield finding.note.because
     own = finding.note.script if finding.note else ""
     if own or (finding.it.kind == "bsdf" and first.name != "identity"):
-        script = own or script_for(finding.it, first.name, _wo_of(first.case), _corner(first.say) if first.name == "valid" else None)
+        corner = _corner(first.say) if first.name == "valid" else None
+        script = own or script_for(finding.it, first.name, _wo_of(first.case), corner)
         yield f"```python\n{script}\n```\n```\n{output_of(script)}\n```"
 
 
@@ -112,13 +113,15 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
 def _faults_text(faults: list[Fault]) -> Iterator[str]:
     yield "## Faults of public projects, written anew"
     yield (
-        "Each is a sampler of a few lines in `laws/field/`, written from the public description that its link leads to, beside "
-        "the same sampler mended. The tests hold that the verdicts named catch it, and that nothing accuses the mended one."
+        "Each is a sampler of a few lines in `laws/field/`, written from the public description that its link leads "
+        "to, beside "
+        "the same sampler mended. The tests hold that the verdicts named catch it, and that nothing accuses the "
+        "mended one."
     )
     rows = ["| fault | project | caught by | mended |", "|---|---|---|---|"]
     for fault in faults:
-        caught = ", ".join(fault.judged().broken())
-        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {fault.judged(mended=True).state} |")
+        caught, mended = ", ".join(fault.judged().broken()), fault.judged(mended=True).state
+        rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {mended} |")
         print(f"{fault.name}: {caught}", file=sys.stderr, flush=True)
     yield "\n".join(rows)
 
@@ -131,11 +134,16 @@ def main(argv: list[str] | None = None) -> int:
     args = parser.parse_args(argv)
     parts = [
         "# The field, judged",
-        "Written by `python -m crescent.field`, which anyone can run again: `pip install crescent[mitsuba]`. Verdicts are those of "
-        "[verdicts.md](verdicts.md) at four w_o above the surface and three below; levels are shared within a plugin at "
-        "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; *no "
+        "Written by `python -m crescent.field`, which anyone can run again: `pip install crescent[mitsuba]`. Verdicts "
+        "are those of "
+        "[verdicts.md](verdicts.md) at four w_o above the surface and three below; levels are shared within a plugin "
+        "at "
+        "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; "
+        "*no "
         "picture changes*: sample and pdf differ where eval is 0; *corner*: at random numbers that hardly ever come; "
-        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; *the bench*: crescent is wrong there; *open*: not decided.",
+        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; *the "
+        "bench*: "
+        "crescent is wrong there; *open*: not decided.",
         *_shipped_text(args.only),
         *(_faults_text(faults_in(args.faults)) if Path(args.faults).is_dir() else []),
     ]

@@ -1,5 +1,5 @@
-"""Why a verdict on a shipped plugin is not right, where that is understood. Sizes are the verdict's own, or printed by a
-script; nothing here is a measurement."""
+"""Why a verdict on a shipped plugin is not right, where that is understood. Sizes are the verdict's own, or printed
+by a script; nothing here is a measurement."""
 
 from __future__ import annotations
 
@@ -30,57 +30,96 @@ class Note:
 
 _FIBER = """import mitsuba as mi, numpy as np; mi.set_variant("llvm_ad_rgb")
 z, phi = np.meshgrid((np.arange(2000) + 0.5) / 1000 - 1, (np.arange(2000) + 0.5) * np.pi / 1000)
-w = mi.Vector3f(*(np.float32(v.ravel()) for v in (np.sqrt(1 - z * z) * np.cos(phi), np.sqrt(1 - z * z) * np.sin(phi), z)))
+xyz, pdf = (np.sqrt(1 - z * z) * np.cos(phi), np.sqrt(1 - z * z) * np.sin(phi), z), mi.warp.square_to_rough_fiber_pdf
+w, wi, tangent = mi.Vector3f(*(np.float32(v.ravel()) for v in xyz)), mi.Vector3f(1, 0, 0), mi.Vector3f(0, 0, 1)
 for kappa in (11.8, 20.0, 47.0):
-    print(kappa, np.mean(mi.warp.square_to_rough_fiber_pdf(w, mi.Vector3f(1, 0, 0), mi.Vector3f(0, 0, 1), kappa)) * 4 * np.pi)"""
+    print(kappa, np.mean(pdf(w, wi, tangent, kappa)) * 4 * np.pi)"""
 
 NOTES = [
     Note(
-        "hair", "normalised|physics|mean|identity", "", "bug",
-        "The longitudinal density needs log I0(x), which `log_i0` of include/mitsuba/core/warp.h takes for x above 12 as "
-        "x + (log(1 / (2 pi x)) + 1 / (8 x)) / 2. The expansion is x + log(1 / (2 pi x)) / 2 + 1 / (8 x) + ...: its last term "
-        "stands inside the half. Below 12 the series ends too early. So the density is too small, by 1 / (16 x) where x is "
-        "large, and f with it, which loses that much energy; weights are not touched, since both share the error. Moving the "
+        "hair",
+        "normalised|physics|mean|identity",
+        "",
+        "bug",
+        "The longitudinal density needs log I0(x), which `log_i0` of include/mitsuba/core/warp.h takes for x above 12 "
+        "as "
+        "x + (log(1 / (2 pi x)) + 1 / (8 x)) / 2. The expansion is x + log(1 / (2 pi x)) / 2 + 1 / (8 x) + ...: its "
+        "last term "
+        "stands inside the half. Below 12 the series ends too early. So the density is too small, by 1 / (16 x) where "
+        "x is "
+        "large, and f with it, which loses that much energy; weights are not touched, since both share the error. "
+        "Moving the "
         "term out of the half mends it. The script integrates the density of one fibre lobe, which should come to 1.",
         _FIBER,
     ),
     Note(
-        "envmap", "identity", "Jacobian of the warp", "the bench",
-        "A false accusation: as the step of the differences goes to 0, p |Jacobian| goes to 1 at that u. The warp bends within "
+        "envmap",
+        "identity",
+        "Jacobian of the warp",
+        "the bench",
+        "A false accusation: as the step of the differences goes to 0, p |Jacobian| goes to 1 at that u. The warp "
+        "bends within "
         "a texel more than the bench's difference allows for.",
     ),
     Note(
-        "", "valid", "at u = .*corners of u", "corner",
-        "Where a random number is exactly 0 or next to 1 the distribution of normals divides by zero: pdf or direction is "
+        "",
+        "valid",
+        "at u = .*corners of u",
+        "corner",
+        "Where a random number is exactly 0 or next to 1 the distribution of normals divides by zero: pdf or "
+        "direction is "
         "no number. A generator of 24 bits comes upon such numbers as seldom as the verdict says.",
     ),
     Note(
-        "roughplastic", "normalised|density", "", "no picture changes",
-        "pdf() answers under the surface too, with the lobe's density there, of which sample() draws less than that; eval() "
+        "roughplastic",
+        "normalised|density",
+        "",
+        "no picture changes",
+        "pdf() answers under the surface too, with the lobe's density there, of which sample() draws less than that; "
+        "eval() "
         "is 0 there, so no picture changes. Beside it p is right above the surface.",
     ),
     Note(
-        "^principled:(?!.*spec_trans)", "normalised|density|support|identity", "nothing|Fewer than two bins", "no picture changes",
-        "For w_o under an opaque surface pdf() gives the density of lobes that sample() does not draw from; eval() is 0 "
+        "^principled:(?!.*spec_trans)",
+        "normalised|density|support|identity",
+        "nothing|Fewer than two bins",
+        "no picture changes",
+        "For w_o under an opaque surface pdf() gives the density of lobes that sample() does not draw from; eval() is "
+        "0 "
         "there, so no picture changes.",
     ),
     Note(
-        "beckmann", "normalised|density|identity|physics|mean", "", "approximation",
-        "G1 of Beckmann's distribution is the rational fit of Walter et al. 2007, whose stated relative error is 0.35 %; as "
+        "beckmann",
+        "normalised|density|identity|physics|mean",
+        "",
+        "approximation",
+        "G1 of Beckmann's distribution is the rational fit of Walter et al. 2007, whose stated relative error is 0.35 "
+        "%; as "
         "visible normals are drawn with the exact one, p is off by the fit's error.",
     ),
     Note(
-        "roughdielectric|principled.*spec_trans", "identity", "pdf that came with the draw and pdf\\(w\\) differ", "single precision",
-        "The half vector of a refraction is computed anew from two directions of single precision, and near the critical "
+        "roughdielectric|principled.*spec_trans",
+        "identity",
+        "pdf that came with the draw and pdf\\(w\\) differ",
+        "single precision",
+        "The half vector of a refraction is computed anew from two directions of single precision, and near the "
+        "critical "
         "angle and the horizon most of its digits cancel.",
     ),
     Note(
-        "cylinder", "identity|normalised|density", "", "single precision",
-        "pdf(w) is found by sending a ray back; where it grazes the cylinder the cosine there is lost to the rounding of the "
+        "cylinder",
+        "identity|normalised|density",
+        "",
+        "single precision",
+        "pdf(w) is found by sending a ray back; where it grazes the cylinder the cosine there is lost to the rounding "
+        "of the "
         "direction and of the intersection, and p divides by it. The ratio of both is 1 in the middle of the lamp.",
     ),
     Note(
-        "principled.*sheen", "physics", "creates energy", "the model",
+        "principled.*sheen",
+        "physics",
+        "creates energy",
+        "the model",
         "Disney's sheen is added on top of the other lobes and takes nothing from them: at grazing w_o more leaves the "
         "surface than arrives. Burley 2012 and 2015 say so of it.",
     ),

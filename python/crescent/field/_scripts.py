@@ -1,4 +1,4 @@
-"""Scripts of five lines that show a finding with Mitsuba and NumPy alone, and what they print."""
+"""Scripts of a few lines that show a finding with Mitsuba and NumPy alone, and what they print."""
 
 from __future__ import annotations
 
@@ -9,16 +9,18 @@ from ._shipped import Shipped
 
 _HEAD = """import mitsuba as mi, numpy as np; mi.set_variant("llvm_ad_rgb")
 b, si, n = mi.load_dict({code}), mi.SurfaceInteraction3f(), 1 << 22
-si.wi, si.sh_frame, rng = mi.Vector3f({wo}), mi.Frame3f(mi.Vector3f(0, 0, 1)), np.random.default_rng(1)
+c, rng, si.sh_frame = mi.BSDFContext(), np.random.default_rng(1), mi.Frame3f(mi.Vector3f(0, 0, 1))
+si.wi = mi.Vector3f({wo})
 """
 
-_MASS = """w = np.float32(rng.normal(size=(3, n))); w /= np.linalg.norm(w, axis=0); bs, weight = b.sample(mi.BSDFContext(), si, mi.Float(np.float32(rng.random(n))), mi.Point2f(np.float32(rng.random((2, n)))))
-print("pdf integrates to", 4 * np.pi * np.mean(b.pdf(mi.BSDFContext(), si, mi.Vector3f(w))), "and draws of weight 0 are", np.mean(np.all(np.array(weight) == 0, axis=0)))"""
+_MASS = """w = np.float32(rng.normal(size=(3, n))); w /= np.linalg.norm(w, axis=0); u = np.float32(rng.random((3, n)))
+bs, weight = b.sample(c, si, mi.Float(u[2]), mi.Point2f(u[:2])); lost = np.mean(np.all(np.array(weight) == 0, axis=0))
+print("pdf integrates to", 4 * np.pi * np.mean(b.pdf(c, si, mi.Vector3f(w))), "and draws of weight 0 are", lost)"""
 
-_CORNER = """bs, weight = b.sample(mi.BSDFContext(), si, mi.Float([{u2}]), mi.Point2f([{u0}], [{u1}]))
+_CORNER = """bs, weight = b.sample(c, si, mi.Float([{u2}]), mi.Point2f([{u0}], [{u1}]))
 print("pdf", bs.pdf, "direction", bs.wo)"""
 
-_ALBEDO = """bs, weight = b.sample(mi.BSDFContext(), si, mi.Float(np.float32(rng.random(n))), mi.Point2f(np.float32(rng.random((2, n)))))
+_ALBEDO = """u = np.float32(rng.random((3, n))); bs, weight = b.sample(c, si, mi.Float(u[2]), mi.Point2f(u[:2]))
 print("reflects", np.mean(np.array(weight), axis=1))"""
 
 

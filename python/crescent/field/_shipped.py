@@ -50,7 +50,7 @@ def bsdfs() -> list[Shipped]:
     rgb = {"type": "rgb", "value": [0.8, 0.5, 0.2]}
     diffuse = {"type": "diffuse", "reflectance": rgb}
     gloss = {"type": "roughconductor", "alpha": 0.2, "distribution": "ggx"}
-    all_of = [
+    all_of: list[dict[str, Any]] = [
         diffuse,
         {"type": "conductor", "material": "Au"},
         {"type": "roughconductor", "alpha": 0.05, "distribution": "ggx"},
@@ -74,7 +74,14 @@ def bsdfs() -> list[Shipped]:
         {"type": "principled", "base_color": rgb, "roughness": 0.4, "clearcoat": 1.0, "clearcoat_gloss": 0.6},
         {"type": "principled", "base_color": rgb, "roughness": 0.3, "spec_trans": 1.0, "eta": 1.5},
         {"type": "principled", "base_color": rgb, "roughness": 0.5, "flatness": 0.5, "sheen": 1.0, "sheen_tint": 0.5},
-        {"type": "principledthin", "base_color": rgb, "roughness": 0.4, "spec_trans": 0.5, "diff_trans": 0.6, "eta": 1.5},
+        {
+            "type": "principledthin",
+            "base_color": rgb,
+            "roughness": 0.4,
+            "spec_trans": 0.5,
+            "diff_trans": 0.6,
+            "eta": 1.5,
+        },
         {"type": "blendbsdf", "weight": 0.3, "a": diffuse, "b": gloss},
         {"type": "blendbsdf", "weight": 0.5, "a": diffuse, "b": {"type": "null"}},
         {"type": "mask", "opacity": 0.4, "nested": gloss},
@@ -96,9 +103,23 @@ def emitters() -> list[Shipped]:
         "constant": {"type": "constant"},
         "envmap of 16 x 8 texels": {"type": "envmap", "bitmap": mi.Bitmap(picture)},
         "area on a sphere": {"type": "sphere", "center": [0.0, 1.0, 2.0], "radius": 0.5, "emitter": light},
-        "area on a rectangle": {"type": "rectangle", "to_world": at().translate([0, 0.5, 1.5]).rotate([1, 0, 0], 160), "emitter": light},
-        "area on a disk": {"type": "disk", "to_world": at().translate([0.5, 0, 2]).rotate([1, 0, 0], 150), "emitter": light},
-        "area on a cylinder": {"type": "cylinder", "p0": [1.0, -1.0, 1.0], "p1": [1.0, 1.0, 1.0], "radius": 0.3, "emitter": light},
+        "area on a rectangle": {
+            "type": "rectangle",
+            "to_world": at().translate([0, 0.5, 1.5]).rotate([1, 0, 0], 160),
+            "emitter": light,
+        },
+        "area on a disk": {
+            "type": "disk",
+            "to_world": at().translate([0.5, 0, 2]).rotate([1, 0, 0], 150),
+            "emitter": light,
+        },
+        "area on a cylinder": {
+            "type": "cylinder",
+            "p0": [1.0, -1.0, 1.0],
+            "p1": [1.0, 1.0, 1.0],
+            "radius": 0.3,
+            "emitter": light,
+        },
         "area on a cube": {"type": "cube", "to_world": at().translate([0, 0, 3]), "emitter": light},
     }
     return [Shipped("emitter", plugin, label=label) for label, plugin in shapes.items()]
