@@ -38,11 +38,10 @@ void arm(const Scene& scene, const std::string& name, const std::string& sampler
     double mean = 0;
     for (float y : films.front().y) mean += y;
     mean /= static_cast<double>(films.front().size());
-    std::cout
-        << fmt::format(
-               R"({{"arm": "{}", "crescent": {:.6f}, "straightforward": {:.6f}, "mean": {:.5f}, "straightforward_mean": {:.5f}}})",
-               name, fast, plain, mean, plain_mean)
-        << std::endl;
+    std::cout << fmt::format(R"({{"arm": "{}", "crescent": {:.6f}, "straightforward": {:.6f}, "mean": {:.5f}, )"
+                             R"("straightforward_mean": {:.5f}}})",
+                     name, fast, plain, mean, plain_mean)
+              << std::endl;
 }
 
 }  // namespace
@@ -58,7 +57,8 @@ int main(int argc, char** argv) try {
     for (std::int16_t shape : shape_map(scene).shape) pixels += shape >= 0;
     std::cout
         << fmt::format(
-               R"({{"geometry_pixels": {}, "n": {}, "threads": {}, "isa": "{}", "version": "{}", "commit": "{}", "compiler": "{}"}})",
+               R"({{"geometry_pixels": {}, "n": {}, "threads": {}, "isa": "{}", "version": "{}", "commit": "{}", )"
+               R"("compiler": "{}"}})",
                pixels, n, threads, isas().back(), version(), commit(), compiler())
         << std::endl;
     for (const ArmPlan& plan : experiment.arms) arm(scene, plan.name, plan.sampler, n, threads);

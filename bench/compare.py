@@ -3,12 +3,12 @@
 
     bench/compare.py [--experiment FILE] [--n N] [--rounds K] [--write] [--no-mitsuba]
 
-Builds crescent_bench, makes a virtual environment with Mitsuba under build/ where there is none, and lets the three take
-turns, K rounds (default 7) on an otherwise idle machine: in each round every program makes each arm's film three times and
-gives the best. Prints Msamples/s per arm (the median over rounds) and the median, least and largest ratio of one round's
-times. A sample is one draw of one geometry pixel, for all three alike: geometry pixels x N; pixels that see nothing cost all
-three a primary ray and no sample. --write puts the table, date, processor and command into docs/speed.md.
-Exit 1 where an arm's median is less than ten times as fast as Mitsuba.
+Builds crescent_bench, makes a virtual environment with Mitsuba under build/ where there is none, and lets the three
+take turns, K rounds (default 7) on an otherwise idle machine: in each round every program makes each arm's film three
+times and gives the best. Prints Msamples/s per arm (the median over rounds) and the median, least and largest ratio of
+one round's times. A sample is one draw of one geometry pixel, for all three alike: geometry pixels x N; pixels that see
+nothing cost all three a primary ray and no sample. --write puts the table, date, processor and command into
+docs/speed.md. Exit 1 where an arm's median is less than ten times as fast as Mitsuba.
 """
 import argparse
 import datetime
@@ -39,10 +39,12 @@ def build():
 def mitsuba_python():
     """The interpreter of a virtual environment that has Mitsuba, made where it is not there; None where that fails."""
     python = BUILD / "mitsuba" / "bin" / "python"
-    if subprocess.run([str(python), "-c", "import mitsuba, numpy"], stderr=subprocess.DEVNULL).returncode == 0 if python.exists() else False:
+    imports = [str(python), "-c", "import mitsuba, numpy"]
+    if python.exists() and subprocess.run(imports, stderr=subprocess.DEVNULL).returncode == 0:
         return python
     print("installing mitsuba from PyPI under build/mitsuba", file=sys.stderr)
-    for command in ([sys.executable, "-m", "venv", BUILD / "mitsuba"], [python, "-m", "pip", "install", "-q", "mitsuba", "numpy"]):
+    for command in ([sys.executable, "-m", "venv", BUILD / "mitsuba"],
+                    [python, "-m", "pip", "install", "-q", "mitsuba", "numpy"]):
         if subprocess.run([str(word) for word in command]).returncode != 0:
             print("no mitsuba: its column stays empty", file=sys.stderr)
             return None
@@ -78,7 +80,8 @@ def summary(turns, arm, samples):
 
 
 def table(rows):
-    out = ["| arm | crescent | straightforward | Mitsuba 3 | crescent / straightforward | crescent / Mitsuba |", "|---|---|---|---|---|---|"]
+    out = ["| arm | crescent | straightforward | Mitsuba 3 | crescent / straightforward | crescent / Mitsuba |",
+           "|---|---|---|---|---|---|"]
     for row in rows:
         rates, cells = row["rates"], []
         for who in ("crescent", "straightforward", "mitsuba"):
@@ -93,22 +96,25 @@ def table(rows):
 def page(facts, rows, rounds, command):
     version = facts.get("mitsuba")
     peer = "Mitsuba was not there." if version is None else (
-        f"Mitsuba {version}: variant `llvm_ad_rgb`, integrator `direct` with `emitter_samples` 0 and `bsdf_samples` {facts['n']}, 1 spp, hidden emitters, "
-        "the arms as a BSDF in Python; compiling is not counted. Its scene is the same but for two things that cost it nothing: there geometry also "
-        "occludes the fill, so its means differ, and the canvas lies before the wall instead of in a recess."
+        f"Mitsuba {version}: variant `llvm_ad_rgb`, integrator `direct` with `emitter_samples` 0 and `bsdf_samples` "
+        f"{facts['n']}, 1 spp, hidden emitters, the arms as a BSDF in Python; compiling is not counted. Its scene is "
+        "the same but for two things that cost it nothing: there geometry also occludes the fill, so its means differ, "
+        "and the canvas lies before the wall instead of in a recess."
     )
     return f"""# Speed
 
-Msamples/s, the median of {rounds} rounds in which the programs take turns on one machine; ratios are of one round's times, the
-median and in brackets the least and the largest. A sample is one draw of one geometry pixel, for all alike:
+Msamples/s, the median of {rounds} rounds in which the programs take turns on one machine; ratios are of one round's
+times, the median and in brackets the least and the largest. A sample is one draw of one geometry pixel, for all alike:
 {facts['geometry_pixels']} geometry pixels x N = {facts['n']}. Pixels that see nothing count for none.
 
 {table(rows)}
 
-- {datetime.date.today().isoformat()}, {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']}, crescent {facts['version']} ({facts['commit']})
+- {datetime.date.today().isoformat()}, {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']},
+  crescent {facts['version']} ({facts['commit']})
 - `{command}` writes this page. Each time is the best of three films in a row.
 - crescent: its films, shadow tests included, as a run makes them: primary rays are traced once a run.
-- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on as many threads.
+- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on as many
+  threads.
 - {peer}
 """
 
@@ -131,8 +137,10 @@ def main():
     rows = [summary(turns, arm, facts["geometry_pixels"] * facts["n"]) for arm in turns[0]]
     print(table(rows))
     if args.write:
-        (ROOT / "docs" / "speed.md").write_text(page(facts, rows, args.rounds, shlex.join(["bench/compare.py", *sys.argv[1:]])))
-    slow = [row["arm"] for row in rows if "mitsuba" in row["ratios"] and statistics.median(row["ratios"]["mitsuba"]) < LEAST]
+        command = shlex.join(["bench/compare.py", *sys.argv[1:]])
+        (ROOT / "docs" / "speed.md").write_text(page(facts, rows, args.rounds, command))
+    against_mitsuba = [(row["arm"], row["ratios"]["mitsuba"]) for row in rows if "mitsuba" in row["ratios"]]
+    slow = [arm for arm, ratios in against_mitsuba if statistics.median(ratios) < LEAST]
     if slow:
         print(f"less than {LEAST} times Mitsuba: {', '.join(slow)}", file=sys.stderr)
     return 1 if slow else 0

@@ -105,7 +105,8 @@ def measured(args, folder, out):
     referred = ["--reference", reference]
     return "\n".join([
         f"{os.cpu_count()} processors; {args.renders} renders of {WIDTH} x {HEIGHT}, half, "
-        f"{'ZIP' if args.zip else 'uncompressed'}, {total / 1e9:.1f} GB, which are read in {read:.1f} s, once, cached:", "",
+        f"{'ZIP' if args.zip else 'uncompressed'}, {total / 1e9:.1f} GB, "
+        f"which are read in {read:.1f} s, once, cached:", "",
         "| call | time | processor time | peak memory |", "|---|---|---|---|",
         row(args, folder, out, [], "two arms"),
         row(args, folder, out, [plain] + referred, "and a reference, `flip = false`"),

@@ -1,5 +1,5 @@
-"""The gallery in Mitsuba 3, its arms as a BSDF: mitsuba_arms.py FILE.toml N, one turn: one JSON line an arm with seconds a
-film, the best of three.
+"""The gallery in Mitsuba 3, its arms as a BSDF: mitsuba_arms.py FILE.toml N, one turn: one JSON line an arm with
+seconds a film, the best of three.
 
 Integrator `direct` without emitter sampling, N BSDF samples, one primary ray a pixel, emitters hidden from the camera,
 variant llvm_ad_rgb: the estimator of the arms, nothing else. Compiling is not counted: the first film of each arm is
@@ -133,9 +133,11 @@ def load(experiment, arm, n):
     }
     for name, disk in experiment["disks"].items():
         emitter = {"type": "area", "radiance": {"type": "rgb", "value": disk["radiance"]}}
-        scene["disk_" + name] = {"type": "disk", "to_world": facing(disk["center"], disk["normal"], disk["radius"]), "emitter": emitter}
+        to_world = facing(disk["center"], disk["normal"], disk["radius"])
+        scene["disk_" + name] = {"type": "disk", "to_world": to_world, "emitter": emitter}
     for name, shape in experiment["shapes"].items():
-        bsdf = {"type": "arm", "arm": arm, "rho_d": mi.ScalarColor3f(shape["rho_d"]), "rho_s": shape.get("rho_s", 0.0), "s": float(shape.get("s", s))}
+        bsdf = {"type": "arm", "arm": arm, "rho_d": mi.ScalarColor3f(shape["rho_d"]), "rho_s": shape.get("rho_s", 0.0),
+                "s": float(shape.get("s", s))}
         scene[name] = geometry(shape) | {"bsdf": bsdf}
     return mi.load_dict(scene)
 

@@ -13,6 +13,27 @@ crashed, fell silent or spoke another language), 4 inconclusive: something could
 be told, or was not looked at. Wrong comes before error, error before inconclusive.
 docs/verdicts.md says what each verdict means and how --exec is spoken to.)";
 
+/// --against and --expect; gives the former.
+CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
+    auto* against = c.add_option("--against", f.against,
+        "hold the sampler against an arm of the list, or a program: same distribution, same f, variance ratio");
+    against->type_name("ARM|'PROGRAM'")->check(told);
+    c.add_option("--expect", f.expect, "same: with --against, another distribution fails")
+        ->type_name("same")
+        ->check(CLI::IsMember({"same"}))
+        ->needs(against);
+    return against;
+}
+
+/// The files that a call writes.
+std::vector<CLI::Option*> outputs(CLI::App& c, CheckFlags& f) {
+    return {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes")
+                ->type_name("FILE"),
+        c.add_option("--timing", f.timing, "write what each verdict and each sample took")->type_name("FILE"),
+        c.add_option("--junit", f.junit, "write for a build server")->type_name("FILE"),
+        c.add_option("--html", f.html, "write one page with maps, histograms and roses")->type_name("FILE")};
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, Work& work) {
@@ -67,20 +88,9 @@ void add_check(CLI::App& app, Work& work) {
         ->check(told);
     auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
-    auto* against = c->add_option("--against", f->against,
-        "hold the sampler against an arm of the list, or a program: same distribution, same f, variance ratio");
-    against->type_name("ARM|'PROGRAM'")->check(told);
-    c->add_option("--expect", f->expect, "same: with --against, another distribution fails")
-        ->type_name("same")
-        ->check(CLI::IsMember({"same"}))
-        ->needs(against);
+    auto* against = comparison(*c, *f);
     for (auto* other : {planted, rates, right}) against->excludes(other), wo->excludes(other);
-    for (auto* file :
-        {c->add_option("--json", f->json, "write every verdict with its evidence; equal calls give equal bytes"),
-            c->add_option("--timing", f->timing, "write what each verdict and each sample took"),
-            c->add_option("--junit", f->junit, "write for a build server"),
-            c->add_option("--html", f->html, "write one page with maps, histograms and roses")})
-        file->type_name("FILE")->excludes(rates);
+    for (auto* file : outputs(*c, *f)) file->excludes(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the table stays");
 }
 

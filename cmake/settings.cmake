@@ -38,7 +38,8 @@ target_compile_options(crescent_settings INTERFACE -ffp-contract=off -Wall -Wext
   # Masks of one lane are plain bool, and & on them is meant.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
 if(CRESCENT_SANITIZE)
-  target_compile_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+  target_compile_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -g1)
   target_link_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE})
 endif()
 if(CRESCENT_FUZZ)
@@ -52,7 +53,8 @@ endif()
 option(CRESCENT_PRECOMPILED "precompile the standard library's headers" ON)
 function(crescent_precompiled target)
   if(CRESCENT_PRECOMPILED)
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory>
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
+      <functional> <map> <memory>
       <optional> <span> <sstream> <string> <string_view> <variant> <vector> <fmt/format.h> ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
   endif()
@@ -79,7 +81,8 @@ macro(crescent_folder name)
       $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
     add_library(crescent::${name} ALIAS crescent_${name})
     target_compile_features(crescent_${name} PUBLIC cxx_std_20)
-    target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
+    target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN} PRIVATE
+      $<BUILD_INTERFACE:crescent_settings>)
     if(${name} IN_LIST crescent_fuzzed)
       target_compile_options(crescent_${name} PRIVATE -fsanitize=fuzzer-no-link)
     endif()

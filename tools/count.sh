@@ -8,7 +8,12 @@ add() { passed=$((passed + $1)) failures=$((failures + $2)); }
 sum() {
     local name=$1
     shift
-    awk -v name="$name" '/<testsuites / { if (match($0, " " name "=\"[0-9]+\"")) total += substr($0, RSTART + length(name) + 3, RLENGTH - length(name) - 4) } END { print total + 0 }' "$@"
+    awk -v name="$name" '
+        /<testsuites / && match($0, " " name "=\"[0-9]+\"") {
+            total += substr($0, RSTART + length(name) + 3, RLENGTH - length(name) - 4)
+        }
+        END { print total + 0 }
+    ' "$@"
 }
 
 # check PRESET: ctest on its build. A unit program counts as its test cases, a script as one.
@@ -33,7 +38,8 @@ check() {
         elif [ "$outcome" = failed ]; then add 0 1
         else say "  skipped: $name"
         fi
-    done < <(sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +([^ ]+) .*(Passed|Skipped|Failed|Timeout|Exception|Not Run).*/\1 \2/p' "$log" |
+    done < <(sed -nE 's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: +//p' "$log" |
+        sed -nE 's/^([^ ]+) .*(Passed|Skipped|Failed|Timeout|Exception|Not Run).*/\1 \2/p' |
         sed -E 's/Passed$/passed/; s/Skipped$/skipped/; s/(Failed|Timeout|Exception|Not Run)$/failed/')
     # A suite that never ran is a failure of its own.
     [ $((passed - before + failures - broken)) -gt 0 ] || add 0 1
@@ -50,7 +56,8 @@ fuzz() {
     found="$(binary_dir "$1")/laws/fuzz/found"
     mkdir -p "$found"
     say "fuzzing $2 for $3 s"
-    if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" -dict="$root/laws/fuzz/experiment.dict" \
+    if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" \
+        -dict="$root/laws/fuzz/experiment.dict" \
         "$found" "$root/laws/fuzz/corpus" "$root/experiments" >"$log" 2>&1; then
         add 1 0
     else

@@ -1,5 +1,5 @@
-# Shell functions behind ./wheel and ./test: environments, the Python module in the build tree, the wheel, its trial. Sourced after
-# setup.sh. PyPI is asked for nothing that an environment has already.
+# Shell functions behind ./wheel and ./test: environments, the Python module in the build tree, the wheel, its trial.
+# Sourced after setup.sh. PyPI is asked for nothing that an environment has already.
 
 # find_python [GIVEN]: the interpreter to build for; the system's python3 where none is given.
 find_python() {
@@ -32,7 +32,8 @@ add_python_module() {
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
         grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return
-    (cd "$root" && cmake --preset release -DCRESCENT_PYTHON=ON -DPython_EXECUTABLE="$1/bin/python") >"$log_dir/python.log" 2>&1 ||
+    (cd "$root" && cmake --preset release -DCRESCENT_PYTHON=ON -DPython_EXECUTABLE="$1/bin/python") \
+        >"$log_dir/python.log" 2>&1 ||
         say "going on without the Python package (log: $log_dir/python.log)"
 }
 
@@ -58,7 +59,8 @@ try_wheel() {
     local dir=$1 log="$log_dir/wheel-tried.log"
     "$dir/bin/python" -m pip -q --disable-pip-version-check install --force-reinstall "$2" >"$log" 2>&1 ||
         fail 3 "$log" "installing ${2##*/} failed"
-    (cd / && "$dir/bin/python" -m pytest -q "$root/python/tests" --rootdir="$root/python/tests" -p no:cacheprovider) >>"$log" 2>&1 ||
+    (cd / && "$dir/bin/python" -m pytest -q "$root/python/tests" --rootdir="$root/python/tests" -p no:cacheprovider) \
+        >>"$log" 2>&1 ||
         fail 1 "$log" "the wheel does not pass its tests"
     (cd / && "$dir/bin/crescent" check cosine) >>"$log" 2>&1 || fail 1 "$log" "crescent check cosine failed"
     say "$(tail -n 20 "$log" | grep -E '^[0-9]+ passed' | tail -n 1)"

@@ -85,7 +85,8 @@ follow() {
 build_core() {
     local dir="$root/build-$1" log="$log_dir/$1.log" start=$SECONDS
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root/laws/core" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir"
-    [ -f "$dir/build.ninja" ] || cmake -S "$root/laws/core" -B "$dir" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$root/laws/core/$1.cmake" >"$log" 2>&1 ||
+    [ -f "$dir/build.ninja" ] || cmake -S "$root/laws/core" -B "$dir" -G Ninja \
+        -DCMAKE_TOOLCHAIN_FILE="$root/laws/core/$1.cmake" >"$log" 2>&1 ||
         fail 3 "$log" "configuring laws/core for $1 failed"
     ninja -C "$dir" 2>&1 | follow "$1" "$log" >>"$log"
     [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building the core for $1 failed"
@@ -100,7 +101,8 @@ build() {
     log="$log_dir/$preset.log"
     : >"$log"
     # A repository that was moved is configured anew.
-    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$dir/CMakeCache.txt" 2>/dev/null || rm -rf "$dir/CMakeCache.txt" "$dir/build.ninja"
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$dir/CMakeCache.txt" 2>/dev/null ||
+        rm -rf "$dir/CMakeCache.txt" "$dir/build.ninja"
     if [ ! -f "$dir/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$dir/build.ninja" ]; then
         say "configuring $preset"
         (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || fail 3 "$log" "cmake --preset $preset failed"

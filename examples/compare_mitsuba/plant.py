@@ -5,8 +5,8 @@ there: the false-alarm rate and the power of `--expect same`, measured on render
     python plant.py OUT [--crescent crescent] [--repeats 100] [--write docs/compare.md]
 
 Each repeat renders three sets of seeds: two of the scene as it is, one with the bias. `crescent compare --expect same`
-on the two equal sets is to end with exit code 0, on the third and the first with 1. With --write, the measured rates are
-put between the two lines of the file that say "measured by plant.py" and "end of plant.py".
+on the two equal sets is to end with exit code 0, on the third and the first with 1. With --write, the measured rates
+are put between the two lines of the file that say "measured by plant.py" and "end of plant.py".
 """
 import argparse
 import os
@@ -45,7 +45,8 @@ def rate(hits, of):
 
 def measured(args, right, wrong):
     told = subprocess.run([args.crescent, "version"], capture_output=True, text=True, check=True)
-    rows = [f"Mitsuba {mi.__version__}, {told.stdout.split(' (')[0]}: {args.repeats} repeats of {args.seeds} seeds a set, "
+    crescent = told.stdout.split(" (")[0]
+    rows = [f"Mitsuba {mi.__version__}, {crescent}: {args.repeats} repeats of {args.seeds} seeds a set, "
             f"{args.size} x {args.size} pixels, {args.spp} samples, direct light, alpha {args.alpha}.", "",
             "| sets | exit 0: no difference | exit 1: a difference | exit 4: cannot be said |", "|---|---|---|---|"]
     biased = f"green wall's albedo {100 * args.bias:g} % higher in one"

@@ -1,7 +1,7 @@
 /* A smooth coat over a coloured diffuse base, for `crescent check --exec ./coat`, in protocol 2.
  * cc -O2 -o coat coat.c -lm
- * The coat mirrors 1/5 of the light, a delta part; the rest meets a Lambert surface of three channels. Three random numbers: the third
- * chooses the part. Requests are read as they come, and answers flushed when none is waiting. */
+ * The coat mirrors 1/5 of the light, a delta part; the rest meets a Lambert surface of three channels. Three random
+ * numbers: the third chooses the part. Requests are read as they come, and answers flushed when none is waiting. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

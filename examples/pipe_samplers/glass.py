@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Rough glass for `crescent check --exec 'python3 glass.py'`, in protocol 2, by blocks of doubles.
 
-GGX, Smith's G separable: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", equation numbers beside the lines;
-normals are drawn as they are seen, Heitz 2018. Three random numbers a sample: the third chooses between reflection and refraction by
-Fresnel. w_o on both sides, radiance scaled by eta^2. A million answers take about a second."""
+GGX, Smith's G separable: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", equation
+numbers beside the lines; normals are drawn as they are seen, Heitz 2018. Three random numbers a sample: the third
+chooses between reflection and refraction by Fresnel. w_o on both sides, radiance scaled by eta^2. A million answers
+take about a second."""
 import struct
 import sys
 
@@ -66,7 +67,8 @@ def sample(o, u):
     v = o * side[:, None]
     s = unit(v * [ALPHA, ALPHA, 1])
     size = np.hypot(s[:, 0], s[:, 1])
-    t = np.where(size[:, None] > 0, np.stack([-s[:, 1], s[:, 0], 0 * size], 1) / np.maximum(size, 1e-300)[:, None], [1.0, 0, 0])
+    beside = np.stack([-s[:, 1], s[:, 0], 0 * size], 1) / np.maximum(size, 1e-300)[:, None]
+    t = np.where(size[:, None] > 0, beside, [1.0, 0, 0])
     b = np.cross(s, t)
     r, phi, k = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1], 0.5 * (1 + s[:, 2])
     x = r * np.cos(phi)

@@ -2,8 +2,8 @@
  *
  *     cc -O2 -shared -fPIC -I PREFIX/include/crescent cosine.c -o libcosine.so -lm
  *
- * and in an experiment: [arms.mine] plugin = "libcosine.so". p = cos / pi; Malley's method: a point uniform on the disk,
- * lifted to the hemisphere. */
+ * and in an experiment: [arms.mine] plugin = "libcosine.so". p = cos / pi; Malley's method: a point uniform on the
+ * disk, lifted to the hemisphere. */
 #include <math.h>
 
 #include "verdicts/sampler_plugin.h"

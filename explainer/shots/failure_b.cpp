@@ -41,6 +41,16 @@ std::vector<Bar> bars_of(const Data& data) {
     return out;
 }
 
+void draw_bars(Frame& f, const std::vector<Bar>& bars, double up) {
+    for (std::size_t k = 0; k < bars.size(); ++k) {
+        const double y = 730 + 54.0 * double(k), grown = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));
+        f.text({90, y, 300, 44}, bars[k].name, with(label_text, bars[k].ink), up);
+        f.fill({400, y + 6, 1150 * bars[k].part * grown, 32}, bars[k].ink, up);
+        f.text(
+            {1600, y, 200, 44}, bars[k].value, label_text, up * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
+    }
+}
+
 }  // namespace
 
 Shot failure_b(const Data& data) {
@@ -98,13 +108,7 @@ Shot failure_b(const Data& data) {
             f.text({x, 720, 840, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre),
                 f.ease(16, 16.6) * (1 - up));
         }
-        for (std::size_t k = 0; k < bars.size() && up > 0; ++k) {
-            const double y = 730 + 54.0 * double(k), grown = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));
-            f.text({90, y, 300, 44}, bars[k].name, with(label_text, bars[k].ink), up);
-            f.fill({400, y + 6, 1150 * bars[k].part * grown, 32}, bars[k].ink, up);
-            f.text({1600, y, 200, 44}, bars[k].value, label_text,
-                up * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
-        }
+        if (up > 0) draw_bars(f, bars, up);
     };
     return shot;
 }

@@ -15,29 +15,38 @@ struct Map {
     double part = 0;  // of the pixels above the scale
 };
 
+/// The residual that 98 % of the pixels of both maps stay under.
+double top_of_scale(const Data& data, const Box& crop) {
+    std::vector<double> pooled;
+    for (const std::string& arm : {data.cast.cosine, data.cast.phong}) {
+        const std::vector<double> values = residuals(*data.film(data.key(arm)), data.reference(), crop);
+        pooled.insert(pooled.end(), values.begin(), values.end());
+    }
+    return std::max(quantile(pooled, 0.98), 1e-12);
+}
+
+std::vector<Map> maps_of(const Data& data, const Box& crop, double top) {
+    std::vector<Map> maps;
+    for (const std::string& arm : {data.cast.cosine, data.cast.phong}) {
+        const Film& film = *data.film(data.key(arm));
+        const std::vector<double> values = residuals(film, data.reference(), crop);
+        const double part =
+            double(std::ranges::count_if(values, [top](double v) { return v > top; })) / double(values.size());
+        maps.push_back({residual_of(film, data.reference(), crop, top),
+            Words(data.arm(arm), ", N\u00a0=\u00a0", data.n_of(data.key(arm))),
+            Words(percent(part, 2, "residuals of " + arm), " of the pixels above the scale"), data.ink(arm), part});
+    }
+    return maps;
+}
+
 }  // namespace
 
 Shot heat(const Data& data) {
     const Cast& c = data.cast;
     const Closeup close = close_up(data, data.box(c.highlight), {0, 0, 784, 624}, 3.6);
     const Box crop = close.box;
-    const ReferenceFilm& reference = data.reference();
-    std::vector<double> pooled;
-    for (const std::string& arm : {c.cosine, c.phong}) {
-        const std::vector<double> values = residuals(*data.film(data.key(arm)), reference, crop);
-        pooled.insert(pooled.end(), values.begin(), values.end());
-    }
-    const double top = std::max(quantile(pooled, 0.98), 1e-12);
-    std::vector<Map> maps;
-    for (const std::string& arm : {c.cosine, c.phong}) {
-        const Film& film = *data.film(data.key(arm));
-        const std::vector<double> values = residuals(film, reference, crop);
-        const double part =
-            double(std::ranges::count_if(values, [top](double v) { return v > top; })) / double(values.size());
-        maps.push_back({residual_of(film, reference, crop, top),
-            Words(data.arm(arm), ", N\u00a0=\u00a0", data.n_of(data.key(arm))),
-            Words(percent(part, 2, "residuals of " + arm), " of the pixels above the scale"), data.ink(arm), part});
-    }
+    const double top = top_of_scale(data, crop);
+    const std::vector<Map> maps = maps_of(data, crop, top);
     const Box box_h = data.box(c.highlight);
     const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
     std::vector<Words> ticks;

@@ -1,5 +1,5 @@
-// Which disk light a direction meets first, and whether something stands before it, as src/estimator/disk_hit.h: the local
-// frame for the disks, the world's for the bodies. Lengths in m.
+// Which disk light a direction meets first, and whether something stands before it, as src/estimator/disk_hit.h: the
+// local frame for the disks, the world's for the bodies. Lengths in m.
 //
 // Bodies stand in order of kind, three vectors each:
 //            sphere         box         quad        disk         plane
@@ -9,8 +9,8 @@
 #include "site.glsl"
 
 uniform vec4 bodies[3 * BODY_SLOTS];
-const int first_box = SPHERES, first_quad = first_box + BOXES, first_plate = first_quad + QUADS, first_plane = first_plate + PLATES,
-          end_of_bodies = first_plane + PLANES;
+const int first_box = SPHERES, first_quad = first_box + BOXES, first_plate = first_quad + QUADS,
+          first_plane = first_plate + PLATES, end_of_bodies = first_plane + PLANES;
 
 // A disk with its normal turned so that the emitting side faces the surface: c.n < 0. Where none does, r2 < 0.
 struct FacingDisk {
@@ -24,7 +24,8 @@ FacingDisk facing_disk(LocalDisk disk) {
     return FacingDisk(disk.to_center, disk.normal * sign, disk.along * sign, faces(disk) ? sqr(disk.radius) : -1.0);
 }
 
-// With v = w.n the ray meets the disk's plane at (k/v) w, so |k w - v c| <= r |v| needs no division; the distance is k/v.
+// With v = w.n the ray meets the disk's plane at (k/v) w, so |k w - v c| <= r |v| needs no division; the
+// distance is k/v.
 bool meets_disk(FacingDisk disk, vec3 w, out float v) {
     v = dot(w, disk.n);
     vec3 off = w * disk.k - disk.c * v;
@@ -69,20 +70,31 @@ bool crosses_plate(vec3 center, vec3 n, float radius, float offset, vec3 o, vec3
     return within(t, t_max * 1e-5, t_max) && dot(p, p) <= sqr(radius);
 }
 
-// Does a body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either end it
-// does not: a body that touches the surface point or the light hides nothing there. A shape does not shadow itself.
+// Does a body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either
+// end it does not: a body that touches the surface point or the light hides nothing there. A shape does not shadow
+// itself.
 bool blocked(vec3 o, vec3 d, float distance, float own) {
     bool hidden = false;
     float t_max = distance * (1.0 - 1e-5);
     for (int i = 0; i < first_box; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && crosses_sphere(bodies[3 * i].xyz, bodies[3 * i + 1].w, o, d, t_max));
+        hidden =
+            hidden || (bodies[3 * i].w != own && crosses_sphere(bodies[3 * i].xyz, bodies[3 * i + 1].w, o, d, t_max));
     for (int i = first_box; i < first_quad; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && crosses_box(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, o, d, t_max));
+        hidden =
+            hidden || (bodies[3 * i].w != own && crosses_box(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, o, d, t_max));
     for (int i = first_quad; i < first_plate; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && crosses_quad(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, bodies[3 * i + 2].w, o, d, t_max));
+        hidden = hidden ||
+            (bodies[3 * i].w != own &&
+                crosses_quad(
+                    bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, bodies[3 * i + 2].w, o, d, t_max));
     for (int i = first_plate; i < first_plane; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && crosses_plate(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 1].w, bodies[3 * i + 2].w, o, d, t_max));
+        hidden = hidden ||
+            (bodies[3 * i].w != own &&
+                crosses_plate(
+                    bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 1].w, bodies[3 * i + 2].w, o, d, t_max));
     for (int i = first_plane; i < end_of_bodies; ++i)
-        hidden = hidden || (bodies[3 * i].w != own && within(plane_distance(bodies[3 * i + 2].w, bodies[3 * i + 1].xyz, o, d), t_max * 1e-5, t_max));
+        hidden = hidden ||
+            (bodies[3 * i].w != own &&
+                within(plane_distance(bodies[3 * i + 2].w, bodies[3 * i + 1].xyz, o, d), t_max * 1e-5, t_max));
     return hidden;
 }

@@ -1,19 +1,20 @@
-// The estimator, as src/estimator/kernel_body.h: one pixel a fragment, samples [first_sample, first_sample + samples) one
-// after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. The files of an arm and of a lobe stand before this one;
-// LOBE is that lobe's place in the list from 1 on, 0 for none.
+// The estimator, as src/estimator/kernel_body.h: one pixel a fragment, samples [first_sample, first_sample + samples)
+// one after another, X = f L_i cos / p with f = rho_d/pi + rho_s lobe. The files of an arm and of a lobe stand before
+// this one; LOBE is that lobe's place in the list from 1 on, 0 for none.
 //
 //   sums    sum of g = cos/p, of g lobe, of (X - mean)^2 of this draw's samples; largest X
 //   counts  directions under the horizon, directions that met a disk, bad samples; mean X of this draw
 //   met     sum of g and of g lobe over the samples that met disk first_recorded + 2k (x, y) and the next (z, w)
 //
-// Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no more
-// than three times 16 roundings (relative error < 3e-6, a tenth of that as a rule); the program adds draws up in double.
+// Sums run in float over 16 samples, over 16 such blocks and over what is left, so that a draw of 4096 samples loses no
+// more than three times 16 roundings (relative error < 3e-6, a tenth of that as a rule); the
+// program adds draws up in double.
 #include "site.glsl"
 #include "disk_hit.glsl"
 #include "random.glsl"
 
-uniform ivec2 corner;        // of this framebuffer in the image, pixels
-uniform int image_width;     // pixels
+uniform ivec2 corner;     // of this framebuffer in the image, pixels
+uniform int image_width;  // pixels
 uniform uint seed;
 uniform int first_sample, samples;
 uniform int first_recorded;  // the first light whose sums are written
@@ -25,13 +26,13 @@ layout(location = 2) out vec4 met[(RECORDED + 1) / 2];
 #endif
 
 struct Sums {
-    vec2 all;                  // g, g lobe
+    vec2 all;                   // g, g lobe
     vec2 disk[RECORDED_SLOTS];  // an even number, 2 at least
 };
 Sums block, middle, top;
 float largest = 0.0;
-// Mean of X over the blocks so far, sum of (X - mean)^2 over them; sums of X - mean and of its square in the block. The first
-// block, which has none before it, takes them about the smaller of the draw's first two X: outliers are large.
+// Mean of X over the blocks so far, sum of (X - mean)^2 over them; sums of X - mean and of its square in the block. The
+// first block, which has none before it, takes them about the smaller of the draw's first two X: outliers are large.
 float mean = 0.0, spread = 0.0, block_off = 0.0, block_square = 0.0;
 uint horizon = 0u, hits = 0u, bad = 0u;
 Surroundings around;
@@ -48,8 +49,8 @@ void add(inout Sums to, inout Sums from) {  // and clears what was added
     from = no_sums();
 }
 
-// Joins the block's `more` samples to the `before` that came before it: Chan, Golub & LeVeque 1983, "Algorithms for Computing
-// the Sample Variance".
+// Joins the block's `more` samples to the `before` that came before it: Chan, Golub & LeVeque 1983, "Algorithms for
+// Computing the Sample Variance".
 void join(float before, float more) {
     float off = block_off / more, all = before + more;
     spread += (block_square - block_off * off) + sqr(off) * (before * more / all);
@@ -74,8 +75,8 @@ bool meets_light(int k, vec3 wi, int aimed, bool met, out float t) {
     return DISKS + k == aimed ? met && shines(others[k]) : hit;
 }
 
-// A sample that met a disk: the nearest disk first, and of two as near as rounding can tell the one that stands first in the
-// file; then what stands before it. Returns X where one was met, else x.
+// A sample that met a disk: the nearest disk first, and of two as near as rounding can tell the one that stands first
+// in the file; then what stands before it. Returns X where one was met, else x.
 float meet(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
     float nearest = 1e30;
     int index = -1;

@@ -1,5 +1,6 @@
-// Lights that are no disks, as src/scene/lights/sphere.h and rectangle.h, in a surface point's local frame: what a, b, c and
-// the numbers are is each kind's own and written there. SPHERE_LIGHT and RECTANGLE_LIGHT are places in the list of kinds.
+// Lights that are no disks, as src/scene/lights/sphere.h and rectangle.h, in a surface point's local frame: what a, b,
+// c and the numbers are is each kind's own and written there. SPHERE_LIGHT and RECTANGLE_LIGHT are places in the list
+// of kinds.
 #include "frame.glsl"
 
 struct LocalLight {
@@ -32,14 +33,16 @@ bool meets_rectangle_light(LocalLight l, vec3 w, out float t) {
     bool ahead = height * v > 0.0;
     t = height / (ahead ? v : 1.0);
     vec3 off = w * height - l.a * v;
-    return abs(dot(off, l.b)) <= l.number[0] * abs(v) && abs(dot(off, l.c)) <= l.number[1] * abs(v) && ahead && shines(l);
+    return abs(dot(off, l.b)) <= l.number[0] * abs(v) && abs(dot(off, l.c)) <= l.number[1] * abs(v) && ahead &&
+        shines(l);
 }
 // Whether w meets it, and how far it is.
 bool meets_other(LocalLight l, vec3 w, out float t) {
     return l.kind == SPHERE_LIGHT ? meets_sphere_light(l, w, t) : meets_rectangle_light(l, w, t);
 }
 
-// By area. ---------------------------------------------------------------------------------------------------------------
+// By area.
+// ---------------------------------------------------------------------------------------------------------------
 float sphere_area_density(LocalLight l) { return (0.5 / pi) / (sqr(l.number[0]) * max(1.0 - l.number[1], 1e-7)); }
 float rectangle_area_density(LocalLight l) { return 0.25 / (l.number[0] * l.number[1]); }
 
@@ -70,7 +73,8 @@ float other_area_pdf(LocalLight l, vec3 w) {
     return rectangle_area_density(l) * sqr(t) / max(abs(dot(w, cross(l.b, l.c))), 1e-30);
 }
 
-// By solid angle. --------------------------------------------------------------------------------------------------------
+// By solid angle.
+// --------------------------------------------------------------------------------------------------------
 float sphere_angle_density(LocalLight l) { return shines(l) ? (0.5 / pi) / max(l.number[2], 1e-30) : 0.0; }
 
 Aimed sphere_by_angle(LocalLight l, vec2 u) {

@@ -1,6 +1,6 @@
-// Elementary functions as in src/simd/math.h: the same polynomials, because those that GLSL has built in are only as good
-// as a driver makes them. What is left out is the compensated part (a compiler of GLSL may cancel (a + b) - a): log2 is
-// one float, and so pow is good to about |log2 x^y| 1e-7 instead of 3 ULP.
+// Elementary functions as in src/simd/math.h: the same polynomials, because those that GLSL has built in are only as
+// good as a driver makes them. What is left out is the compensated part (a compiler of GLSL may cancel (a + b) - a):
+// log2 is one float, and so pow is good to about |log2 x^y| 1e-7 instead of 3 ULP.
 //
 //   sincos_turns   u in [0, 1]               1.5e-7 absolute
 //   power          x in [0, 1], y > 0        2e-7 + 1e-7 |log2 x^y| relative; 0 below 2^-126
@@ -58,7 +58,8 @@ float log2_near(float x, float near) {
     return e + (f - (square - s * (square + R))) * 1.44269504;
 }
 
-// x^y and 1 - x^y for x in [0, 1] given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a result under 2^-126.
+// x^y and 1 - x^y for x in [0, 1] given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
+// result under 2^-126.
 Power power_near(float x, float near, float y) {
     bool positive = x > 1.17549435e-38;  // smallest normal
     float l = y * log2_near(positive ? x : 1.0, positive ? near : 0.0);

@@ -1,12 +1,14 @@
-// Everything about a pixel's surface point, as src/estimator/shading_points.h gathers it and src/arms/sampler.h hands it to an arm.
-// Directions in the local frame unless they are said to be the world's; lengths in m, radiance in W/(sr m^2).
+// Everything about a pixel's surface point, as src/estimator/shading_points.h gathers it and src/arms/sampler.h hands
+// it to an arm. Directions in the local frame unless they are said to be the world's; lengths in m, radiance in
+// W/(sr m^2).
 //
 // `sites` has one texel a pixel and these layers, written by gl/site_texture.cpp:
 //   0  wo, s                  3  the frame's t (world), fill_d     6 + 2k  disk k: from the surface to its centre, d
 //   1  alpha, Y(rho_d),       4  its b, fill_s                     7 + 2k  disk k: its normal, s
 //      rho_s, -               5  its n, lobe + 1 (-1: no surface)
 //   2  the point (from the scene's origin, world), shape
-// and after the disks five a light that is no disk: a, d;  b, s;  c, number 0;  numbers 1 to 4;  numbers 5 and 6, kind, power.
+// and after the disks five a light that is no disk: a, d;  b, s;  c, number 0;  numbers 1 to 4;  numbers 5 and 6, kind,
+// power.
 #include "lights.glsl"
 
 uniform sampler2DArray sites;
@@ -31,22 +33,25 @@ Site site;
 
 // What the estimator alone knows.
 struct Surroundings {
-    Frame frame;          // world
-    vec3 point;           // from the scene's origin, along the world's axes
+    Frame frame;  // world
+    vec3 point;   // from the scene's origin, along the world's axes
     float shape;
     float fill_d, fill_s;  // as disk_worth, for the fill
-    float kind;           // lobe + 1; -1: no surface
+    float kind;            // lobe + 1; -1: no surface
 };
 
 Surroundings load_site(ivec2 at) {
-    vec4 a = texelFetch(sites, ivec3(at, 0), 0), b = texelFetch(sites, ivec3(at, 1), 0), c = texelFetch(sites, ivec3(at, 2), 0);
-    vec4 t = texelFetch(sites, ivec3(at, 3), 0), u = texelFetch(sites, ivec3(at, 4), 0), n = texelFetch(sites, ivec3(at, 5), 0);
+    vec4 a = texelFetch(sites, ivec3(at, 0), 0), b = texelFetch(sites, ivec3(at, 1), 0),
+         c = texelFetch(sites, ivec3(at, 2), 0);
+    vec4 t = texelFetch(sites, ivec3(at, 3), 0), u = texelFetch(sites, ivec3(at, 4), 0),
+         n = texelFetch(sites, ivec3(at, 5), 0);
     site = Site(a.xyz, a.w, b.x, b.y, b.z);
     for (int k = 0; k < DISKS; ++k) {
         vec4 center = texelFetch(sites, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(sites, ivec3(at, 7 + 2 * k), 0);
         float height = dot(center.xyz, normal.xyz);
         bool apart = abs(height) > 1e-6 * (length(center.xyz) + disk_kind[k].x);
-        disks[k] = LocalDisk(center.xyz, normal.xyz, disk_kind[k].x, disk_kind[k].y, disk_kind[k].z, apart ? height : 0.0);
+        disks[k] =
+            LocalDisk(center.xyz, normal.xyz, disk_kind[k].x, disk_kind[k].y, disk_kind[k].z, apart ? height : 0.0);
         disk_worth[k] = vec2(center.w, normal.w);
     }
     for (int k = 0; k < OTHERS; ++k) {

@@ -4,9 +4,9 @@
     python3 -m venv v && v/bin/pip install mitsuba numpy 'arviz<1'
     v/bin/python laws/peers/peers.py build/crescent
 
-Every draw is made once, by the function that Mitsuba's ChiSquareTest samples with, and handed to `crescent check --samples`, which
-judges every other row of it. Densities in 1/sr, w_o = n. Prints a table in Markdown; exit 0 where all agree, 1 where they do not,
-77 (skipped) where a module is not there."""
+Every draw is made once, by the function that Mitsuba's ChiSquareTest samples with, and handed to `crescent check
+--samples`, which judges every other row of it. Densities in 1/sr, w_o = n. Prints a table in Markdown; exit 0 where all
+agree, 1 where they do not, 77 (skipped) where a module is not there."""
 import json
 import os
 import subprocess
@@ -62,7 +62,8 @@ CASES = [
     ("wrong: sqrt forgotten", lambda u: sphere(u[:, 0], u[:, 1]), cosine),
     ("wrong: s=33 for s=32", draw_power(32), power(33)),
     ("wrong: s=8.1 for s=8", draw_power(8), power(8.1)),
-    ("wrong: phi uneven by 6 %", lambda u: sphere(np.sqrt(1 - u[:, 0]), u[:, 1] + 0.01 * np.sin(TAU * u[:, 1])), cosine),
+    ("wrong: phi uneven by 6 %",
+     lambda u: sphere(np.sqrt(1 - u[:, 0]), u[:, 1] + 0.01 * np.sin(TAU * u[:, 1])), cosine),
     ("wrong: phi over 358 deg", lambda u: sphere(np.sqrt(1 - u[:, 0]), u[:, 1] * 358 / 360), cosine),
 ]
 
@@ -79,7 +80,8 @@ def mitsuba_p(draw, p, kept):
     def density(w, *_):
         return mi.Float(p(np.stack([np.array(w[k]) for k in range(3)], 1).astype(np.float64)).astype(np.float32))
 
-    test = ChiSquareTest(domain=SphericalDomain(), sample_func=sample, pdf_func=density, sample_dim=2, sample_count=N, res=101, ires=8)
+    test = ChiSquareTest(domain=SphericalDomain(), sample_func=sample, pdf_func=density, sample_dim=2,
+                         sample_count=N, res=101, ires=8)
     test.run(significance_level=0.001, quiet=True)
     return float(test.p_value)
 
@@ -91,7 +93,8 @@ def crescent(program, folder, kept, p):
     c, phi = np.meshgrid((np.arange(512) + 0.5) / 256 - 1, (np.arange(256) + 0.5) * TAU / 256, indexing="ij")
     w = sphere(c.ravel(), phi.ravel() / TAU)
     np.save(f"{folder}/t.npy", np.column_stack([c.ravel(), phi.ravel(), p(w)]))
-    subprocess.run([program, "check", "--quiet", "--samples", f"{folder}/s.npy", "--pdf-table", f"{folder}/t.npy", "--wo", "0,0,1", "--json", f"{folder}/j.json"],
+    subprocess.run([program, "check", "--quiet", "--samples", f"{folder}/s.npy", "--pdf-table",
+                    f"{folder}/t.npy", "--wo", "0,0,1", "--json", f"{folder}/j.json"],
                    stdout=subprocess.DEVNULL, check=False)
     with open(f"{folder}/j.json", encoding="utf-8") as file:
         return {v["name"]: v for v in json.load(file)["verdicts"]}
@@ -108,7 +111,8 @@ def arviz_k(kept, p):
 def main():
     program = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "build/crescent")
     agree = True
-    print("| draws | Mitsuba's p | crescent's density | p, rings, sectors | ArviZ's k-hat | crescent's k-hat |\n|---|---|---|---|---|---|")
+    print("| draws | Mitsuba's p | crescent's density | p, rings, sectors | ArviZ's k-hat | crescent's k-hat |")
+    print("|---|---|---|---|---|---|")
     for name, draw, p in CASES:
         kept = {}
         theirs = mitsuba_p(draw, p, kept)
@@ -117,11 +121,14 @@ def main():
         density, tail = ours["density"], ours["tail"]
         e, k, k_theirs = density["evidence"], tail["evidence"].get("k"), arviz_k(kept, p)
         # Theirs rejects: ours must. Ours may see more (rings and sectors apart): then the sampler must be a wrong one.
-        alike = not (theirs < 1e-6 and density["state"] != "wrong") and not (density["state"] == "wrong" and not name.startswith("wrong"))
+        missed = theirs < 1e-6 and density["state"] != "wrong"
+        accused = density["state"] == "wrong" and not name.startswith("wrong")
+        alike = not missed and not accused
         alike = alike and (k is None or not np.isfinite(k_theirs) or abs(k - k_theirs) <= 0.02)
         agree = agree and alike
         told = "-" if k is None else f"{k:.3f}"
-        print(f"| {name} | {theirs:.3g} | {density['state']} | {e.get('p', 0):.3g}, {e.get('p_rings', 0):.3g}, {e.get('p_sectors', 0):.3g} | {k_theirs:.3f} | {told} |{'' if alike else ' DIFFERS'}", flush=True)
+        print(f"| {name} | {theirs:.3g} | {density['state']} | {e.get('p', 0):.3g}, {e.get('p_rings', 0):.3g}, "
+              f"{e.get('p_sectors', 0):.3g} | {k_theirs:.3f} | {told} |{'' if alike else ' DIFFERS'}", flush=True)
     return 0 if agree else 1
 
 

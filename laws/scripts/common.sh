@@ -27,12 +27,13 @@ expect() {
 $(tail -n 40 printed said)"
 }
 
-# build_example NAME [OPTION...]: installs the build into prefix/, then builds examples/NAME against it, outside the tree, in
-# NAME/build.
+# build_example NAME [OPTION...]: installs the build into prefix/, then builds examples/NAME against it, outside the
+# tree, in NAME/build.
 build_example() {
     expect 0 cmake --install "${CRESCENT_BUILD:?the build folder}" --prefix "$work/prefix"
     cp -r "$CRESCENT_SOURCE/examples/$1" "$1"
-    expect 0 cmake -S "$1" -B "$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}"
+    expect 0 cmake -S "$1" -B "$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="${CXX:-g++}" \
+        -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}"
     expect 0 cmake --build "$1/build"
 }
 

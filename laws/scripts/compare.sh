@@ -1,6 +1,7 @@
 #!/bin/bash
 # `crescent compare` as its users call it: our own films give the meters that run gave; equal inputs give equal bytes;
-# exit codes; bad input is named and nothing is written; its JSON obeys docs/compare.schema.json, its XML is well-formed.
+# exit codes; bad input is named and nothing is written; its JSON obeys docs/compare.schema.json, its XML is
+# well-formed.
 . "$(dirname "$0")/common.sh"
 
 for seed in 7 8 9; do expect 0 "$CRESCENT" run "$tiny" --set seed=$seed --out "s$seed" --quiet; done
@@ -17,7 +18,8 @@ jsonschema.validate(compared, json.load(open(sys.argv[1] + "/docs/compare.schema
 for arm, name in (("u", "uniform"), ("c", "cosine")):
     ours = next(r for r in run["runs"] if r["arm"] == name and r["n"] == 16)
     theirs = next(a for a in compared["arms"] if a["arm"] == arm)["files"][0]["regions"]
-    for a, b in ((ours["regions"]["ball"]["rmse"], theirs["ball"]["rmse"]), (ours["y_mean"], theirs["frame"]["y_mean"]), (ours["rmse_frame"], theirs["frame"]["rmse"])):
+    for a, b in ((ours["regions"]["ball"]["rmse"], theirs["ball"]["rmse"]),
+                 (ours["y_mean"], theirs["frame"]["y_mean"]), (ours["rmse_frame"], theirs["frame"]["rmse"])):
         assert abs(a - b) <= 1e-6 * abs(a), (arm, a, b)
 END
 for file in metrics.json metrics.csv junit.xml report.html plates/renders.png plates/errors.png plates/noise-c-u.png; do
@@ -27,22 +29,28 @@ expect 0 /usr/bin/python3 -c 'import sys, xml.etree.ElementTree as e; [e.parse(f
 
 expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'rmse.ball(u) < 1e-9' --out failing --quiet
 expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'efficiency.ball(u) > 1' --out failing --quiet
-grep -q 'a side of it was not measured' printed || die "a claim that cannot be measured is not said to be: $(cat printed)"
+grep -q 'a side of it was not measured' printed ||
+    die "a claim that cannot be measured is not said to be: $(cat printed)"
 grep -q '<failure' failing/junit.xml || die "the failing assertion is not in junit.xml"
 expect 4 "$CRESCENT" compare "${arms[@]}" --expect same --out few --quiet
 printf 'title = "From a file"\n[arms.u]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n' >plan.toml
 expect 0 "$CRESCENT" compare plan.toml --out from-file --quiet
 grep -q 'From a file' from-file/report.html || die "the title is not in the report"
 mkdir elsewhere  # paths of a file are relative to it, those of flags to the current folder
-printf 'reference = "../s7/films/reference.exr"\nreference_layer = "quadrature s=32"\n[arms.u]\nfiles = ["../s[789]/films/uniform.exr"]\nlayer = "n=16"\n' >elsewhere/plan.toml
-expect 0 "$CRESCENT" compare elsewhere/plan.toml --arm 'c=s[789]/films/cosine.exr' --layer c=n=16 --out from-elsewhere --quiet
-expect 0 "$CRESCENT" compare --arm 'a=s%d/films/uniform.exr' --arm 'b=s%02d/films/cosine.exr' --layer a=n=16 --layer b=n=16 \
+{
+    printf 'reference = "../s7/films/reference.exr"\nreference_layer = "quadrature s=32"\n'
+    printf '[arms.u]\nfiles = ["../s[789]/films/uniform.exr"]\nlayer = "n=16"\n'
+} >elsewhere/plan.toml
+expect 0 "$CRESCENT" compare elsewhere/plan.toml --arm 'c=s[789]/films/cosine.exr' --layer c=n=16 --out from-elsewhere \
+    --quiet
+expect 0 "$CRESCENT" compare --arm 'a=s%d/films/uniform.exr' --arm 'b=s%02d/films/cosine.exr' --layer a=n=16 \
+    --layer b=n=16 \
     --pair --alpha 0.05 --exposure 2 --out paired --quiet
 grep -q '"paired": true' paired/metrics.json || die "--pair did not pair"
 expect 0 "$CRESCENT" compare --schema
 
 # Rungs of a ladder are known by their names; --spp without a name is for all arms, of the file too.
-printf '[arms.u-16]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n[arms.u-4]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=4"\n' >ladder.toml
+printf '[arms.u-%d]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=%d"\n' 16 16 4 4 >ladder.toml
 expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --reference s7/films/reference.exr \
     --layer 'reference=quadrature s=32' --region ball=40,20,56,34 --out ladder --quiet
 expect 0 /usr/bin/python3 -c 'import xml.etree.ElementTree as e; e.parse("ladder/plates/ladders.svg")'
@@ -96,5 +104,6 @@ bad "cut.exr: " --arm a=cut.exr --layer a=n=16
 printf 'PF\n2 2\n-1.0\n%048d' 0 >small.pfm
 bad "expected 96 x 54 pixels as in" --arm 'a=s7/films/uniform.exr' --layer a=n=16 --arm b=small.pfm
 bad "pixels as the renders have" --arm 'a=s[789]/films/uniform.exr' --layer a=n=16 --mask m=small.pfm
-bad "--pair: expected" --arm 'a=s[78]/films/uniform.exr' --arm 'b=s[789]/films/cosine.exr' --layer a=n=16 --layer b=n=16 --pair
+bad "--pair: expected" --arm 'a=s[78]/films/uniform.exr' --arm 'b=s[789]/films/cosine.exr' --layer a=n=16 \
+    --layer b=n=16 --pair
 bad "did you mean 'same'?" --arm 'a=s[78]/films/uniform.exr' --layer a=n=16 --expect sane

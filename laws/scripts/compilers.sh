@@ -9,7 +9,8 @@
     sed '/^\[arms/,/^n = /d' "$tiny"
     "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'
     printf '[lights.bulb]\nkind = "sphere"\ncenter = [1.2, 1.8, 1.0]\nradius = 0.3\nradiance = [6, 5, 4]\n'
-    printf '[lights.window]\nkind = "rectangle"\ncorner = [-1, 2.6, -0.4]\nedge_u = [1.2, 0, 0]\nedge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'
+    printf '[lights.window]\nkind = "rectangle"\ncorner = [-1, 2.6, -0.4]\nedge_u = [1.2, 0, 0]\n'
+    printf 'edge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'
 } >every-arm.toml
 cp "$CRESCENT_SOURCE"/experiments/*.toml "$CRESCENT_SOURCE"/experiments/published.json .
 experiments=(every-arm.toml)
@@ -21,5 +22,6 @@ expect 0 "$FILM_HASHES_GCC" "${experiments[@]}"
 [ "$(wc -l <clang)" -gt 20 ] || die "too few films: $(cat clang)"
 diff clang printed >difference || die "films differ between compilers: $(cat difference)"
 # And between instruction sets: without its word, each line is there once a set.
-grep -v -e ' quadrature ' -e '^function ' clang | awk '{ $2 = ""; print }' | sort | uniq -c | awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
+grep -v -e ' quadrature ' -e '^function ' clang | awk '{ $2 = ""; print }' | sort | uniq -c |
+    awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
     die "films differ between instruction sets"

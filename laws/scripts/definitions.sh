@@ -1,7 +1,7 @@
 #!/bin/bash
-# One definition a name. A kernel that is compiled for an instruction set shares no function with other files: the linker
-# would keep one of them for everybody, and processors without that set would stop there. No two headers define types of
-# one name in one namespace.
+# One definition a name. A kernel that is compiled for an instruction set shares no function with other files: the
+# linker would keep one of them for everybody, and processors without that set would stop there. No two headers define
+# types of one name in one namespace.
 . "$(dirname "$0")/common.sh"
 cd "$CRESCENT_SOURCE" || exit 1
 
@@ -20,7 +20,10 @@ awk '
     /^(struct|class|enum class) [A-Za-z_0-9]+( final)?( :[^;]*)? \{/ {
         name = $1 == "enum" ? $3 : $2
         full = space "::" name
-        if (full in first && first[full] != FILENAME) { print FILENAME ":" FNR ": " full " is also defined in " first[full]; bad = 1 }
+        if (full in first && first[full] != FILENAME) {
+            print FILENAME ":" FNR ": " full " is also defined in " first[full]
+            bad = 1
+        }
         first[full] = FILENAME
     }
     END { exit bad }

@@ -1,18 +1,23 @@
 #!/bin/bash
-# Another machine's code makes the same bits: ARM with its vectors under qemu, WebAssembly with its vectors in node. Small
-# images and few samples, since both run slowly. $FILM_HASHES_AARCH64 and $FILM_HASHES_WASM are laws/core, built.
+# Another machine's code makes the same bits: ARM with its vectors under qemu, WebAssembly with its vectors in node.
+# Small images and few samples, since both run slowly. $FILM_HASHES_AARCH64 and $FILM_HASHES_WASM are laws/core, built.
 . "$(dirname "$0")/common.sh"
-[ -x "${FILM_HASHES_AARCH64:-}" ] || [ -f "${FILM_HASHES_WASM:-}" ] || skip "no core built for another machine (./test builds them)"
+[ -x "${FILM_HASHES_AARCH64:-}" ] || [ -f "${FILM_HASHES_WASM:-}" ] ||
+    skip "no core built for another machine (./test builds them)"
 
 # Every sampler of the list over the small scene, and scenes with other shapes, lobes and lights.
 {
     sed '/^\[arms/,/^n = /d' "$tiny"
     "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'
     printf '[lights.bulb]\nkind = "sphere"\ncenter = [1.2, 1.8, 1.0]\nradius = 0.3\nradiance = [6, 5, 4]\n'
-    printf '[lights.window]\nkind = "rectangle"\ncorner = [-1, 2.6, -0.4]\nedge_u = [1.2, 0, 0]\nedge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'
+    printf '[lights.window]\nkind = "rectangle"\ncorner = [-1, 2.6, -0.4]\nedge_u = [1.2, 0, 0]\n'
+    printf 'edge_v = [0, 0, 0.8]\nradiance = [2, 3, 4]\n'
 } >every-arm.toml
 experiments=(every-arm.toml)
-for name in three-glosses two-lamps; do [ -f "$CRESCENT_SOURCE/experiments/$name.toml" ] && experiments+=("$CRESCENT_SOURCE/experiments/$name.toml"); done
+for name in three-glosses two-lamps; do
+    file=$CRESCENT_SOURCE/experiments/$name.toml
+    [ -f "$file" ] && experiments+=("$file")
+done
 
 expect 0 "$FILM_HASHES" --plain "${experiments[@]}"
 mv printed plain

@@ -1,6 +1,7 @@
 #!/bin/bash
-# docs/extending.md to the letter, in a copy of the tree: every section adds its fixture, which is built and run, and may touch
-# one new file and one file that was there. The copy stays in the build folder, so that only what changed is built again.
+# docs/extending.md to the letter, in a copy of the tree: every section adds its fixture, which is built and run, and
+# may touch one new file and one file that was there. The copy stays in the build folder, so that only what changed is
+# built again.
 . "$(dirname "$0")/common.sh"
 : "${CRESCENT_BUILD:?the build folder}"
 page=$CRESCENT_SOURCE/docs/extending.md
@@ -10,12 +11,17 @@ mkdir -p fresh
 (cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake src cli laws "$work/fresh")
 cp -r fresh plain
 
-# The file of a `<!-- file PATH -->` is the block of code that follows; `<!-- list PATH "HEADER" WORD -->` is two words there.
+# The file of a `<!-- file PATH -->` is the block of code that follows; `<!-- list PATH "HEADER" WORD -->` is two words
+# there.
 add_section() { # TITLE
     awk -v title="## $1" '/^## /{on = $0 == title} on' "$page" >section
     [ -s section ] || die "docs/extending.md has no section '$1'"
     sed -n 's/^<!-- file \(.*\) -->$/\1/p' section | while read -r path; do
-        awk -v mark="<!-- file $path -->" '$0 == mark {wait = 1; next} wait && /^```/{if (inside) exit; inside = 1; next} inside' section >"fresh/$path"
+        awk -v mark="<!-- file $path -->" '
+            $0 == mark { wait = 1; next }
+            wait && /^```/ { if (inside) exit; inside = 1; next }
+            inside
+        ' section >"fresh/$path"
         [ -s "fresh/$path" ] || die "docs/extending.md has no code for $path"
     done || exit 1
     sed -n 's/^<!-- list \(.*\) -->$/\1/p' section | while read -r path header word; do
@@ -42,7 +48,8 @@ mkdir -p "$tree"
     cmp -s "fresh/$file" "$tree/$file" || { mkdir -p "$(dirname "$tree/$file")" && cp "fresh/$file" "$tree/$file"; }
 done
 
-expect 0 cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
+expect 0 cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
     -DCRESCENT_SCALAR=ON -DCRESCENT_GL=OFF -DCRESCENT_FILM=OFF -DCRESCENT_TESTS=ON
 expect 0 cmake --build "$build" --target extending
 expect 0 "$build/laws/extending" tent half-power

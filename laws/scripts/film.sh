@@ -1,18 +1,26 @@
 #!/bin/bash
-# The film as its users make it: a short cut at 640 x 360, what a player finds in it, equal frames, captions, a voice, a stop.
+# The film as its users make it: a short cut at 640 x 360, what a player finds in it, equal frames, captions, a voice, a
+# stop.
 . "$(dirname "$0")/common.sh"
 
-command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null || die "no ffmpeg: it is in the group film of tools/packages.txt"
+command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null ||
+    die "no ffmpeg: it is in the group film of tools/packages.txt"
 small="$CRESCENT_SOURCE/laws/scripts/film.toml"
 
 # A cut of four seconds from the first shot into the second.
 expect 0 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:12 --out cut --quiet
-for name in crescent.mp4 crescent.vtt crescent.srt crescent.txt frames.json; do [ -s "cut/$name" ] || die "no $name"; done
+for name in crescent.mp4 crescent.vtt crescent.srt crescent.txt frames.json; do
+    [ -s "cut/$name" ] || die "no $name"
+done
 [ -z "$(find cut -regextype posix-extended -regex '.*/\.crescent-stage-[0-9a-f]{16}')" ] || die "a stage is left behind"
-ffprobe -v error -show_entries stream=codec_name,codec_type,width,height,pix_fmt,color_range,color_space,color_transfer,color_primaries,r_frame_rate,nb_frames:stream_disposition=attached_pic:chapter_tags=title -of flat cut/crescent.mp4 >probe 2>said || die "$(cat said)"
-for line in 'streams.stream.0.codec_name="h264"' 'streams.stream.0.width=640' 'streams.stream.0.height=360' 'streams.stream.0.pix_fmt="yuv420p"' \
-    'streams.stream.0.color_range="tv"' 'streams.stream.0.color_space="bt709"' 'streams.stream.0.color_transfer="bt709"' \
-    'streams.stream.0.color_primaries="bt709"' 'streams.stream.0.r_frame_rate="30/1"' 'streams.stream.0.nb_frames="120"'; do
+entries=stream=codec_name,codec_type,width,height,pix_fmt,color_range,color_space,color_transfer,color_primaries
+entries+=,r_frame_rate,nb_frames:stream_disposition=attached_pic:chapter_tags=title
+ffprobe -v error -show_entries "$entries" -of flat cut/crescent.mp4 >probe 2>said || die "$(cat said)"
+for line in 'streams.stream.0.codec_name="h264"' 'streams.stream.0.width=640' 'streams.stream.0.height=360' \
+    'streams.stream.0.pix_fmt="yuv420p"' 'streams.stream.0.color_range="tv"' \
+    'streams.stream.0.color_space="bt709"' 'streams.stream.0.color_transfer="bt709"' \
+    'streams.stream.0.color_primaries="bt709"' 'streams.stream.0.r_frame_rate="30/1"' \
+    'streams.stream.0.nb_frames="120"'; do
     grep -qF "$line" probe || die "not in the film: $line
 $(cat probe)"
 done
@@ -54,5 +62,7 @@ grep -q "voice 'false' ended with 1" said || die "a voice that fails is not told
 
 # Spoken: an audio stream, and captions that wait for their speech.
 command -v espeak-ng >/dev/null || die "no espeak-ng: it is in the group test of tools/packages.txt"
-expect 0 "$CRESCENT" film "$small" --size 360p --from 0:00 --to 0:03 --voice 'espeak-ng --stdout -s 110' --out spoken --quiet
-ffprobe -v error -show_entries stream=codec_name -of flat spoken/crescent.mp4 | grep -q '"aac"' || die "no voice in the film"
+expect 0 "$CRESCENT" film "$small" --size 360p --from 0:00 --to 0:03 --voice 'espeak-ng --stdout -s 110' --out spoken \
+    --quiet
+ffprobe -v error -show_entries stream=codec_name -of flat spoken/crescent.mp4 | grep -q '"aac"' ||
+    die "no voice in the film"

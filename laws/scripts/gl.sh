@@ -1,6 +1,6 @@
 #!/bin/bash
-# --instrument gl, as its users meet it: both contexts, the CPU's numbers, where the outputs say they come from, and what
-# happens where a part of GL is missing, wrong or too old.
+# --instrument gl, as its users meet it: both contexts, the CPU's numbers, where the outputs say they come from, and
+# what happens where a part of GL is missing, wrong or too old.
 . "$(dirname "$0")/common.sh"
 
 code=0
@@ -26,7 +26,8 @@ like() {
 like cpu egl
 
 # The driver's words stand in the provenance; the same run gives the same bytes.
-for word in GL_VERSION GL_RENDERER 'EGL surfaceless' '--instrument gl' 'is complete RGBA32F' 'has GL_FRAMEBUFFER_SRGB off' 'has no MSAA'; do
+for word in GL_VERSION GL_RENDERER 'EGL surfaceless' '--instrument gl' 'is complete RGBA32F' \
+    'has GL_FRAMEBUFFER_SRGB off' 'has no MSAA'; do
     grep -q -- "$word" egl/metrics.json || die "metrics.json says nothing of $word"
 done
 grep -q GL_ cpu/metrics.json && die "a run on the CPU speaks of GL"
@@ -49,13 +50,16 @@ fi
 
 # A driver that has core 3.3 and no more.
 if grep -q llvmpipe egl/metrics.json; then
-    expect 0 env MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 "$CRESCENT" run "$tiny" --quiet --instrument gl --out old
+    expect 0 env MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 "$CRESCENT" run "$tiny" --quiet \
+        --instrument gl --out old
     grep -q '"GL_VERSION": "3.3' old/metrics.json || die "not a 3.3 context: $(grep GL_VERSION old/metrics.json)"
     like cpu old
 fi
 
 # What is missing is named, nothing is written, and the CPU needs none of it.
-no_outputs() { [ ! -e "$1" ] || [ -z "$(find "$1" -type f)" ] || die "outputs of a run that failed: $(find "$1" -type f)"; }
+no_outputs() {
+    [ ! -e "$1" ] || [ -z "$(find "$1" -type f)" ] || die "outputs of a run that failed: $(find "$1" -type f)"
+}
 expect 3 env __EGL_VENDOR_LIBRARY_FILENAMES="$work/absent.json" "$CRESCENT" run "$tiny" --instrument gl --out none
 grep -q 'no GL context' said || die "no word of the context: $(cat said)"
 no_outputs none
@@ -67,7 +71,8 @@ expect 3 env LD_LIBRARY_PATH="$work/broken" "$CRESCENT" run "$tiny" --instrument
 grep -q 'libOSMesa.so.8 cannot be opened' said || die "the message does not name libOSMesa: $(cat said)"
 no_outputs none
 expect 0 env LD_LIBRARY_PATH="$work/broken" "$CRESCENT" list devices
-expect 0 env LD_LIBRARY_PATH="$work/broken" __EGL_VENDOR_LIBRARY_FILENAMES="$work/absent.json" "$CRESCENT" run "$tiny" --quiet --out without
+expect 0 env LD_LIBRARY_PATH="$work/broken" __EGL_VENDOR_LIBRARY_FILENAMES="$work/absent.json" "$CRESCENT" run "$tiny" \
+    --quiet --out without
 same_outputs cpu without
 
 # A wrong choice is the reader's.

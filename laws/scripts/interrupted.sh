@@ -1,6 +1,6 @@
 #!/bin/bash
-# Ctrl-C and SIGTERM at any moment: exit 130 within a second, and what is said of the outputs is so: not changed, or those of
-# the new run. From the first milliseconds to the end of the run.
+# Ctrl-C and SIGTERM at any moment: exit 130 within a second, and what is said of the outputs is so: not changed, or
+# those of the new run. From the first milliseconds to the end of the run.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" run "$tiny" --quiet --out good
@@ -16,7 +16,8 @@ for signal in INT TERM; do
         "$CRESCENT" run "$tiny" --out good --set 'arms.cosine.n=[16777216]' >printed 2>said &
         run=$!
         set +m
-        until [ "$(readlink /proc/$run/exe)" = "$(readlink -f "$CRESCENT")" ]; do :; done  # the shell's child is not yet crescent
+        # The shell's child is not yet crescent.
+        until [ "$(readlink /proc/$run/exe)" = "$(readlink -f "$CRESCENT")" ]; do :; done
         sleep "$after"
         start=$(date +%s%N)
         kill -s "$signal" "$run"
@@ -49,7 +50,8 @@ for part in 60 80 90 95 100 105; do
     wait "$run"
     code=$?
     visible good >of_good
-    if [ "$code" -eq 0 ] || grep -q 'of this run are complete' said; then cmp -s of_new of_good || die "exit $code, and the outputs are not the new ones"
+    if [ "$code" -eq 0 ] || grep -q 'of this run are complete' said; then
+        cmp -s of_new of_good || die "exit $code, and the outputs are not the new ones"
     elif grep -q 'not changed' said; then cmp -s of_before of_good || die "'not changed' is said, and it is not so"
     else cmp -s of_new of_good || cmp -s of_before of_good || die "exit $code: a mixture: $(cat said)"
     fi

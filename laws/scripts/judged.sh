@@ -10,9 +10,11 @@ expect 0 my_sampler/build/my_sampler
 [ ! -e my_sampler/build/my_sampler_test ] || expect 0 my_sampler/build/my_sampler_test
 
 printf '%s\n' '#include "verdicts/user.h"' 'struct V { double x, y, z; };' \
-    'struct S { struct D { V wi; double pdf; }; D sample(V, int) const; double pdf(V, V) const; };' 'auto j = crescent::judge_sampler("s", S{});' >odd.cpp
+    'struct S { struct D { V wi; double pdf; }; D sample(V, int) const; double pdf(V, V) const; };' \
+    'auto j = crescent::judge_sampler("s", S{});' >odd.cpp
 ! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" odd.cpp >said 2>&1 || die "a u of int compiles"
-grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep -c 'error:' said)" -eq 1 ] || die "no sentence: $(grep error: said)"
+grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep -c 'error:' said)" -eq 1 ] ||
+    die "no sentence: $(grep error: said)"
 
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
@@ -27,7 +29,8 @@ expect 2 "$CRESCENT" check --quiet --exec ./nowhere
 expect 0 "${CC:-cc}" -O2 -o coat "$pipes/coat.c" -lm
 expect 0 "$CRESCENT" check --quiet --exec ./coat --json coat.json
 grep -q '"delta_parts"' coat.json || die "nobody tells of the coat's delta part"
-sed 's/delta %a 1 1 1\\n", -ox, -oy, oz, mirrored/delta %a 1 1 1\\n", -ox, -oy, oz, 1.1 * mirrored/' "$pipes/coat.c" >often.c
+sed 's/delta %a 1 1 1\\n", -ox, -oy, oz, mirrored/delta %a 1 1 1\\n", -ox, -oy, oz, 1.1 * mirrored/' "$pipes/coat.c" \
+    >often.c
 expect 0 "${CC:-cc}" -O2 -o often often.c -lm
 expect 1 "$CRESCENT" check --quiet --exec ./often
 grep -q "not drawn as often as they say" printed || die "a delta part drawn too seldom is not told: $(cat printed)"
@@ -37,7 +40,8 @@ sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscal
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py"
 grep -q "not 2.25 times that" printed || die "nobody says that eta^2 is missing: $(cat printed)"
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x colour=3'
-grep -q "unknown key 'colour'; the known ones are u, domain, wo" printed || die "an unknown key is not named: $(cat printed)"
+grep -q "unknown key 'colour'; the known ones are u, domain, wo" printed ||
+    die "an unknown key is not named: $(cat printed)"
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
 grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"
 
@@ -60,14 +64,17 @@ expect 1 "$CRESCENT" check --quiet --samples wrong.csv --wo 0,0,1 --pdf-table ta
 sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
 expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
 grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"
-for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 95" "cosine --wo 0,0,-1" "cosine --wo 1,2,3,4"; do
+for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" \
+    "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 95" "cosine --wo 0,0,-1" "cosine --wo 1,2,3,4"; do
     expect 2 "$CRESCENT" check $call
 done
 expect 2 "$CRESCENT" check --exec ''
 expect 0 "$CRESCENT" check --quiet cosine --wo 60,250 --wo 0,0,1 --json wo.json
-[ "$(grep -c '"case": "w_o 60 deg az 250' wo.json)" -gt 0 ] && ! grep -q "w_o 45 deg" wo.json || die "--wo is not what is judged: $(grep case wo.json | sort | uniq -c)"
+[ "$(grep -c '"case": "w_o 60 deg az 250' wo.json)" -gt 0 ] && ! grep -q "w_o 45 deg" wo.json ||
+    die "--wo is not what is judged: $(grep case wo.json | sort | uniq -c)"
 expect 0 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --json against.json
-grep -q "B is better here" printed && grep -q '"name": "same_f"' against.json || die "nothing is said of two samplers: $(cat printed)"
+grep -q "B is better here" printed && grep -q '"name": "same_f"' against.json ||
+    die "nothing is said of two samplers: $(cat printed)"
 expect 1 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --expect same
 expect 0 "$CRESCENT" check --quiet --exec ./cosine --wo 45 --against ./cosine --expect same
 expect 2 "$CRESCENT" check uniform --against cosin

@@ -1,6 +1,6 @@
 #!/bin/bash
-# kill -9 at any moment: all that stands under the final names is of one run, the one before or the new one; the next run
-# is none the worse; and nothing of anybody else's is touched. The two runs are of different experiments.
+# kill -9 at any moment: all that stands under the final names is of one run, the one before or the new one; the next
+# run is none the worse; and nothing of anybody else's is touched. The two runs are of different experiments.
 . "$(dirname "$0")/common.sh"
 
 other="$work/other.toml"
@@ -47,7 +47,8 @@ done
 # Before system calls that publish, and Ctrl-C at the same places; files_test.cpp stops before each single one.
 if command -v strace >/dev/null && strace -qq -o /dev/null true 2>/dev/null; then
     prepare
-    strace -f -qq -e trace=renameat,linkat,symlinkat,unlinkat,fsync -o calls "$CRESCENT" run "$other" --quiet --out killed >/dev/null 2>&1
+    strace -f -qq -e trace=renameat,linkat,symlinkat,unlinkat,fsync -o calls "$CRESCENT" run "$other" --quiet \
+        --out killed >/dev/null 2>&1
     judge "never"
     for call in renameat linkat symlinkat unlinkat fsync; do
         many=$(grep -c "[^a-z]$call(" calls)

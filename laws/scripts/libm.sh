@@ -5,7 +5,10 @@
 without=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable
 
 experiments=("$tiny")
-for name in gallery cousins three-glosses two-lamps; do [ -f "$CRESCENT_SOURCE/experiments/$name.toml" ] && experiments+=("$CRESCENT_SOURCE/experiments/$name.toml"); done
+for name in gallery cousins three-glosses two-lamps; do
+    file=$CRESCENT_SOURCE/experiments/$name.toml
+    [ -f "$file" ] && experiments+=("$file")
+done
 for experiment in "${experiments[@]}"; do
     expect 0 "$CRESCENT" run "$experiment" --quiet --seeds 1 --out with
     expect 0 env GLIBC_TUNABLES="$without" "$CRESCENT" run "$experiment" --quiet --seeds 1 --out without

@@ -16,8 +16,10 @@ dpkg_says() {
 
 printf '#!/bin/sh\nexit 1\n' >bin/dpkg-query
 chmod +x bin/dpkg-query
-[ "$(missing cmake g++ | xargs)" = "cmake g++" ] || die "of two unknown packages these are missing: $(missing cmake g++ | xargs)"
+[ "$(missing cmake g++ | xargs)" = "cmake g++" ] ||
+    die "of two unknown packages these are missing: $(missing cmake g++ | xargs)"
 dpkg_says "ii  cmake" "rc  g++"
-[ "$(missing cmake g++ ninja-build | xargs)" = "g++ ninja-build" ] || die "missing: $(missing cmake g++ ninja-build | xargs)"
+[ "$(missing cmake g++ ninja-build | xargs)" = "g++ ninja-build" ] ||
+    die "missing: $(missing cmake g++ ninja-build | xargs)"
 dpkg_says "ii  cmake" "ii  g++"
 [ -z "$(missing cmake g++)" ] || die "missing: $(missing cmake g++ | xargs)"

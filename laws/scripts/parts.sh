@@ -7,7 +7,8 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 5 --out whole
 names() { (cd "$1" && find . -type f ! -name '.*' | sort | tr '\n' ' '); }
 
 expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 5 --out metrics --only metrics
-[ "$(names metrics)" = "./junit.xml ./metrics.csv ./metrics.json ./timing.json " ] || die "--only metrics: $(names metrics)"
+[ "$(names metrics)" = "./junit.xml ./metrics.csv ./metrics.json ./timing.json " ] ||
+    die "--only metrics: $(names metrics)"
 cmp whole/metrics.csv metrics/metrics.csv || die "--only changes metrics.csv"
 expect 0 "$CRESCENT" run "$tiny" --quiet --out films --only films
 case "$(names films)" in *json*metrics* | *plates* | *report*) die "--only films: $(names films)" ;; esac
@@ -23,8 +24,11 @@ tail -n +2 first/metrics.csv | grep -v ',tail_' | sort >parts
 tail -n +2 second/metrics.csv | grep -v ',tail_' | sort >>parts
 tail -n +2 whole/metrics.csv | grep -v ',tail_' | sort >all
 sort parts | cmp - <(sort all) || die "the parts of a series are not the whole"
-grep -A3 '"series"' second/metrics.json | tr -d ' \n' | grep -q '"first":3,"last":5,"of":5' || die "metrics.json does not say which seeds"
-for wrong in 0:2 2:1 1:6 1 1: a:b 1:2x; do expect 2 "$CRESCENT" run "$tiny" --seeds 5 --seed-range "$wrong" --out nowhere; done
+grep -A3 '"series"' second/metrics.json | tr -d ' \n' | grep -q '"first":3,"last":5,"of":5' ||
+    die "metrics.json does not say which seeds"
+for wrong in 0:2 2:1 1:6 1 1: a:b 1:2x; do
+    expect 2 "$CRESCENT" run "$tiny" --seeds 5 --seed-range "$wrong" --out nowhere
+done
 [ ! -e nowhere ] || die "a wrong call left an output folder"
 
 expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --set ball.s=9 --set exposure=2 --set ball.s=12 --out set

@@ -3,12 +3,14 @@
 # furnaces and plates; a program draws as well; one that is missing, odd or breaks off is told with its arm's name.
 . "$(dirname "$0")/common.sh"
 
-expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/src" -o libcosine.so "$CRESCENT_SOURCE/examples/plugin/cosine.c" -lm
+expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/src" -o libcosine.so \
+    "$CRESCENT_SOURCE/examples/plugin/cosine.c" -lm
 expect 0 "${CC:-cc}" -O2 -o cosine "$CRESCENT_SOURCE/examples/pipe_samplers/cosine.c" -lm
 {
     sed 's/^\[arms.uniform\]/[arms.mine]\nplugin = "libcosine.so"/; s/^seeds = 1/seeds = 2/' "$tiny"
     printf '%s\n' '[plates.rose]' 'kind = "rose"' 'runs = [{arm = "mine", n = 16}, {arm = "cosine", n = 16}]' \
-        '[furnaces.mine]' 'arm = "mine"' 'shape = "ball"' 'n = 4096' '[furnaces.built_in]' 'arm = "cosine"' 'shape = "ball"' 'n = 4096'
+        '[furnaces.mine]' 'arm = "mine"' 'shape = "ball"' 'n = 4096' '[furnaces.built_in]' 'arm = "cosine"' \
+        'shape = "ball"' 'n = 4096'
 } >mine.toml
 expect 0 "$CRESCENT" run mine.toml --out out --quiet
 expect 0 python3 - <<'PY'
@@ -58,13 +60,15 @@ told 'plugin = "fails.so"' 3 "crescent_sampler_sample gave 7"
 sed 's/return CRESCENT_SAMPLER_ABI/return 9/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >newer.c && cc_shared newer
 told 'plugin = "newer.so"' 3 "has version 9 of the interface"
 # A density of NaN, and a direction that is not unit, are bad samples: counted, and the assertion on them fails.
-sed 's|pdf\[i\] = cos_theta / pi|pdf[i] = i == 3 ? NAN : cos_theta / pi|; s|wi\[3 \* i\] = sin_theta|wi[3 * i] = (i == 5 ? 2 : 1) * sin_theta|' \
+sed 's|pdf\[i\] = cos_theta / pi|pdf[i] = i == 3 ? NAN : cos_theta / pi|
+    s|wi\[3 \* i\] = sin_theta|wi[3 * i] = (i == 5 ? 2 : 1) * sin_theta|' \
     "$CRESCENT_SOURCE/examples/plugin/cosine.c" >bad.c && cc_shared bad
 sed 's|^plugin = .*|plugin = "bad.so"|; s|bad(mixture)|bad(mine)|' mine.toml >bad.toml
 expect 1 "$CRESCENT" run bad.toml --out bad --quiet
 
 expect 0 "$CRESCENT" check --quiet --plugin ./libcosine.so --json right.json
-sed 's|pdf\[i\] = wi|pdf[i] = 1.01 * wi|; s|pdf\[i\] = cos_theta|pdf[i] = 1.01 * cos_theta|' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >bright.c && cc_shared bright
+sed 's|pdf\[i\] = wi|pdf[i] = 1.01 * wi|; s|pdf\[i\] = cos_theta|pdf[i] = 1.01 * cos_theta|' \
+    "$CRESCENT_SOURCE/examples/plugin/cosine.c" >bright.c && cc_shared bright
 expect 1 "$CRESCENT" check --quiet --plugin ./bright.so
 expect 3 "$CRESCENT" check --quiet --plugin ./nowhere.so
 expect 2 "$CRESCENT" check --quiet --plugin ./libcosine.so --exec ./cosine

@@ -12,7 +12,9 @@ some="any(v['name'] != 'valid' and v['state'] == 'inconclusive' for v in j['verd
 everywhere="sum(v['name'] == 'valid' and v['state'] == 'right' for v in j['verdicts']) == 8"
 expect 4 check --exec './slow 150000' --patience 6 --json few.json --junit few.xml --html few.html
 fields few.json "assert $everywhere and $some and 0 < len(j['left_out']) <= 8 and j['state'] == 'inconclusive'"
-for file in printed few.xml few.html; do grep -q "Not looked at" $file || die "$file does not say what was not looked at"; done
+for file in printed few.xml few.html; do
+    grep -q "Not looked at" $file || die "$file does not say what was not looked at"
+done
 expect 0 check --exec './slow 150000' --patience 6 --accept-few --json few.json
 fields few.json "assert $everywhere and len(j['left_out']) > 0 and j['state'] == 'right'"
 expect 1 check --exec './slow 20000 n:nan' --patience 3  # the normal is among the w_o that there is no time for
@@ -22,13 +24,15 @@ broken() {
     expect 3 check --exec "$2" --json broken.json --junit broken.xml
     grep -q -- "$1" printed || die "it does not say '$1': $(cat printed)"
     grep -q "<error" broken.xml && ! grep -q "<failure" broken.xml || die "no error in $(cat broken.xml)"
-    fields broken.json "assert j['state'] == 'error' and all(v['state'] in ('right', 'skipped', 'error') for v in j['verdicts'])"
+    fields broken.json "
+assert j['state'] == 'error' and all(v['state'] in ('right', 'skipped', 'error') for v in j['verdicts'])"
 }
 broken "exit code 3" 'read hello; echo hello 1 x; exit 3'
 broken "loading weights" 'echo loading weights...; cat'
 broken "exit code 2" 'python3 nowhere.py'
 broken "signal 11" 'read hello; echo hello 1 x; read f; echo -; kill -SEGV $$'
-broken "got 'oops'" 'read hello; echo hello 1 x; read f; echo -; read sample; while echo 0 0 1 0.3; do read verb || exit 0; [ "${verb%% *}" = sample ] || { echo oops; break; }; done'
+broken "got 'oops'" 'read hello; echo hello 1 x; read f; echo -; read sample
+    while echo 0 0 1 0.3; do read verb || exit 0; [ "${verb%% *}" = sample ] || { echo oops; break; }; done'
 
 # A number too large for a double is infinite, however it is written.
 for huge in 1e999 0x1p+5000 inf 123456789e400; do
@@ -36,10 +40,17 @@ for huge in 1e999 0x1p+5000 inf 123456789e400; do
     grep -q "pdf is infinite" printed || die "$huge is not infinite: $(cat printed)"
 done
 
-# Whatever a program calls itself and whatever a file is called, XML is well-formed, HTML is UTF-8 and nothing moves a cursor.
-well_formed() { python3 -c "import sys, xml.parsers.expat as x; x.ParserCreate().ParseFile(open(sys.argv[1], 'rb')); open(sys.argv[2], encoding='utf-8').read()" "$1" "$2" || die "$1 or $2"; }
+# Whatever a program calls itself and whatever a file is called, XML is well-formed, HTML is UTF-8 and nothing moves a
+# cursor.
+well_formed() {
+    python3 -c "
+import sys, xml.parsers.expat as x
+x.ParserCreate().ParseFile(open(sys.argv[1], 'rb'))
+open(sys.argv[2], encoding='utf-8').read()" "$1" "$2" || die "$1 or $2"
+}
 for name in 'a\033[31m\302\233<&"' "$(printf 'x%.0s' {1..59})\303\251\303\251" 'na\357ve'; do
-    expect 3 check --exec "read hello; printf 'hello 1 $name\n'; read f; echo -; exit 3" --junit name.xml --html name.html
+    expect 3 check --exec "read hello; printf 'hello 1 $name\n'; read f; echo -; exit 3" --junit name.xml \
+        --html name.html
     well_formed name.xml name.html
     ! LC_ALL=C grep -q "$(printf '\033\\|\302\233')" printed || die "a control character of the name: $(cat -v printed)"
 done
@@ -52,7 +63,8 @@ gone() {
     done
     die "process $(cat "$1") lives on"
 }
-expect 3 check --exec 'setsid sh -c "echo \$\$ >session; exec sleep 300" & read hello; echo hello 1 x; while [ ! -s session ]; do :; done; exit 3'
+expect 3 check --exec 'setsid sh -c "echo \$\$ >session; exec sleep 300" & read hello; echo hello 1 x
+    while [ ! -s session ]; do :; done; exit 3'
 gone session
 "$CRESCENT" check --quiet --exec 'setsid sh -c "echo \$\$ >orphan; exec sleep 300"' >/dev/null 2>&1 &
 while [ ! -s orphan ]; do sleep 0.1; done
@@ -65,7 +77,8 @@ expect 1 check --exec "./slow 10000000 -1" --json r.json
 [ "$(cat r.json.part victim)" = "mine
 mine" ] || die "a file that is not ours was touched"
 fields r.json "assert j['state'] == 'wrong'"
-check --exec "./slow 10000000 -1" --json /dev/stdout 2>said | grep -q '"state": "wrong"' || die "nothing on /dev/stdout: $(cat said)"
+check --exec "./slow 10000000 -1" --json /dev/stdout 2>said | grep -q '"state": "wrong"' ||
+    die "nothing on /dev/stdout: $(cat said)"
 
 # A header of 60,000 blanks, where a matcher that recurses would run out of stack.
 python3 - <<'PY'

@@ -2,8 +2,8 @@
 # A run that was killed goes on where it was: the same bytes as a run that was left alone, and less work.
 . "$(dirname "$0")/common.sh"
 
-long=(run "$tiny" --quiet --keep-after 0 --set image.width=256 --set image.height=144 --set seeds=2 --set 'arms.cosine.n=[16,384]' --set 'arms.mixture.n=[16,384]'
-    --set 'regions.ball.box=[100,60,130,90]')
+long=(run "$tiny" --quiet --keep-after 0 --set image.width=256 --set image.height=144 --set seeds=2
+    --set 'arms.cosine.n=[16,384]' --set 'arms.mixture.n=[16,384]' --set 'regions.ball.box=[100,60,130,90]')
 expect 0 "$CRESCENT" "${long[@]}" --out alone
 long+=(--out stopped)
 
@@ -34,7 +34,9 @@ expect 0 "$CRESCENT" run "$tiny" --out stopped
 grep -q 'resuming from' said && die "another experiment went on from what was kept: $(cat said)"
 grep -q 'another, unfinished run' said || die "nothing is said of what another run kept: $(cat said)"
 expect 0 "$CRESCENT" run "$tiny" --out tiny
-same_outputs_but_kept() { diff -r -x timing.json -x .crescent-kept "$1" "$2" >difference || die "$1 and $2 differ: $(cat difference)"; }
+same_outputs_but_kept() {
+    diff -r -x timing.json -x .crescent-kept "$1" "$2" >difference || die "$1 and $2 differ: $(cat difference)"
+}
 same_outputs_but_kept tiny stopped
 expect 0 "$CRESCENT" "${long[@]}"
 same_outputs alone stopped

@@ -21,5 +21,6 @@ done
 beside=(--set note_evidence=true --set reference.monte_carlo=true)
 expect 0 "$CRESCENT" run evidence.toml "${beside[@]}" --quiet --out evidence --threads 1 --isa scalar
 expect 0 "$CRESCENT" run evidence.toml "${beside[@]}" --quiet --out evidence-16 --threads 16
-grep -q '"rejected"' evidence/metrics.json && grep -q 'note reference' evidence/metrics.json || die "they were not measured"
+grep -q '"rejected"' evidence/metrics.json && grep -q 'note reference' evidence/metrics.json ||
+    die "they were not measured"
 same_outputs evidence evidence-16

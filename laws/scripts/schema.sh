@@ -47,9 +47,11 @@ for wrong in ({**metrics, "unknown": 1}, {**metrics, "runs": 3}, {k: v for k, v 
     assert not judge.is_valid(wrong), "a wrong metrics.json passes the schema"
 END
 
-# The samples of the tests of metrics.json: names, infinities, nothing measured, heavy tails; and three that ought not to fit.
+# The samples of the tests of metrics.json: names, infinities, nothing measured, heavy tails; and three that ought not
+# to fit.
 mkdir samples
-expect 0 env -u GTEST_TOTAL_SHARDS CRESCENT_METRICS_SAMPLES=samples "${CRESCENT_TESTS:?the tests}" --gtest_brief=1 --gtest_filter='MetricsJson.*'
+expect 0 env -u GTEST_TOTAL_SHARDS CRESCENT_METRICS_SAMPLES=samples "${CRESCENT_TESTS:?the tests}" --gtest_brief=1 \
+    --gtest_filter='MetricsJson.*'
 expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
 import glob, json, sys
 import jsonschema

@@ -15,7 +15,8 @@ endforeach()
 set(seen "before;name;seen;changed")
 add_subdirectory(crescent)
 foreach(name IN LISTS before)
-  if(name MATCHES "^CMAKE_(CXX|BUILD|POSITION|INTERPROCEDURAL|MESSAGE)" AND NOT "${${name}}" STREQUAL "${value_of_${name}}")
+  if(name MATCHES "^CMAKE_(CXX|BUILD|POSITION|INTERPROCEDURAL|MESSAGE)" AND
+     NOT "${${name}}" STREQUAL "${value_of_${name}}")
     message(FATAL_ERROR "crescent changed ${name} to ${${name}}")
   endif()
 endforeach()
@@ -28,5 +29,7 @@ target_link_libraries(mine PRIVATE crescent::verdicts crescent::crescent)
 END
 echo 'int main() {}' >outer/mine.cpp
 expect 0 cmake -S outer -B outer/build -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_CXX_FLAGS_RELEASE=-O1
-grep -q '^CMAKE_BUILD_TYPE:STRING=$' outer/build/CMakeCache.txt || die "crescent chose a build type: $(grep BUILD_TYPE outer/build/CMakeCache.txt)"
-[ ! -s outer/build/crescent/cmake_install.cmake ] || ! grep -q 'INSTALL.*FILES "' outer/build/crescent/cmake_install.cmake || die "crescent installs itself with its parent"
+grep -q '^CMAKE_BUILD_TYPE:STRING=$' outer/build/CMakeCache.txt ||
+    die "crescent chose a build type: $(grep BUILD_TYPE outer/build/CMakeCache.txt)"
+installs=outer/build/crescent/cmake_install.cmake
+[ ! -s $installs ] || ! grep -q 'INSTALL.*FILES "' $installs || die "crescent installs itself with its parent"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# What `check` writes: JSON that docs/check.schema.json describes and that equal calls repeat byte for byte, JUnit that says
-# what is wrong, a summary that comes first and says each thing once.
+# What `check` writes: JSON that docs/check.schema.json describes and that equal calls repeat byte for byte, JUnit that
+# says what is wrong, a summary that comes first and says each thing once.
 . "$(dirname "$0")/common.sh"
 /usr/bin/python3 -c 'import jsonschema' 2>said || die "python3-jsonschema is missing: $(cat said)"
 
@@ -33,6 +33,8 @@ PY
 expect 0 "${CC:-cc}" -O2 -o slow "$here/slow.c" -lm
 expect 1 check --exec './slow 100000000 0.3' --json bad.json --junit bad.xml
 fits bad.json
-head -n 1 printed | grep -q "identity: wrong at 8 of 8 w_o, worst at w_o" || die "the summary is not first: $(head -n 3 printed)"
+head -n 1 printed | grep -q "identity: wrong at 8 of 8 w_o, worst at w_o" ||
+    die "the summary is not first: $(head -n 3 printed)"
 [ "$(grep -c "identity: wrong" printed)" -le 2 ] || die "said more than once: $(cat printed)"
-grep -q '<failure message="wrong: The pdf that came with the draw' bad.xml || die "JUnit does not say what is wrong: $(head -c 900 bad.xml)"
+grep -q '<failure message="wrong: The pdf that came with the draw' bad.xml ||
+    die "JUnit does not say what is wrong: $(head -c 900 bad.xml)"

@@ -18,7 +18,8 @@ grep -q Inter said || die "the message does not name the font: $(cat said)"
 [ -z "$(find fontless -type f 2>/dev/null)" ] || die "outputs without a font: $(find fontless -type f)"
 
 # More memory than there is: told before any of it is spent.
-expect 3 "$CRESCENT" run "$tiny" --out large --set image.width=16384 --set image.height=16384 --set 'arms.cosine.n=[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]'
+expect 3 "$CRESCENT" run "$tiny" --out large --set image.width=16384 --set image.height=16384 \
+    --set 'arms.cosine.n=[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]'
 grep -q 'GB of memory' said || die "the message does not say how much memory is needed: $(cat said)"
 [ ! -e large ] || die "a run that does not fit made a folder"
 

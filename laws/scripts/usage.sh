@@ -14,7 +14,8 @@ expect 2 "$CRESCENT" run "$tiny" --isa sse5
 # Beyond the range of an integer: never another number instead.
 for large in 2147483648 4294967300 9223372036854775807 99999999999999999999 -1; do
     for flag in --threads --seeds --gl-device; do expect 2 "$CRESCENT" run "$tiny" "$flag" "$large"; done
-    for key in regions.ball.box=[0,0,$large,$large] image.width=$large image.height=$large seeds=$large n=$large arms.cosine.n=[$large] reference.lobe_spp=$large; do
+    for key in regions.ball.box=[0,0,$large,$large] image.width=$large image.height=$large seeds=$large n=$large \
+        arms.cosine.n=[$large] reference.lobe_spp=$large; do
         expect 2 "$CRESCENT" run "$tiny" --set "$key"
         grep -q -- "--set ${key%%=*}" said || die "no place: $(cat said)"
     done
@@ -25,7 +26,8 @@ for large in 4294967296 9223372036854775807 -1; do
     expect 2 "$CRESCENT" check --error-rates "$large"
 done
 # Nothing that the terminal would obey.
-for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(printf '\033\302\233')=3" "list $(printf 'a\033\302\2332J')" "rnu$(printf '\033')" "run $tiny --isa $(printf '\033x')"; do
+for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(printf '\033\302\233')=3" \
+    "list $(printf 'a\033\302\2332J')" "rnu$(printf '\033')" "run $tiny --isa $(printf '\033x')"; do
     expect 2 "$CRESCENT" $command
     LC_ALL=C grep -q "$(printf '[\001-\010\013-\037\177]')" said && die "a control character is shown: $(cat -v said)"
     LC_ALL=C grep -q "$(printf '\302[\200-\237]')" said && die "a C1 control character is shown: $(cat -v said)"

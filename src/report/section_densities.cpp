@@ -13,14 +13,14 @@ namespace {
 using html::words;
 
 constexpr const char* plain_prose = R"(
-<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction. The azimuth is
-2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over the axis it is measured from.</p>
+<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction. The azimuth
+is 2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over the axis it is measured from.</p>
 )";
 
 constexpr const char* other_prose = R"(
-<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction, and a two-sample arm
-does so twice. <i>m</i> is the half vector, of which the direction is a mirror image; <i>y</i> a point on a disk of radius
-<i>r</i>.</p>
+<p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction, and a
+two-sample arm does so twice. <i>m</i> is the half vector, of which the direction is a mirror image; <i>y</i> a point on
+a disk of radius <i>r</i>.</p>
 )";
 
 std::string rungs(const ArmPlan& arm) {

@@ -12,8 +12,9 @@ using html::words;
 
 constexpr const char* prose = R"(
 <p>Put a surface where every direction brings the light 1 and its radiance is what it reflects: <i>ρ</i><sub>d</sub> +
-<i>ρ</i><sub>s</sub> with both parts of the BRDF, <i>ρ</i><sub>s</sub> with the lobe alone. The eye looks along the normal, so
-that <i>R</i> = <i>n</i> and no sample falls under the horizon. Whatever an arm reads besides is its own error.</p>
+<i>ρ</i><sub>s</sub> with both parts of the BRDF, <i>ρ</i><sub>s</sub> with the lobe alone. The eye looks along the
+normal, so that <i>R</i> = <i>n</i> and no sample falls under the horizon. Whatever an arm reads besides is its own
+error.</p>
 )";
 
 std::string state(const FurnaceMeter& f) {

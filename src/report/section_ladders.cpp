@@ -14,15 +14,15 @@ using html::words;
 
 constexpr const char* ladder_prose = R"(
 <p>The samples of a rung are the first samples of the next. Where the variance of a sample is finite the
-error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the {seed}
-seed; the interval is {interval}. A heavy tail breaks the law: the rungs then jump whenever a
+error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the
+{seed} seed; the interval is {interval}. A heavy tail breaks the law: the rungs then jump whenever a
 rare sample arrives, and the slope says more about luck than about the arm.</p>
 )";
 
 constexpr const char* exponent_prose = R"(
-<p>The control runs {arm} again at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF of
-{shape} and in the reference alike, so each column is measured against its own truth. A wider lobe sends more samples under the
-horizon, a narrower one leaves more of the hemisphere to chance.</p>
+<p>The control runs {arm} again at <i>N</i> = {n} with other exponents. The exponent changes in the density, in the BRDF
+of {shape} and in the reference alike, so each column is measured against its own truth. A wider lobe sends more samples
+under the horizon, a narrower one leaves more of the hemisphere to chance.</p>
 )";
 
 std::vector<const Ladder*> ladders_in(const Page& page, const std::string& region) {

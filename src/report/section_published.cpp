@@ -11,16 +11,16 @@ namespace {
 using html::words;
 
 constexpr const char* published_prose = R"(
-<p>A published figure is one draw from one stream of random numbers. What can be asked of it is whether it lies where draws
-lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the {which} seed ({seed})
-and the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the tail index
-<i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
+<p>A published figure is one draw from one stream of random numbers. What can be asked of it is whether it lies where
+draws lie. In the strips the bar spans the middle 90 % of {seeds}, the tick is their median, the dot the {which} seed
+({seed}) and the diamond the published value; each strip has its own scale. Beside each RMSE and variance stands the
+tail index <i>k</i> of the samples of its region: from 1/2 on their variance is infinite.</p>
 )";
 
 constexpr const char* measured_prose = R"(
-<p>In the strips the bar spans the middle 90 % of {seeds}, the tick is their median and the dot the first seed ({seed}); each
-strip has its own scale. Beside each RMSE and variance stands the tail index <i>k</i> of the samples of its region: from 1/2
-on their variance is infinite.</p>
+<p>In the strips the bar spans the middle 90 % of {seeds}, the tick is their median and the dot the first seed ({seed});
+each strip has its own scale. Beside each RMSE and variance stands the tail index <i>k</i> of the samples of its region:
+from 1/2 on their variance is infinite.</p>
 )";
 
 std::string fallen(const BandMeter& b) {

@@ -67,21 +67,21 @@ bool larger_in(
 }
 
 constexpr const char* a_prose = R"(
-<p>A small bright disk fills little of the hemisphere. A density that spreads its rays over all of it meets the disk seldom;
-when one ray does, it carries the light of all those that missed. On a glossy highlight that one ray also meets the lobe at
-its height, which the density knows nothing of, so one sample can weigh as much as {largest} with {broad}, in a picture whose
-mean is {mean}. Where that happens, most pixels come out too dark and a few far too bright. Counted as fireflies at <i>N</i> = {n} are
-{fireflies_broad} pixels with {broad} and {fireflies_narrow} with {narrow}.</p>
+<p>A small bright disk fills little of the hemisphere. A density that spreads its rays over all of it meets the disk
+seldom; when one ray does, it carries the light of all those that missed. On a glossy highlight that one ray also meets
+the lobe at its height, which the density knows nothing of, so one sample can weigh as much as {largest} with {broad},
+in a picture whose mean is {mean}. Where that happens, most pixels come out too dark and a few far too bright. Counted
+as fireflies at <i>N</i> = {n} are {fireflies_broad} pixels with {broad} and {fireflies_narrow} with {narrow}.</p>
 )";
 
 constexpr const char* b_prose = R"(
-<p>A lobe about the mirror direction sends nearly all rays where the lobe is. A matt surface gathers light from the whole
-hemisphere, and what comes from the sides is left to the few rays that stray there. Each of those stands for many that were
-never sent: the largest weighs {largest} with {narrow}. The pixel is dark until one arrives, and then it sparkles. The mean
-of the frame tells it at a glance: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub> reads {mean_narrow} with
-{narrow} and {mean_broad} with {broad}.{lost}</p>
-<p>On a Lambert surface the arm still aims about the mirror direction with the scene’s <i>s</i>: it samples the lobe whatever
-the material.</p>
+<p>A lobe about the mirror direction sends nearly all rays where the lobe is. A matt surface gathers light from the
+whole hemisphere, and what comes from the sides is left to the few rays that stray there. Each of those stands for many
+that were never sent: the largest weighs {largest} with {narrow}. The pixel is dark until one arrives, and then it
+sparkles. The mean of the frame tells it at a glance: for the same scene at <i>N</i> = {n}, <i>Y</i><sub>mean</sub>
+reads {mean_narrow} with {narrow} and {mean_broad} with {broad}.{lost}</p>
+<p>On a Lambert surface the arm still aims about the mirror direction with the scene’s <i>s</i>: it samples the lobe
+whatever the material.</p>
 )";
 
 /// Of the two failures, those that this run does not show.

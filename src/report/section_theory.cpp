@@ -14,14 +14,14 @@ using namespace mathml;
 
 constexpr const char* question_prose = R"(
 <p>A renderer asks how much light leaves a point towards the eye. It answers by firing <i>N</i> rays, weighing what each
-brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives the
-right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the picture
-the noise sits.</p>
-<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, is compared at equal <i>N</i>
-and is fed the same random numbers, pixel by pixel and sample by sample. What differs is the density
+brings by the density it was drawn with, and averaging. Any density that reaches wherever there is light to find gives
+the right answer in the end; on the way there, the density decides how noisy the answer is, and <em>where</em> in the
+picture the noise sits.</p>
+<p>This run puts {arms} on trial: {names}. Every arm looks at one scene through one camera, is compared at equal
+<i>N</i> and is fed the same random numbers, pixel by pixel and sample by sample. What differs is the density
 <math><mi>p</mi></math>, so whatever differs in the films is its doing.{rays}{bias}{regions}</p>
-<p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out of
-many; the band beside it shows what other seeds give, and where the samples are too heavy-tailed for a band the
+<p>Every figure below is read off the linear float films, none off a picture. A value at the {seed} seed is one draw out
+of many; the band beside it shows what other seeds give, and where the samples are too heavy-tailed for a band the
 words {heavy} stand in its place.</p>
 )";
 
@@ -30,20 +30,20 @@ constexpr const char* estimator_prose = R"(
 {integral}
 <p>and its estimate from <i>N</i> directions drawn with density {p} (in 1/sr) is</p>
 {estimator}
-<p>Three rules hold for every arm. The cosine {cosine} stays in the numerator. A direction at or under the horizon weighs
-nothing and still counts in <i>N</i>; no density is rescaled to make up for it. And a direction is divided by the density
-of the arm that drew it, never by another’s.</p>
+<p>Three rules hold for every arm. The cosine {cosine} stays in the numerator. A direction at or under the horizon
+weighs nothing and still counts in <i>N</i>; no density is rescaled to make up for it. And a direction is divided by the
+density of the arm that drew it, never by another’s.</p>
 )";
 
 constexpr const char* brdf_prose = R"(
-<p>A glossy surface adds a lobe to its Lambert part, <i>f</i> = <i>ρ</i><sub>d</sub>/π + <i>ρ</i><sub>s</sub> · lobe. The lobes of
-this scene, in 1/sr:</p>
+<p>A glossy surface adds a lobe to its Lambert part, <i>f</i> = <i>ρ</i><sub>d</sub>/π + <i>ρ</i><sub>s</sub> · lobe.
+The lobes of this scene, in 1/sr:</p>
 )";
 
 constexpr const char* constants_prose = R"(
 <p>Constants that look alike mean different things. This BRDF’s <i>s</i> + 2 makes its lobe reflect the share
-<i>ρ</i><sub>s</sub> of the light at normal incidence; the <i>s</i> + 1 of a density about <i>R</i> makes that integrate to one.
-Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
+<i>ρ</i><sub>s</sub> of the light at normal incidence; the <i>s</i> + 1 of a density about <i>R</i> makes that integrate
+to one. Exchanging them is an error of {slip} at <i>s</i> = {s}.</p>
 )";
 
 constexpr const char* meters_prose = R"(
@@ -52,9 +52,9 @@ constexpr const char* meters_prose = R"(
 {rmse}
 <p>Without a reference, from the samples themselves, the variance of a pixel’s mean, averaged over the region:</p>
 {variance}
-<p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of all
-directions drawn that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of the whole frame
-mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
+<p>A <b>firefly</b> is a pixel on a surface where {firefly} with <i>k</i> = {k}. The <b>horizon share</b> is the part of
+all directions drawn that fell under the horizon; <b><i>Y</i><sub>mean</sub></b> is the mean over the frame. The RMSE of
+the whole frame mixes regions that behave in opposite ways; it stands in a footnote and nowhere else.</p>
 )";
 
 std::string spelled(std::size_t count) {

@@ -15,28 +15,28 @@ constexpr const char* furnace_prose = R"(
 distribution function. With <i>R</i> = <i>n</i> the weight of a Lambert sample can be written down: it is
 {weight}, which is a Pareto distribution with index</p>
 {index}
-<p>here {k} at <i>s</i> = {s}. Its variance is infinite from <i>k</i> = 1/2 (<i>s</i> = 3) on. The mean exists, and most of it is
-carried by samples so rare that a run of ordinary length holds none of them: its typical reading is low in any arithmetic.
-What the resolution of <i>u</i> does add is a ceiling. If <i>u</i> is never below 2<sup>−<i>b</i></sup>, then even infinitely
-many samples read only</p>
+<p>here {k} at <i>s</i> = {s}. Its variance is infinite from <i>k</i> = 1/2 (<i>s</i> = 3) on. The mean exists, and most
+of it is carried by samples so rare that a run of ordinary length holds none of them: its typical reading is low in any
+arithmetic. What the resolution of <i>u</i> does add is a ceiling. If <i>u</i> is never below 2<sup>−<i>b</i></sup>,
+then even infinitely many samples read only</p>
 {cap}
 <p>({caps}). The dashed lines below are these ceilings.</p>
 )";
 
 constexpr const char* lost_prose = R"(
 <h3 id="wrong-support">The Phong arm is biased off the normal</h3>
-<p>An estimator is unbiased if its density is positive wherever the integrand is. The Phong density is zero on the half space
-behind <i>R</i>. Tilt <i>R</i> by θ<sub>R</sub> from the normal and part of the upper hemisphere lies behind it, where a Lambert
-surface reflects all the same. Under a uniform fill the share that no number of samples can find is</p>
+<p>An estimator is unbiased if its density is positive wherever the integrand is. The Phong density is zero on the half
+space behind <i>R</i>. Tilt <i>R</i> by θ<sub>R</sub> from the normal and part of the upper hemisphere lies behind it,
+where a Lambert surface reflects all the same. Under a uniform fill the share that no number of samples can find is</p>
 {share}
 <p>A chi-square test of the directions against their density sees nothing of it: both are zero there.</p>
 )";
 
 constexpr const char* rejection_prose = R"(
 <h3 id="wrong-test">A t-test condemns the arm where it is right</h3>
-<p>With <i>R</i> = <i>n</i> the arm reaches everything and its mean is known. Test that mean with Student’s t at level {alpha}, with
-{n} samples a run, and a correct arm ought to be rejected in {alpha_percent} of runs. The test trusts the sample
-variance, and a heavy tail has none to estimate. What it rejects is the tail.</p>
+<p>With <i>R</i> = <i>n</i> the arm reaches everything and its mean is known. Test that mean with Student’s t at level
+{alpha}, with {n} samples a run, and a correct arm ought to be rejected in {alpha_percent} of runs. The test trusts the
+sample variance, and a heavy tail has none to estimate. What it rejects is the tail.</p>
 )";
 
 std::string intro(const Page& page) {

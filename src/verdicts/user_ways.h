@@ -126,7 +126,8 @@ template <class P> double number_of(const P& p) {
     else return static_cast<double>(p);
 }
 /// Three channels: an array, or a struct {r, g, b} or {x, y, z}.
-template <class P> concept Coloured = !Scalar<P> && (requires(const P p) { p.r; p.g; p.b; } || requires(const P p) { direction(p); });
+template <class P> concept Coloured =
+    !Scalar<P> && (requires(const P p) { p.r; p.g; p.b; } || requires(const P p) { direction(p); });
 template <class P> Vec3d colour(const P& p) {
     if constexpr (Scalar<P>) return {number_of(p), number_of(p), number_of(p)};
     else if constexpr (requires {

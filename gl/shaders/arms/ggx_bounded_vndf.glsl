@@ -19,9 +19,9 @@ Drawn sample_ggx_bounded_vndf(vec3 wo, vec2 u) {
     float a = site.alpha;
     vec3 stretched = unit(vec3(a * wo.xy, wo.z));
     vec2 bound = ggx_bound(wo);
-    float height = 1.0 + bound.x * stretched.z;                      // of the cap
-    float drop = u.x * height;                                       // 1 - z on it
-    float rise = (1.0 - u.x) * height + bound.y * stretched.z;       // z + stretched.z
+    float height = 1.0 + bound.x * stretched.z;                 // of the cap
+    float drop = u.x * height;                                  // 1 - z on it
+    float rise = (1.0 - u.x) * height + bound.y * stretched.z;  // z + stretched.z
     float sin = sqrt(max(drop * (2.0 - drop), 0.0));
     SinCos phi = sincos_turns(u.y);
     vec3 m = unit(vec3(a * (sin * phi.cos + stretched.x), a * (sin * phi.sin + stretched.y), rise));

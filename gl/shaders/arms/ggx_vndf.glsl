@@ -1,7 +1,7 @@
 // ggx-vndf, as src/arms/ggx_vndf.h: a GGX normal among those that wo sees, mirrored to wi.
 //   p = G1(wo) D(m) / (4 wo.z).
-// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eqs (3) and (17); the draw by a spherical cap:
-// Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.
+// Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), eqs (3) and (17); the draw by a spherical
+// cap: Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), listing 3.
 #include "arms/halfway.glsl"
 #include "lobes/ggx.glsl"
 

@@ -17,8 +17,7 @@ float density_of_other_lights(vec3 wi, int but) {
         float t = c / (met ? v : 1.0);
         sum += met ? d.power * disk_density(d, sqr(t), abs(v)) : 0.0;
     }
-    for (int k = 0; k < OTHERS; ++k)
-        sum += DISKS + k != but ? others[k].power * other_area_pdf(others[k], wi) : 0.0;
+    for (int k = 0; k < OTHERS; ++k) sum += DISKS + k != but ? others[k].power * other_area_pdf(others[k], wi) : 0.0;
     return sum;
 }
 float pdf_light_area(vec3 wo, vec3 wi) { return density_of_other_lights(wi, -1); }
@@ -56,8 +55,7 @@ Drawn sample_light_area(vec3 wo, vec2 u) {
         below = above;
     }
     // Lights may stand one behind another: every one that wi meets could have drawn it.
-    if (DISKS + OTHERS > 1 && drawn.pdf > 0.0)
-        drawn.pdf += density_of_other_lights(drawn.wi, aimed_disk);
+    if (DISKS + OTHERS > 1 && drawn.pdf > 0.0) drawn.pdf += density_of_other_lights(drawn.wi, aimed_disk);
     aimed_met = drawn.pdf > 0.0;
     return drawn;
 }

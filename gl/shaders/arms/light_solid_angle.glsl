@@ -1,5 +1,5 @@
-// light-solid-angle, as src/arms/light_solid_angle.h: NEE, a disk light by solid angle: uniform over the smallest cap of
-// directions about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
+// light-solid-angle, as src/arms/light_solid_angle.h: NEE, a disk light by solid angle: uniform over the smallest cap
+// of directions about the disk's spherical ellipse that holds all of it. The disk is chosen by its power Y(L) pi r^2.
 //   p = 1 / (2 pi (1 - cos b)),  cos = 1 - u1 (1 - cos b), phi = 2 pi u2, about the ellipse's centre a.
 // Guillen et al. 2017, "Area-Preserving Parameterizations for Spherical Ellipses", section 3.
 #include "sampler.glsl"
