@@ -112,6 +112,31 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
     return out;
 }
 
+void draw_batches(const Trials& trials, std::uint32_t batches) {
+    if (!trials.subject) throw nb::value_error("an arm of the list has no callables");
+    PolledMonitor watch;
+    Raised raised(watch);
+    tell(trials, &raised);
+    const int count = trials.subject->traits().numbers;
+    const auto batch = [&](std::uint32_t b) {
+        std::vector<Numbers> u(32768);
+        std::vector<Draw> out(u.size());
+        for (std::size_t i = 0; i < u.size(); ++i)
+            for (int k = 0; k < count; k += 2) {
+                const Vec2<float> pair = draw(1, b, i, static_cast<std::uint32_t>(k));
+                u[i][k] = pair.x;
+                if (k + 1 < count) u[i][k + 1] = pair.y;
+            }
+        trials.subject->sample(0, trials.all.front().wo, u, out);
+    };
+    watched(watch, raised, nb::none(), trials.subject->serial(), [&] {
+        if (trials.subject->serial())
+            for (std::uint32_t b = 0; b < batches; ++b) batch(b);
+        else parallel_for(std::uint32_t{0}, batches, batch);
+    });
+    tell(trials, nullptr);
+}
+
 nb::dict as_dict(const Verdict& v) {
     nb::dict out;
     out["arm"] = v.arm;
@@ -191,6 +216,8 @@ void add_judging(nb::module_& m) {
             return Trials{{trial_of_subject(file, theta, azimuth)}, file};
         },
         "samples"_a, "table"_a, "theta"_a, "azimuth"_a);
+    m.def("draw", &draw_batches, "trials"_a, "batches"_a,
+        "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
     m.def(
         "arm_beside",
         [](const std::string& arm, const Trials& a) {

@@ -121,7 +121,7 @@ NOTES = [
         "creates energy",
         "the model",
         "Disney's sheen is added on top of the other lobes and takes nothing from them: at grazing w_o more leaves the "
-        "surface than arrives. Burley 2012 and 2015 say so of it.",
+        "surface than arrives. The model is written so.",
     ),
 ]
 
