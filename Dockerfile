@@ -10,7 +10,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
     fonts-inter libcairo2 libpango-1.0-0 libpangocairo-1.0-0 libpng16-16 libopenexr-3-1-30 libtbb12 libfmt9 libxxhash0 libhwy1 \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /opt/crescent /usr/local
-COPY --from=build /crescent/experiments /work/experiments
-WORKDIR /work
+COPY --from=build /crescent/experiments /crescent/experiments
+WORKDIR /crescent
 ENTRYPOINT ["crescent"]
 CMD ["--help"]

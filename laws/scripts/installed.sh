@@ -1,12 +1,31 @@
 #!/bin/bash
-# `cmake --install` into an empty prefix, then examples/find_package and examples/in_memory built against it, outside
-# the tree.
+# `cmake --install` into an empty prefix, then examples/find_package, the README's snippets and examples/in_memory built
+# against it, outside the tree.
 . "$(dirname "$0")/common.sh"
 
 build_example find_package
 expect 0 find_package/build/noise "$tiny"
 grep -q mixture printed || die "the example says nothing of mixture: $(cat printed)"
 expect 0 "$work/prefix/bin/crescent" --version
+
+# What the README says of a renderer of one's own: its lines for CMake and its C++, as they stand there.
+snippet() {
+    awk -v mark="\`\`\`$1" '$0 == mark { inside = 1; next } inside && /^```/ { exit } inside' "$CRESCENT_SOURCE/README.md"
+}
+mkdir readme
+{
+    echo 'cmake_minimum_required(VERSION 3.25)'
+    echo 'project(readme LANGUAGES CXX)'
+    echo 'find_package(GTest REQUIRED)'
+    echo 'add_executable(my_tests my_tests.cpp)'
+    snippet cmake
+} >readme/CMakeLists.txt
+snippet cpp >readme/my_tests.cpp
+expect 0 cmake -S readme -B readme/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
+    -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_PREFIX_PATH="$work/prefix"
+expect 0 cmake --build readme/build
+expect 0 readme/build/my_tests
+grep -q '1 test' printed || die "the README's sampler is not judged: $(cat printed)"
 
 # A run in memory: an interval for each arm, no file, a stop that is an answer.
 build_example in_memory
