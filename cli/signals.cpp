@@ -3,8 +3,8 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
-#include <ctime>
 
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "commands.h"
@@ -17,10 +17,8 @@ namespace {
 std::atomic<ProgressMonitor*> watched{nullptr};
 std::atomic<bool> let_finish{false};
 std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
-timer_t deadline;
-constexpr long patience_ns = 500'000'000;  // a large process takes a while to end
-
-constexpr long moving_patience_s = 5;  // outputs that are being moved are let finish, as a disk permits
+constexpr itimerval patience{{}, {0, 500'000}};        // a large process takes a while to end
+constexpr itimerval moving_patience{{}, {5, 0}};       // outputs that are being moved are let finish, as a disk permits
 
 /// What stands under the final names when the process ends here.
 const char* last_words() {
@@ -32,30 +30,24 @@ const char* last_words() {
     }
 }
 
-// All handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3).
+// All handlers use async-signal-safe calls only (POSIX.1-2017, 2.4.3) and setitimer, which that list lacks and which is
+// one system call on Linux, the BSDs and macOS; macOS has no timer_settime.
 extern "C" void end_now(int) {
     const char* words = last_words();
     static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
     ::_exit(interrupted);
 }
 
-void end_after(long seconds, long nanoseconds) {
-    itimerspec once{};
-    once.it_value.tv_sec = seconds;
-    once.it_value.tv_nsec = nanoseconds;
-    ::timer_settime(deadline, 0, &once, nullptr);
-}
-
 extern "C" void time_is_up(int signal) {
     const ProgressMonitor* watch = watched.load();
     if (!watch || watch->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
-    else end_after(moving_patience_s, 0);
+    else ::setitimer(ITIMER_REAL, &moving_patience, nullptr);
 }
 
 extern "C" void ask_to_stop(int signal) {
     ProgressMonitor* watch = watched.load();
     if (!watch || watch->stop.exchange(true)) end_now(signal);
-    else end_after(0, patience_ns);
+    else ::setitimer(ITIMER_REAL, &patience, nullptr);
 }
 
 void handle(int signal, void (*handler)(int)) {
@@ -76,7 +68,7 @@ void end_on_signals() {
 
 // Installed before the constructors of all libraries run, so that a signal in the first milliseconds ends with 130 too.
 // The sanitizers' own start-up comes later than this and replaces sigaction.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #if !defined(__has_feature)
 #define __has_feature(x) 0
 #endif
@@ -87,10 +79,6 @@ void end_on_signals() {
 
 StopOnSignal::StopOnSignal(ProgressMonitor& watch) {
     watched = &watch;
-    sigevent event{};
-    event.sigev_notify = SIGEV_SIGNAL;
-    event.sigev_signo = SIGALRM;
-    ::timer_create(CLOCK_MONOTONIC, &event, &deadline);
     handle(SIGALRM, time_is_up);
     struct sigaction before{};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
@@ -100,7 +88,8 @@ StopOnSignal::StopOnSignal(ProgressMonitor& watch) {
 StopOnSignal::~StopOnSignal() {
     left_behind = watched.load()->outputs.load();
     end_on_signals();
-    ::timer_delete(deadline);
+    const itimerval never{};
+    ::setitimer(ITIMER_REAL, &never, nullptr);
     watched = nullptr;
 }
 

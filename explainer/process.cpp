@@ -3,12 +3,15 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 namespace crescent::film {
 
@@ -31,7 +34,9 @@ struct Descriptors {
 /// In the child: only what may be called between fork and exec.
 [[noreturn]] void become(const std::vector<char*>& argv, const Descriptors& streams, int tell) {
     ::setpgid(0, 0);  // a Ctrl-C is for us to pass on
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+#ifdef __linux__
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // elsewhere it ends when its pipe does
+#endif
     for (const int s : {SIGPIPE, SIGXFSZ}) ::signal(s, SIG_DFL);
     ::dup2(streams.in, 0), ::dup2(streams.out, 1), ::dup2(streams.err, 2);
     ::execvp(argv[0], argv.data());

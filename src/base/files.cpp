@@ -36,8 +36,7 @@ constexpr std::string_view owner_text = "a run of crescent that is writing, or w
 /// It cannot be guessed, so nothing can be put in its place beforehand.
 std::string new_stage_name() {
     std::uint64_t bits = 0;
-    if (getrandom(&bits, sizeof bits, 0) != sizeof bits)
-        fail("cannot read", "the system's random numbers", std::strerror(errno));
+    if (getentropy(&bits, sizeof bits) != 0) fail("cannot read", "the system's random numbers", std::strerror(errno));
     return fmt::format("{}{:016x}", stage_prefix, bits);
 }
 

@@ -110,8 +110,10 @@ std::uint64_t granted_memory(const std::string& root, const std::string& own) {
 
 int usable_threads() {
     int count = static_cast<int>(std::thread::hardware_concurrency());  // 0 where it is not known
+#ifdef __linux__
     cpu_set_t mine;
     if (sched_getaffinity(0, sizeof mine, &mine) == 0) count = CPU_COUNT(&mine);
+#endif
     if (const double granted = granted_processors("", "/proc/self/cgroup"); granted > 0)
         count = std::min(count, static_cast<int>(std::min(4096.0, std::ceil(granted))));
     return std::max(count, 1);

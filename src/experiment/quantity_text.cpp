@@ -185,6 +185,7 @@ const std::vector<QuantityWord>& quantity_words() {
 std::string form_of(const QuantityWord& word) {
     static constexpr std::string_view brackets[] = {
         "", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)"};
+    static_assert(std::size(brackets) == std::size_t(QuantityOf::plate) + 1, "a form for each subject of a quantity");
     return fmt::format(
         "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
 }

@@ -29,6 +29,13 @@ constexpr RunCount run_counts[] = {
     {PlateKind::rose, "rose", 1, 4},
     {PlateKind::meters, "meters", 0, 64},
 };
+static_assert(
+    [] {
+        for (std::size_t k = 0; k < std::size(run_counts); ++k)
+            if (run_counts[k].kind != PlateKind(k)) return false;
+        return std::size(run_counts) == std::size_t(PlateKind::meters) + 1;
+    }(),
+    "a row for each kind of plate, in the order of the enumeration");
 
 void resolve_s(ParseContext& draft) {
     Experiment& e = draft.e;

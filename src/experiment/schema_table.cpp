@@ -143,10 +143,17 @@ Section regions() {
         {}};
 }
 
+/// The words of an enumeration, in its order; `last` is its last value. A value is read as its word's place.
+template <auto last, std::size_t n> std::vector<std::string> words_to(const char* const (&words)[n]) {
+    static_assert(n == static_cast<std::size_t>(last) + 1, "an enumeration has one word for each value");
+    return {words, words + n};
+}
+
 Section reference() {
     return {"reference", Multiplicity::one, optional, "What the meters compare with.", in<&Experiment::reference>,
         {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
-             "Converged integration, or the note's Monte Carlo.", to<&ReferencePlan::kind>, {"quadrature", "note"}},
+             "Converged integration, or the note's Monte Carlo.", to<&ReferencePlan::kind>,
+             words_to<ReferenceKind::note>({"quadrature", "note"})},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
                 "Whether the note's is computed beside the quadrature.", to<&ReferencePlan::monte_carlo>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "Of the Monte Carlo reference.",
@@ -164,7 +171,7 @@ Section furnaces() {
         in<&Experiment::furnaces>,
         {{"arm", Type::arm, none, "", required, "", "The arm.", to<&FurnacePlan::arm>},
             {"part", Type::word, none, "", defaulted, "\"combined\"", "The whole BRDF or its lobe.",
-                to<&FurnacePlan::part>, {"combined", "lobe"}},
+                to<&FurnacePlan::part>, words_to<FurnacePart::lobe>({"combined", "lobe"})},
             {"shape", Type::shape, none, "", required, "", "Whose material.", to<&FurnacePlan::shape>},
             {"n", Type::integer, count_range, "samples", required, "", "Samples.", to<&FurnacePlan::n>}},
         {}};
@@ -183,7 +190,8 @@ Section plates() {
     return {"plates", Multiplicity::named, optional, "The pictures; a plate's name is its file's name.",
         in<&Experiment::plates>,
         {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
-             {"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference", "heat", "rose", "meters"}},
+             words_to<PlateKind::meters>({"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference",
+                 "heat", "rose", "meters"})},
             {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last",
                 "The part that is enlarged.", to<&PlatePlan::crop>},
             {"caption", Type::text, none, "", defaulted, "\"\"", "Stands alone under the picture.",

@@ -24,6 +24,7 @@ constexpr std::array<Row, 10> kinds{{
     {PlateKind::rose, draw_rose},
     {PlateKind::meters, draw_meters},
 }};
+static_assert(kinds.size() == std::size_t(PlateKind::meters) + 1, "a row for each kind of plate");
 
 }  // namespace
 
