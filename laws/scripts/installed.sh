@@ -10,7 +10,8 @@ expect 0 "$work/prefix/bin/crescent" --version
 
 # What the README says of a renderer of one's own: its lines for CMake and its C++, as they stand there.
 snippet() {
-    awk -v mark="\`\`\`$1" '$0 == mark { inside = 1; next } inside && /^```/ { exit } inside' "$CRESCENT_SOURCE/README.md"
+    awk -v mark="\`\`\`$1" '$0 == mark { inside = 1; next } inside && /^```/ { exit } inside' \
+        "$CRESCENT_SOURCE/README.md"
 }
 mkdir readme
 {
