@@ -1,4 +1,4 @@
-// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every sampler of the list on the CPU and on
+// crescent_instruments FILE.toml N [CONTEXT [DEVICE [PEAK]]]: Msamples/s of every built-in sampler on the CPU and on
 // GL, in one run on one machine, as a Markdown table. Samples are geometry pixels x N; each figure is the best of some
 // repetitions, CPU and GL in turns, because what else the machine does can only add to a time. PEAK: the device's
 // arithmetic peak in Gflop/s as its maker states it; the last column is then the fraction of it that the samples'

@@ -7,7 +7,7 @@ if(PROJECT_IS_TOP_LEVEL)  # as a part of another project, its choice
   if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release)
   endif()
-  if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")  # CMake's own; what somebody chose stays
+  if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")  # CMake's own; another choice stays
     set(CMAKE_CXX_FLAGS_RELEASE "-O2")
   endif()
 endif()

@@ -1,4 +1,4 @@
-// The law of the second copy: GLSL computes the CPU's films, every arm of the list, within a stated tolerance.
+// The law of the second copy: GLSL computes the CPU's films, every built-in arm, within a stated tolerance.
 #include <gtest/gtest.h>
 
 #include "compare_test.h"

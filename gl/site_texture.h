@@ -19,7 +19,7 @@ struct LobePixels {
     int x0 = 0, x1 = 0;                 // columns outside have none
 };
 
-/// Sites in groups of one lobe, as sites_of() makes them, tile by tile.
+/// Shading points in groups of one lobe, as sites_of() makes them, tile by tile.
 class SiteTexture {
 public:
     SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& watch);

@@ -121,7 +121,7 @@ inline Experiment small_scene(const std::vector<std::string>& overrides = {}) {
     return parse(scene_text, "test.toml", overrides);
 }
 
-/// Every sampler of the list that has a GLSL copy.
+/// Every built-in sampler that has a GLSL copy.
 inline std::vector<std::string> all_arms() {
     std::vector<std::string> names;
     for (const ArmInfo& arm : arm_infos())

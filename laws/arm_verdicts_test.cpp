@@ -1,4 +1,4 @@
-// Every arm of the list, newcomers included, gets the verdicts that the list expects of it; the planted faults do not.
+// Every built-in arm, newcomers included, gets the verdicts that the list expects of it; the planted faults do not.
 #include <cmath>
 #include <gtest/gtest.h>
 

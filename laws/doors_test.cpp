@@ -1,4 +1,4 @@
-// Structs of somebody's own: what they may look like, what is said where they cannot be judged, and what happens when
+// Users' own structs: what they may look like, what is said where they cannot be judged, and what happens when
 // they throw.
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Arms of the list at the limits of the schema: none that is right is accused there. What is inconclusive says why, and
+// Built-in arms at the limits of the schema: none that is right is accused there. What is inconclusive says why, and
 // what would settle it.
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// What makes an explainer film of an experiment. The door that has it registers it when the program starts, so that who
-// asks for it need not know the door.
+// What makes an explainer film of an experiment. explainer/ registers itself here when the program starts; the library
+// does not depend on it.
 #pragma once
 
 #include <functional>

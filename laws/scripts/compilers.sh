@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 [ -x "${FILM_HASHES_GCC:-}" ] || skip "nothing built by g++ (cmake --preset gcc && ninja -C build-gcc film_hashes)"
 
-# Every sampler of the list over the small scene, and scenes with other shapes, lobes and lights.
+# Every built-in sampler over the small scene, and scenes with other shapes, lobes and lights.
 {
     sed '/^\[arms/,/^n = /d' "$tiny"
     "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'

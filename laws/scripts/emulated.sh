@@ -5,7 +5,7 @@
 [ -x "${FILM_HASHES_AARCH64:-}" ] || [ -f "${FILM_HASHES_WASM:-}" ] ||
     skip "no core built for another machine (./test builds them)"
 
-# Every sampler of the list over the small scene, and scenes with other shapes, lobes and lights.
+# Every built-in sampler over the small scene, and scenes with other shapes, lobes and lights.
 {
     sed '/^\[arms/,/^n = /d' "$tiny"
     "$CRESCENT" list arms | sed 's/ .*//; s/.*/[arms.&]\nn = [4, 16]/'

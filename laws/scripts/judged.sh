@@ -28,7 +28,7 @@ grep -q "creates energy" printed || die "it does not say that energy is created:
 expect 2 "$CRESCENT" check --quiet --exec ./nowhere
 expect 0 "${CC:-cc}" -O2 -o coat "$pipes/coat.c" -lm
 expect 0 "$CRESCENT" check --quiet --exec ./coat --json coat.json
-grep -q '"delta_parts"' coat.json || die "nobody tells of the coat's delta part"
+grep -q '"delta_parts"' coat.json || die "the coat's delta part is not reported"
 sed 's/delta %a 1 1 1\\n", -ox, -oy, oz, mirrored/delta %a 1 1 1\\n", -ox, -oy, oz, 1.1 * mirrored/' "$pipes/coat.c" \
     >often.c
 expect 0 "${CC:-cc}" -O2 -o often often.c -lm
@@ -38,7 +38,7 @@ grep -q "not drawn as often as they say" printed || die "a delta part drawn too 
 expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py"
 sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscaled.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py"
-grep -q "not 2.25 times that" printed || die "nobody says that eta^2 is missing: $(cat printed)"
+grep -q "not 2.25 times that" printed || die "that eta^2 is missing is not said: $(cat printed)"
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x colour=3'
 grep -q "unknown key 'colour'; the known ones are u, domain, wo" printed ||
     die "an unknown key is not named: $(cat printed)"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # kill -9 at any moment: all that stands under the final names is of one run, the one before or the new one; the next
-# run is none the worse; and nothing of anybody else's is touched. The two runs are of different experiments.
+# run is none the worse; and no file of others is touched. The two runs are of different experiments.
 . "$(dirname "$0")/common.sh"
 
 other="$work/other.toml"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Programs on trial that are slow, break off or speak another language: what was not looked at is said and never passes,
+# Programs on trial that are slow, break off or break the protocol: what was not looked at is said and never passes,
 # and a program that cannot be asked is an error, not a wrong sampler.
 . "$(dirname "$0")/common.sh"
 

@@ -69,7 +69,7 @@ struct ArmManual {
     GlTolerance gl = {};
 };
 
-/// An arm of the list.
+/// A built-in arm.
 struct ArmInfo : ArmManual {
     std::string_view name;  // the word for it in files, on plates and in the report
     int techniques = 1;     // directions drawn a sample
@@ -78,11 +78,11 @@ struct ArmInfo : ArmManual {
 
 /// The arms in the order of the list in all.h.
 const std::vector<ArmInfo>& arm_infos();
-/// Null where the list has no such arm.
+/// Null where no built-in arm has that name.
 const ArmInfo* find_arm_info(std::string_view sampler);
 /// The words that an experiment may use for samplers.
 std::vector<std::string> sampler_names();
-/// Directions that an arm of the list draws a sample.
+/// Directions that a built-in arm draws a sample.
 std::uint64_t directions_per_sample(std::string_view sampler);
 
 }  // namespace crescent::inline arms

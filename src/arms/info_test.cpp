@@ -1,4 +1,4 @@
-// What every arm of the list states is complete, and can be set.
+// What every built-in arm states is complete, and can be set.
 #include "arms/info.h"
 
 #include <gtest/gtest.h>

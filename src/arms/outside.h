@@ -1,4 +1,4 @@
-// A sampler that is no arm of the list: a program, or a shared library, that an experiment names in its place. It draws
+// A sampler that is no built-in arm: a program, or a shared library, that an experiment names in its place. It draws
 // in the local frame (n = +z, wo given, wi drawn), in double precision; pdf in 1/sr.
 #pragma once
 
@@ -47,7 +47,7 @@ public:
 
 /// The samplers from outside that an experiment's arms name, by arm.
 using OutsideSamplers = std::map<std::string, std::shared_ptr<const OutsideSampler>, std::less<>>;
-/// Null where the arm is one of the list.
+/// Null where the arm is built in.
 inline const OutsideSampler* outside_of(const OutsideSamplers& all, std::string_view arm) {
     const auto found = all.find(arm);
     return found == all.end() ? nullptr : found->second.get();

@@ -29,8 +29,8 @@ template <class F> struct Drawn {
     PerSr<F> pdf;
 };
 
-/// A direction that was drawn towards a disk light. Who drew it knows better whether it meets that disk than a test of
-/// the rounded direction: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
+/// A direction that was drawn towards a disk light. Whether it meets that disk is known from the draw; a test of the
+/// rounded direction may fail: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
 template <class F> struct DrawnToDisk : Drawn<F> {
     F disk;         // its index, disks first
     MaskOf<F> met;  // wi meets it; it may still be behind another disk, or hidden

@@ -1,5 +1,5 @@
-// Outputs appear as one: whichever system call is the last one, all that is seen is of one run; and nothing of anybody
-// else's is touched.
+// Outputs appear as one: whichever system call is the last one, all that is seen is of one run; and no file of others
+// is touched.
 #include "base/files.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// A Watch for hosts that read how far the work is rather than being called: a Python thread, a page, a C program. Its
-// flag `stop` may be set from any thread; nothing is thrown across a border for it, see run/execute.h.
+// A ProgressMonitor for hosts that poll how far the work is: a Python thread, a page, a C program. Its flag `stop` may
+// be set from any thread; a stop is returned as a value, not thrown, see run/execute.h.
 #pragma once
 
 #include <string>

@@ -142,7 +142,7 @@ void Publication::hide(const std::string& name) {
         if (!at.make_link(way_to(name), leaf)) fail(name, std::strerror(errno));
         return;
     }
-    // A file that cannot have a second name (somebody else's, another file system) is copied.
+    // A file that cannot have a second name (another user's, another file system) is copied.
     if (!at.share(leaf, old, leaf) && !old.write(leaf, at.read(leaf))) fail(name, std::strerror(errno));
     if (!stage.make_link(way_to(name), "link")) fail(name, std::strerror(errno));
     if (stage.move("link", at, leaf)) return;

@@ -138,7 +138,7 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
         out["errors"] = errors(all, residuals, all.reference ? "Y<sub>ref</sub>" : "mean over renders", plan.theme);
 }
 
-/// Of many arms, every one beside the first alone: a page of a hundred maps is read by nobody.
+/// Of many arms, every one beside the first alone: a hundred maps are too many for one page.
 bool shown_pair(const CompareResult& result, const std::string& a, const std::string& b) {
     constexpr std::size_t few = 4;
     const std::string& first = result.arms[0].name;

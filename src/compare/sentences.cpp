@@ -43,7 +43,7 @@ std::vector<std::string> differences(const BiasResult& b) {
     return out;
 }
 
-/// A t-test is blind to events that no render met; how rare and bright they would have to be is for the reader to
+/// A t-test does not see events that no render met; how rare and bright they would have to be is for the reader to
 /// judge.
 std::string unless(const BiasResult& b) {
     if (!b.unless) return {};

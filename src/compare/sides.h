@@ -32,7 +32,7 @@ struct Sides {
     Welch test(const std::vector<double>& va, const std::vector<double>& vb, const SetNoise& noise, bool floored) const;
 
     /// The difference of a mean that events as large as the rarest seen would make up, on the side that is lower, where
-    /// they are so rare that its renders met none with a probability of `level`. Below it a t-test is blind.
+    /// they are so rare that its renders met none with a probability of `level`. Below it a t-test cannot see.
     double unseen(double difference, double pixels, double level) const;
     /// The events that would be needed for a difference of the means of so many pixels, and missed with a probability
     /// of `level`; nothing where the darker side is one file.

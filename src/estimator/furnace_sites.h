@@ -1,4 +1,4 @@
-// Sites in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless told
+// Surface points in a white furnace: L_i = 1 over the whole hemisphere, no disk, the viewer straight above unless told
 // otherwise.
 #pragma once
 

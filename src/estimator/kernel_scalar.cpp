@@ -1,4 +1,4 @@
-// The kernels for one plain float at a time: no intrinsics, the yardstick of the others.
+// The kernels for one plain float at a time: no intrinsics; the others are compared with it.
 #define CRESCENT_ISA scalar
 #include "estimator/kernel_body.h"
 

@@ -1,5 +1,5 @@
 // The kernels of samplers from outside: their draws are made first, in batches, and are then estimated like those of an
-// arm of the list. Scalar code on every machine: the time goes into the sampler.
+// built-in arm. Scalar code on every machine: the time goes into the sampler.
 #pragma once
 
 #include "arms/outside.h"

@@ -1,4 +1,4 @@
-// The geometry pixels of a tile as the kernels want them: one float array a quantity, one entry a pixel, in the local
+// The geometry pixels of a tile as the kernels read them: one float array a quantity, one entry a pixel, in the local
 // frame of each pixel (n = +z), padded so that any pack can be loaded whole.
 #pragma once
 
@@ -40,7 +40,7 @@ struct LightArrays {
 /// Constants of one surface: luminance of f L for the fill and for each disk light.
 struct Shading {
     Surface surface;
-    float fill_d = 0, fill_s = 0;       // as in Sites
+    float fill_d = 0, fill_s = 0;       // as in ShadingPoints
     std::vector<float> disk_d, disk_s;  // as in DiskArrays, one a disk
     Shading(const Scene& scene, const Surface& on);
 };
@@ -57,7 +57,7 @@ struct OccluderF {
 /// In float, from `origin` on.
 OccluderF occluder_about(const Occluder& o, Vec3d origin);
 
-/// Sites of one BRDF kind. `lobe` is -1 where rho_s = 0.
+/// Points of one BRDF kind. `lobe` is -1 where rho_s = 0.
 struct ShadingPoints {
     int lobe = -1;
     std::size_t count = 0;                    // without padding

@@ -10,7 +10,7 @@
 
 namespace crescent::test {
 
-/// Every sampler of the list.
+/// Every built-in sampler.
 inline std::vector<std::string> all_arms() {
     std::vector<std::string> names;
     for_each_arm(Arms{}, [&]<template <class> class A>() { names.emplace_back(A<float>::name); });

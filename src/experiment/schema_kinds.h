@@ -12,7 +12,7 @@ inline Type type_of(const std::type_identity<bool>&, bool) { return Type::flag; 
 inline Type type_of(const std::type_identity<Vec3d>&, bool unit) { return unit ? Type::direction : Type::point; }
 inline Type type_of(const std::type_identity<std::optional<Rgb>>&, bool) { return Type::color; }
 
-/// The name of the parameter at `index`, counted through all kinds of the list.
+/// The name of the parameter at `index`, counted through all kinds.
 template <class... Kind> constexpr std::string_view parameter_name(KindList<Kind...>, std::size_t index) {
     std::string_view name;
     std::size_t k = 0;
@@ -36,7 +36,7 @@ template <class Any, class F> void with_parameter(Any& any, std::string_view nam
         any);
 }
 
-/// The key `kind` of objects whose member Form is of the list.
+/// The key `kind` of objects whose member Form is one of these kinds.
 template <class List, auto Form> constexpr Slot kind_slot = {[](void* object, const Value& value) {
                                                                  using Owner = typename OwnerOf<decltype(Form)>::type;
                                                                  static_cast<Owner*>(object)->*Form =

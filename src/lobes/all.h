@@ -20,7 +20,7 @@ template <class Call, template <class> class... L> constexpr void for_each_lobe(
     (f.template operator()<L>(), ...);
 }
 
-/// A lobe of the list, 1/sr; 0 for none.
+/// A built-in lobe, 1/sr; 0 for none.
 template <class F> F lobe_value(LobeKind kind, F s, F alpha, Vec3<F> wo, Vec3<F> wi) {
     F out = number<F>(0);
     int index = 0;

@@ -41,7 +41,7 @@ LobeKind lobe_named(std::string_view name) {
     if (name.empty()) return LobeKind::none;
     for (const LobeInfo& lobe : lobe_infos())
         if (lobe.name == name) return lobe.kind;
-    throw Bug(std::source_location::current(), "no lobe of the list is called " + std::string(name));
+    throw Bug(std::source_location::current(), "no built-in lobe is called " + std::string(name));
 }
 
 }  // namespace crescent::inline lobes

@@ -31,7 +31,7 @@ struct LobeWidth {
 /// A place in the list of lobes; none: Lambert alone.
 enum class LobeKind : int { none = -1 };
 
-/// A lobe of the list. Its s and alpha are those of its surface, though it may read but one of them.
+/// A built-in lobe. Its s and alpha are those of its surface, though it may read but one of them.
 struct LobeInfo : LobeManual {
     std::string_view name;  // the word for it in files
     LobeKind kind = LobeKind::none;
@@ -45,7 +45,7 @@ const std::vector<LobeInfo>& lobe_infos();
 std::vector<std::string> lobe_names();
 /// `kind` is not none.
 const LobeInfo& lobe_info(LobeKind kind);
-/// A lobe by its word, which is one of the list; "" is none.
+/// A lobe by its word, which names a built-in one; "" is none.
 LobeKind lobe_named(std::string_view name);
 
 }  // namespace crescent::inline lobes

@@ -16,7 +16,7 @@ namespace crescent::plates {
 RunKey key_of(const PlateRun& run, const Experiment& e);
 std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e);
 
-/// The label that an arm of the list has ("light-area (NEE)"); an arm under another name than its sampler keeps it.
+/// The label that a built-in arm has ("light-area (NEE)"); an arm under another name than its sampler keeps it.
 std::string arm_name(const std::string& arm, const Experiment& e);
 /// The word of arms/all.h that the arm uses, "" where the experiment has no such arm.
 std::string sampler_of(const std::string& arm, const Experiment& e);

@@ -29,7 +29,7 @@ std::string rungs(const ArmPlan& arm) {
     return html::join(all);
 }
 
-/// What draws in place of an arm of the list.
+/// What draws in place of a built-in arm.
 std::string source_of(const ArmPlan& arm) {
     if (arm.plugin) return "that of the plugin " + html::code(*arm.plugin);
     return "that of the program " + html::code(arm.exec.value_or(""));

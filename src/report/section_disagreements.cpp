@@ -57,8 +57,8 @@ std::string highlight_remark(const Page& page, const std::string& region) {
     const auto mean = relative(page.find.band(control->arm, control->n, "y_mean", s));
     if (mean && *mean > 0)
         out += fmt::format(
-            " Raising them takes a highlight of more pixels, hence a larger {}. That raises {} at <i>s</i> = {} as "
-            "well, and it stands at {} already: no single geometry matches both.",
+            " Matching them would need a highlight of more pixels, i.e. a larger {}, which would raise {} at <i>s</i> "
+            "= {} further; it is {} already. No single geometry matches both.",
             escape(control->shape), meter_html("y_mean"), shortest(s), signed_percent(*mean));
     return out;
 }

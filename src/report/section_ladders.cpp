@@ -16,7 +16,7 @@ constexpr const char* ladder_prose = R"(
 <p>The samples of a rung are the first samples of the next. Where the variance of a sample is finite the
 error falls as <i>N</i><sup>−1/2</sup>, the dashed line. Fitted is {law} by least squares on the logarithms, at the
 {seed} seed; the interval is {interval}. A heavy tail breaks the law: the rungs then jump whenever a
-rare sample arrives, and the slope says more about luck than about the arm.</p>
+rare sample arrives, and the slope depends on the seed more than on the arm.</p>
 )";
 
 constexpr const char* exponent_prose = R"(

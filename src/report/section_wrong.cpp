@@ -35,7 +35,7 @@ where a Lambert surface reflects all the same. Under a uniform fill the share th
 constexpr const char* rejection_prose = R"(
 <h3 id="wrong-test">A t-test condemns the arm where it is right</h3>
 <p>With <i>R</i> = <i>n</i> the arm reaches everything and its mean is known. Test that mean with Student’s t at level
-{alpha}, with {n} samples a run, and a correct arm ought to be rejected in {alpha_percent} of runs. The test trusts the
+{alpha}, with {n} samples a run, and a correct arm ought to be rejected in {alpha_percent} of runs. The test uses the
 sample variance, and a heavy tail has none to estimate. What it rejects is the tail.</p>
 )";
 

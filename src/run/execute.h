@@ -44,7 +44,7 @@ struct Prepared {
     bool stopped = false;
 };
 
-/// What the camera sees, and the samplers that are none of the list. Throws InputError where it sees nothing,
+/// What the camera sees, and the samplers that are not built in. Throws InputError where it sees nothing,
 /// OutputError where the machine has not the memory or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
 /// Adds the references that the experiment asks for. A checkpoint keeps what is finished.

@@ -7,7 +7,7 @@
 #pragma once
 
 #ifndef CRESCENT_ISA
-#error "simd/pack.h wants CRESCENT_ISA: a name of estimator/isas.h"
+#error "simd/pack.h needs CRESCENT_ISA: a name of estimator/isas.h"
 #endif
 #define HWY_COMPILE_ONLY_STATIC
 #define HWY_DISABLE_BMI2_FMA

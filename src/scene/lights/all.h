@@ -12,7 +12,7 @@ namespace crescent::inline scene {
 
 using LightKinds = KindList<lights::Disk, lights::Sphere, lights::Rectangle>;
 
-/// Calls f.template operator()<Kind>() for the kind at an index of the list that is not the disk.
+/// Calls f.template operator()<Kind>() for the kind at an index other than the disk's.
 template <class F> void with_light_kind(std::size_t index, F&& f) {
     const auto among = [&]<class Disk, class... Kind>(KindList<Disk, Kind...>) {
         std::size_t k = 1;

@@ -15,7 +15,7 @@ struct Disk {
         return std::array{parameter::place("center", &Disk::center, "Centre."),
             parameter::direction("normal", &Disk::normal, "The side that shines."),
             parameter::length("radius", &Disk::radius, "Radius."),
-            parameter::flag("two_sided", &Disk::two_sided, "Whether both sides shine.")};
+            parameter::flag("two_sided", &Disk::two_sided, "Emits from both sides.")};
     }
 
     /// What it puts before the lights behind it.

@@ -25,7 +25,7 @@ struct Rectangle {
         return std::array{parameter::place("corner", &Rectangle::corner, "A corner."),
             parameter::place("edge_u", &Rectangle::edge_u, "First edge from the corner."),
             parameter::place("edge_v", &Rectangle::edge_v, "Second edge; edge_u x edge_v is the side that shines."),
-            parameter::flag("two_sided", &Rectangle::two_sided, "Whether both sides shine.")};
+            parameter::flag("two_sided", &Rectangle::two_sided, "Emits from both sides.")};
     }
     std::optional<Mistake> mistake() const {
         if (const auto mistake = shapes::mistake_of_edges(edge_u, edge_v)) return mistake;
