@@ -6,6 +6,7 @@
 //   3i       centre         min         corner      centre       point      .w: index of the shape
 //   3i + 1   -              max         edge u      normal       normal     .w: radius
 //   3i + 2   -              -           edge v      -            -            .w: normal.point of its plane
+// Large and far bodies have other numbers, see numbers() in src/scene/shapes/.
 #include "site.glsl"
 
 uniform vec4 bodies[3 * BODY_SLOTS];
@@ -34,12 +35,30 @@ bool meets_disk(FacingDisk disk, vec3 w, out float v) {
 
 bool within(float t, float lo, float hi) { return t > lo && t < hi; }
 
+// k: 1 / radius; p: its nearest point; n: the normal there.
+bool crosses_far_sphere(vec3 p, vec3 n, float radius, float k, vec3 o, vec3 d, float t_max) {
+    vec3 v = o - p, across = v - d * dot(v, d);
+    float nd = dot(n, d), b = nd + k * dot(v, d);
+    float disc = sqr(nd) - k * (2.0 * dot(n, across) + k * dot(across, across));
+    float root = sqrt(max(disc, 0.0)), eps = t_max * 1e-5;
+    float sum = b > 0.0 ? -(b + root) : root - b;
+    float near = (k * dot(v, v) + 2.0 * dot(n, v)) / (sum == 0.0 ? 1e-30 : sum);
+    return disc > 0.0 && (within(near, eps, t_max) || within(sum * radius, eps, t_max));
+}
+
 bool crosses_sphere(vec3 center, float radius, vec3 o, vec3 d, float t_max) {
     vec3 c = center - o;
     float along = dot(c, d);
     float disc = sqr(along) - (dot(c, c) - sqr(radius));
     float root = sqrt(max(disc, 0.0)), eps = t_max * 1e-5;
     return disc > 0.0 && (within(along - root, eps, t_max) || within(along + root, eps, t_max));
+}
+
+// Body i, which is a sphere.
+bool crosses_ball(int i, vec3 o, vec3 d, float t_max) {
+    vec3 at = bodies[3 * i].xyz, n = bodies[3 * i + 1].xyz;
+    float radius = bodies[3 * i + 1].w, k = bodies[3 * i + 2].w;
+    return k > 0.0 ? crosses_far_sphere(at, n, radius, k, o, d, t_max) : crosses_sphere(at, radius, o, d, t_max);
 }
 
 bool crosses_box(vec3 lo, vec3 hi, vec3 o, vec3 d, float t_max) {
@@ -56,18 +75,24 @@ float plane_distance(float offset, vec3 n, vec3 o, vec3 d) {
     return (offset - dot(n, o)) / (denominator == 0.0 ? 1e-30 : denominator);
 }
 
-bool crosses_quad(vec3 corner, vec3 u, vec3 v, float offset, vec3 o, vec3 d, float t_max) {
+bool crosses_quad(vec3 corner, vec3 u, vec3 v, float large, float offset, vec3 o, vec3 d, float t_max) {
     vec3 n = cross(u, v);
     float t = plane_distance(offset, n, o, d);
+    if (large > 0.0) {
+        vec2 share = corner.xy + vec2(dot(u, o + d * t), dot(v, o + d * t));
+        return within(t, t_max * 1e-5, t_max) && all(greaterThanEqual(share, vec2(0.0))) &&
+            all(lessThanEqual(share, vec2(1.0)));
+    }
     vec3 p = o + d * t - corner;
     float nn = dot(n, n), x = dot(cross(p, v), n), y = dot(cross(u, p), n);
     return within(t, t_max * 1e-5, t_max) && x >= 0.0 && x <= nn && y >= 0.0 && y <= nn;
 }
 
-bool crosses_plate(vec3 center, vec3 n, float radius, float offset, vec3 o, vec3 d, float t_max) {
+bool crosses_plate(vec3 center, vec3 n, vec3 outwards, float radius, float offset, vec3 o, vec3 d, float t_max) {
     float t = plane_distance(offset, n, o, d);
     vec3 p = o + d * t - center;
-    return within(t, t_max * 1e-5, t_max) && dot(p, p) <= sqr(radius);
+    float reach = radius < 0.0 ? 2.0 * radius * dot(outwards, p) : sqr(radius);  // of (p + r outwards)^2 <= r^2
+    return within(t, t_max * 1e-5, t_max) && dot(p, p) <= reach;
 }
 
 // Does a body's surface cross the ray o + t d on the way to a light at `distance`? Within 1e-5 of the way from either
@@ -76,22 +101,20 @@ bool crosses_plate(vec3 center, vec3 n, float radius, float offset, vec3 o, vec3
 bool blocked(vec3 o, vec3 d, float distance, float own) {
     bool hidden = false;
     float t_max = distance * (1.0 - 1e-5);
-    for (int i = 0; i < first_box; ++i)
-        hidden =
-            hidden || (bodies[3 * i].w != own && crosses_sphere(bodies[3 * i].xyz, bodies[3 * i + 1].w, o, d, t_max));
+    for (int i = 0; i < first_box; ++i) hidden = hidden || (bodies[3 * i].w != own && crosses_ball(i, o, d, t_max));
     for (int i = first_box; i < first_quad; ++i)
         hidden =
             hidden || (bodies[3 * i].w != own && crosses_box(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, o, d, t_max));
     for (int i = first_quad; i < first_plate; ++i)
         hidden = hidden ||
             (bodies[3 * i].w != own &&
-                crosses_quad(
-                    bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, bodies[3 * i + 2].w, o, d, t_max));
+                crosses_quad(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, bodies[3 * i + 1].w,
+                    bodies[3 * i + 2].w, o, d, t_max));
     for (int i = first_plate; i < first_plane; ++i)
         hidden = hidden ||
             (bodies[3 * i].w != own &&
-                crosses_plate(
-                    bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 1].w, bodies[3 * i + 2].w, o, d, t_max));
+                crosses_plate(bodies[3 * i].xyz, bodies[3 * i + 1].xyz, bodies[3 * i + 2].xyz, bodies[3 * i + 1].w,
+                    bodies[3 * i + 2].w, o, d, t_max));
     for (int i = first_plane; i < end_of_bodies; ++i)
         hidden = hidden ||
             (bodies[3 * i].w != own &&

@@ -24,7 +24,7 @@ bool meets_sphere_light(LocalLight l, vec3 w, out float t) {
     float along = dot(l.a, w);
     vec3 off = l.a - w * along;
     float rest = sqr(l.number[0]) - dot(off, off);
-    t = along - sqrt(max(rest, 0.0));
+    t = l.number[5] * (l.number[4] + l.number[0]) / (along + sqrt(max(rest, 0.0)));
     return rest >= 0.0 && along > 0.0 && shines(l);
 }
 bool meets_rectangle_light(LocalLight l, vec3 w, out float t) {
@@ -43,16 +43,16 @@ bool meets_other(LocalLight l, vec3 w, out float t) {
 
 // By area.
 // ---------------------------------------------------------------------------------------------------------------
-float sphere_area_density(LocalLight l) { return (0.5 / pi) / (sqr(l.number[0]) * max(1.0 - l.number[1], 1e-7)); }
+float sphere_area_density(LocalLight l) { return (0.5 / pi) / (sqr(l.number[0]) * max(l.number[1], 1e-12)); }
 float rectangle_area_density(LocalLight l) { return 0.25 / (l.number[0] * l.number[1]); }
 
 Aimed sphere_by_area(LocalLight l, vec2 u) {
-    float drop = u.x * (1.0 - l.number[1]), z = 1.0 - drop, r = sqrt(drop * (2.0 - drop));
+    float drop = u.x * l.number[1], z = 1.0 - drop, r = l.number[0] * sqrt(drop * (2.0 - drop));
     SinCos phi = sincos_turns(u.y);
-    vec3 n = to_world(frame_about(l.a * (-1.0 / l.number[4])), vec3(r * phi.cos, r * phi.sin, z));
-    vec3 y = l.a + n * l.number[0];
+    vec3 at = vec3(r * phi.cos, r * phi.sin, l.number[5] + l.number[0] * drop);
+    vec3 y = to_world(frame_about(l.a * (1.0 / l.number[4])), at);
     float t2 = dot(y, y), t = sqrt(t2);
-    float cosine = max((z * l.number[4] - l.number[0]) / t, 1e-7);
+    float cosine = max((z * l.number[5] - l.number[0] * drop) / t, 1e-7);
     return Aimed(y * (1.0 / t), shines(l) ? sphere_area_density(l) * t2 / cosine : 0.0);
 }
 Aimed rectangle_by_area(LocalLight l, vec2 u) {

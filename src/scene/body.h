@@ -22,6 +22,10 @@ template <class F> struct PackedBody {
     F radius, offset;
 };
 
+/// From here on a body is large: in single precision its centre would lie 5e-6 m and more from where it is. Such a body
+/// is held by what is nearest of it, m.
+inline constexpr double large_body = 100;
+
 template <class F> MaskOf<F> within(F t, F lo, F hi) { return (t > lo) & (t < hi); }
 
 /// t where o + t d meets the plane n.y = offset.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/shape.h"
+#include "simd/frame.h"
 #include "simd/random.h"
 
 namespace crescent::inline scene {
@@ -167,6 +168,20 @@ TEST(IntersectLaw, NothingOfAClosedBodyStandsBeforeIt) {
             const Intersection c = intersect(q, x, d);
             ASSERT_FALSE(crosses_before(q, x, d, std::isfinite(c.t) ? c.t : 8)) << static_cast<int>(kind);
         });
+}
+
+TEST(IntersectLaw, ASmallSphereFarAwayIsMetWhereItIs) {
+    Numbers next(11);
+    for (const double far : {1e2, 1e4, 1e5})
+        for (int k = 0; k < 300; ++k) {
+            const double radius = 1e-8 * far, off = std::fabs(next());
+            const Vec3d way = normalize(next.vec()), x = next.vec();
+            Sample q;
+            q.center = x + far * way, q.radius = radius;
+            const Vec3d aim = q.center + 2 * off * radius * frame_about(way).t;
+            if (std::fabs(2 * off - 1) < 1e-3) continue;
+            EXPECT_EQ(intersect(q, x, normalize(aim - x)).t < far + 1, 2 * off < 1) << far << " m, " << 2 * off;
+        }
 }
 
 TEST(IntersectLaw, FromInsideABodyTheFarWallIsMet) {

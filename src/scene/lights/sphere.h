@@ -29,12 +29,13 @@ struct Sphere {
     }
     double disk_area() const { return sqr(radius); }
 
-    /// a: to the centre, m. Numbers: the radius; of the cone sin, 1 - cos; 1 where it shines on x.
+    /// a: to the centre, m. Numbers: the radius; of the cone 1 - sin, 1 - cos; 1 where it shines on x; the distances to
+    /// the centre and to the nearest point, which of a large ball is not their difference in single precision.
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const Vec3d d = center - x;
-        const double sin2 = std::min(1.0, sqr(radius) / dot(d, d)), cos = std::sqrt(1 - sin2);
-        return {frame.to_local(d), {}, {},
-            {radius, std::sqrt(sin2), sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, std::sqrt(dot(d, d)), 0}};
+        const double far = std::sqrt(dot(d, d)), gap = std::max(far - radius, 0.0);
+        const double sin2 = std::min(1.0, sqr(radius) / dot(d, d)), cos = std::sqrt(gap * (far + radius)) / far;
+        return {frame.to_local(d), {}, {}, {radius, gap / far, sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, far, gap}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[3] > number<F>(0); }
 
@@ -43,7 +44,7 @@ struct Sphere {
         const F along = dot(l.a, w);
         const Vec3<F> off = l.a - w * along;
         const F rest = sqr(l.number[0]) - dot(off, off);
-        t = along - sqrt(larger(rest, number<F>(0)));
+        t = l.number[5] * (l.number[4] + l.number[0]) / (along + sqrt(larger(rest, number<F>(0))));
         return (rest >= number<F>(0)) & (along > number<F>(0)) & shines(l);
     }
     /// Of a ball that holds it, about a.
@@ -64,14 +65,14 @@ struct Sphere {
 
     /// Height z = 1 - u (1 - sin) on the sphere over its centre, towards x.
     template <class F> static Aimed<F> by_area(const LocalLight<F>& l, Vec2<F> u) {
-        const F one = number<F>(1), drop = u.x * (one - l.number[1]), z = one - drop;
+        const F one = number<F>(1), drop = u.x * l.number[1], z = one - drop;
         const F r = sqrt(drop * (number<F>(2) - drop));
         const SinCos<F> phi = sincos_turns(u.y);
-        const Vec3<F> axis = l.a * (-one / l.number[4]);
-        const Vec3<F> n = frame_about(axis).to_world({r * phi.cos, r * phi.sin, z});
-        const Vec3<F> y = l.a + n * l.number[0];
+        const Vec3<F> axis = l.a * (one / l.number[4]);  // the point lies r drop behind the nearest one
+        const Vec3<F> y = frame_about(axis).to_world(
+            {l.number[0] * r * phi.cos, l.number[0] * r * phi.sin, l.number[5] + l.number[0] * drop});
         const F t2 = dot(y, y), t = sqrt(t2);
-        const F cos = larger((z * l.number[4] - l.number[0]) / t, number<F>(1e-7));  // -n.y / t
+        const F cos = larger((z * l.number[5] - l.number[0] * drop) / t, number<F>(1e-7));  // -n.y / t
         return {y * (one / t), select(shines(l), area_density(l) * t2 / cos, number<F>(0))};
     }
     template <class F> static F area_pdf(const LocalLight<F>& l, Vec3<F> w) {
@@ -86,7 +87,7 @@ private:
         return select(shines(l), number<F>(0.5 / pi) / larger(l.number[2], number<F>(1e-30)), number<F>(0));
     }
     template <class F> static F area_density(const LocalLight<F>& l) {  // 1/m^2
-        return number<F>(0.5 / pi) / (sqr(l.number[0]) * larger(number<F>(1) - l.number[1], number<F>(1e-7)));
+        return number<F>(0.5 / pi) / (sqr(l.number[0]) * larger(l.number[1], number<F>(1e-12)));
     }
 };
 

@@ -1,6 +1,8 @@
 // disk: all points of a plane within one distance of a centre.
 #pragma once
 
+#include <cmath>
+
 #include "scene/body.h"
 
 namespace crescent::shapes {
@@ -40,14 +42,23 @@ struct Disk {
         return azimuths_of_ellipse(center - x, radius * own.t, radius * own.b, frame);
     }
 
+    /// Large: a is the point of the edge nearest to the origin, c the way there from the centre, unit, radius below 0.
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d a = center - origin;
-        return {a, normal, {}, radius, dot(normal, a)};
+        const double offset = dot(normal, a);
+        if (radius < large_body) return {a, normal, {}, radius, offset};
+        const Vec3d to = offset * normal - a;  // from the centre to the origin's foot
+        const double far = std::sqrt(dot(to, to));
+        const Vec3d out = far > 0 ? (1 / far) * to : frame_about(normal).t;
+        return {a + radius * out, normal, out, -radius, offset};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F t = plane_at(body.b, body.offset, o, d);
         const Vec3<F> p = o + d * t - body.a;
-        return (t > lo) & (t < hi) & (dot(p, p) <= sqr(body.radius));
+        const auto on_way = (t > lo) & (t < hi);
+        if (any(body.radius < number<F>(0)))  // (p + r c)^2 <= r^2
+            return on_way & (dot(p, p) <= number<F>(2) * body.radius * dot(body.c, p));
+        return on_way & (dot(p, p) <= sqr(body.radius));
     }
 };
 

@@ -55,14 +55,28 @@ struct Quad {
         return azimuths_of_corners(corners, frame);
     }
 
+    /// Large: a point p of its plane has the shares x = a.x + b.p and y = a.y + c.p of the edges, from the corner that
+    /// the origin's own are nearest to; the radius is 1. Else a, b and c are corner and edges.
     BodyNumbers numbers(Vec3d origin) const {
-        const Vec3d a = corner - origin;
-        return {a, edge_u, edge_v, 0, dot(cross(edge_u, edge_v), a)};
+        const Vec3d a = corner - origin, n = cross(edge_u, edge_v);
+        if (dot(edge_u, edge_u) < sqr(large_body) && dot(edge_v, edge_v) < sqr(large_body))
+            return {a, edge_u, edge_v, 0, dot(n, a)};
+        const double nn = dot(n, n);
+        Vec3d b = (1 / nn) * cross(edge_v, n), c = (1 / nn) * cross(n, edge_u);
+        double x = -dot(b, a), y = -dot(c, a);
+        if (x > 0.5) b = -b, x = 1 - x;
+        if (y > 0.5) c = -c, y = 1 - y;
+        return {{x, y, 0}, b, c, 1, dot(cross(b, c), a)};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F zero = number<F>(0);
         const Vec3<F> n = cross(body.b, body.c);
         const F t = plane_at(n, body.offset, o, d);
+        if (any(body.radius > zero)) {
+            const Vec3<F> at = o + d * t;
+            const F across = body.a.x + dot(body.b, at), along = body.a.y + dot(body.c, at), one = number<F>(1);
+            return (t > lo) & (t < hi) & (across >= zero) & (across <= one) & (along >= zero) & (along <= one);
+        }
         const Vec3<F> p = o + d * t - body.a;
         const F nn = dot(n, n), x = dot(cross(p, body.c), n), y = dot(cross(body.b, p), n);
         return (t > lo) & (t < hi) & (x >= zero) & (x <= nn) & (y >= zero) & (y <= nn);
