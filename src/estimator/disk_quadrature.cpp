@@ -54,15 +54,6 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
         body.body);
 }
 
-/// May two lights meet, of which one is a ball?
-bool intersects_ball(const Light& a, const Light& b) {
-    const auto into = [](const Light& ball, const Light& other) {
-        const lights::Sphere* s = std::get_if<lights::Sphere>(&ball.form);
-        return s && may_reach_into({other.body(), -1}, s->center, s->radius);
-    };
-    return into(a, b) || into(b, a);
-}
-
 /// The integral over the directions of a figure, what stands before it hidden.
 DiskIntegral over(const Figure& figure, const DiskPoint& point, Vec3d normal, const std::vector<const Blocker*>& near) {
     const double height = dot(middle_of(figure) - point.x, normal), reach = half_extent_of(figure, normal);
@@ -73,6 +64,61 @@ DiskIntegral over(const Figure& figure, const DiskPoint& point, Vec3d normal, co
     const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure);
     if (disk && near.empty() && soft && !at_horizon) return whole_disk(point, *disk, frame_about(disk->normal));
     return fan_by_fan(point, figure, near, !soft, at_horizon);
+}
+
+DiskIntegral operator+(const DiskIntegral& a, const DiskIntegral& b) {
+    return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+}
+/// What is left of a without b.
+DiskIntegral operator-(const DiskIntegral& a, const DiskIntegral& b) {
+    return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+}
+/// The truth lies between a and b.
+DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
+    const auto off = [](double p, double q, double error, double other) {
+        return 0.5 * std::fabs(p - q) + std::max(error, other);
+    };
+    return {0.5 * (a.diffuse + b.diffuse), 0.5 * (a.lobe + b.lobe),
+        off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error), off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
+}
+
+/// How far the ball's nearest point is, of the way to the middle of its figure.
+double nearest_of(const lights::Sphere& ball, Vec3d x) {
+    const Vec3d d = ball.center - x;
+    const double far = std::sqrt(dot(d, d));
+    return far / (far + ball.radius);
+}
+
+/// A ball that bodies or other lights reach into. Its surface bulges before the figure, and what stands behind it hides
+/// nothing. In rings about the middle, each as if all of it were as near as its inner edge and as if as far as its
+/// outer one: the truth is between.
+DiskIntegral ring_by_ring(
+    const DiskPoint& point, Vec3d normal, const lights::Sphere& ball, const std::vector<const Blocker*>& near) {
+    const shapes::Disk whole = std::get<shapes::Disk>(ball.seen_from(point.x));
+    const Vec3d d = whole.center - point.x, c = ball.center - point.x;
+    const double plane = std::sqrt(dot(d, d)), far = std::sqrt(dot(c, c));
+    // The share of the way at which the ball is met on the way to a point of the figure at `off` from its middle.
+    const auto met_at = [&](double off) {
+        const double way = std::sqrt(sqr(plane) + sqr(off)), along = far * plane / way;
+        const double half2 = sqr(ball.radius) - sqr(far * off / way);
+        return std::min(1.0, (along - std::sqrt(std::max(half2, 0.0))) / way);
+    };
+    constexpr int rings = 8;
+    DiskIntegral sum;
+    for (int k = 0; k < rings; ++k) {
+        // Evenly in how far the surface bulges, about: it falls like a root at the edge.
+        const auto edge = [&](int at) {
+            return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(at) / rings));
+        };
+        const auto up_to = [&](double off, double way) {
+            const shapes::Disk part = {whole.center, whole.normal, off};
+            return off > 0 ? over(moved(Figure(part), point.x, way), point, normal, near) : DiskIntegral{};
+        };
+        const double from = edge(k), to = edge(k + 1);
+        const auto ring = [&](double way) { return up_to(to, way) - up_to(from, way); };
+        sum = sum + enclosed(ring(met_at(from)), ring(met_at(to)));
+    }
+    return sum;
 }
 
 }  // namespace
@@ -104,28 +150,15 @@ DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) 
     const Frame<double> local = frame_about(hit.n);
     const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, normal_of(figure)};
     const std::vector<const Blocker*> near = in_the_way(hit, figure);
-    DiskIntegral out = over(figure, point, hit.n, near);
-    // Two lights of which one reaches into the other, a ball: where the ball ends is not known to the figures, and what
-    // the other hides of this one is doubtful as a whole.
-    for (const Blocker* b : near) {
-        if (!b->light || !intersects_ball(light_, *b->light)) continue;
-        std::vector<const Blocker*> others = near;
-        std::erase(others, b);
-        const DiskIntegral open = over(figure, point, hit.n, others);
-        out.diffuse_error += std::fabs(open.diffuse - out.diffuse) + open.diffuse_error;
-        out.lobe_error += std::fabs(open.lobe - out.lobe) + open.lobe_error;
-    }
+    const DiskIntegral out = over(figure, point, hit.n, near);
     const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
     const auto reaches_in = [&](const Blocker* b) { return may_reach_into(b->body, ball->center, ball->radius); };
     if (!ball || std::none_of(near.begin(), near.end(), reaches_in)) return out;
-    // The ball's surface bulges before the figure: what stands between them hides as much as it does of the figure, or
-    // nothing, as of the same figure where it touches the ball.
-    const Vec3d d = ball->center - hit.x;
-    const double far = std::sqrt(dot(d, d));
-    const DiskIntegral least = over(moved(figure, hit.x, far / (far + ball->radius)), point, hit.n, near);
-    out.diffuse_error += std::fabs(least.diffuse - out.diffuse) + least.diffuse_error;
-    out.lobe_error += std::fabs(least.lobe - out.lobe) + least.lobe_error;
-    return out;
+    const DiskIntegral least = over(moved(figure, hit.x, nearest_of(*ball, hit.x)), point, hit.n, near);
+    if (std::fabs(least.diffuse - out.diffuse) <= least.diffuse_error + out.diffuse_error &&
+        std::fabs(least.lobe - out.lobe) <= least.lobe_error + out.lobe_error)
+        return enclosed(out, least);
+    return ring_by_ring(point, hit.n, *ball, near);
 }
 
 }  // namespace crescent::inline estimator
