@@ -69,24 +69,40 @@ public:
 
     /// `n` draws of each technique. Lambert under the fill is known; all else is drawn.
     Opinion operator()(int n) {
-        const std::size_t techniques = 2 + scene_.lights().size();
         Opinion out;
-        double known = 0;
-        for (std::size_t c = 0; c < 3; ++c) known += luminance_weights[c] * surface_.rho_d[c] * scene_.fill()[c];
-        for (std::size_t k = 0; k < techniques; ++k) {
-            if (k == 1 && !(surface_.rho_s > 0)) continue;
+        for (std::size_t k = 0; k < techniques(); ++k) {
             double mean = 0, square = 0;
             for (int j = 0; j < n; ++j) {
-                const Vec3d wi = k == 0 ? cosine() : k == 1 ? lobe() : on_light(k - 2);
-                const double x = k < 2 || lit(scene_.lights()[k - 2], frame_.to_world(wi)).t < 1e300
-                    ? worth(wi)
-                    : 0;  // a lamp's back is not aimed at
+                const Direction drawn = draw(k);
+                const double x = drawn.density > 0 ? drawn.worth / drawn.density : 0;
                 mean += x / n, square += x * x / n;
                 out.largest = std::max(out.largest, std::fabs(x) / n);
             }
             out.y += mean, out.variance += (square - mean * mean) / n;
         }
-        out.y += known;
+        out.y += pi * lambert_under_fill();
+        return out;
+    }
+
+    /// A drawn direction, local: Y of f L cos there, but for Lambert under the fill; the sum of the techniques'
+    /// densities, 1/sr, 0 where nothing was drawn.
+    struct Direction {
+        Vec3d wi{};
+        double worth = 0, density = 0;
+    };
+    /// Technique 0: the cosine; 1: the lobe; 2 + k: light k.
+    Direction draw(std::size_t technique) {
+        if (technique == 1 && !(surface_.rho_s > 0)) return {};
+        const Vec3d wi = technique == 0 ? cosine() : technique == 1 ? lobe() : on_light(technique - 2);
+        const bool aimed_at =  // a lamp's back is not
+            technique < 2 || lit(scene_.lights()[technique - 2], frame_.to_world(wi)).t < 1e300;
+        return aimed_at ? at(wi) : Direction{};
+    }
+    std::size_t techniques() const { return 2 + scene_.lights().size(); }
+    /// Y of rho_d / pi under the fill.
+    double lambert_under_fill() const {
+        double out = 0;
+        for (std::size_t c = 0; c < 3; ++c) out += luminance_weights[c] * surface_.rho_d[c] / pi * scene_.fill()[c];
         return out;
     }
 
@@ -181,8 +197,8 @@ private:
     Lit lit(const Light& light, Vec3d d) const {
         return std::visit([&](const auto& form) { return lit(form, d); }, light.form);
     }
-    double worth(Vec3d wi) const {
-        if (!(wi.z > 0)) return 0;
+    Direction at(Vec3d wi) const {
+        if (!(wi.z > 0)) return {};
         const Vec3d d = frame_.to_world(wi);
         double pdf = wi.z / pi + lobe_pdf(wi), nearest = 1e300;
         const Light* met = nullptr;
@@ -202,7 +218,7 @@ private:
             x += luminance_weights[c] *
                 (surface_.rho_d[c] / pi * over + surface_.rho_s * surface_.tint[c] * lobe * (over + fill));
         }
-        return x * wi.z / pdf;
+        return {wi, x * wi.z, pdf};
     }
     double lobe_of(Vec3d wi) const { return lobe_value(surface_.brdf, surface_.s, surface_.alpha, wo_, wi); }
 

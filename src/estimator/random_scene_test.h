@@ -16,8 +16,10 @@ namespace crescent::test {
 
 class RandomScene {
 public:
-    /// `newcomers`: the first lamp is a ball or a rectangle of about its size instead of a disk.
-    explicit RandomScene(std::uint32_t seed, bool newcomers = false) : next_(seed), newcomers_(newcomers) {}
+    /// `newcomers`: the first lamp is a ball or a rectangle of about its size instead of a disk. `far`: a body of 1e2
+    /// to 1e6 m ends in its light, and the scene stands up to 1e6 m from (0, 0, 0).
+    explicit RandomScene(std::uint32_t seed, bool newcomers = false, bool far = false)
+        : next_(seed), newcomers_(newcomers), far_(far) {}
 
     Experiment operator()() {
         Experiment e;
@@ -31,6 +33,7 @@ public:
         const int bodies = static_cast<int>(between(0, 3.5));
         for (int k = 0; k < bodies; ++k) body(e);
         if (newcomers_) newcomer(e);
+        if (far_) large_body(e), shift(e, scale(1, 1e6) * direction());
         return e;
     }
     std::string what;  // of the last scene, for messages
@@ -148,8 +151,38 @@ private:
         what += ", which is a " + std::string(light.kind());
     }
 
+    /// Its edge, or a side of it, passes between the surface and the lamp.
+    void large_body(Experiment& e) {
+        const Vec3d lamp = std::visit([](const auto& form) { return form.body().middle(); }, e.lights[0].form);
+        const double size = scale(1e2, 1e6);
+        const Vec3d p = between(0.2, 0.9) * lamp, n = direction();
+        const Frame<double> frame = frame_about(n);
+        Shape s;
+        s.name = "large", s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3}, s.material.s = 10;
+        const int kind = static_cast<int>(between(0, 4));
+        if (kind == 0) s.form = shapes::Sphere{p - size * n, size};
+        if (kind == 1) s.form = shapes::Disk{p - size * frame.t, n, size};
+        if (kind == 2) s.form = shapes::Quad{p - between(0.2, 0.8) * size * frame.b, size * frame.t, size * frame.b};
+        if (kind == 3) s.form = shapes::Box{p - size * Vec3d{1, 0, 0.5}, p + size * Vec3d{0, 1, 0.5}};
+        e.shapes.push_back(s);
+        what += ", large body " + std::to_string(kind) + " of " + std::to_string(size) + " m";
+    }
+    void shift(Experiment& e, Vec3d by) {
+        for (Vec3d* at : {&e.camera.eye, &e.camera.target}) *at = *at + by;
+        const auto moved = [&]<class Form>(Form& form) {
+            if constexpr (requires { form.center; }) form.center = form.center + by;
+            if constexpr (requires { form.min; }) form.min = form.min + by, form.max = form.max + by;
+            if constexpr (requires { form.corner; }) form.corner = form.corner + by;
+            if constexpr (requires { form.point; }) form.point = form.point + by;
+        };
+        for (Shape& shape : e.shapes) std::visit(moved, shape.form);
+        for (Light& light : e.lights) std::visit(moved, light.form);
+        for (DiskLight& disk : e.disks) disk.center = disk.center + by;
+        what += ", moved by " + std::to_string(std::sqrt(dot(by, by))) + " m";
+    }
+
     std::mt19937_64 next_;
-    bool newcomers_;
+    bool newcomers_, far_;
 };
 
 }  // namespace crescent::test
