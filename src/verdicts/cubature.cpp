@@ -251,8 +251,10 @@ std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::spa
     for (const Rect& r : cells) stack.push_back({r, {}, 0});
     for (Vec3d w : pilot_directions) {
         const Vec2d at = map.coordinates(w);
-        for (Node& n : stack)
-            if (at.x >= n.rect.a0 && at.x < n.rect.a1 && at.y >= n.rect.b0 && at.y < n.rect.b1) n.inside.push_back(at);
+        const auto holds = [&](const Node& n) {  // one of them at most: cells do not overlap
+            return at.x >= n.rect.a0 && at.x < n.rect.a1 && at.y >= n.rect.b0 && at.y < n.rect.b1;
+        };
+        if (const auto n = std::find_if(stack.begin(), stack.end(), holds); n != stack.end()) n->inside.push_back(at);
     }
     const std::size_t crowd = std::max<std::size_t>(pilot_directions.size() / 500, 3);
     std::vector<Rect> out;

@@ -30,7 +30,7 @@ Efficiency measure_efficiency(const TrialContext& work, std::size_t trial) {
     Efficiency e;
     e.trial = trial;
     e.whole = work.whole();
-    const std::vector<double> x = first_weights(work, false);
+    const std::vector<double>& x = work.first_weights(false);
     const Spread s = spread(x);
     double m4 = 0;
     for (double v : x) m4 += sqr(sqr(v - s.mean)) / s.n;

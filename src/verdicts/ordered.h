@@ -35,8 +35,7 @@ Spread spread(std::span<const double> x);
 /// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken
 /// out.
 double johnson_t(const Spread& s, double expected);
-/// X of the screening draws; even: L = 1.
-std::vector<double> first_weights(const TrialContext& work, bool even);
+/// Of the largest of these weights.
 std::optional<Tail> tail_of(std::span<const double> x);
 /// k-hat surely below 1/2 and theory does not say otherwise.
 bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const ExpectedBehaviour& theory);

@@ -125,7 +125,7 @@ Verdict judge_physics(const TrialContext& work) {
         return v;
     }
     if (creates_energy(work, albedo, v)) return v;
-    const std::vector<double> x = first_weights(work, true);
+    const std::vector<double>& x = work.first_weights(true);
     const Spread s = spread(x);
     v.evidence["furnace_mean"] = s.mean;
     v.evidence["furnace_standard_error"] = s.sd / std::sqrt(s.n);

@@ -103,6 +103,7 @@ std::size_t TrialContext::affordable(std::size_t wanted, std::size_t keep) const
 void TrialContext::redraw(std::uint32_t seed) {
     seed_ = seed;
     unmet_ = {};
+    first_weights_ = {};
     for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }
 
@@ -231,6 +232,12 @@ std::vector<double> TrialContext::weights(std::span<const SampleBatch> technique
         }
     }
     return x;
+}
+
+const std::vector<double>& TrialContext::first_weights(bool even) const {
+    std::vector<double>& kept = first_weights_[even];
+    if (kept.empty()) kept = weights(first_, even);
+    return kept;
 }
 
 Verdict TrialContext::verdict(std::string_view name, State state, std::string say) const {

@@ -137,6 +137,8 @@ public:
 
     /// X = sum over techniques of w f L cos / p, sample by sample; even: L = 1 in place of the light.
     std::vector<double> weights(std::span<const SampleBatch> pair, bool even) const;
+    /// Those of the screening draws; computed once.
+    const std::vector<double>& first_weights(bool even) const;
     /// int f L |cos| over what counts, or only where any_pdf is (not) positive. bins: the upper and the lower half of
     /// the fill's part.
     enum class Where { everywhere, reached, lost };
@@ -175,8 +177,9 @@ private:
     std::size_t drawn_guides_ = 0;  // the first of the guides
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
     double grain_ = 0;
-    mutable std::array<std::optional<Integral>, 6> incoming_;  // by Where and even
-    mutable std::array<std::optional<Unmet>, 2> unmet_;        // by even
+    mutable std::array<std::optional<Integral>, 6> incoming_;   // by Where and even
+    mutable std::array<std::optional<Unmet>, 2> unmet_;         // by even
+    mutable std::array<std::vector<double>, 2> first_weights_;  // by even
     Integral integrate_incoming(Where where, bool even, int channel = -1) const;
     Below below_;
     void look_below();

@@ -105,13 +105,13 @@ Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool e
 const Unmet& TrialContext::unmet(bool even) const {
     even = even && (!trial.light.disks.empty() || trial.light.fill != 1);
     auto& kept = unmet_[even ? 1 : 0];
-    if (!kept) kept = look_for_unmet(*this, first_weights(*this, even), even);
+    if (!kept) kept = look_for_unmet(*this, first_weights(even), even);
     return *kept;
 }
 
 bool has_unmet_tail(const TrialContext& work, bool even) {
     if (!work.traits.has_pdf) return false;  // which weights a direction would have is not known
-    const Spread s = spread(first_weights(work, even));
+    const Spread s = spread(work.first_weights(even));
     return mean_p(s, due_mean(work, even)) < work.rigour.screen && work.unmet(even).heavy;
 }
 

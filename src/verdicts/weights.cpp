@@ -121,12 +121,6 @@ double mean_p(const Spread& s, const Integral& expected) {
     return normal_p(std::max(z, 0.0));
 }
 
-std::vector<double> first_weights(const TrialContext& work, bool even) {
-    std::vector<SampleBatch> b;
-    for (int t = 0; t < work.subject.techniques(); ++t) b.push_back(work.first(t));
-    return work.weights(b, even);
-}
-
 bool mean_fails(const TrialContext& work, double p, const Integral& expected, bool even) {
     return work.fails(p, [&](int round) {
         std::vector<SampleBatch> fresh;
@@ -144,7 +138,7 @@ Verdict judge_tail(TrialContext& work) {
     if (!work.subject.has_drawn_f())
         return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
     if (!work.weighs()) return work.verdict("tail", State::skipped, no_weights);
-    std::vector<double> x = first_weights(work, false);
+    std::vector<double> x = work.first_weights(false);
     const Spread s = spread(x);
     const std::optional<Tail> tail = tail_of(x);
     const double highest = *std::max_element(x.begin(), x.end());
@@ -204,7 +198,7 @@ Verdict judge_mean(const TrialContext& work) {
     if (!work.weighs()) return work.verdict("mean", State::skipped, no_weights);
     Verdict v = work.verdict("mean", State::right, "");
     const Integral expected = due_mean(work, false);
-    const std::vector<double> x = first_weights(work, false);
+    const std::vector<double>& x = work.first_weights(false);
     const Spread s = spread(x);
     v.evidence["mean"] = s.mean;
     v.evidence["standard_error"] = s.sd / std::sqrt(s.n);
