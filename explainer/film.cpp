@@ -3,7 +3,6 @@
 #include <oneapi/tbb/info.h>
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 
 #include "captions.h"
@@ -79,7 +78,7 @@ public:
     }
 
     std::string film(const Part& part, Voice* voice) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch start;
         stills(part);
         staging_.write("crescent.vtt", webvtt(timeline_, part));
         staging_.write("crescent.srt", subrip(timeline_, part));
@@ -89,12 +88,11 @@ public:
         std::vector<std::uint64_t> unlike = hashes;
         std::ranges::sort(unlike);
         const auto distinct = std::ranges::distance(unlike.begin(), std::ranges::unique(unlike).begin());
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return fmt::format(
             "{}\n  {} long, {} frames, {} of them unlike, drawn and encoded in {:.0f} s\n  captions crescent.vtt, "
             "crescent.srt; transcript "
             "crescent.txt; stills/; frames.json\n",
-            options_.out + "/crescent.mp4", clock(part.last - part.first), hashes.size(), distinct, seconds);
+            options_.out + "/crescent.mp4", clock(part.last - part.first), hashes.size(), distinct, start.seconds());
     }
 
 private:

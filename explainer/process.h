@@ -28,7 +28,4 @@ private:
     int pid_ = -1, pipe_ = -1;
 };
 
-/// All of a file, "" where it cannot be read.
-std::string contents_of(const std::string& path);
-
 }  // namespace crescent::film

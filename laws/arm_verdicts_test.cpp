@@ -2,6 +2,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
 #include "verdicts/gtest.h"
 #include "verdicts/judge.h"
@@ -63,17 +64,7 @@ TEST(Verdicts, SeeTheNearerOfTwoLights) {
 }
 
 /// Sanitizers make all of it ten times slower: every third fault is judged there.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::size_t every = 3;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr std::size_t every = 3;
-#else
-constexpr std::size_t every = 1;
-#endif
-#else
-constexpr std::size_t every = 1;
-#endif
+constexpr std::size_t every = test::sanitized ? 3 : 1;
 
 class PlantedFaultsInQuickMode : public testing::TestWithParam<std::size_t> {
 public:

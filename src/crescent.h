@@ -20,6 +20,7 @@
 #pragma once
 
 #include "arms/all.h"
+#include "base/contents.h"
 #include "base/errors.h"
 #include "base/machine.h"
 #include "base/text.h"
@@ -27,6 +28,7 @@
 #include "base/parallel.h"
 #include "base/pipe.h"
 #include "base/polled_monitor.h"
+#include "base/stopwatch.h"
 #include "base/progress_monitor.h"
 #include "compare/compare.h"
 #include "compare/rates.h"

@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <thread>
 #include <vector>
+
+#include "base/contents.h"
 
 namespace crescent::inline base {
 
@@ -19,16 +20,9 @@ namespace {
 
 constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
 
-std::string text_of(const std::string& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 /// The folders of the process's group in one hierarchy and of all groups around it, the innermost first.
 std::vector<std::string> groups(const std::string& root, const std::string& own, const std::string& controller) {
-    std::istringstream lines(text_of(own));
+    std::istringstream lines(contents_of(own));
     std::vector<std::string> out;
     for (std::string line; std::getline(lines, line);) {
         const std::size_t first = line.find(':'), second = line.find(':', first + 1);
@@ -48,7 +42,7 @@ std::vector<std::string> groups(const std::string& root, const std::string& own,
 
 /// The first number of a file; nothing where it has none ("max", or no such file).
 bool number_in(const std::string& path, double& value) {
-    const std::string text = text_of(path);
+    const std::string text = contents_of(path);
     char* end = nullptr;
     value = std::strtod(text.c_str(), &end);
     return end != text.c_str();
@@ -70,14 +64,14 @@ std::uint64_t left_in(const std::string& group, const char* limit_file, const ch
     double limit = 0, used = 0;
     if (!number_in(group + limit_file, limit) || limit >= 9e18) return no_limit;
     number_in(group + used_file, used);
-    const double busy = std::max(0.0, used - field(text_of(group + "/memory.stat"), cached));
+    const double busy = std::max(0.0, used - field(contents_of(group + "/memory.stat"), cached));
     return static_cast<std::uint64_t>(std::max(0.0, limit - busy));
 }
 
 std::uint64_t left_in_address_space() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return no_limit;
-    const auto used = static_cast<std::uint64_t>(1024 * field(text_of("/proc/self/status"), "VmSize:"));
+    const auto used = static_cast<std::uint64_t>(1024 * field(contents_of("/proc/self/status"), "VmSize:"));
     return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
@@ -89,7 +83,7 @@ double granted_processors(const std::string& root, const std::string& own) {
         if (quota > 0 && period > 0 && (least == 0 || quota / period < least)) least = quota / period;
     };
     for (const std::string& group : groups(root, own, "cpu")) {
-        std::istringstream both(text_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
+        std::istringstream both(contents_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
         double quota = 0, period = 0;
         if (both >> quota >> period) grant(quota, period);
         if (number_in(group + "/cpu.cfs_quota_us", quota) && number_in(group + "/cpu.cfs_period_us", period))
@@ -120,7 +114,7 @@ int usable_threads() {
 }
 
 std::uint64_t available_memory() {
-    const double free = 1024 * field(text_of("/proc/meminfo"), "MemAvailable:");
+    const double free = 1024 * field(contents_of("/proc/meminfo"), "MemAvailable:");
     const std::uint64_t machine = free > 0 ? static_cast<std::uint64_t>(free) : no_limit;
     return std::min({machine, granted_memory("", "/proc/self/cgroup"), left_in_address_space()});
 }

@@ -8,25 +8,14 @@
 #include <cmath>
 #include <string>
 
+#include "base/sanitized_test.h"
 #include "estimator/oracle_test.h"
 #include "estimator/random_scene_test.h"
 
 namespace crescent::inline estimator {
 namespace {
 
-/// Sanitizers make all of it ten times slower.
-#if defined(__SANITIZE_ADDRESS__)
-#define CRESCENT_SLOW_TEST 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define CRESCENT_SLOW_TEST 1
-#endif
-#endif
-#ifdef CRESCENT_SLOW_TEST
-constexpr std::uint32_t scenes_a_shard = 8;
-#else
-constexpr std::uint32_t scenes_a_shard = 40;
-#endif
+constexpr std::uint32_t scenes_a_shard = test::sanitized ? 8 : 40;
 constexpr std::uint32_t shards = 8;
 constexpr int draws = 1500;
 

@@ -79,7 +79,6 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrume
       folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
       patience_s_(checkpoint_after_s),
       watch_(watch),
-      start_(std::chrono::steady_clock::now()),
       journal_(folder_ + "/meters", key_, watch) {
     for (const std::string& folder : {all_, folder_})
         if (leads_elsewhere(folder))
@@ -123,7 +122,7 @@ std::vector<RunMeter> Checkpoint::meters(const Job& job) const {
 
 void Checkpoint::add(const std::vector<RunMeter>& meters) {
     meters_.insert(meters_.end(), meters.begin(), meters.end());
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < patience_s_) return;
+    if (start_.seconds() < patience_s_) return;
     const std::vector<RunMeter> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
     const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
     journal_.append({std::as_bytes(std::span(record))});

@@ -3,11 +3,11 @@
 // stand.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
 #include "base/journal.h"
+#include "base/stopwatch.h"
 #include "base/progress_monitor.h"
 #include "estimator/tile_checkpoint.h"
 #include "run/plan.h"
@@ -39,7 +39,7 @@ private:
     std::string all_, key_, folder_;  // all_: of any run into the same place
     double patience_s_;
     ProgressMonitor& watch_;
-    std::chrono::steady_clock::time_point start_;
+    Stopwatch start_;
     Journal journal_;
     std::vector<RunMeter> meters_;
     std::size_t written_ = 0;  // of meters_

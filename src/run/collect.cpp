@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "estimator/estimator.h"
 #include "meters/evidence_measure.h"
 #include "meters/furnace.h"
@@ -50,15 +51,18 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
 /// beside every rung.
 void add_tails(
     const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& watch, Metrics& metrics) {
-    for (Job job : jobs_of(plan.experiment, plan.seeds.front())) {
-        if (const auto own = prepared.outside.find(job.arm); own != prepared.outside.end()) job.outside = own->second;
-        const Scene scene = prepared.scene.with_s(job.s);
-        for (std::size_t r = 0; r < plan.experiment.regions.size(); ++r) {
-            const std::optional<Tail> tail = region_tail(scene, job, plan.experiment.regions[r].box, isa, watch);
-            for (RunMeter& run : metrics.runs)
-                if (run.key.seed == job.seed && run.key.arm == job.arm && run.key.s == job.s)
-                    run.regions[r].tail = tail;
-        }
+    const std::vector<Job> jobs = jobs_of(plan.experiment, plan.seeds.front());
+    const std::vector<Region>& regions = plan.experiment.regions;
+    std::vector<std::optional<Tail>> tails(jobs.size() * regions.size());
+    parallel_for(std::size_t{0}, tails.size(), [&](std::size_t k) {
+        const Job job = with_sampler(jobs[k / regions.size()], prepared);
+        tails[k] = region_tail(prepared.scene.with_s(job.s), job, regions[k % regions.size()].box, isa, watch);
+    });
+    for (std::size_t k = 0; k < tails.size(); ++k) {
+        const Job& job = jobs[k / regions.size()];
+        for (RunMeter& run : metrics.runs)
+            if (run.key.seed == job.seed && run.key.arm == job.arm && run.key.s == job.s)
+                run.regions[k % regions.size()].tail = tails[k];
     }
 }
 
@@ -135,18 +139,19 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     sort_results(plan, results);
     take_results(std::move(results), out);
     const auto stage = [&](const char* name, const auto& work) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch start;
         out.stopped = out.stopped || !unless_stopped(with.threads, watch, work);
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        out.timing.stages.emplace_back(name, took.count());
+        out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
-        stage("tails", [&] { add_tails(plan, prepared, with.isa, watch, out.metrics); });
-        stage("furnaces", [&] {
-            out.metrics.furnaces =
-                furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch, prepared.outside);
+        stage("tails, furnaces and evidence", [&] {  // none of them waits for another
+            side_by_side([&] { add_tails(plan, prepared, with.isa, watch, out.metrics); },
+                [&] {
+                    out.evidence = measure_evidence(plan.experiment, with.isa, watch);
+                    out.metrics.furnaces =
+                        furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch, prepared.outside);
+                });
         });
-        stage("evidence", [&] { out.evidence = measure_evidence(plan.experiment, with.isa, watch); });
     }
     add_view(prepared, out);
     stage("meters", [&] { add_summaries(out); });

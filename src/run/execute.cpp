@@ -1,11 +1,11 @@
 #include "run/execute.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/errors.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"
 #include "estimator/reference.h"
@@ -108,16 +108,21 @@ Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& wat
     return out;
 }
 
+Job with_sampler(Job job, const Prepared& prepared) {
+    const auto own = prepared.outside.find(job.arm);
+    if (own != prepared.outside.end()) job.outside = own->second;
+    return job;
+}
+
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& watch, bool keep_films, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     JobResult out;
-    out.job = job;
-    if (const auto own = prepared.outside.find(job.arm); own != prepared.outside.end()) out.job.outside = own->second;
+    out.job = with_sampler(job, prepared);
     out.stopped = !unless_stopped(
         with.threads, watch, [&] { compute(plan, prepared, with, watch, keep_films, checkpoint, out); });
-    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    out.seconds = start.seconds();
     return out;
 }
 

@@ -62,6 +62,9 @@ struct JobResult {
     bool stopped = false;
 };
 
+/// The job with the sampler that was opened for its arm, where the arm is none of the list.
+Job with_sampler(Job job, const Prepared& prepared);
+
 /// One job. `keep_films` = false: its meters alone, which a checkpoint may hold already.
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& watch, bool keep_films = true, Checkpoint* checkpoint = nullptr);

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <optional>
 
 #include "base/files.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "run/checkpoint.h"
 #include "run/needs.h"
 #include "run/stopping.h"
@@ -15,9 +15,6 @@
 namespace crescent::inline runs {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Films alone need neither other seeds nor what is measured beside the jobs.
 bool films_alone(const OutputParts& parts) { return parts.films && !parts.metrics && !parts.draws(); }
@@ -52,12 +49,12 @@ std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared
 /// The steps up to the last; throws Interrupted.
 Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options,
     ProgressMonitor& watch, Checkpoint* checkpoint) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     add_references(plan, prepared, engine, watch, checkpoint);
     watch.check();
-    const double references = seconds_since(start);
+    const double references = start.seconds();
     std::vector<JobResult> results = execute_all(plan, prepared, engine, watch, checkpoint);
-    const double estimating = seconds_since(start);
+    const double estimating = start.seconds();
     Measured out = collect(
         plan, std::move(prepared), std::move(results), engine, watch, {options.command, !films_alone(options.parts)});
     watch.check();
@@ -72,7 +69,7 @@ Engine engine_of(const RunOptions& options) { return settled({options.threads, o
 }  // namespace
 
 RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
     if (options.parts.draws()) check_font(plan.experiment);
@@ -82,7 +79,7 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     if (!may_change(plan.experiment))
         checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);
     Measured all = measured(plan, std::move(prepared), engine, options, watch, checkpoint ? &*checkpoint : nullptr);
-    all.timing.total_s = seconds_since(start);
+    all.timing.total_s = start.seconds();
     on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, watch, options.parts); });
     staging.commit(watch);
     if (checkpoint) checkpoint->discard();

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "experiment/names.h"
 #include "meters/quantity.h"
 #include "plates/plates.h"
@@ -19,9 +19,6 @@
 namespace crescent::inline runs {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 PlateInputs plate_inputs(const Measured& m) {
     return {m.experiment, m.metrics, m.shapes, [&m](const RunKey& key) { return m.film(key); },
@@ -126,7 +123,7 @@ Plates draw_plates(const Measured& m, const ProgressMonitor& watch) {
 ReportInputs report_inputs(const Measured& m) { return {m.experiment, m.metrics, m.evidence, m.provenance, m.plates}; }
 
 void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputParts& parts) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     side_by_side(
         [&] {
             if (!parts.films) return;
@@ -137,12 +134,12 @@ void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputPa
             if (parts.draws()) m.plates = draw_plates(m, watch);
         });
     if (parts.plates) write_plates(m, staging);
-    m.timing.stages.emplace_back("plates and films on disk", seconds_since(start));
+    m.timing.stages.emplace_back("plates and films on disk", start.seconds());
     if (parts.draws()) judge_plates(m);
-    const auto report = Clock::now();
+    const Stopwatch report;
     write_reports(m, staging, parts);
-    m.timing.stages.emplace_back("report", seconds_since(report));
-    m.timing.total_s += seconds_since(start);
+    m.timing.stages.emplace_back("report", report.seconds());
+    m.timing.total_s += start.seconds();
     m.timing.date = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
     m.timing.host_cpu = host_cpu();
     staging.write("timing.json", timing_json(m.timing, m.provenance));

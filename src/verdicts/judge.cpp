@@ -1,10 +1,10 @@
 #include "verdicts/judge.h"
 
 #include <algorithm>
-#include <chrono>
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "verdicts/diagnosis.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
@@ -66,10 +66,10 @@ void own_up_to_one_half(const TrialContext& work, Verdict& v) {
 /// One verdict with the time that it took.
 template <class Judge> void judge_next(TrialContext& work, Outcome& out, const ProgressMonitor& watch, Judge&& judge) {
     watch.check();
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch start;
     Verdict v = judge(work);
     own_up_to_one_half(work, v);
-    v.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    v.seconds = start.seconds();
     out.verdicts.push_back(std::move(v));
 }
 

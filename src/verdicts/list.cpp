@@ -59,10 +59,11 @@ void apply(const Settings& settings, Stage& stage, Settings& unread) {
     set("alpha", stage.tells_alpha, f.alpha);
     set("rho_d", f.rho_d > 0, f.rho_d);
     set("rho_s", f.rho_s > 0, f.rho_s);
-    if (stage.tells_alpha && lobe_info(f.lobe).name == "beckmann" &&
-        f.alpha < 1e-3)  // at 3e-4 and 89 degrees f is known to 6e-4, not 7e-5
+    if (stage.tells_alpha && f.alpha < lobe_info(f.lobe).judged_from)
         throw InputError({"--set", 0, 0},
-            "alpha is judged from 0.001 on where the lobe is Beckmann's: the quadrature of a sharper one is not known");
+            fmt::format(
+                "alpha is judged from {:g} on where the lobe is {}: the quadrature of a sharper one is not known",
+                lobe_info(f.lobe).judged_from, lobe_info(f.lobe).label));
     if (f.rho_d + f.rho_s > 1)
         throw InputError({"--set", 0, 0},
             fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));

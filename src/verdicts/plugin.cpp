@@ -6,11 +6,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <sstream>
 #include <vector>
 
+#include "base/contents.h"
 #include "base/errors.h"
 #include "base/text.h"
 #include "verdicts/judge.h"
@@ -126,10 +125,7 @@ std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const 
 }
 
 std::uint64_t plugin_mark(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream all;
-    all << file.rdbuf();
-    const std::string bytes = std::move(all).str();
+    const std::string bytes = contents_of(path);
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
