@@ -10,6 +10,7 @@
 
 namespace crescent {
 
+/// What of the film is made, and how.
 struct FilmOptions {
     std::string out = "out/film";
     int height = 1080;     // of 16:9 frames

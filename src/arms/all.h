@@ -18,6 +18,7 @@
 
 namespace crescent::inline arms {
 
+/// The types of the arms, in the order of their indices.
 template <template <class> class... A> struct ArmList {
     static constexpr std::size_t count = sizeof...(A);
 };

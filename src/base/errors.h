@@ -29,8 +29,10 @@ struct Diagnostic {
 /// The input is wrong. Carries every mistake that was found, in file order.
 class InputError : public std::invalid_argument {
 public:
+    /// what() has a line a mistake.
     explicit InputError(std::vector<Diagnostic> all);
     InputError(const SourceLocation& at, const std::string& say) : InputError(std::vector<Diagnostic>{{at, say}}) {}
+    /// In file order; at least one.
     const std::vector<Diagnostic>& complaints() const { return all_; }
 
 private:

@@ -1,4 +1,4 @@
-// A file of records that grows while long work goes on, so that a run which was stopped need not begin anew. A record
+// A file of records that grows while long work goes on, so that a run which was stopped can be resumed. A record
 // counts once it is whole: it carries its length and its XXH3, and what a kill tore off is not read back. A journal
 // that cannot be written never ends the work: it says so and keeps nothing more.
 #pragma once

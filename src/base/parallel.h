@@ -43,6 +43,7 @@ inline int threads_here() { return oneapi::tbb::this_task_arena::max_concurrency
 /// One T a thread, made by `make` when the thread first asks.
 template <class T> class PerThread {
 public:
+    /// `make` may be called by several threads at once; local() is the calling thread's own.
     explicit PerThread(std::function<T()> make) : all_(std::move(make)) {}
     T& local() { return all_.local(); }
 
@@ -55,22 +56,27 @@ using Guard = std::lock_guard<std::mutex>;
 
 #else
 
+/// As above, one after another in order.
 template <class Index, class Work> void parallel_for(Index begin, Index end, const Work& work) {
     for (Index i = begin; i < end; ++i) work(i);
 }
 
+/// As above: first a, then b.
 template <class A, class B> void side_by_side(const A& a, const B& b) {
     a();
     b();
 }
 
+/// As above; there is one thread.
 template <class Work> auto on_threads(int, const Work& work) { return work(); }
 
 /// Threads that parallel_for may use at this place.
 inline int threads_here() { return 1; }
 
+/// As above: one T, made at once.
 template <class T> class PerThread {
 public:
+    /// local() is what `make` gave.
     explicit PerThread(const std::function<T()>& make) : one_(make()) {}
     T& local() { return one_; }
 
@@ -78,9 +84,10 @@ private:
     T one_;
 };
 
+/// Nothing to lock where there is one thread.
 struct Mutex {};
 struct Guard {
-    explicit Guard(Mutex&) {}
+    explicit Guard(Mutex&) {}  // does nothing
 };
 
 #endif

@@ -11,6 +11,7 @@
 
 namespace crescent::inline base {
 
+/// Keeps what the work says until it is asked for. All members may be called from any thread.
 class PolledMonitor : public ProgressMonitor {
 public:
     /// What is under way ("seed 3 of 16"), and how much of it is done: `done` of `total` units of its own.

@@ -8,6 +8,7 @@
 
 namespace crescent::inline comparing {
 
+/// Where the outputs go.
 struct CompareOptions {
     std::string out = "out/compare";
 };

@@ -34,6 +34,8 @@ struct Moments {
 /// What a kernel needs for each light of a scene, in bytes.
 inline constexpr std::size_t memory_of_light = 4096;
 
+/// One call of a kernel: an arm's samples 0 to the last rung at all sites, one after another. Sites and memory belong
+/// to the caller, who may make calls on several threads, each with its own `out` and `memory`.
 struct KernelCall {
     const ShadingPoints* sites = nullptr;
     std::span<const std::uint64_t> rungs;  // ascending

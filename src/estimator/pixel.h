@@ -38,11 +38,15 @@ struct PixelDisk {
     bool faces = false;         // its emitting side is turned to the surface
 };
 
+/// One pixel of a scene and each of its samples. Directions are unit vectors of the world; values in the units of
+/// films. Immutable once made: any thread may ask.
 class OpenPixel {
 public:
     /// Throws Bug where pixel (i, j), counted from the bottom-left, sees nothing.
     OpenPixel(const Scene& scene, int i, int j);
 
+    /// The pixel, counted from the bottom-left; the index of its shape in Scene::shapes(); what its primary ray met,
+    /// with the material there; the unit direction to the camera.
     int i() const { return i_; }
     int j() const { return j_; }
     int shape() const { return static_cast<int>(sites_.shape[0]); }

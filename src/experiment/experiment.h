@@ -35,12 +35,14 @@ struct ExponentControl {
     SourceLocation at;
 };
 
+/// A box of pixels under a name; both ends inclusive, origin bottom-left.
 struct Region {
     std::string name;
     Box box;
     SourceLocation at;
 };
 
+/// The deterministic quadrature, or the published note's Monte Carlo estimate.
 enum class ReferenceKind { quadrature, note };
 
 /// What the meters compare with. The quadrature is always computed.
@@ -52,6 +54,7 @@ struct ReferencePlan {
     std::uint64_t disk_spp = 96;  // samples on each disk
 };
 
+/// The whole BRDF, or its lobe without the Lambert part.
 enum class FurnacePart { combined, lobe };
 
 /// White furnace: L_i = 1, R = n. Expected: rho_d + rho_s, or rho_s for the lobe alone (as Y).
@@ -64,6 +67,7 @@ struct FurnacePlan {
     SourceLocation at;
 };
 
+/// The pictures, each drawn by a file of plates/.
 enum class PlateKind { hero, gallery, columns, ladder, exponent, surround, reference, heat, rose, meters };
 
 /// One picture. `runs` names what it shows; crops are boxes in image pixels, or the whole frame.

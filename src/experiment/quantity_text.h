@@ -17,6 +17,7 @@ struct Experiment;
 /// What stands in the brackets of a quantity.
 enum class QuantityOf { none, run, furnace, shape, region, plate };
 
+/// A word that a check may name: what stands in its brackets, whether a region follows it, what it means.
 struct QuantityWord {
     std::string_view word;
     bool of_region;  // word.REGION

@@ -16,6 +16,7 @@
 
 namespace crescent::inline experiment {
 
+/// What a key's value can be.
 enum class Type {
     text,   // any text on one line
     texts,  // a list of them, a bare text is a list of one
@@ -39,6 +40,7 @@ enum class Type {
 /// "from 0 to 1", "above 0": for messages and the manual.
 std::string to_string(const Range& range);
 
+/// Whether a key must be given, may be left out, or has a default.
 enum class Requirement { required, optional, defaulted };
 
 /// A checked value on its way from the file into an Experiment; which field counts follows from the type.
@@ -57,6 +59,7 @@ struct Slot {
     bool (*load)(const void* object, Value& value);
 };
 
+/// A key of a table: what it takes, and where its value goes.
 struct Key {
     std::string_view name;
     Type type;
@@ -70,6 +73,7 @@ struct Key {
     std::string kinds = {};  // the kinds of shape that have this key; empty: all
 };
 
+/// How many objects a section stands for, and how the file writes them.
 enum class Multiplicity {
     one,     // [camera]
     named,   // [shapes.NAME]; names are file-safe
@@ -95,6 +99,7 @@ struct Section {
     std::vector<Key> keys;
     std::vector<Section> sections;
 
+    /// Null where the section itself has none of that name.
     const Key* find_key(std::string_view key) const;
     const Section* find_section(std::string_view section) const;
 };
@@ -191,6 +196,7 @@ bool fetch(T from, Value& v) {
 }
 template <class T> bool fetch(const std::optional<T>& from, Value& v) { return from && fetch(*from, v); }
 
+/// The class that a pointer to member belongs to.
 template <class T> struct OwnerOf;
 template <class T, class C> struct OwnerOf<T C::*> {
     using type = C;
@@ -213,10 +219,12 @@ template <class Owner, auto First, auto... Rest> constexpr Slot to_owner = {
 template <auto First, auto... Rest> constexpr Slot to =
     to_owner<typename OwnerOf<decltype(First)>::type, First, Rest...>;
 
+/// The object that the next table is read into: the member itself, or a new element.
 template <class T> T* make_room(T& member) { return &member; }
 template <class T> T* make_room(std::optional<T>& member) { return &member.emplace(); }
 template <class T> T* make_room(std::vector<T>& member) { return &member.emplace_back(); }
 
+/// The objects that a member holds: itself, none or one, or its elements.
 template <class T> std::span<const T> all_of(const T& member) { return {&member, 1}; }
 template <class T> std::span<const T> all_of(const std::optional<T>& member) {
     return member ? std::span<const T>(&*member, 1) : std::span<const T>();

@@ -20,6 +20,7 @@ struct RunKey {
 /// "phong n=64 s=32": the name of a film in metrics.json (the seed stands in the provenance).
 std::string to_string(const RunKey& key);
 
+/// Sample statistics of one arm after n samples, per pixel: row by row from the bottom-left, index i + j * width.
 struct Film {
     int width = 0, height = 0;
     std::uint64_t n = 0;                 // samples per pixel
@@ -35,6 +36,7 @@ struct Film {
 
     /// Every plane as bytes, 4 a pixel.
     std::vector<std::span<std::byte>> planes();
+    /// All planes of w * h pixels, 0.
     Film() = default;
     Film(int w, int h, std::uint64_t samples);
     std::size_t size() const { return y.size(); }
@@ -45,8 +47,8 @@ struct ReferenceFilm {
     int width = 0, height = 0;
     double s = 0;
     std::vector<float> r, g, b, y, error;
-    std::vector<std::span<std::byte>> planes();
-    std::size_t size() const { return y.size(); }
+    std::vector<std::span<std::byte>> planes();    // as Film::planes()
+    std::size_t size() const { return y.size(); }  // pixels
     ReferenceFilm() = default;
     ReferenceFilm(int w, int h, double exponent);
 };

@@ -37,6 +37,7 @@ struct FalseRejection {
     double low = 0, high = 0;  // Clopper-Pearson 95 % of the rate
 };
 
+/// What one run measured of the published explanations, at one exponent of the Phong lobe.
 struct Evidence {
     double s = 0, rho_d = 0, rho_s = 0, expected = 0;  // Y
     double alpha = 0.01;

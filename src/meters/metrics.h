@@ -12,6 +12,7 @@
 
 namespace crescent::inline meters {
 
+/// The error of one film in one region. Y in W/(sr m^2).
 struct RegionMeter {
     std::string region;
     double rmse = 0;           // against the reference, of Y
@@ -20,6 +21,7 @@ struct RegionMeter {
     std::optional<Tail> tail;  // of the samples X of the region; published seed only
 };
 
+/// All that is measured of one film.
 struct RunMeter {
     RunKey key;
     std::vector<RegionMeter> regions;
@@ -60,6 +62,7 @@ struct Ladder {
     bool heavy = false;
 };
 
+/// One white furnace: what an arm reads, and what it should.
 struct FurnaceMeter {
     std::string name, arm, part;
     std::uint64_t n = 0;
@@ -70,6 +73,7 @@ struct FurnaceMeter {
     std::optional<double> published;
 };
 
+/// One assertion of the file, judged.
 struct AssertionResult {
     std::string name;
     bool pass = false;
@@ -98,6 +102,7 @@ struct ReferenceMeter {
 /// 1/16.
 inline constexpr double most_error_share = 0.25;
 
+/// Every number of a run, as metrics.json holds them.
 struct Metrics {
     std::vector<RunMeter> runs;  // every arm, n, s, seed
     std::vector<BandMeter> bands;
@@ -110,7 +115,9 @@ struct Metrics {
     std::uint64_t geometry_pixels = 0;
     std::optional<std::uint32_t> published_seed;  // of the published figures, where it is known
 
+    /// Null where there is no such run.
     const RunMeter* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
+    /// Whether no assertion failed; one that was skipped does not.
     bool all_hold() const;
 };
 

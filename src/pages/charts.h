@@ -9,10 +9,12 @@
 
 namespace crescent::inline pages {
 
+/// In data coordinates.
 struct Point {
     double x = 0, y = 0;
 };
 
+/// What an axis spans, and where its ticks are.
 struct Axis {
     double low = 0, high = 1;  // data at the two ends
     bool log = false;
@@ -28,11 +30,14 @@ struct Axis {
 Axis linear_axis(std::string label, const std::vector<double>& values);
 Axis log_axis(std::string label, const std::vector<double>& values);
 
+/// A chart as inline SVG, drawn in the order of the calls. `css`: classes of the report's style sheet. Points that a
+/// log axis cannot hold, and NaN, are left out.
 class Chart {
 public:
     /// `title` is read out in place of the picture.
     Chart(int width, int height, Axis x, Axis y, std::string title);
 
+    /// A line through the points, dots or diamonds at them.
     void line(const std::vector<Point>& points, std::string_view css);
     void dots(const std::vector<Point>& points, std::string_view css);
     void diamonds(const std::vector<Point>& points, std::string_view css);

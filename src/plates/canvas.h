@@ -15,20 +15,24 @@ typedef struct _cairo cairo_t;
 
 namespace crescent::plates {
 
+/// A rectangle: its top-left corner and its size.
 struct Rect {
     double x = 0, y = 0, w = 0, h = 0;
+    /// Its far edges; itself made smaller by d on each side; whether the two have an inner point in common.
     double right() const { return x + w; }
     double bottom() const { return y + h; }
     Rect inset(double d) const { return {x + d, y + d, w - 2 * d, h - 2 * d}; }
     bool meets(const Rect& o) const { return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom(); }
 };
 
+/// sRGB and coverage, all in [0, 1].
 struct Colour {
     double r = 0, g = 0, b = 0, a = 1;
 };
 /// 8-bit sRGB as Cairo takes it.
 Colour colour(const Srgb8& c);
 
+/// How text is set: the font's weight, and where it stands in its box.
 enum class Weight { regular = 400, medium = 500, semibold = 600 };
 enum class Align { left, centre, right };
 enum class Vertical { top, middle, bottom };
@@ -59,14 +63,17 @@ struct Block {
     std::vector<unsigned char> rgb;
     Block() = default;
     Block(int w, int h) : width(w), height(h), rgb(3 * std::size_t(w) * std::size_t(h)) {}
+    /// Pixel (x, y), counted from the top-left.
     void set(int x, int y, const Srgb8& c) {
         unsigned char* p = &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
         p[0] = c[0], p[1] = c[1], p[2] = c[2];
     }
 };
 
+/// What a canvas draws to.
 enum class Medium { pixels, svg };
 
+/// A picture being drawn. One thread at a time; several canvases may be drawn at once.
 class Canvas {
 public:
     /// Throws OutputError where the font Inter is missing. `scale`: pixels a unit; all that is drawn is given in units.
@@ -83,12 +90,15 @@ public:
     /// Width and height the markup takes on one line at how.px.
     Rect measure(const std::string& markup, const Text& how) const;
 
+    /// Shapes, in units of the canvas. `width` is a line's, `dash` the length of a dash and of the gap after it, 0 for
+    /// none. A polygon is filled, and so is a dot; an arrow has its head at `to`.
     void fill(const Rect& r, const Colour& c);
     void outline(const Rect& r, const Colour& c, double width);
     void line(double x0, double y0, double x1, double y1, const Colour& c, double width, double dash = 0);
     struct Point {
         double x, y;
     };
+    /// As the shapes above.
     void polyline(const std::vector<Point>& points, const Colour& c, double width, double dash = 0);
     void polygon(const std::vector<Point>& points, const Colour& c);
     void dot(double x, double y, double radius, const Colour& c);
@@ -110,6 +120,7 @@ public:
     /// Text takes its place but leaves no ink: for tests, which ask what stands behind it.
     void hide_text(bool hidden) { text_hidden_ = hidden; }
 
+    /// As given to the constructor; width and height in units.
     Theme theme() const { return theme_; }
     int width() const { return width_; }
     int height() const { return height_; }

@@ -10,6 +10,7 @@
 
 namespace crescent::plates {
 
+/// The pdf of a sampler at one surface point of an experiment, for the plates. Directions in the local frame, n = +z.
 class Density {
 public:
     /// `tilt`: radians from n to R. A sampler that is not in the list, or that needs a light, has density 0.

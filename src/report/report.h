@@ -27,6 +27,7 @@ struct ArmTiming {
     std::uint64_t samples = 0;
     double seconds = 0;
 };
+/// What varies from run to run; timing.json holds it. Seconds of wall-clock time.
 struct Timing {
     double estimating_s = 0, total_s = 0;
     int threads = 0;
@@ -46,6 +47,7 @@ struct OutputParts {
 
 using Plates = std::map<std::string, std::vector<unsigned char>>;  // name -> PNG
 
+/// What a report is written from; all must outlive the call.
 struct ReportInputs {
     const Experiment& experiment;
     const Metrics& metrics;

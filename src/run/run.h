@@ -14,6 +14,7 @@
 
 namespace crescent::inline runs {
 
+/// How a run is made, beside what the experiment says.
 struct RunOptions {
     std::string out = "out";
     int threads = 0;           // 0: as many as this process may use
@@ -25,6 +26,7 @@ struct RunOptions {
     SeedRange seeds;
 };
 
+/// What a run measured, as it was written.
 struct RunResult {
     Metrics metrics;
     Timing timing;

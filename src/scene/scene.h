@@ -19,6 +19,8 @@ struct Hit {
     Vec3d wo{};  // towards the camera, unit
 };
 
+/// What the camera sees of an experiment's shapes, and what lights them. Copies share the data; const members may be
+/// called from any thread.
 class Scene {
 public:
     /// An experiment is such data too.

@@ -10,10 +10,13 @@
 
 namespace crescent::inline simd {
 
+/// Four unsigned 32-bit integers, or packs of them.
 template <class U> struct Vec4u {
     U x, y, z, w;
 };
 
+/// A hash of 128 bits to 128 bits: Jarzynski & Olano 2020, "Hash Functions for GPU Rendering", JCGT 9(3), listing
+/// pcg4d.
 template <class U> CRESCENT_INLINE Vec4u<U> pcg4d(Vec4u<U> v) {
     const U a(1664525u), c(1013904223u);
     v = {v.x * a + c, v.y * a + c, v.z * a + c, v.w * a + c};

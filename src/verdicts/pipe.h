@@ -10,6 +10,7 @@
 
 namespace crescent::inline verdicts {
 
+/// What a program behind a pipe may take.
 struct PipeLimits {
     double hello_seconds = 10;   // until the first answer
     double quiet_seconds = 10;   // without a byte while an answer is due

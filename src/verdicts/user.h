@@ -26,6 +26,8 @@
 
 namespace crescent::user {
 
+/// Whether pdf takes directions; whether sample takes wo and random numbers; whether it gives a direction and a
+/// density.
 template <class S> consteval bool takes_directions() {
     if constexpr (!HasPdf<S>) return true;
     else {
@@ -80,6 +82,8 @@ template <class S> consteval bool must_be_judgeable() {
     return judgeable<S>();
 }
 
+/// 3 where f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
+/// whether a draw comes with its weight; all this as the bench takes it.
 template <class S> consteval int channels() {
     bool three = false;
     if constexpr (HasF<S>) three = Coloured<Bare<typename OfF<S>::Result>>;
@@ -120,8 +124,10 @@ template <class S> Traits traits_of(const S& s) {
 
 namespace crescent::inline verdicts {
 
+/// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
 template <class S> class UserSubject : public JudgedSampler {
 public:
+    /// `name` is what messages call it.
     UserSubject(std::string name, S sampler) : name_(std::move(name)), sampler_(std::move(sampler)) {}
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler_); }

@@ -1,0 +1,51 @@
+#!/bin/bash
+# Every class, function and public member function of the headers that crescent.h includes, and of the matchers for
+# GoogleTest, has a comment: what it takes and gives.
+. "$(dirname "$0")/common.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+cd "$CRESCENT_SOURCE/src" || exit 1
+look() { python3 "$CRESCENT_SOURCE/laws/scripts/documented.py" "$@"; }
+
+# It finds each kind that is there without a comment, and none that has one.
+cat >"$work/planted.h" <<'END'
+namespace planted {
+
+struct Bare {
+    int x = 0;
+    int twice() const { return 2 * x; }
+};
+
+/// Has one.
+class Told {
+public:
+    /// So has this.
+    Told(int x);
+    Told(const Told&) = default;
+
+    int bare() const;
+
+    int remarked() const;  // in m
+    /// Two of a group.
+    int first() const;
+    int second() const {
+        return first();
+    }
+    int third() const;
+
+private:
+    int hidden() const;
+};
+
+enum class Kind { one, two };
+
+int lonely(int x,
+    int y);
+
+}  // namespace planted
+END
+look "$work/planted.h" >"$work/found" && die "nothing of what was planted is found"
+[ "$(cut -d: -f2 "$work/found" | xargs)" = "3 5 15 29 31" ] || die "found is not what was planted: $(cat "$work/found")"
+
+mapfile -t headers < <(sed -n 's/^#include "\(.*\)"$/\1/p' crescent.h)
+[ "${#headers[@]}" -gt 40 ] || die "too few headers in crescent.h: ${headers[*]}"
+look "${headers[@]}" verdicts/gtest.h >"$work/found" || die "$(cat "$work/found")"
