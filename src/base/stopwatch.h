@@ -8,6 +8,7 @@ namespace crescent::inline base {
 /// Runs from when it is made.
 class Stopwatch {
 public:
+    /// Since it was made.
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 private:
