@@ -2,6 +2,7 @@
 // that begin near a surface or an edge of a large body, and rays to small bodies far away. Lengths in m.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
