@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 #include "experiment/experiment.h"
-#include "plates/theme.h"
+#include "color/theme.h"
 
 namespace crescent::inline comparing {
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "color/theme.h"
 #include "base/errors.h"
 #include "base/vec.h"
 #include "experiment/published.h"
@@ -104,6 +105,7 @@ struct Experiment : SceneData {
     std::uint64_t n = 0;  // samples per pixel meant where a plate, check or exponent control names none; 0: none given
     int seeds = 1;        // how many seeds the bands are made of; the first is `seed`
     double exposure = 1;
+    std::optional<Theme> theme;  // of plates; none: dark
     double firefly_k = 4;
     bool note_evidence = false;  // whether the note's explanations are put to measurements of their own
     std::vector<ArmPlan> arms;

@@ -232,6 +232,8 @@ const Section& schema() {
                 to<&Experiment::n>},
             {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1",
                 "Radiance is multiplied by it before the tone map.", to<&Experiment::exposure>},
+            {"theme", Type::word, none, "", optional, "\"dark\"", "Ground and inks of plates.", to<&Experiment::theme>,
+                {"dark", "light"}},
             {"firefly_k", Type::number, {0, 1e6, true}, "", defaulted, "4",
                 "A firefly is a pixel with |Y - Y_ref| > firefly_k Y_ref.", to<&Experiment::firefly_k>},
             {"note_evidence", Type::flag, none, "", defaulted, "false",

@@ -9,7 +9,7 @@
 
 #include "color/tone.h"
 #include "plates/plates.h"
-#include "plates/theme.h"
+#include "color/theme.h"
 
 typedef struct _cairo cairo_t;
 

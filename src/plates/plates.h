@@ -8,7 +8,7 @@
 #include "experiment/experiment.h"
 #include "films/film.h"
 #include "meters/metrics.h"
-#include "plates/theme.h"
+#include "color/theme.h"
 
 namespace crescent::plates {
 

@@ -22,7 +22,7 @@ namespace {
 
 PlateInputs plate_inputs(const Measured& m) {
     return {m.experiment, m.metrics, m.shapes, [&m](const RunKey& key) { return m.film(key); },
-        [&m](double s) { return m.reference(s); }, m.provenance.instrument};
+        [&m](double s) { return m.reference(s); }, m.provenance.instrument, m.experiment.theme.value_or(Theme::dark)};
 }
 
 std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attributes text) {
