@@ -101,6 +101,10 @@ TestSettings rigour_of(const CheckFlags& flags) {
     return r;
 }
 
+int exit_of(State state, const CheckFlags& flags) {
+    return state == State::inconclusive && flags.allow_inconclusive ? held : exit_of(state);
+}
+
 int exit_of(State state) {
     return state == State::wrong       ? failed
         : state == State::error        ? unwritable
@@ -135,10 +139,11 @@ std::string command_of(const CheckFlags& f) {
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
     for (const std::string& text : f.settings) out += " --set " + shell_word(text);
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
-             {"--pdf-table", &f.table}, {"--against", &f.against}, {"--expect", &f.expect}})
+             {"--pdf-table", &f.table}, {"--against", &f.against}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
-    for (const auto& [flag, given] :
-        {std::pair("--full", f.full), {"--planted", f.planted}, {"--accept-few", f.accept_few}})
+    for (const std::string& text : f.expect) out += " --expect " + shell_word(text);
+    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted},
+             {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
         if (given) out += std::string(" ") + flag;
     if (f.patience > 0) out += " --patience " + shortest(f.patience);
     if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
@@ -211,14 +216,23 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
     return sampler_against(start_pipe(flags.against, limits), a);
 }
 
+std::vector<std::string> names_of(std::span<const Trial> trials) {
+    std::vector<std::string> out;
+    for (const Trial& t : trials)
+        if (!t.baseline && std::find(out.begin(), out.end(), t.arm) == out.end()) out.push_back(t.arm);
+    return out;
+}
+
 /// Exit 0: compared; 1: f differs, or with --expect same the distribution does; 4: a tail is too heavy to tell.
-int check_against(const CheckFlags& flags, std::vector<Trial> a, Progress& watch) {
+int check_against(
+    const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& watch) {
     std::erase_if(a, [](const Trial& t) { return t.baseline; });
-    const Judgement j = judge_against(a, others_of(flags, a, watch), rigour_of(flags), flags.expect == "same", watch);
+    Judgement j = judge_against(a, others_of(flags, a, watch), rigour_of(flags), same, watch);
+    if (!waivers.empty()) waive(j, waivers);
     watch.clear();
     print(against_text(j));
     write_files(flags, j);
-    return exit_of(j.state);
+    return exit_of(j.state, flags);
 }
 
 }  // namespace
@@ -231,12 +245,18 @@ int check(const CheckFlags& flags) {
     if (flags.right > 0) return check_right(flags, watch);
     if (flags.planted) return check_planted(flags, watch);
     Judgement j;
+    std::vector<std::string> expected = flags.expect;
+    const bool same = std::erase(expected, "same") > 0;
+    if (same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
+    const std::vector<Waiver> waivers = read_waivers(expected);
     try {
         const std::vector<Trial> trials = trials_for(flags, watch);
-        if (!flags.against.empty()) return check_against(flags, trials, watch);
+        check_waivers(waivers, names_of(trials));
+        if (!flags.against.empty()) return check_against(flags, trials, waivers, same, watch);
         tell_cost(trials, rigour_of(flags), watch);
         j = judge(trials, rigour_of(flags), watch);
     } catch (const SubjectFault& fault) { j = complaint(fault, flags); }
+    if (!waivers.empty()) waive(j, waivers);
     watch.clear();
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
     if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
@@ -245,7 +265,7 @@ int check(const CheckFlags& flags) {
         print(j.as_expected ? "every arm gets the verdicts that the list expects\n"
                             : "not every arm gets the verdicts that the list expects\n");
     write_files(flags, j);
-    return exit_of(j.state);
+    return exit_of(j.state, flags);
 }
 
 }  // namespace crescent::cli

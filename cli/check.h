@@ -9,6 +9,8 @@ namespace crescent::cli {
 
 TestSettings rigour_of(const CheckFlags& flags);
 int exit_of(State state);
+/// The same, where the caller may allow what is inconclusive.
+int exit_of(State state, const CheckFlags& flags);
 void write_files(const CheckFlags& flags, const Judgement& j);
 std::string shortest(double v);
 

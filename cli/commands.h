@@ -60,13 +60,13 @@ struct CheckFlags {
     std::vector<std::string> settings;  // s=128
     std::string exec, plugin, samples, table;
     std::string against;                    // an arm of the list, or a program
-    std::string expect;                     // "": a difference is told; same: it fails
+    std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails
     std::vector<std::string> wo;            // x,y,z or degrees
     std::string json, timing, junit, html;  // files to write
     double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
     unsigned seed = 1, error_rates = 0;     // error_rates: how many seeds; 0: not asked for
     unsigned right = 0, first = 0;          // right: how many right samplers; 0: not asked for
-    bool full = false, quick = false, planted = false, quiet = false, accept_few = false;
+    bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
 };
 int check(const CheckFlags& flags);
 

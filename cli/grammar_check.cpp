@@ -13,16 +13,25 @@ crashed, fell silent or spoke another language), 4 inconclusive: something could
 be told, or was not looked at. Wrong comes before error, error before inconclusive.
 docs/verdicts.md says what each verdict means and how --exec is spoken to.)";
 
-/// --against and --expect; gives the former.
+/// --against.
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
         "hold the sampler against an arm of the list, or a program: same distribution, same f, variance ratio");
     against->type_name("ARM|'PROGRAM'")->check(told);
-    c.add_option("--expect", f.expect, "same: with --against, another distribution fails")
-        ->type_name("same")
-        ->check(CLI::IsMember({"same"}))
-        ->needs(against);
     return against;
+}
+
+/// --expect and --allow-inconclusive; gives the former.
+CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
+    c.add_flag("--allow-inconclusive", f.allow_inconclusive, "exit 0 where it would be 4");
+    return c
+        .add_option("--expect", f.expect,
+            "a verdict that is known not to be right, or a file of such lines; same: with --against, a difference "
+            "fails")
+        ->type_name("'[ARM ]VERDICT=STATE: REASON'|FILE|same")
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
 }
 
 /// The files that a call writes.
@@ -89,6 +98,8 @@ void add_check(CLI::App& app, Work& work) {
     auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
     auto* against = comparison(*c, *f);
+    auto* expect = waivers(*c, *f);
+    for (auto* other : {planted, rates, right}) expect->excludes(other);
     for (auto* other : {planted, rates, right}) against->excludes(other), wo->excludes(other);
     for (auto* file : outputs(*c, *f)) file->excludes(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the table stays");

@@ -183,48 +183,6 @@ TEST(Meshes, AreNotSeenInASmoothDensityOrInACone) {
     EXPECT_FALSE(find_mesh(cone));
 }
 
-/// A program behind a pipe: what it is asked is counted, and bounded in quick mode at every w_o.
-class Counted : public JudgedSampler {
-public:
-    explicit Counted(Recipe r) : right_(subject_of(std::move(r))) {}
-    std::string name() const override { return "counted"; }
-    bool serial() const override { return true; }
-    bool has_f() const override { return true; }
-    Spending spending() const override { return {answers_, 0, 0}; }
-    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
-        answers_ += u.size();
-        right_->sample(t, wo, u, out);
-    }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        answers_ += at.size();
-        right_->pdf(t, at, out);
-    }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        answers_ += at.size();
-        right_->f(at, out);
-    }
-
-private:
-    std::shared_ptr<const JudgedSampler> right_;
-    mutable std::uint64_t answers_ = 0;
-};
-
-TEST(OwnSamplers, BehindAPipeAreAskedTwoMillionTimesAtMost) {
-    Recipe wrinkled = cosine();  // p jumps along thousands of curves, and is not what is drawn: nothing is ever settled
-    wrinkled.family = "wrinkled";
-    wrinkled.pdf = [](Vec3d, Vec3d wi) {
-        return wi.z > 0 ? (std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 1.9 : 0.1) / (2 * pi)
-                        : 0.0;
-    };
-    for (const Recipe& r : {cosine(), wrinkled, ggx_visible_at(0.1, 0.4), ggx_visible_at(0.01, 0.02)}) {
-        const auto subject = std::make_shared<Counted>(r);
-        const Judgement j = judged(subject, 75);
-        EXPECT_GT(j.questions, 100000u) << r.family;
-        EXPECT_LE(j.questions, 2200000u) << r.family;
-        if (r.family == cosine().family) EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
-    }
-}
-
 /// A library leaves the signals of the process that it is in alone, and does not let a program's end kill it.
 TEST(OwnSamplers, BehindAPipeThatBreaksTouchNoSignal) {
     const auto before = std::signal(SIGPIPE, SIG_DFL);

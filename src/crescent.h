@@ -71,4 +71,5 @@
 #include "verdicts/print.h"
 #include "verdicts/samples.h"
 #include "verdicts/user.h"
+#include "verdicts/waivers.h"
 #include "run/version.h"

@@ -26,6 +26,14 @@ std::string cause_of(const std::string& fault) {
         {"delta mass counted in the pdf", "a constant"}, {"delta mass taken off the pdf twice", "a constant"},
         {"delta part drawn less often than it says", "a constant"},
         {"environment pdf without sin theta", "sin theta_i"}, {"4 pi for 2 pi^2 sin theta", "sin theta_i"},
+        {"eta^2 left out of f", "eta^2"}, {"eta^2 for 1/eta^2 in f", "eta^2"},
+        {"cosine of w_i left in f across the surface", "cos theta_i"},
+        {"transmission pdf without its Jacobian", "the Jacobian of refraction"},
+        {"eta^2 left out of the transmission Jacobian", "eta^2"},
+        {"reflection Jacobian for transmission", "the Jacobian of refraction for that of reflection"},
+        {"Fresnel left out of the pdf", "Fresnel"}, {"lobe chosen by a half, weighed by Fresnel", "Fresnel"},
+        {"channels of the weight swapped", "channels 1 and 3 exchanged"},
+        {"luminance for every channel of the weight", "luminance in every channel"},
         {"s+1 for s+2 in the BRDF", "a constant"}, {"non-reciprocal f", "a constant"},  // at one w_o
     };
     const auto at = causes.find(fault);

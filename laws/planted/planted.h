@@ -20,6 +20,8 @@ struct PlantedFault {
 std::vector<PlantedFault> planted_faults(bool full);
 /// Those of samplers as renderers have them, which are among the planted faults.
 std::vector<PlantedFault> renderer_faults();
+/// Faults of other families, kept apart: by them it is measured how often a cause is named rightly.
+std::vector<PlantedFault> held_out_faults();
 std::string cause_of(const std::string& fault);
 
 /// What was said of a planted fault over its w_o.

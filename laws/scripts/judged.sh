@@ -82,3 +82,17 @@ expect 2 "$CRESCENT" check uniform --against ./nowhere
 asked=$(sed -n 's/.*"questions": \([0-9]*\).*/\1/p' c.json)
 [ "${asked:-0}" -gt 100000 ] && [ "$asked" -le 4000000 ] || die "cosine.c was asked '$asked' questions"
 expect 3 "$CRESCENT" check cosine --json /nowhere/x.json
+
+# What is known is waived, with its reason; what is waived and right fails; doubt may be allowed.
+expect 1 "$CRESCENT" check phong --quiet --wo 60
+waiver='phong support=wrong: it never reaches the horizon'
+expect 0 "$CRESCENT" check phong --quiet --wo 60 --expect "$waiver" --allow-inconclusive --json waived.json
+grep -q "wrong support as waived: it never reaches the horizon" printed || die "the waiver is not told: $(cat printed)"
+grep -q '"waived": true' waived.json || die "the file does not say what was waived"
+printf '# known\nphong support=wrong: the horizon\ncosine density=wrong: no more\n' >known.txt
+expect 2 "$CRESCENT" check phong --quiet --wo 60 --expect known.txt
+expect 1 "$CRESCENT" check cosine --quiet --wo 60 --expect 'density=wrong: no more'
+grep -q "the expectation can go" printed || die "an expectation that nothing meets is not told: $(cat printed)"
+expect 2 "$CRESCENT" check cosine --quiet --wo 60 --expect 'densty=wrong'
+expect 4 "$CRESCENT" check phong --quiet --wo 0
+expect 0 "$CRESCENT" check phong --quiet --wo 0 --allow-inconclusive

@@ -109,7 +109,7 @@ Branches follow_branches(const TrialContext& work, int technique, std::span<cons
     for (const Numbers& u : at)
         beside.push_back(chooser.moved(u, u[choosers[0]] + (u[choosers[0]] < 0.5 ? 0x1p-16 : -0x1p-16)));
     const std::vector<Draw> moved = chooser.draw(beside);
-    const std::vector<double> share = chooser.shares(at, there, 129);
+    const std::vector<double> share = chooser.shares(at, there, work.thrifty() ? 65 : 129);
     for (std::size_t i = 0; i < at.size(); ++i) out.share[i] = chooser.same(there[i], moved[i]) ? share[i] : 0;
     out.known_to = 0x1p-22;
     return out;

@@ -86,7 +86,8 @@ Fit fit(const Density& d, const SampleBatch& b) {
     std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors),
         slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
     for (std::size_t i = 0; i < slack.size(); ++i) {
-        slack[i] = scale * ((d.doubt.empty() ? 0 : d.doubt[i]) + 3 * d.mass.bin_errors[i]);
+        slack[i] =
+            scale * ((d.doubt.empty() ? 0 : d.doubt[i]) + 3 * d.mass.bin_errors[i] + 2 * d.nothing_se * d.mass.bins[i]);
         slack_ring[i / sectors] += slack[i];
         slack_sector[i % sectors] += slack[i];
     }
@@ -102,7 +103,7 @@ Fit fit(const Density& d, const SampleBatch& b) {
     if (n * d.nothing >= 5) {  // nothing drawn is one more bin
         observed.insert(observed.begin(), nothing);
         expected.insert(expected.begin(), n * d.nothing);
-        slack.insert(slack.begin(), 0);
+        slack.insert(slack.begin(), 2 * n * d.nothing_se);
     }
     out.joint = pearson(observed, expected, slack);
     out.rings = pearson(by_ring, due_ring, slack_ring);
@@ -146,6 +147,16 @@ bool deltas_are_wrong(const TrialContext& work, const DeltaParts& deltas, Verdic
     return true;
 }
 
+/// More than chance allows; the share that draws nothing is itself an estimate.
+bool is_off(const TrialContext& work, int technique, double excess) {
+    const Density& d = work.density(technique);
+    if (!(excess > 0) || !(d.nothing > 0)) return excess > 0;
+    const double n = static_cast<double>(work.first(technique).draws.size());
+    const double se =
+        work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7) : std::sqrt(d.nothing * (1 - d.nothing) / n);
+    return student_p(excess / se, 15) < work.rigour.screen * work.rigour.confirm;
+}
+
 }  // namespace
 
 Verdict judge_normalised(const TrialContext& work) {
@@ -160,7 +171,7 @@ Verdict judge_normalised(const TrialContext& work) {
                 return std::max(
                     off - allowed - d.doubts - std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se), 0.0);
             };
-        const bool second = d.second && excess_of(*d.second) < excess_of(d.mass);
+        const bool second = is_off(work, t, excess_of(d.mass)) && d.second && excess_of(*d.second) < excess_of(d.mass);
         const Integral& mass = second ? *d.second : d.mass;  // the one closer to a right sampler
         const double sum = mass.value + d.nothing;
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
@@ -181,19 +192,8 @@ Verdict judge_normalised(const TrialContext& work) {
             ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples {}, together {:.6f}",
                   mass.value, d.nothing, rest, sum)
             : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
-        const double excess = excess_of(mass);
-        bool wrong =
-            !std::isfinite(sum) || (excess > 0 && d.nothing_se == 0 && work.subject.draws_at_will() && d.nothing == 0);
-        if (!wrong && excess > 0 && d.nothing > 0) {  // the share that draws nothing is itself an estimate
-            const double n = static_cast<double>(work.first(t).draws.size());
-            const double se = work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7)
-                                                           : std::sqrt(d.nothing * (1 - d.nothing) / n);
-            wrong = student_p(excess / se, 15) < work.rigour.screen * work.rigour.confirm;
-        } else if (!wrong && excess > 0) {
-            wrong = true;
-        }
         ++work.tally.tests;
-        if (wrong) {
+        if (!std::isfinite(sum) || is_off(work, t, excess_of(mass))) {
             v.state = State::wrong;
             v.say = told + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
             return v;

@@ -102,22 +102,65 @@ std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::sp
             if (static_cast<double>(same) < enough * static_cast<double>(n)) continue;
             const char* of[] = {"", " for w_o", " for w_i", ""};
             const std::string name = std::string(turn.name) + of[which];
-            return Diagnosis{
-                name, 1, static_cast<double>(same) / static_cast<double>(n), "what is drawn is pdf(w) with " + name};
+            return Diagnosis{name, 1, static_cast<double>(same) / static_cast<double>(n),
+                "what is drawn is pdf(w) with " + name, {}};
         }
     return {};
 }
 
 }  // namespace
 
+namespace {
+
+/// "eta^2" where a constant across the surface is a power of it.
+void name_eta(const TrialContext& work, Diagnosis& d) {
+    if (d.name != "a constant" || !work.traits.eta || !(work.traits.eta->x > 0)) return;
+    const double power = math::log(d.constant) / math::log(work.traits.eta->x), even = 2 * std::round(power / 2);
+    if (even == 0 || !(std::fabs(power - even) < 0.02)) return;
+    d.name = "eta^2";
+    d.means = fmt::format("a constant {:.5g} = eta^{:g}", d.constant, even);
+}
+
+/// What is right on one side of the surface and off by a factor on the other.
+std::optional<Diagnosis> explain_one_side(const TrialContext& work, std::span<const Ratio> ratios) {
+    const Vec3d wo = work.trial.wo;
+    for (bool across : {true, false}) {
+        std::vector<Ratio> off, right;
+        for (const Ratio& r : ratios) (((r.wi.z * wo.z < 0) == across) ? off : right).push_back(r);
+        std::size_t one = 0;
+        for (const Ratio& r : right) one += std::fabs(r.value - 1) <= close + 2 * r.error;
+        if (off.size() < least / 4 || right.size() < least / 4 || mostly_one(off)) continue;
+        if (static_cast<double>(one) < enough * static_cast<double>(right.size())) continue;
+        for (const Factor& factor : factors_of_side(work, across)) {
+            const Fitted f = fit(factor, off);
+            if (!f.fits || !(f.all > 0)) continue;
+            Diagnosis d{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
+                factor_text(work, factor.name, f.constant), {}};
+            if (across) name_eta(work, d);
+            if (d.name == "a constant" && name_of_constant(work, d.constant).empty()) continue;
+            d.name += across ? " across the surface" : " on this side of the surface";
+            d.means += across ? " across the surface" : " on this side of the surface";
+            d.g = [across, wo, g = factor.g, c = f.constant](
+                      Vec3d w) { return (w.z * wo.z < 0) == across ? g(w) : 1 / c; };
+            return d;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
 std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio> ratios) {
-    if (ratios.size() < least || mostly_one(ratios)) return {};
+    if (ratios.size() < least) return {};
+    if (work.whole())
+        if (std::optional<Diagnosis> found = explain_one_side(work, ratios)) return found;
+    if (mostly_one(ratios)) return {};
     std::optional<Diagnosis> best;
     for (const Factor& factor : usual_factors(work)) {
         const Fitted f = fit(factor, ratios);
         if (!f.fits || !(f.all > 0)) continue;
         const Diagnosis now{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
-            factor_text(work, factor.name, f.constant)};
+            factor_text(work, factor.name, f.constant), factor.g};
         const bool plain = std::fabs(now.constant - 1) < close;
         if (!best ||
             (plain && factor.name != "a constant" && std::fabs(best->constant - 1) >= close &&
@@ -130,7 +173,7 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
 }
 
 std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
-    const WarpFinding warp = study_warp(work, technique);
+    const WarpFinding& warp = study_warp(work, technique);
     if (warp.points.size() < least) return diagnose_by_bins(work, technique);
     std::vector<Vec3d> wi;
     for (const WarpPoint& p : warp.points) wi.push_back(p.wi);
@@ -155,7 +198,7 @@ namespace {
 
 /// A factor with a constant that nobody knows may be chance: weights cut off are 1 / cos up to some constant.
 bool is_told_apart(const TrialContext& work, const Diagnosis& found) {
-    return found.name == "a constant" || std::fabs(found.constant - 1) < close ||
+    return found.name == "a constant" || found.name.ends_with("surface") || std::fabs(found.constant - 1) < close ||
         !name_of_constant(work, found.constant).empty();
 }
 
@@ -170,6 +213,7 @@ std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int techniq
         if (const Draw& d = b.draws[i]; d.pdf > 0 && work.counts(d.wi)) wi.push_back(d.wi);
     const std::vector<double> truth = work.subject.has_true_f() ? work.f(wi, true) : std::vector<double>(wi.size());
     const std::vector<double>& value = work.f_of_drawn(b);
+    if (std::optional<Diagnosis> found = exchanged_channels(work, b, n)) return found;
     for (std::size_t i = 0, k = 0; i < n; ++i) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || !work.counts(d.wi)) continue;

@@ -22,14 +22,17 @@ struct Factor {
 };
 
 struct Diagnosis {
-    std::string name;      // "cos theta_i", "a constant", "x and y exchanged"
-    double constant = 1;   // observed = constant * factor * claimed
-    double explained = 0;  // share of the difference, in the logarithm
-    std::string means;     // "a constant 0.9706 = (s+1)/(s+2)"
+    std::string name;                     // "cos theta_i", "a constant", "x and y exchanged"
+    double constant = 1;                  // observed = constant * factor * claimed
+    double explained = 0;                 // share of the difference, in the logarithm
+    std::string means;                    // "a constant 0.9706 = (s+1)/(s+2)"
+    std::function<double(Vec3d wi)> g{};  // the factor itself, where it is one of w_i
 };
 
 /// The factors that people forget, double or exchange, at the work's w_o.
 std::vector<Factor> usual_factors(const TrialContext& work);
+/// Those of what is reflected alone (across: of what is refracted), where the index is told.
+std::vector<Factor> factors_of_side(const TrialContext& work, bool across);
 /// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows.
 std::string name_of_constant(const TrialContext& work, double constant);
 /// "4 (w_o.m) and a constant 0.5 = 1/2".
@@ -41,6 +44,8 @@ std::optional<Diagnosis> diagnose_density(const TrialContext& work, int techniqu
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique);
 /// c g p comes to what is drawn: a p that is right on half of the sphere and drawn nowhere else is not off by 2 there.
 bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& found);
+/// The weight of one channel is f cos / p of another, or of their luminance.
+std::optional<Diagnosis> exchanged_channels(const TrialContext& work, const SampleBatch& b, std::size_t most);
 /// What comes with the draws against what is asked: pdf, weight, f.
 std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int technique);
 /// Says of the first verdict that is wrong what explains it, or that nothing usual does; the later ones refer to it.

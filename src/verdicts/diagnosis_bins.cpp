@@ -71,7 +71,7 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
             continue;
         if (!shape && factor.name != "a constant") continue;
         return Diagnosis{factor.name, by.constant, shape ? std::max(1 - by.off / as_is.off, 0.0) : 1,
-            "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant)};
+            "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant), factor.g};
     }
     return {};
 }
@@ -79,13 +79,9 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
 /// c g p must come to what is drawn: a p that is right on half of the sphere and drawn nowhere else is not off by 2
 /// there.
 bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& found) {
-    const Density& d = work.density(technique);
-    for (const Factor& factor : usual_factors(work))
-        if (factor.name == found.name)
-            if (const Binned by = weigh(d, work.first(technique), factor);
-                std::fabs(by.constant / found.constant - 1) < 2e-3 + 5 * by.relative_se)
-                return true;
-    return false;
+    if (!found.g) return false;
+    const Binned by = weigh(work.density(technique), work.first(technique), {found.name, found.g});
+    return std::fabs(by.constant / found.constant - 1) < 2e-3 + 5 * by.relative_se;
 }
 
 }  // namespace crescent::inline verdicts

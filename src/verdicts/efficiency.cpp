@@ -48,7 +48,8 @@ std::optional<double> time_once(
     const Trial& trial, std::span<const Numbers> u, std::vector<Draw>& draws, Efficiency& e) {
     try {
         const auto start = std::chrono::steady_clock::now();
-        for (int t = 0; t < trial.subject->techniques(); ++t) trial.subject->sample(t, trial.wo, u, draws);
+        for (int t = 0; t < trial.subject->techniques(); ++t)
+            trial.subject->sample(t, trial.wo, u, std::span(draws).first(u.size()));
         return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() /
             static_cast<double>(u.size());
     } catch (const SubjectTooSlow&) {
@@ -60,17 +61,19 @@ std::optional<double> time_once(
 
 void measure_costs(std::span<const Trial> trials, const TestSettings& rigour, std::span<Efficiency> all,
     const ProgressMonitor& watch) {
-    constexpr std::size_t turns = 7, n = 2048;
-    std::vector<Numbers> u(n);
-    for (std::size_t i = 0; i < n; ++i) u[i] = drawn_numbers(seed_of(rigour.seed, 0), 0, i, 0, Numbers::most);
+    constexpr std::size_t turns = 7, most = 2048, of_a_program = 512;
+    std::vector<Numbers> u(most);
+    for (std::size_t i = 0; i < most; ++i) u[i] = drawn_numbers(seed_of(rigour.seed, 0), 0, i, 0, Numbers::most);
     std::vector<std::vector<double>> times(all.size());
-    std::vector<Draw> draws(n);
+    std::vector<Draw> draws(most);
     for (std::size_t turn = 0; turn < turns; ++turn)
         for (std::size_t i = 0; i < all.size(); ++i) {
             watch.check();
             const Trial& trial = trials[all[i].trial];
             if (times[i].size() < turn || !trial.subject->draws_at_will()) continue;  // it was given up
-            if (const std::optional<double> ns = time_once(trial, u, draws, all[i])) times[i].push_back(*ns);
+            const std::size_t n = trial.subject->serial() ? of_a_program : most;
+            if (const std::optional<double> ns = time_once(trial, std::span(u).first(n), draws, all[i]))
+                times[i].push_back(*ns);
         }
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (times[i].size() < turns) continue;

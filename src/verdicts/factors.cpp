@@ -54,7 +54,55 @@ void add_light(std::vector<Factor>& out, const TrialContext& work) {
     });
 }
 
+/// Reflection and refraction at a boundary whose index is told. Walter et al. 2007, (13), (14), (16), (17), (22).
+struct Boundary {
+    Vec3d wo;
+    double eta;  // beyond over here
+    bool across(Vec3d wi) const { return wo.z * wi.z < 0; }
+    Vec3d half(Vec3d wi) const {
+        const Vec3d sum = across(wi) ? wo + wi * eta : wo + wi;
+        const double size = length(sum);
+        return size > 1e-12 ? sum * (1 / size) : Vec3d{0, 0, 1};
+    }
+    double fresnel(Vec3d wi) const {
+        const double c = std::fabs(dot(wo, half(wi))), g2 = eta * eta - 1 + c * c;
+        if (g2 <= 0) return 1;
+        const double g = std::sqrt(g2), one = (g - c) / (g + c), two = (c * (g + c) - 1) / (c * (g - c) + 1);
+        return 0.5 * one * one * (1 + two * two);
+    }
+    double refracted(Vec3d wi) const {
+        const Vec3d m = half(wi);
+        const double om = dot(wo, m), im = dot(wi, m);
+        return eta * eta * std::fabs(im) / std::max(sqr(om + eta * im), 1e-300);
+    }
+};
+
+std::optional<Boundary> boundary_of(const TrialContext& work) {
+    if (!work.traits.eta || work.traits.eta->x != work.traits.eta->z) return {};
+    const double eta = work.traits.eta->x;
+    return Boundary{work.trial.wo, work.trial.wo.z > 0 ? eta : 1 / eta};
+}
+
 }  // namespace
+
+std::vector<Factor> factors_of_side(const TrialContext& work, bool across) {
+    std::vector<Factor> out = {{"a constant", [](Vec3d) { return 1.0; }}};
+    const std::optional<Boundary> b = boundary_of(work);
+    if (!b) return out;
+    const auto om = [b = *b](Vec3d w) { return std::fabs(dot(b.wo, b.half(w))); };
+    add(out, "Fresnel", [b = *b](Vec3d w) { return b.fresnel(w); });
+    add(out, "cos theta_i", [](Vec3d w) { return std::fabs(w.z); });
+    add(out, "1 - Fresnel", [b = *b](Vec3d w) { return 1 - b.fresnel(w); });
+    if (!across) {
+        add(out, "4 (w_o.m)", [om](Vec3d w) { return 4 * om(w); });
+        return out;
+    }
+    add(out, "the Jacobian of refraction", [b = *b](Vec3d w) { return b.refracted(w); });
+    add(out, "the Jacobian of refraction for that of reflection",
+        [b = *b, om](Vec3d w) { return 4 * om(w) * b.refracted(w); });
+    add(out, "w_i.m", [b = *b](Vec3d w) { return std::fabs(dot(w, b.half(w))); });
+    return out;
+}
 
 std::vector<Factor> usual_factors(const TrialContext& work) {
     std::vector<Factor> out = {{"a constant", [](Vec3d) { return 1.0; }}};
@@ -65,6 +113,8 @@ std::vector<Factor> usual_factors(const TrialContext& work) {
     add(out, "cos theta_i / cos theta_o", [=](Vec3d w) { return std::fabs(w.z) / cos_o; });
     add_microfacets(out, work);
     add_light(out, work);
+    if (const std::optional<Boundary> b = boundary_of(work))
+        add(out, "Fresnel", [b = *b](Vec3d w) { return b.across(w) ? 1 - b.fresnel(w) : b.fresnel(w); });
     return out;
 }
 

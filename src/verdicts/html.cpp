@@ -51,10 +51,11 @@ std::string histogram(const WeightPicture& w) {
 /// What this page needs beside the style sheet of all.
 constexpr const char* head =
     "<style>.right{color:var(--good)}.inconclusive{color:var(--accent)}.wrong,.error{color:var(--bad);font-weight:600}"
-    ".skipped{color:var(--soft)}.row{display:flex;flex-wrap:wrap;gap:1em}.row figure{margin:0;width:auto}"
-    ".matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .6em}details{margin-bottom:.6em}"
+    ".skipped{color:var(--soft)}.row{display:flex;flex-wrap:wrap;gap:.5em .1em}.row figure{margin:0;width:auto}"
+    ".matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .5em}.matrix th:first-child{white-space:nowrap}"
+    "details{margin-bottom:.6em}"
     "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;outline:1px solid var(--line)}"
-    ".map{position:relative;width:320px}.map canvas{position:absolute;left:40px;top:5px}.map "
+    ".map{position:relative;width:318px}.map canvas{position:absolute;left:40px;top:5px}.map "
     "svg{position:relative;display:block}"
     ".map text,.rose text{font-size:11px;fill:var(--soft)}.map path,.rose path{stroke:var(--soft);fill:none}.rose "
     ".faint{stroke:var(--line)}"
@@ -82,26 +83,32 @@ std::string names_of(const Judgement& j) {
     return names.size() == 1 ? names[0] : fmt::format("{} samplers", names.size());
 }
 
+std::string expected_html(const Verdict& v) {
+    return fmt::format(" <em>{}: {}.</em>", v.waived ? "Waived" : "As the list expects", escape(v.why_expected));
+}
+
 /// One line a finding, then every case with its nine verdicts.
 std::string overview(const Judgement& j) {
     std::string out;
     for (const Finding& f : findings_of(j))
         out += fmt::format("<li><b class={}>{}</b> {}{}", word(f.state), escape(f.arm), escape(told(f)),
-            f.expected ? " <em>As the list expects: " + escape(f.worst->why_expected) + ".</em>" : "");
+            f.expected ? expected_html(*f.worst) : "");
+    for (const std::string& line : j.unmet) out += "<li class=wrong>" + escape(line);
     if (const std::string left = left_out_told(j); !left.empty()) out += "<li class=inconclusive>" + escape(left);
     out = out.empty() ? "<p>Nothing is wrong, nothing was left open.</p>" : "<ul>" + out + "</ul>";
     std::vector<std::string_view> names;
     for (const Verdict& v : j.verdicts)
         if (std::find(names.begin(), names.end(), v.name) == names.end()) names.push_back(v.name);
-    out += "<table class=matrix><tr><th>case";
+    const bool one_arm = std::ranges::all_of(j.verdicts, [&](const Verdict& v) { return v.arm == j.verdicts[0].arm; });
+    out += "<div style=\"overflow-x:auto\"><table class=matrix><tr><th>case";
     for (std::string_view name : names) out += fmt::format("<th>{}", name);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         const Verdict& v = j.verdicts[i];
         if (i == 0 || v.trial != j.verdicts[i - 1].trial || v.arm != j.verdicts[i - 1].arm)
-            out += fmt::format("<tr><th>{} {}", escape(v.arm), escape(v.trial));
+            out += fmt::format("<tr><th>{}{}", one_arm ? "" : escape(v.arm) + " ", escape(v.trial));
         out += fmt::format("<td class={}>{}", word(v.state), word(v.state));
     }
-    return out + "</table>";
+    return out + "</table></div>";
 }
 
 }  // namespace
@@ -115,8 +122,9 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
     frame.lead_html = fmt::format("<p class=\"verdict {0}\">{0}</p>\n", word(j.state)) + overview(j) +
         fmt::format(
             "<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh "
-            "seed.</p>\n",
-            j.tests, j.alpha, j.screened, j.confirmed);
+            "seed{}.</p>\n",
+            j.tests, j.alpha, j.screened, j.confirmed,
+            j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "");
     if (!source.version.empty())
         frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
             escape(source.commit), escape(source.command));
@@ -129,9 +137,8 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
         for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
             const Verdict& v = j.verdicts[i];
             open = open || v.state == State::wrong;
-            rows +=
-                fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state), escape(told(v)),
-                    v.why_expected.empty() ? "" : " <em>As the list expects: " + escape(v.why_expected) + ".</em>");
+            rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state),
+                escape(told(v)), v.why_expected.empty() ? "" : expected_html(v));
         }
         out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
             escape(arm), escape(trial), rows);

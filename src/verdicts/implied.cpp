@@ -16,7 +16,7 @@ namespace {
 nlohmann::ordered_json by_jacobian(const TrialContext& work, double reached) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     if (work.traits.numbers != 2 || work.traits.own_random) return rows;
-    const WarpFinding warp = study_warp(work, 0);
+    const WarpFinding& warp = study_warp(work, 0);
     double mean = 0;
     for (const WarpPoint& p : warp.points) mean += p.jacobian / static_cast<double>(warp.points.size());
     if (warp.points.size() < 512 || mean > 1.1 * reached) return rows;

@@ -55,6 +55,15 @@ bool affords(const Spending& now, std::uint64_t dearest) {
     return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
 }
 
+/// What one w_o may be asked: what is left, less nine tenths of an even share for each of those still to come. What one
+/// does not need the next may have.
+std::size_t share_of(const TestSettings& rigour, std::size_t count, std::uint64_t asked, std::size_t to_come) {
+    constexpr std::size_t enough = 333000;  // of the even share, where more w_o are asked for than the grid has
+    const std::size_t all = std::max(rigour.questions_in_all, count * enough) / 40 * 39, each = all / 10 * 9 / count;
+    const std::size_t kept = asked + to_come * each;
+    return std::min(rigour.questions, std::max(all > kept ? all - kept : 0, each));
+}
+
 }  // namespace
 
 std::vector<Outcome> judge_in_turn(
@@ -69,15 +78,20 @@ std::vector<Outcome> judge_in_turn(
         if (!trials[i].baseline) looks[i] = look(trials[i], i, quick_look, tally);
     }
     std::uint64_t dearest = 0;
+    std::size_t count = 0;
+    for (const Trial& t : trials) count += !t.baseline;
+    std::size_t to_come = count;
     for (std::size_t i : order) {
         watch.check();
         const Spending before = trials[i].subject->spending();
+        TestSettings here = rigour;
+        if (!trials[i].baseline) here.questions = share_of(rigour, count, before.answers, --to_come);
         if (looks[i].cut || !affords(before, trials[i].baseline ? 0 : dearest)) {
             outcomes[i] = std::move(looks[i]);
             const bool slow = !outcomes[i].cut || outcomes[i].cut->state == State::inconclusive;
             if (slow) outcomes[i].cut = left_out(trials[i], rigour);
         } else {
-            outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
+            outcomes[i] = judge_one(trials[i], i, here, tally, watch);
             dearest = std::max(dearest, trials[i].subject->spending().answers - before.answers);
             const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
             if (cut_short) outcomes[i].cut = left_out(trials[i], rigour);

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double step = 0x1p-8;
 constexpr double tiny_step = 0x1p-19;
-constexpr int stencil = 11;  // centre, +-h, +-h/2 along each side, and a tiny move along each
+constexpr std::ptrdiff_t most_suspects = 96;  // that a program is asked about again
+constexpr int stencil = 11;                   // centre, +-h, +-h/2 along each side, and a tiny move along each
 
 /// The other numbers are held: what chooses among lobes stays with its choice.
 std::array<Numbers, stencil> stencil_at(const Numbers& centre, double h = step) {
@@ -89,7 +90,8 @@ Quadrants quadrants(std::span<const Draw> w, double direction_resolution, double
 
 struct Suspect {
     Numbers u;
-    double p, p_j;
+    double p, p_j;  // over the share of the choosing number
+    double share = 1, allowed = 0;
     bool stands = true;
 };
 
@@ -110,6 +112,23 @@ void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& 
             if (s.p * q.largest > 1 - 0.3 * lacking) s.stands = false;
         }
     }
+}
+
+/// A number may choose at a few points alone: seen from the denser side glass lets little through. Every suspect is
+/// asked for its own share; one whose share is not known is let go.
+void recall_choosers(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
+    std::vector<Numbers> at;
+    for (const Suspect& s : suspects) at.push_back(s.u);
+    const Branches branches = follow_branches(work, technique, at);
+    for (std::size_t i = 0; i < suspects.size(); ++i) {
+        Suspect& s = suspects[i];
+        const double share = branches.share[i];
+        s.stands = share > 0 && s.p_j / share * s.share < 1 - s.allowed - branches.known_to / std::max(share, 1e-9);
+        s.p *= s.share / std::max(share, 1e-9);
+        s.p_j *= s.share / std::max(share, 1e-9);
+        s.share = share;
+    }
+    std::erase_if(suspects, [](const Suspect& s) { return !s.stands; });
 }
 
 /// u well inside the square, with their stencils.
@@ -135,7 +154,9 @@ void count_steps(const TrialContext& work, const Derivative& d, std::span<const 
 
 }  // namespace
 
-WarpFinding study_warp(const TrialContext& work, int technique) {
+namespace {
+
+WarpFinding studied(const TrialContext& work, int technique) {
     WarpFinding out;
     if (!work.subject.draws_at_will() || work.traits.own_random) return out;
     const bool several = work.traits.numbers > 2;
@@ -161,10 +182,13 @@ WarpFinding study_warp(const TrialContext& work, int technique) {
         ++out.usable;
         out.points.push_back({w[i].wi, d.j / share, d.error});
         const double pj = w[i].pdf * d.j / share, allowed = 5e-4 + 2 * d.error + branches.known_to / share;
-        if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf / share, pj});
+        if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf / share, pj, share, allowed});
         if (std::fabs(pj - 1) <= allowed) ++one;
     }
     if (!work.traits.has_pdf) return out;
+    if (work.thrifty() && std::ssize(suspects) > most_suspects)
+        suspects.erase(suspects.begin() + most_suspects, suspects.end());
+    if (several) recall_choosers(work, technique, suspects);
     look_closer(work, technique, suspects);
     for (const Suspect& s : suspects) {
         if (!s.stands) continue;
@@ -175,6 +199,14 @@ WarpFinding study_warp(const TrialContext& work, int technique) {
     }
     out.one_to_one = out.usable ? static_cast<double>(one) / static_cast<double>(out.usable) : 0;
     return out;
+}
+
+}  // namespace
+
+const WarpFinding& study_warp(const TrialContext& work, int technique) {
+    auto& kept = work.warps[static_cast<std::size_t>(technique)];
+    if (!kept) kept = std::make_shared<const WarpFinding>(studied(work, technique));
+    return *kept;
 }
 
 }  // namespace crescent::inline verdicts

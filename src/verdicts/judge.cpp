@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "verdicts/asked_once.h"
 #include "verdicts/diagnosis.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
@@ -87,9 +88,13 @@ void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const P
     if (work.subject.has_f() && work.weighs()) out.efficiency = measure_efficiency(work, index);
 }
 
+}  // namespace
+
 void settle(Judgement& j) {
-    bool wrong = false, error = false, doubt = false;
+    bool wrong = !j.unmet.empty(), error = false, doubt = false;
+    j.as_expected = j.unmet.empty();
     for (const Verdict& v : j.verdicts) {
+        if (v.waived) continue;
         wrong = wrong || v.state == State::wrong;
         error = error || v.state == State::error;
         doubt = doubt || v.state == State::inconclusive;
@@ -97,6 +102,8 @@ void settle(Judgement& j) {
     }
     j.state = wrong ? State::wrong : error ? State::error : doubt ? State::inconclusive : State::right;
 }
+
+namespace {
 
 /// A program that broke off while it was asked for an arm to rank against: said where it is ranked, at the same w_o.
 void blame_yardsticks(std::span<const Trial> trials, std::span<const Outcome> outcomes, std::vector<Verdict>& ranks) {
@@ -142,13 +149,15 @@ void fill_up(const Trial& trial, Outcome& out) {
 Outcome judge_one(
     const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
     Outcome out;
+    Trial kept = trial;
+    if (trial.subject->serial()) kept.subject = asked_once(trial.subject);
     try {
         if (trial.baseline) {
             out.efficiency = measure_efficiency(
-                TrialContext(trial, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
+                TrialContext(kept, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
             return out;
         }
-        TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        TrialContext work(kept, rigour, tally, static_cast<std::uint32_t>(index));
         judge_in_order(work, index, out, watch);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);

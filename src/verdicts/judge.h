@@ -24,6 +24,8 @@ struct SubjectTooSlow : SubjectFault {
 
 /// Throws Interrupted when the watch says stop.
 Judgement judge(std::span<const Trial> trials, const TestSettings& rigour, ProgressMonitor& watch);
+/// The state of the whole: everything that the caller does not expect, and expectations that nothing meets.
+void settle(Judgement& judgement);
 /// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
 std::string what_is_wrong(const Judgement& judgement);
 /// How many statistical tests the trials ask for.

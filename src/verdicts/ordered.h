@@ -107,6 +107,7 @@ struct Branches {
 };
 /// Whether the third number and on choose between continuous branches.
 Branches follow_branches(const TrialContext& work, int technique, std::span<const Numbers> at);
-WarpFinding study_warp(const TrialContext& work, int technique);
+/// Looked at once; kept with the work.
+const WarpFinding& study_warp(const TrialContext& work, int technique);
 
 }  // namespace crescent::inline verdicts

@@ -1,4 +1,5 @@
 // physics: f is reciprocal, reflects no more than it gets, and the white furnace (L = 1) comes out as quadrature says.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -16,6 +17,9 @@ struct Reciprocity {
     Pair worst{};
     double one = 0, other = 0;  // f(a, b), and what f(b, a) makes of it
     int channel = 0;
+    /// Of pairs across the surface, in the first channel, from above to below: ln of f(b, a) over what it ought to be,
+    /// and of cos a / cos b.
+    std::vector<double> off, cosines;
 };
 
 /// Directions at large above the surface; below it for odd i, where both sides are asked.
@@ -73,6 +77,11 @@ Reciprocity reciprocity(const TrialContext& work) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         ++out.tried;
         out.across += pairs[i].wo.z * pairs[i].wi.z < 0;
+        if (const Pair& p = pairs[i]; p.wo.z * p.wi.z < 0 && one[i].x > 0 && two[i].x > 0) {
+            const double down = p.wo.z > 0 ? 1 : -1;
+            out.off.push_back(down * math::log(two[i].x / (due_ratio(work, p, 0) * one[i].x)));
+            out.cosines.push_back(down * math::log(std::fabs(p.wo.z / p.wi.z)));
+        }
         bool broken = false;
         for (int c = 0; c < work.traits.channels; ++c) {
             const double k = due_ratio(work, pairs[i], c);
@@ -101,6 +110,25 @@ Reciprocity reciprocity(const TrialContext& work) {
     return out;
 }
 
+/// The factor that f lacks or has too often across the surface: eta^2, a cosine, or none that is known.
+std::string missing_across(const TrialContext& work, const Reciprocity& r) {
+    const auto nine_of_ten = [&](auto&& of) {
+        std::size_t inside = 0;
+        for (std::size_t i = 0; i < r.off.size(); ++i) inside += std::fabs(of(i)) <= 2e-3;
+        return 10 * inside >= 9 * r.off.size();
+    };
+    if (r.off.size() < 16 || !work.traits.eta) return "";
+    std::vector<double> sorted = r.off;
+    std::nth_element(sorted.begin(), sorted.begin() + std::ssize(sorted) / 2, sorted.end());
+    const double middle = sorted[sorted.size() / 2], power = middle / (2 * math::log(work.traits.eta->x));
+    if (std::round(power) != 0 && std::fabs(power - std::round(power)) < 0.01 &&
+        nine_of_ten([&](std::size_t i) { return r.off[i] - middle; }))
+        return "eta^2";
+    for (double sign : {1.0, -1.0})
+        if (nine_of_ten([&](std::size_t i) { return r.off[i] - sign * r.cosines[i]; })) return "cos theta_i";
+    return "";
+}
+
 }  // namespace
 
 Verdict judge_physics(const TrialContext& work) {
@@ -122,6 +150,11 @@ Verdict judge_physics(const TrialContext& work) {
             across ? fmt::format(" and not {:.6g} times that, as the index has it", due_ratio(work, r.worst, r.channel))
                    : "",
             r.worst.wo.x, r.worst.wo.y, r.worst.wo.z, r.worst.wi.x, r.worst.wi.y, r.worst.wi.z, r.broken, r.tried);
+        if (const std::string factor = missing_across(work, r); !factor.empty()) {
+            v.evidence["diagnosis"] = factor;
+            v.say += fmt::format(
+                " What explains it: {} is left out of f across the surface, or stands there twice.", factor);
+        }
         return v;
     }
     if (creates_energy(work, albedo, v)) return v;

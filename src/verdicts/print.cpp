@@ -47,9 +47,11 @@ std::string expected_ones(const Judgement& judgement) {
     std::map<std::string, int> lines;  // told once each, with how often
     for (const Verdict& v : judgement.verdicts)
         if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
-            ++lines[fmt::format("{}: {} {} as the list expects: {}", v.arm, word(v.state), v.name, v.why_expected)];
-    std::string out = lines.empty() ? "" : "\n";
+            ++lines[fmt::format("{}: {} {} as {}: {}", v.arm, word(v.state), v.name,
+                v.waived ? "waived" : "the list expects", v.why_expected)];
+    std::string out = lines.empty() && judgement.unmet.empty() ? "" : "\n";
     for (const auto& [line, count] : lines) out += fmt::format("{} ({} cases)\n", line, count);
+    for (const std::string& line : judgement.unmet) out += line + "\n";
     return out;
 }
 
@@ -101,6 +103,7 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
     root["failed_once"] = judgement.screened;
     root["failed_twice"] = judgement.confirmed;
     if (judgement.questions > 0) root["questions"] = judgement.questions;
+    if (!judgement.unmet.empty()) root["unmet_expectations"] = judgement.unmet;
     root["asked_for"] = cases_of(judgement);
     root["left_out"] = nlohmann::ordered_json::array();
     for (const LeftOut& l : judgement.left_out)
@@ -116,6 +119,7 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
         if (!v.settle.empty()) one["settle"] = v.settle;
         one["expected"] = v.expected;
         if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
+        if (v.waived) one["waived"] = true;
         one["evidence"] = v.evidence;
         root["verdicts"].push_back(std::move(one));
     }
@@ -148,6 +152,8 @@ std::string verdict_junit(const Judgement& judgement) {
             fmt::format("{}: {}", word(v.state), first_sentence(v.say)),
             v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle), v.seconds});
     }
+    for (const std::string& line : judgement.unmet)
+        suite.cases.push_back({"crescent check", "expectations", Case::failed, line, line, 0});
     return junit_text(suite);
 }
 

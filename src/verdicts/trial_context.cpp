@@ -70,7 +70,8 @@ TestSettings TestSettings::thorough() {
     r.rings = 30;
     r.sectors = 32;
     r.evaluations = 1000000;
-    r.questions = 12000000;
+    r.questions = 6000000;
+    r.questions_in_all = 72000000;
     return r;
 }
 
@@ -96,14 +97,23 @@ TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& co
 
 std::size_t TrialContext::affordable(std::size_t wanted, std::size_t keep) const {
     if (!subject.serial()) return wanted;
-    const std::size_t asked = static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep;
+    constexpr std::size_t small_change = 75000;  // the warp, conditioning and the least of every integral
+    const std::size_t asked =
+        static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep + small_change;
     return std::min(wanted, std::max<std::size_t>(rigour.questions > asked ? rigour.questions - asked : 0, 2000));
+}
+
+std::size_t TrialContext::for_later() const {
+    const std::size_t asked = static_cast<std::size_t>(subject.spending().answers - asked_before_);
+    const std::size_t left = rigour.questions > asked ? rigour.questions - asked : 0;
+    return std::min(rigour.questions / (subject.has_f() ? 3 : 8), left / 2);
 }
 
 void TrialContext::redraw(std::uint32_t seed) {
     seed_ = seed;
     unmet_ = {};
     first_weights_ = {};
+    warps = {};
     for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,9 +24,10 @@ struct TestSettings {
     std::uint32_t seed = 1;
     std::uint64_t draws = std::uint64_t{1} << 15;  // per trial and technique
     int rings = 20, sectors = 16;
-    std::size_t evaluations = 80000;  // of one integral, at most
-    bool pictures = false;            // keep maps and weights for the HTML page
-    std::size_t questions = 2000000;  // that a program is asked at one w_o, at most; pictures and times apart
+    std::size_t evaluations = 80000;              // of one integral, at most
+    bool pictures = false;                        // keep maps and weights for the HTML page
+    std::size_t questions = 500000;               // that a program is asked at one w_o, at most
+    std::size_t questions_in_all = 4000000;       // and at the w_o of the grid together
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees in place of the grid; empty: the grid
     bool accept_few = false;  // a program too slow for every w_o is judged by those that were looked at
     // Two-stage level: a test fails where p < screen on the first seed and p < confirm on a fresh one with more draws.
@@ -87,6 +89,8 @@ struct Unmet {
     bool heavy = false;          // it explains what the mean lacks, and so many draws need not have met it
 };
 
+struct WarpFinding;
+
 class TrialContext {
 public:
     TrialContext(const Trial& trial, const TestSettings& rigour, TestCounts& tally, std::uint32_t index);
@@ -99,6 +103,10 @@ public:
     TestCounts& tally;
     const JudgedSampler& subject;
     const Traits traits;
+
+    /// A program is asked no more than its answers are worth: integrals are known to a fifth of what the tests grant.
+    bool thrifty() const { return subject.serial() && !rigour.full; }
+    double tolerance() const { return thrifty() ? 2e-5 : 5e-6; }
 
     /// Fresh draws for another seed; bins and integrals stay.
     void redraw(std::uint32_t seed);
@@ -162,6 +170,7 @@ public:
         return true;
     }
 
+    mutable std::array<std::shared_ptr<const WarpFinding>, 2> warps;  // by technique; see study_warp
     std::vector<BinMap> maps;
     std::vector<WeightPicture> pictures;
     void measure_density();  // fills density(); apart, since an invalid sampler has none
@@ -171,8 +180,8 @@ private:
     std::uint64_t asked_before_ = 0;  // of a program, when this trial began
     std::vector<SampleBatch> first_;
     std::vector<Density> density_;
-    static constexpr std::size_t for_later =
-        170000;  // questions for the verdicts after the density and its confirmation
+    /// Questions for the verdicts after the density and its confirmation.
+    std::size_t for_later() const;
     std::vector<Vec3d> guides_, rims_;
     std::size_t drawn_guides_ = 0;  // the first of the guides
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
@@ -196,7 +205,8 @@ private:
     Batch batch_of(int technique, const SphereMap& map) const;
     void grant_doubts(int technique, Density& d) const;
     void share_nothing(int technique, Density& d) const;
-    void estimate_null_fraction(int technique, Density& d, std::uint64_t points) const;
+    void estimate_null_fraction(int technique, Density& d, std::uint64_t points, std::optional<double> told) const;
+    bool all_alike_below(int technique) const;
 };
 
 /// p-values.

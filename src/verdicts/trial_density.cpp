@@ -9,6 +9,12 @@
 
 namespace crescent::inline verdicts {
 
+namespace {
+
+struct OutOfQuestions {};
+
+}  // namespace
+
 void TrialContext::measure_density() {
     find_guides();
     if (!traits.has_pdf) {  // bins alone
@@ -40,22 +46,37 @@ void TrialContext::measure_density() {
         }
         Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations)
                           : density_about(t, n, true, rigour.evaluations);
-        if (d.mass.error > 5e-5 && circle_) {
-            Density other = density_about(t, *circle_, false, rigour.evaluations);
+        const double enough = thrifty() ? 8e-5 : 5e-5;
+        const std::size_t look = thrifty() ? rigour.evaluations / 3 : rigour.evaluations;  // at other coordinates
+        if (d.mass.error > enough && circle_) {
+            Density other = density_about(t, *circle_, false, look);
             if (other.mass.error < d.mass.error) d = std::move(other);
         }
-        if (d.mass.error > 5e-5) {
-            Density other = sharp ? density_about(t, n, true, rigour.evaluations)
-                                  : density_about(t, normalize(peak), false, rigour.evaluations);
+        if (d.mass.error > enough) {
+            Density other = sharp ? density_about(t, n, true, look) : density_about(t, normalize(peak), false, look);
             if (other.mass.error < d.mass.error) d = std::move(other);
-            if (d.mass.error > 1e-4)
-                d = density_about(t, d.map.frame.n, d.about_n, affordable(6 * rigour.evaluations, for_later));
+            if (d.mass.error > 1e-4) {
+                // A program answered for most of the cells so far, which cost nothing now.
+                const std::size_t known = thrifty() ? d.mass.evaluations : 0;
+                const Batch ask = batch_of(t, d.map);
+                const auto while_affordable = [&](std::span<const Vec2d> at, std::span<double> out) {
+                    if (affordable(at.size() + 2000, for_later()) < at.size() + 2000) throw OutOfQuestions{};
+                    ask(at, out);
+                };
+                other = d;
+                const SamplesPerBin seen = witnesses_of(t, d);
+                try {
+                    other.mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
+                        while_affordable, {tolerance(), affordable(6 * rigour.evaluations, for_later()) + known, 1e-4},
+                        &seen);
+                    if (other.mass.error < d.mass.error) d = std::move(other);
+                } catch (const OutOfQuestions&) {}  // what is known so far stays
+            }
         }
         share_nothing(t, d);
-        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5)  // a failure needs a second quadrature that confirms it
-            d.second = density_about(
-                t, d.about_n ? normalize(peak) : n, !d.about_n, affordable(6 * rigour.evaluations, for_later), 2e-5)
-                           .mass;
+        // A failure needs a second quadrature that confirms it.
+        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se)
+            d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
 }
@@ -72,14 +93,14 @@ std::optional<Density> TrialContext::table_density(int t) const {
         if (!mesh) continue;
         const SamplesPerBin seen = witnesses_of(t, d);
         const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
-        const std::size_t most = subject.serial() && !rigour.full ? affordable(400000, for_later) / 2 : 10000000;
+        const std::size_t most = subject.serial() && !rigour.full ? affordable(400000, for_later()) / 2 : 10000000;
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
             mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
-                {2.5e-6, affordable(6 * rigour.evaluations, for_later), 5e-5}, crowd, &seen);
+                {2.5e-6, affordable(6 * rigour.evaluations, for_later()), 5e-5}, crowd, &seen);
         else
             mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
-                affordable(4 * rigour.evaluations, for_later));
+                affordable(4 * rigour.evaluations, for_later()));
         if (!mass) continue;
         d.mass = std::move(*mass);
         grant_doubts(t, d);
@@ -222,12 +243,12 @@ std::vector<Rect> TrialContext::cells_of(const Density& d) const {
 
 Density TrialContext::density_about(
     int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
-    const std::size_t evaluations = affordable(wanted, for_later);
+    const std::size_t evaluations = affordable(wanted, for_later());
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
     const SamplesPerBin witnesses = witnesses_of(technique, d);
     d.mass = integrate(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
-        {edge_mass / 20, evaluations, edge_mass}, &witnesses);
+        {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, &witnesses);
     grant_doubts(technique, d);
     return d;
 }

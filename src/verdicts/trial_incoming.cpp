@@ -32,8 +32,8 @@ bool hidden(const TrialLight& light, const TrialDisk& own, Vec3d y) {
 }
 
 /// Adds int f L cos over what a disk shows, above the fill that it hides; of_light: f cos where it counts.
-void add_disk(
-    Integral& total, const TrialLight& light, const TrialDisk& disk, const OfLight& of_light, std::size_t evaluations) {
+void add_disk(Integral& total, const TrialLight& light, const TrialDisk& disk, const OfLight& of_light,
+    double tolerance, std::size_t evaluations) {
     const Frame<double> frame = frame_about(disk.normal);
     std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
     for (int i = 0; i < 4; ++i)
@@ -53,7 +53,7 @@ void add_disk(
             of_light(wi, out);
             for (std::size_t i = 0; i < out.size(); ++i) out[i] *= per_area[i] * strength;
         },
-        {5e-6, evaluations});
+        {tolerance, evaluations});
     total.value += of_disk.value;
     total.error += of_disk.error;
     total.settled = total.settled && of_disk.settled;
@@ -93,10 +93,12 @@ Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const
                 of_light(wi, out);
                 for (double& v : out) v *= 2 * pi * fill;
             },
-            {5e-6, affordable(2 * rigour.evaluations, for_confirmation) / 2});
+            {tolerance(), affordable(2 * rigour.evaluations, for_confirmation) / 2});
     }
     for (const TrialDisk& disk : light.disks)
-        if (!even) add_disk(total, light, disk, of_light, affordable(rigour.evaluations / 2, for_confirmation) / 2);
+        if (!even)
+            add_disk(
+                total, light, disk, of_light, tolerance(), affordable(rigour.evaluations / 2, for_confirmation) / 2);
     return total;
 }
 

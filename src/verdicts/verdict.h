@@ -30,6 +30,7 @@ struct Verdict {
     nlohmann::ordered_json timing = nlohmann::ordered_json::object();
     bool expected = true;      // the list expects this state
     std::string why_expected;  // said where a wrong one is expected
+    bool waived = false;       // the caller expects it, so that it does not count
 };
 
 /// Bins of one density test, for the maps of the HTML page.
@@ -59,6 +60,7 @@ struct LeftOut {
 struct Judgement {
     std::vector<Verdict> verdicts;
     std::vector<LeftOut> left_out;
+    std::vector<std::string> unmet;  // expectations of the caller that nothing meets, a sentence each
     std::vector<BinMap> maps;
     std::vector<WeightPicture> weights;
     double alpha = 0;

@@ -1,0 +1,159 @@
+// What a program is asked: no more than quick mode promises, right samplers are conclusive within that, and the faults
+// that renderers have are caught within it.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/planted/planted.h"
+#include "laws/right/renderers.h"
+#include "verdicts/asked_once.h"
+#include "verdicts/list.h"
+
+namespace crescent {
+namespace {
+
+/// A sampler as a program behind a pipe is one: a single thread asks it, and its answers are counted.
+class Counted : public JudgedSampler {
+public:
+    explicit Counted(std::shared_ptr<const JudgedSampler> inner) : inner_(std::move(inner)) {}
+    std::string name() const override { return inner_->name(); }
+    Traits traits() const override { return inner_->traits(); }
+    bool serial() const override { return true; }
+    Spending spending() const override { return {answers_, 0, 0}; }
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        answers_ += u.size();
+        inner_->sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner_->pdf(t, at, out);
+    }
+    bool has_f() const override { return inner_->has_f(); }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner_->f(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        answers_ += at.size();
+        inner_->f_channels(at, out);
+    }
+
+private:
+    std::shared_ptr<const JudgedSampler> inner_;
+    mutable std::uint64_t answers_ = 0;
+};
+
+struct Seen {
+    Judgement judgement;
+    std::uint64_t most = 0;  // at one w_o
+};
+
+/// Every w_o is judged by a call of its own.
+Seen judged(const std::vector<Trial>& trials) {
+    Seen out;
+    for (const Trial& t : trials) {
+        const auto program = std::make_shared<Counted>(t.subject);
+        Trial one = t;
+        one.subject = program;
+        ProgressMonitor watch;
+        const Judgement j = judge({&one, 1}, TestSettings::quick(), watch);
+        for (const Verdict& v : j.verdicts) out.judgement.verdicts.push_back(v);
+        out.most = std::max(out.most, program->spending().answers);
+    }
+    return out;
+}
+
+std::vector<Trial> at(const Recipe& recipe, std::initializer_list<std::pair<double, double>> grid) {
+    std::vector<Trial> out;
+    for (const auto& [theta, azimuth] : grid) out.push_back(trial_of_subject(subject_of(recipe), theta, azimuth));
+    return out;
+}
+
+constexpr std::uint64_t promised = 500000;
+
+/// Seen from the denser side, past the angle of total reflection, a number chooses at a few points alone.
+TEST(Programs, OfRightGlassAreConclusiveWithinWhatTheyAreAsked) {
+    const RoughGlass sharp{0.05, 1.5}, broad{0.5, 1.5};
+    for (const Recipe& r : {recipe_of(sharp), recipe_of(broad)}) {
+        const Seen seen = judged(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
+        for (const Verdict& v : seen.judgement.verdicts)
+            EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
+                << r.parameters << " " << v.trial << " " << v.name << ": " << v.say;
+        EXPECT_LE(seen.most, promised);
+        EXPECT_GT(seen.most, 100000u);
+    }
+}
+
+TEST(Programs, OfCoatsLayersAndAnisotropicLobesAreConclusiveWithinWhatTheyAreAsked) {
+    Layers layers;
+    layers.alpha = 0.1;
+    for (const Recipe& r : {recipe_of(SmoothCoat{}), recipe_of(layers), ggx_visible_at(0.05, 0.5)}) {
+        const Seen seen = judged(at(r, {{45, 130}, {89, 180}}));
+        for (const Verdict& v : seen.judgement.verdicts)
+            EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
+                << r.family << " " << v.trial << " " << v.name << ": " << v.say;
+        EXPECT_LE(seen.most, promised) << r.family;
+    }
+}
+
+/// p jumps along thousands of curves, and is not what is drawn: nothing is ever settled.
+TEST(Programs, AreAskedNoMoreWhereNothingIsSettled) {
+    Recipe wrinkled = ggx_visible_at(0.3, 0.3);
+    wrinkled.pdf = [](Vec3d, Vec3d wi) {
+        return wi.z > 0 ? (std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 1.9 : 0.1) / (2 * pi)
+                        : 0.0;
+    };
+    const Seen seen = judged(at(wrinkled, {{75, 310}}));
+    EXPECT_GT(seen.most, 100000u);
+    EXPECT_LE(seen.most, promised);
+}
+
+/// All w_o of the grid in one call: four million questions, the greatest share of which none needs.
+TEST(Programs, AreAskedFourMillionTimesInAll) {
+    const auto program = std::make_shared<Counted>(subject_of(recipe_of(RoughGlass{0.3, 1.5})));
+    std::vector<Trial> trials = trials_of_subject(program, false);
+    ASSERT_EQ(std::count_if(trials.begin(), trials.end(), [](const Trial& t) { return !t.baseline; }), 12);
+    ProgressMonitor watch;
+    const Judgement j = judge(trials, TestSettings::quick(), watch);
+    EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+    EXPECT_LE(j.questions, 4000000u);
+    EXPECT_EQ(j.questions, program->spending().answers);
+}
+
+class FaultsOfPrograms : public testing::TestWithParam<std::size_t> {};
+
+/// A fourth of the faults of renderers, each at one w_o after the other until it is caught.
+TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
+    const std::vector<PlantedFault> faults = renderer_faults();
+    for (std::size_t i = GetParam(); i < faults.size(); i += 4) {
+        bool caught = false;
+        for (const Trial& trial : faults[i].trials) {
+            const Seen seen = judged({trial});
+            EXPECT_LE(seen.most, promised) << faults[i].name;
+            for (const Verdict& v : seen.judgement.verdicts) caught = caught || v.state == State::wrong;
+            if (caught) break;
+        }
+        EXPECT_TRUE(caught) << faults[i].name;
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Quarter, FaultsOfPrograms, testing::Values(0u, 1u, 2u, 3u));
+
+TEST(AskedOnce, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
+    const auto program = std::make_shared<Counted>(subject_of(ggx_visible_at(0.3, 0.3)));
+    const auto kept = asked_once(program);
+    const Vec3d wo = tilt(30), a = tilt(20, 10), b = tilt(50, 200), c = tilt(70, 300);
+    const std::vector<Pair> first = {{wo, a}, {wo, b}, {wo, a}}, second = {{wo, c}, {wo, b}, {a, b}};
+    std::vector<double> out(3), direct(3);
+    kept->f(first, out);
+    EXPECT_EQ(program->spending().answers, 2u) << "one of three stood there twice";
+    kept->f(second, out);
+    EXPECT_EQ(program->spending().answers, 4u);
+    program->f(second, direct);
+    EXPECT_EQ(out, direct);
+    kept->exact_pdf(0, second, out);
+    program->pdf(0, second, direct);
+    EXPECT_EQ(out, direct);
+}
+
+}  // namespace
+}  // namespace crescent

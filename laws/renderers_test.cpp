@@ -1,0 +1,156 @@
+// Samplers as renderers have them: several random numbers, both sides, delta parts, colour, no w_o, no pdf, a state;
+// and what programs say of themselves.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/right/renderers.h"
+#include "verdicts/list.h"
+#include "verdicts/pipe.h"
+#include "verdicts/pipe_greeting.h"
+
+namespace crescent {
+namespace {
+
+Judgement judged(const Recipe& recipe, double theta = 45) {
+    ProgressMonitor watch;
+    TestSettings rigour;
+    rigour.draws = 8192;
+    const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
+    return judge({&trial, 1}, rigour, watch);
+}
+
+const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no such verdict");
+}
+
+TEST(Renderers, GlassIsJudgedFromBothSides) {
+    for (double theta : {45.0, 135.0}) {
+        const Judgement j = judged(recipe_of(RoughGlass{}), theta);
+        EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+        EXPECT_NE(named(j, "identity").say.find("on every branch"), std::string::npos) << named(j, "identity").say;
+        EXPECT_NE(named(j, "physics").say.find("pairs across the surface"), std::string::npos);
+    }
+}
+
+TEST(Renderers, DeltaPartsAreToldWithTheirShareAndWeight) {
+    const Judgement j = judged(recipe_of(SmoothCoat{}));
+    EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+    const auto& parts = named(j, "density").evidence["delta_parts"];
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_DOUBLE_EQ(parts[0]["q"].get<double>(), 0.3);
+    EXPECT_NEAR(named(j, "normalised").evidence["drawn_delta"].get<double>(), 0.3, 1e-3);
+    EXPECT_EQ(judged(smooth_glass(1.5)).state, State::right) << what_is_wrong(judged(smooth_glass(1.5)));
+}
+
+TEST(Renderers, EveryChannelCountsForEnergy) {
+    const Judgement j = judged(recipe_of(SmoothCoat{0.2, 0.3, {0.5, 0.5, 1.01}}));
+    EXPECT_EQ(named(j, "physics").state, State::wrong);
+    EXPECT_NE(named(j, "physics").say.find("in the third channel"), std::string::npos) << named(j, "physics").say;
+}
+
+TEST(Renderers, ASkyHasNoViewAndIsJudgedOnce) {
+    Dice dice(3);
+    const auto sky = subject_of(recipe_of(sky_with_sun(dice, 32, 64, 0.5, true)));
+    const std::vector<Trial> trials = trials_of_subject(sky, false);
+    ASSERT_EQ(trials.size(), 1u);
+    EXPECT_EQ(trials[0].text(), "no w_o");
+    ProgressMonitor watch;
+    const Judgement j = judge(trials, TestSettings::quick(), watch);
+    EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+    EXPECT_EQ(named(j, "normalised").evidence["quadrature_error"].get<double>(), 0) << "its texels are summed";
+}
+
+/// cos / pi over the upper half, asked of no pdf.
+TEST(Renderers, WithoutAPdfTheDensityThatDrawsImplyIsTold) {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.traits.has_pdf = false;
+    r.sample = [](Vec3d, const Numbers& u) {
+        const double s = std::sqrt(u[0]), phi = 2 * pi * u[1];
+        return Draw{{s * std::cos(phi), s * std::sin(phi), std::sqrt(1 - u[0])}, 1};
+    };
+    r.pdf = [](Vec3d, Vec3d) { return 1.0; };
+    const Judgement j = judged(r);
+    EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
+    const Verdict& v = named(j, "density");
+    EXPECT_EQ(v.state, State::skipped);
+    ASSERT_EQ(v.evidence["implied_by"], "jacobian") << v.say;
+    for (const auto& row : v.evidence["implied_density"]["rows"])
+        EXPECT_NEAR(row[3].get<double>() * pi / row[2].get<double>(), 1, 0.02);
+}
+
+TEST(Renderers, ThatDrawTheirOwnNumbersAreJudgedWithoutWhatNeedsThem) {
+    for (bool says : {false, true}) {
+        Recipe r = recipe_of(SmoothCoat{});
+        r.traits.own_random = says;
+        const auto dice = std::make_shared<Dice>(5);
+        r.sample = [coat = SmoothCoat{}, dice](Vec3d wo, const Numbers&) {
+            Numbers u;
+            for (int k = 0; k < 3; ++k) u[k] = dice->uniform(0, 1);
+            return coat.sample(wo, u);
+        };
+        const Judgement j = judged(r);
+        EXPECT_EQ(named(j, "identity").state, says ? State::right : State::wrong) << named(j, "identity").say;
+        EXPECT_EQ(named(j, "density").state, State::right) << named(j, "density").say;
+    }
+}
+
+TEST(Greetings, SayWhatAProgramIs) {
+    Greeting g;
+    EXPECT_EQ(
+        read_greeting("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
+                      "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
+            g),
+        "");
+    EXPECT_EQ(g.name, "my glass");
+    EXPECT_EQ(g.traits.numbers, 3);
+    EXPECT_EQ(g.traits.channels, 3);
+    EXPECT_TRUE(g.traits.delta && g.weight && g.f_cos && g.blocks && g.traits.importance && g.traits.own_random);
+    EXPECT_FALSE(g.traits.reciprocal || g.hemisphere);
+    EXPECT_EQ(g.traits.wo, Traits::Asked::both);
+    EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
+    EXPECT_EQ(g.traits.bits, 24);
+}
+
+TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
+    const auto fault = [](const char* answer) {
+        Greeting g;
+        return read_greeting(answer, g);
+    };
+    EXPECT_NE(fault("hello 2 x colour=3").find("the known ones are u, domain, wo, channels"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x u=9").find("expected a whole number from 1 to 8"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
+    EXPECT_NE(fault("hello 2 u=3").find("no name"), std::string::npos);
+    EXPECT_NE(fault("hello 3 x").find("got 'hello 3 x'"), std::string::npos);
+    EXPECT_EQ(fault("hello 1 x y=z"), "") << "protocol 1 has no keys: that is its name";
+}
+
+std::string fault_of(const std::string& program) {
+    PipeLimits limits;
+    limits.hello_seconds = limits.quiet_seconds = 2;
+    try {
+        const auto pipe = start_pipe(program, limits);
+        std::vector<Numbers> u(10, {0.5, 0.5});
+        std::vector<Draw> out(10);
+        pipe->sample(0, {0, 0, 1}, u, out);
+    } catch (const SubjectFault& fault) { return fault.what(); }
+    return "";
+}
+
+/// The answer to f is a block of one NaN; then come an error, and a block of another size.
+TEST(Greetings, BlocksThatSayAnErrorAreTold) {
+    const std::string start =
+        "read hello; echo hello 2 x block=f64; head -c 56 >/dev/null; printf "
+        "'\\001\\000\\000\\000\\000\\000\\000\\000\\000\\000\\370\\177'; ";
+    EXPECT_NE(
+        fault_of(start + "head -c 408 >/dev/null; printf '\\000\\000\\000\\000\\007\\000\\000\\000no luck'; sleep 3")
+            .find("got an error: 'no luck'"),
+        std::string::npos);
+    EXPECT_NE(fault_of(start + "head -c 408 >/dev/null; printf '\\003\\000\\000\\000'; sleep 3")
+                  .find("got a block of 3 rows for one of 10"),
+        std::string::npos);
+}
+
+}  // namespace
+}  // namespace crescent
