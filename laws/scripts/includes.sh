@@ -28,7 +28,7 @@ awk '
         }
         # Beside the public face: the matchers, which need GoogleTest, verdicts alone, and what `crescent check` judges
         # of the laws: planted faults, right samplers.
-        else if (from[1] != "src" && from[1] != "laws" && target != "crescent.h" &&
+        else if (from[1] != "src" && from[1] != "laws" && target != "crescent.h" && target != "core.h" &&
                  target !~ /^(verdicts\/(gtest|user|print)|laws\/(planted\/planted|right\/law))\.h$/) {
             dir = FILENAME; sub(/[^\/]*$/, "", dir)
             if (system("test -f \"" dir target "\" -o -f \"" from[1] "/" target "\"") != 0)

@@ -2,84 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "color/rgb.h"
-#include "estimator/disk_quadrature.h"
 #include "estimator/estimator.h"
-#include "estimator/lobe_albedo.h"
+#include "estimator/pixel_quadrature.h"
 #include "math/functions.h"
 #include "simd/random.h"
 
 namespace crescent::inline estimator {
 
 namespace {
-
-/// One table for each lobe of a scene.
-class Albedos {
-public:
-    explicit Albedos(const Scene& scene) {
-        for (std::size_t k = 0; k < scene.shapes().size(); ++k) {
-            Hit hit;
-            hit.shape = static_cast<int>(k);
-            const Surface surface = scene.surface(hit);
-            if (surface.rho_s > 0) tables_.try_emplace(key(surface), surface.brdf, surface.s, surface.alpha);
-        }
-    }
-    const LobeAlbedo& of(const Surface& surface) const { return tables_.at(key(surface)); }
-
-private:
-    using Key = std::tuple<LobeKind, double, double>;
-    static Key key(const Surface& surface) { return {surface.brdf, surface.s, surface.alpha}; }
-    std::map<Key, LobeAlbedo> tables_;
-};
-
-void store(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error) {
-    film.r[at] = static_cast<float>(radiance[0]);
-    film.g[at] = static_cast<float>(radiance[1]);
-    film.b[at] = static_cast<float>(radiance[2]);
-    film.y[at] = static_cast<float>(luminance(radiance));
-    film.error[at] = static_cast<float>(error);
-}
-
-/// The radiance of one pixel by quadrature, and the error of its Y.
-class Quadrature {
-public:
-    explicit Quadrature(const Scene& scene) : scene_(scene), albedos_(scene) {
-        for (std::size_t k = 0; k < scene.lights().size(); ++k) disks_.emplace_back(scene, k);
-    }
-
-    std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) const {
-        const Rgb& fill = scene_.fill();
-        double albedo = 0, error = 0;
-        if (surface.rho_s > 0) {
-            const LobeAlbedo& table = albedos_.of(surface);
-            albedo = table(dot(hit.n, hit.wo));
-            error = surface.rho_s * surface.tinted(fill) * table.error(dot(hit.n, hit.wo));
-        }
-        Rgb out{};
-        for (std::size_t c = 0; c < 3; ++c)
-            out[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * surface.tint[c] * albedo);
-        for (std::size_t k = 0; k < disks_.size(); ++k) {
-            const DiskIntegral d = disks_[k](hit, surface);
-            Rgb part{};
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double step = scene_.lights()[k].radiance[c] - fill[c];
-                out[c] += step * (surface.rho_d[c] * d.diffuse + surface.rho_s * surface.tint[c] * d.lobe);
-                part[c] = std::fabs(step) *
-                    (surface.rho_d[c] * d.diffuse_error + surface.rho_s * surface.tint[c] * d.lobe_error);
-            }
-            error += luminance(part);
-        }
-        return {out, error};
-    }
-
-private:
-    const Scene& scene_;
-    Albedos albedos_;
-    std::vector<DiskQuadrature> disks_;
-};
 
 std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double>& exponents) {
     std::vector<Scene> scenes;
@@ -190,7 +122,7 @@ public:
             if (sites_.lobe >= 0 && may_be_missed(sites_, i, k, disk_n_))
                 variance += sqr(rho_s * (tinted(scene_.lights()[k].radiance) - tinted(fill)));
         }
-        store(film, sites_.pixel[i], out, std::sqrt(variance));
+        store_pixel(film, sites_.pixel[i], out, std::sqrt(variance));
     }
 
 private:
@@ -237,7 +169,7 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
 std::vector<ReferenceFilm> quadrature_reference(
     const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& watch, TileCheckpoint* keeper) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
-    const std::vector<Quadrature> integrals(scenes.begin(), scenes.end());
+    const std::vector<PixelQuadrature> integrals(scenes.begin(), scenes.end());
     const auto pixel = [&](int i, int j, std::vector<ReferenceFilm>& films) {
         const auto hit = scenes[0].primary(i, j);
         if (!hit) return;
@@ -250,7 +182,7 @@ std::vector<ReferenceFilm> quadrature_reference(
                 continue;
             }
             const auto [radiance, error] = integrals[e](*hit, surface);
-            store(films[e], at, radiance, error);
+            store_pixel(films[e], at, radiance, error);
         }
     };
     return by_tiles(

@@ -10,8 +10,8 @@
 #include "meters/evidence_measure.h"
 #include "meters/furnace.h"
 #include "meters/meters.h"
+#include "meters/region_tail.h"
 #include "meters/quantity.h"
-#include "stats/tail.h"
 #include "run/stopping.h"
 #include "run/version.h"
 
@@ -105,14 +105,7 @@ const ReferenceFilm* Measured::reference(double s) const {
 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& watch) {
-    constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
-    const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
-    const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
-    const std::size_t length = tail_length(pixels * n);
-    std::uint64_t drawn = 0;
-    if (length == 0) return std::nullopt;
-    return fit_pooled_tail(
-        largest_samples(scene, {job.sampler, job.outside.get()}, n, job.seed, box, length + 1, isa, watch, drawn));
+    return region_tail(scene, ArmInUse{job.sampler, job.outside.get()}, job.seed, box, isa, watch);
 }
 
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {

@@ -1,0 +1,102 @@
+// One instance of the WebAssembly module, as web/door.h describes it. Everything that is computed is computed there.
+
+/** What the core said instead of an answer: "input" is the reader's mistake, "memory" and "bug" are not. */
+export class DoorError extends Error {
+  constructor(readonly kind: string, text: string) {
+    super(text);
+  }
+}
+
+export interface Box { x0: number; y0: number; x1: number; y1: number }
+export const pixelsOf = (b: Box): number => (b.x1 - b.x0) * (b.y1 - b.y0);
+
+type Call = (...numbers: number[]) => number;
+const text = new TextDecoder();
+
+/** The little of WASI that the C++ library asks for: no files, no clock that matters, nothing to read. */
+function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
+  const nothing: Call = () => 52; // ENOSYS
+  const sized: Call = (count, size) => {
+    const view = new DataView(memory().buffer);
+    view.setUint32(count ?? 0, 0, true);
+    view.setUint32(size ?? 0, 0, true);
+    return 0;
+  };
+  const known: Record<string, Call> = {
+    environ_sizes_get: sized,
+    environ_get: () => 0,
+    clock_time_get: (_id, _precision, at) => {
+      new DataView(memory().buffer).setBigUint64(at ?? 0, BigInt(Math.round(performance.now() * 1e6)), true);
+      return 0;
+    },
+    proc_exit: () => {
+      throw new DoorError("bug", "the kernels stopped");
+    },
+  };
+  return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
+}
+
+export class Door {
+  private readonly calls: Record<string, Call>;
+  private readonly memory: WebAssembly.Memory;
+
+  constructor(module: WebAssembly.Module) {
+    const memory = (): WebAssembly.Memory => this.memory;
+    const failed = (kind: number, kindSize: number, at: number, size: number): never => {
+      throw new DoorError(this.words(kind, kindSize), this.words(at, size));
+    };
+    const system = wasi(memory);
+    const imports: WebAssembly.Imports = { door: { failed }, wasi_snapshot_preview1: {} };
+    for (const { module: from, name } of WebAssembly.Module.imports(module))
+      if (from === "wasi_snapshot_preview1") imports[from]![name] = system[name]!;
+    const instance = new WebAssembly.Instance(module, imports);
+    this.calls = instance.exports as unknown as Record<string, Call>;
+    this.memory = instance.exports["memory"] as WebAssembly.Memory;
+    this.calls["_initialize"]!();
+  }
+
+  /** Bytes that the instance has taken of the machine. */
+  get size(): number { return this.memory.buffer.byteLength; }
+
+  private words(at: number, size: number): string {
+    return text.decode(new Uint8Array(this.memory.buffer, at, size));
+  }
+
+  /** A call that takes and returns numbers. A trap becomes an error with a sentence. */
+  number(name: string, ...given: number[]): number {
+    try {
+      return this.calls[name]!(...given);
+    } catch (error) {
+      if (error instanceof DoorError) throw error;
+      const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
+      throw new DoorError(full ? "memory" : "bug", String(error));
+    }
+  }
+
+  /** A call that answers in words. */
+  say(name: string, request?: unknown, ...given: number[]): string {
+    if (request !== undefined) {
+      const bytes = new TextEncoder().encode(JSON.stringify(request));
+      const at = this.number("room", bytes.length);
+      new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
+    }
+    this.number(name, ...given);
+    return this.words(this.number("said_at"), this.number("said_size"));
+  }
+
+  ask<T>(name: string, request?: unknown, ...given: number[]): T {
+    return JSON.parse(this.say(name, request, ...given)) as T;
+  }
+
+  /** A call that answers in bytes: a copy of them, which may be handed on. */
+  bytes(name: string, size: number, ...given: number[]): ArrayBuffer {
+    const at = this.number(name, ...given);
+    return this.memory.buffer.slice(at, at + size);
+  }
+
+  /** Bytes into the module, for the call that follows. */
+  give(bytes: ArrayBuffer): void {
+    const at = this.number("tile_room", bytes.byteLength);
+    new Uint8Array(this.memory.buffer, at, bytes.byteLength).set(new Uint8Array(bytes));
+  }
+}

@@ -1,0 +1,147 @@
+// Films and the reference, tile by tile: computed in any instance, put together in one, measured there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "door.h"
+
+namespace crescent::web {
+
+namespace {
+
+TileBox box_of(int x0, int y0, int x1, int y1) { return {x0, y0, x1, y1}; }
+std::size_t area(const TileBox& b) {
+    return static_cast<std::size_t>(b.x1 - b.x0) * static_cast<std::size_t>(b.y1 - b.y0);
+}
+
+/// Rows of a box, from a plane of the image's width or to it; 4 bytes a pixel.
+template <class Move> void each_row(const TileBox& box, std::size_t width, Move&& move) {
+    const std::size_t across = static_cast<std::size_t>(box.x1 - box.x0) * 4;
+    for (int j = box.y0; j < box.y1; ++j)
+        move(static_cast<std::size_t>(j - box.y0) * across,
+            (static_cast<std::size_t>(j) * width + static_cast<std::size_t>(box.x0)) * 4, across);
+}
+
+/// The planes of a film as one block: those of the box, one after another.
+template <class F> void put_planes(F& film, const TileBox& box, const std::byte* from) {
+    for (const std::span<std::byte> plane : film.planes()) {
+        each_row(box, static_cast<std::size_t>(film.width),
+            [&](std::size_t at, std::size_t to, std::size_t size) { std::memcpy(&plane[to], from + at, size); });
+        from += area(box) * 4;
+    }
+}
+template <class F> std::vector<std::byte>& all_planes(F& film) {
+    std::vector<std::byte>& out = scratch<std::byte>();
+    out.clear();
+    for (const std::span<std::byte> plane : film.planes()) out.insert(out.end(), plane.begin(), plane.end());
+    return out;
+}
+
+double bad_of(const Moments& m, std::size_t count) {
+    return static_cast<double>(
+        std::accumulate(m.bad.begin(), m.bad.begin() + static_cast<std::ptrdiff_t>(count), std::uint64_t{0}));
+}
+
+/// Where a pixel of the image stands in a box.
+std::uint32_t within(std::uint32_t pixel, const TileBox& box, std::size_t width) {
+    const auto i = static_cast<int>(pixel % width), j = static_cast<int>(pixel / width);
+    return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
+}
+
+}  // namespace
+
+/// The arm at n samples over a box: the nine planes of a film, which shape each pixel sees, and how many samples were
+/// not a number (as one count).
+CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const void* {
+    Bench& b = bench();
+    const TileBox box = box_of(x0, y0, x1, y1);
+    const ArmPlan& plan = b.experiment.arms.at(static_cast<std::size_t>(arm));
+    std::vector<std::int16_t>& seen = b.shapes.shape;
+    seen.resize(b.pixels());
+    Film film(x1 - x0, y1 - y0, static_cast<std::uint64_t>(n));
+    double bad = 0;
+    for (ShadingPoints& sites : sites_of(b.scene, box, seen.data())) {
+        const Moments moments = estimate_sites(sites, plan.sampler, film.n, b.experiment.seed, "", nullptr);
+        for (std::uint32_t& pixel : sites.pixel) pixel = within(pixel, box, b.width());
+        resolve_film(b.scene, sites, moments, film);
+        bad += bad_of(moments, sites.count);
+    }
+    std::vector<std::byte>& out = all_planes(film);
+    std::vector<std::int32_t> tail;
+    for (int j = y0; j < y1; ++j)
+        for (int i = x0; i < x1; ++i) tail.push_back(seen[static_cast<std::size_t>(j) * b.width() + std::size_t(i)]);
+    tail.push_back(static_cast<std::int32_t>(bad));
+    const auto* bytes = reinterpret_cast<const std::byte*>(tail.data());
+    out.insert(out.end(), bytes, bytes + tail.size() * sizeof tail[0]);
+    return out.data();
+}
+
+/// The reference over a box: five planes.
+CRESCENT_EXPORT(reference_tile)(int x0, int y0, int x1, int y1)->const void* {
+    Bench& b = bench();
+    if (!b.quadrature) b.quadrature = std::make_unique<PixelQuadrature>(b.scene);
+    if (b.reference.size() == 0)
+        b.reference = ReferenceFilm(b.experiment.image.width, b.experiment.image.height, b.scene.s());
+    const TileBox box = box_of(x0, y0, x1, y1);
+    b.quadrature->write(box, b.reference);
+    std::vector<std::byte>& out = scratch<std::byte>();
+    out.clear();
+    for (const std::span<std::byte> plane : b.reference.planes())
+        each_row(box, b.width(), [&](std::size_t, std::size_t at, std::size_t size) {
+            out.insert(out.end(), plane.begin() + std::ptrdiff_t(at), plane.begin() + std::ptrdiff_t(at + size));
+        });
+    return out.data();
+}
+
+/// Room for `size` bytes of a tile, to be put.
+CRESCENT_EXPORT(tile_room)(std::size_t size)->void* {
+    scratch<std::byte>().resize(size);
+    return scratch<std::byte>().data();
+}
+
+/// Film `index` is now of this arm at n; what it held stays until tiles are put over it.
+CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
+    Bench& b = bench();
+    const auto at = static_cast<std::size_t>(index);
+    if (b.slots.size() <= at) b.slots.resize(at + 1);
+    const ArmPlan& plan = b.experiment.arms.at(static_cast<std::size_t>(arm));
+    Slot& s = b.slots[at];
+    const auto samples = static_cast<std::uint64_t>(n);
+    if (s.film.size() != b.pixels()) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
+    s.film.n = samples, s.film.directions = directions_per_sample(plan.sampler), s.film.bad = 0;
+    s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
+}
+
+/// The tile in tile_room() -> its place in film `index`.
+CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
+    Bench& b = bench();
+    Film& film = slot(index).film;
+    const TileBox box = box_of(x0, y0, x1, y1);
+    const std::byte* from = scratch<std::byte>().data();
+    put_planes(film, box, from);
+    const std::byte* rest = from + area(box) * 4 * film.planes().size();
+    b.shapes.width = film.width, b.shapes.height = film.height, b.shapes.shape.resize(b.pixels(), -1);
+    for (int j = y0; j < y1; ++j)
+        for (int i = x0; i < x1; ++i, rest += 4) {
+            std::int32_t shape = 0;
+            std::memcpy(&shape, rest, 4);
+            b.shapes.shape[static_cast<std::size_t>(j) * b.width() + std::size_t(i)] = static_cast<std::int16_t>(shape);
+        }
+    std::int32_t bad = 0;
+    std::memcpy(&bad, rest, 4);
+    film.bad += static_cast<std::uint64_t>(bad);
+}
+
+CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
+    Bench& b = bench();
+    if (b.reference.size() == 0)
+        b.reference = ReferenceFilm(b.experiment.image.width, b.experiment.image.height, b.scene.s());
+    put_planes(b.reference, box_of(x0, y0, x1, y1), scratch<std::byte>().data());
+}
+
+/// The hash of film `index`, of the reference for -1.
+CRESCENT_EXPORT(hash_of)(int index)->void { say(index < 0 ? hash(bench().reference) : hash(slot(index).film)); }
+
+}  // namespace crescent::web

@@ -1,0 +1,100 @@
+// The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
+// running mean, the largest sample taken apart.
+import { DoorError } from "./door";
+import { el, made } from "./dom";
+import { Model } from "./model";
+
+interface Opened {
+  shape?: string; mirror: [number, number]; draws: [number, number, number, number][]; under: number;
+  lights: { name: string; rim: [number, number][]; angle: number }[]; mean: string; reference: string; chart: string;
+  largest?: Record<string, string>;
+}
+
+const size = 288;
+const ground = "#141517", light = "#ffffff", point = "#ffffff";
+
+function disk(model: Model, i: number, j: number, arm: number, what: number): HTMLCanvasElement {
+  const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img" });
+  const bytes = model.door.bytes("hemisphere", 4 * size * size, i, j, arm, what, size);
+  canvas.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(bytes), size, size), 0, 0);
+  return canvas;
+}
+
+const onDisk = (x: number, y: number): [number, number] => [(size * (1 + x)) / 2, (size * (1 - y)) / 2];
+
+/** The light's edge, n and R. */
+function marks(pen: CanvasRenderingContext2D, pixel: Opened): void {
+  pen.lineWidth = 1.5;
+  pen.strokeStyle = light;
+  for (const { rim } of pixel.lights) {
+    pen.beginPath();
+    rim.forEach(([x, y], k) => (k === 0 ? pen.moveTo(...onDisk(x, y)) : pen.lineTo(...onDisk(x, y))));
+    pen.closePath();
+    pen.stroke();
+  }
+  pen.font = "600 13px Inter, sans-serif";
+  for (const [name, at] of [["n", [0, 0]], ["R", pixel.mirror]] as [string, [number, number]][]) {
+    const [x, y] = onDisk(...at);
+    pen.lineWidth = 3;
+    pen.strokeStyle = ground;
+    pen.strokeText(name, x + 5, y - 5);
+    pen.fillStyle = light;
+    pen.fillText(name, x + 5, y - 5);
+    pen.fillRect(x - 1.5, y - 1.5, 3, 3);
+  }
+}
+
+/** The draws: area by weight, those that met a light square, so that it is told without colour. */
+function points(pen: CanvasRenderingContext2D, pixel: Opened): void {
+  const largest = Math.max(1e-30, ...pixel.draws.map((d) => d[2]));
+  for (const [x, y, weight, met] of pixel.draws) {
+    if (met === -2) continue;
+    const [a, b] = onDisk(x, y), r = 1.5 + 7 * Math.sqrt(Math.max(0, weight) / largest);
+    pen.beginPath();
+    if (met >= 0) pen.rect(a - r, b - r, 2 * r, 2 * r);
+    else pen.arc(a, b, r, 0, 2 * Math.PI);
+    pen.fillStyle = met >= 0 ? "rgb(255 255 255 / 0.75)" : "rgb(255 255 255 / 0.25)";
+    pen.fill();
+    pen.lineWidth = 1;
+    pen.strokeStyle = met >= 0 ? ground : point;
+    pen.stroke();
+  }
+}
+
+function largestTable(parts: Record<string, string>): HTMLElement {
+  const rows: [string, string][] = [["largest X", parts["x"]!], ["f, 1/sr", parts["f"]!], [`L (${parts["met"]})`, parts["light"]!],
+    ["cos θ", parts["cos"]!], ["1/p, sr", parts["over_p"]!], ["θ from n", `${parts["angle"]}°`]];
+  if (parts["weight"]) rows.push(["MIS weight", parts["weight"]]);
+  return el("table", {}, el("tbody", {}, ...rows.map(([name, value]) =>
+    el("tr", {}, el("th", { scope: "row" }, name), el("td", { class: "n" }, value)))));
+}
+
+/** Fills `root` with pixel (i, j) under an arm. Throws DoorError. */
+export function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number): void {
+  const pixel = model.door.ask<Opened>("pixel", { i, j, arm: name, n, css: `c${arm % 6}` });
+  if (!pixel.shape) {
+    root.replaceChildren(el("p", {}, `Pixel (${i}, ${j}) sees nothing: there is no hemisphere over it.`));
+    return;
+  }
+  const integrand = disk(model, i, j, arm, 0), density = disk(model, i, j, arm, 1);
+  integrand.setAttribute("aria-label", `f L cos over the hemisphere of pixel ${i}, ${j}, with the light's edge`);
+  density.setAttribute("aria-label", `the density of ${name} over the same hemisphere with its ${pixel.draws.length} draws`);
+  marks(integrand.getContext("2d")!, pixel);
+  const pen = density.getContext("2d")!;
+  points(pen, pixel);
+  marks(pen, pixel);
+  const under = pixel.under > 0 ? ` ${pixel.under} of them fell under the horizon and weigh 0.` : "";
+  root.replaceChildren(
+    el("p", {}, el("b", {}, `Pixel (${i}, ${j}), ${pixel.shape}. `), `After ${n} samples ${name} reads `, el("b", { class: "v" }, pixel.mean),
+      ", the reference ", el("b", { class: "v" }, pixel.reference), `.${under}`),
+    el("div", { class: "disks" },
+      el("figure", {}, integrand, el("figcaption", {}, el("b", {}, "f L cos θ"), ", four decades; the ring is the light's edge")),
+      el("figure", {}, density, el("figcaption", {}, el("b", {}, `p of ${name}`), " with its draws: area is weight, squares met a light")),
+      el("figure", {}, made(pixel.chart), el("figcaption", {}, "The mean so far, and the reference.")),
+      pixel.largest ? el("figure", {}, largestTable(pixel.largest), el("figcaption", {}, "The largest sample: X = f L cos θ / p.")) : undefined));
+}
+
+export function pixelFailed(root: HTMLElement, error: unknown): void {
+  const words = error instanceof DoorError ? error.message : String(error);
+  root.replaceChildren(el("p", { class: "bad" }, `This pixel cannot be opened: ${words}.`));
+}

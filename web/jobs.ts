@@ -1,0 +1,63 @@
+// What a worker can be asked, and how any instance answers: the same code in a worker and on the page's own thread.
+import { Box, Door, DoorError, pixelsOf } from "./door";
+
+export interface Opening { file: string; text: string; set: string[]; published: string }
+
+export type Job =
+  | { kind: "open"; opening: Opening }
+  | { kind: "tile"; arm: number; n: number; box: Box }
+  | { kind: "reference"; box: Box }
+  | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: asked of another experiment
+
+export type Answer = { bytes?: ArrayBuffer; said?: unknown };
+export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string } };
+
+const filmPlanes = 9, referencePlanes = 5;
+
+/** Answers one job; `door` is replaced by a fresh one after a failure. */
+export function perform(door: Door, job: Job): Answer {
+  switch (job.kind) {
+    case "open":
+      return { said: door.ask("open", job.opening) };
+    case "tile": {
+      const { x0, y0, x1, y1 } = job.box, pixels = pixelsOf(job.box);
+      return { bytes: door.bytes("tile", 4 * ((filmPlanes + 1) * pixels + 1), job.arm, job.n, x0, y0, x1, y1) };
+    }
+    case "reference": {
+      const { x0, y0, x1, y1 } = job.box;
+      return { bytes: door.bytes("reference_tile", 4 * referencePlanes * pixelsOf(job.box), x0, y0, x1, y1) };
+    }
+    case "ask":
+      return { said: door.ask(job.call, job.request) };
+  }
+}
+
+/** An instance that opens its experiment again after it broke. */
+export class Answering {
+  private door: Door;
+  private last: Opening | undefined;
+
+  constructor(private readonly module: WebAssembly.Module) {
+    this.door = new Door(module);
+  }
+
+  answer(job: Job): Answer {
+    if (job.kind === "open") this.last = job.opening;
+    try {
+      if (job.kind !== "ask" || !job.opening) return perform(this.door, job);
+      this.door.ask("open", job.opening);
+      const answer = perform(this.door, job);
+      if (this.last) this.door.ask("open", this.last);
+      return answer;
+    } catch (error) {
+      this.door = new Door(this.module);
+      if (this.last && job.kind !== "open") this.door.ask("open", this.last);
+      throw error;
+    }
+  }
+}
+
+export function failure(error: unknown): { kind: string; text: string } {
+  if (error instanceof DoorError) return { kind: error.kind, text: error.message };
+  return { kind: "bug", text: String(error) };
+}

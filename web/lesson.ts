@@ -1,0 +1,102 @@
+// A lesson on the page: it asks, measures, shows the guess beside what was measured, and lets play. The sheet for
+// teachers is made of the same data and of numbers that are measured when it is opened.
+import { Asker, Found } from "./answers";
+import { el } from "./dom";
+import { Lesson, lessons } from "./lessons";
+
+export interface Lessons {
+  root: HTMLElement;
+  asker(): Asker;
+  answered(lesson: Lesson, answer: string): void;
+  go(lesson: string): void;
+  say(line: string): void;
+}
+
+export function lessonList(to: Lessons, answers: Record<string, string>): void {
+  const items = lessons.map((lesson) => el("li", {},
+    el("a", { href: `#lesson=${lesson.id}`, "data-lesson": lesson.id, onclick: (e) => { e.preventDefault(); to.go(lesson.id); } }, lesson.title),
+    " ", el("small", {}, `${lesson.minutes} minutes${answers[lesson.id] ? ", answered" : ""}`)));
+  to.root.replaceChildren(el("h2", {}, "Lessons"),
+    el("p", {}, "Each asks first, then measures, then lets you play. Answers live in the address; nothing is stored."),
+    el("ol", { class: "lesson-list" }, ...items));
+}
+
+function question(lesson: Lesson, given: string | undefined, take: (answer: string) => void): HTMLElement {
+  const ask = lesson.ask;
+  let inside: HTMLElement[], read: () => string;
+  if (ask.kind === "choice") {
+    const inputs = ask.options.map(({ value }) => el("input", { type: "radio", name: "answer", id: `answer-${value}`, value, checked: value === given }));
+    inside = ask.options.map(({ words }, k) => el("div", { class: "option" }, inputs[k], el("label", { for: inputs[k]!.id }, words)));
+    read = (): string => inputs.find((input) => input.checked)?.value ?? "";
+  } else {
+    const middle = given ?? String(Math.round(((ask.low + ask.high) / 2) / ask.step) * ask.step);
+    const output = el("output", { for: "guess" }, `${middle} ${ask.unit}`);
+    const input = el("input", {
+      type: "range", id: "guess", min: ask.low, max: ask.high, step: ask.step, value: middle, "aria-label": `your guess, ${ask.unit}`,
+      oninput: () => { output.textContent = `${input.value} ${ask.unit}`; },
+    });
+    inside = [el("div", { class: "row" }, input, output)];
+    read = (): string => input.value;
+  }
+  const hint = el("p", { role: "alert" });
+  const submit = (event: Event): void => {
+    event.preventDefault();
+    const answer = read();
+    if (answer) take(answer);
+    else hint.textContent = "Choose one first.";
+  };
+  return el("form", { onsubmit: submit }, el("fieldset", {}, el("legend", {}, lesson.question), ...inside),
+    hint, el("button", { type: "submit", class: "main", id: "measure" }, "Measure"));
+}
+
+function revealed(lesson: Lesson, answer: string, found: Found): HTMLElement {
+  const words = (value: string): string => (lesson.ask.kind === "choice" ? lesson.ask.options.find((o) => o.value === value)?.words ?? value : `${value} ${lesson.ask.unit}`);
+  return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
+    el("p", {}, "You said ", el("b", {}, words(answer)), "; measured here: ", el("b", {}, words(found.answer)), "."),
+    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", {}, lesson.reveal));
+}
+
+export function showLesson(to: Lessons, lesson: Lesson, given: string | undefined): void {
+  const result = el("div");
+  const next = lessons[lessons.indexOf(lesson) + 1];
+  const measure = async (answer: string): Promise<void> => {
+    to.answered(lesson, answer);
+    result.replaceChildren(el("p", {}, "Measuring …"));
+    try {
+      const found = await to.asker().find(lesson);
+      const shown = revealed(lesson, answer, found);
+      result.replaceChildren(shown, el("p", {}, "Now play: the pictures and settings below are this lesson's."), el("p", {},
+        el("button", { type: "button", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
+      shown.focus();
+      to.say(`Measured: ${found.answer}`);
+    } catch (error) {
+      result.replaceChildren(el("p", { class: "bad" }, `This could not be measured: ${error instanceof Error ? error.message : error}.`));
+    }
+  };
+  to.root.replaceChildren(
+    el("p", {}, el("a", { href: "#", onclick: (e) => { e.preventDefault(); to.go(""); } }, "All lessons")),
+    el("h2", {}, lesson.title), el("div", { class: "asking" }, el("p", {}, lesson.aim), question(lesson, given, (a) => void measure(a)), result));
+  if (given !== undefined) void measure(given);
+}
+
+export function showSheet(root: HTMLElement, asker: Asker): void {
+  const articles = lessons.map((lesson, k) => {
+    const place = el("p", {}, "Expected: being measured …");
+    return { lesson, place, article: el("article", {}, el("h3", {}, `${k + 1}. ${lesson.title}`),
+      el("p", { class: "footnote" }, `${lesson.minutes} minutes`), el("p", {}, el("b", {}, "Aim. "), lesson.aim),
+      el("p", {}, el("b", {}, "Question. "), lesson.question), place, el("p", {}, el("b", {}, "Say. "), lesson.reveal)) };
+  });
+  root.replaceChildren(el("h2", {}, "For teachers"),
+    el("p", {}, `${lessons.length} lessons of ${lessons.reduce((sum, l) => sum + l.minutes, 0)} minutes in all. The answers below were measured now, by this page. `,
+      el("button", { type: "button", onclick: () => window.print() }, "Print this sheet")), ...articles.map((a) => a.article));
+  void (async (): Promise<void> => {
+    for (const { lesson, place } of articles) {
+      try {
+        const found = await asker.find(lesson);
+        place.replaceChildren(el("b", {}, "Expected. "), `${found.answer}: ${found.lines.join("; ")}.`);
+      } catch (error) {
+        place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;
+      }
+    }
+  })();
+}

@@ -1,0 +1,93 @@
+// Numbers under the pictures: the meters of a film beside what was published for the same run, tails, and charts of
+// both.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "door.h"
+
+namespace crescent::web {
+
+namespace {
+
+ordered_json one_meter(const RunMeter& run, const std::string& name) {
+    const std::optional<Published>& figures = bench().experiment.figures;
+    ordered_json out = {{"value", told(meter_value(run, name))}, {"text", figures_of(name, meter_value(run, name))}};
+    const bool same_seed = figures && (!figures->seed || *figures->seed == run.key.seed);
+    const auto published = same_seed ? figures->find(run.key.arm, run.key.n, run.key.s, name) : std::nullopt;
+    if (published) out["published"] = figures_of(name, *published);
+    return out;
+}
+
+std::string class_of(const std::string& arm) {
+    const auto& arms = bench().experiment.arms;
+    const auto at = std::ranges::find(arms, arm, &ArmPlan::name) - arms.begin();
+    return fmt::format("c{}", at % 6);
+}
+
+}  // namespace
+
+/// Film `index` -> {key, meters: {"rmse.H": {value, text, published}, ...}, pixels, largest, bad, hash,
+/// reference_share}.
+CRESCENT_EXPORT(meters)(int index)->void {
+    const Bench& b = bench();
+    const Slot& s = slot(index);
+    const RunMeter run = measure(b.experiment, s.key, s.film, b.reference, b.shapes);
+    ordered_json out = {{"key", to_string(s.key)}, {"largest", told(run.largest)}, {"bad", run.bad}};
+    for (const std::string& name : meter_names(b.experiment))
+        if (!(name.starts_with("var.") && s.key.n < 2)) out["meters"][name] = one_meter(run, name);
+    for (const Region& region : b.experiment.regions) {
+        const double error = rms(b.reference.error, b.reference.width, region.box);
+        const double rmse = run.region(region.name)->rmse;
+        if (error > most_error_share * rmse) out["unsure"].push_back(region.name);
+    }
+    out["hash"] = hash(s.film);
+    say(out);
+}
+
+/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, words}: how heavy the tail of the arm's samples is in a box.
+CRESCENT_EXPORT(tail)()->void {
+    const ordered_json asked = request();
+    const auto& v = asked.at("box");
+    const Box box{v.at(0).get<int>(), v.at(1).get<int>(), v.at(2).get<int>(), v.at(3).get<int>()};
+    ProgressMonitor watch;
+    const auto found = region_tail(
+        bench().scene, arm_of(asked.at("arm").get<std::string>()).sampler, bench().experiment.seed, box, "", watch);
+    if (!found) return say(ordered_json{{"words", "no tail: the samples do not spread"}});
+    const std::string_view words = found->k >= 1 ? "the mean itself is infinite"
+        : found->heavy()                         ? "inconclusive: heavy tail, the variance is infinite"
+                                                 : "the variance is finite";
+    say(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
+        {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
+}
+
+/// {region, series: [{arm, points: [[n, rmse], ...]}]} -> RMSE against N as SVG, with N^(-1/2) from the first points.
+CRESCENT_EXPORT(ladder_chart)()->void {
+    const ordered_json asked = request();
+    std::vector<double> ns, values;
+    for (const auto& series : asked.at("series"))
+        for (const auto& p : series.at("points")) ns.push_back(p.at(0)), values.push_back(p.at(1));
+    Axis x = log_axis("N, samples per pixel", ns);
+    x.ticks = ns;
+    std::ranges::sort(x.ticks);
+    x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
+    const double last = x.high;
+    x.high *= 2.2;  // room for names at the ends of lines
+    const auto region = asked.at("region").get<std::string>();
+    Chart chart(420, 330, x, log_axis("RMSE of " + region, values), "RMSE against N in region " + region);
+    for (const auto& series : asked.at("series")) {
+        std::vector<Point> points;
+        for (const auto& p : series.at("points")) points.push_back({p.at(0), p.at(1)});
+        if (points.empty()) continue;
+        const auto arm = series.at("arm").get<std::string>();
+        const Point first = points.front();
+        if (first.y > 0) chart.line({first, {last, first.y * std::sqrt(first.x / last)}}, "dashed " + class_of(arm));
+        chart.line(points, class_of(arm));
+        chart.dots(points, class_of(arm));
+        chart.name(points.back(), arm, class_of(arm));
+    }
+    say(chart.str());
+}
+
+}  // namespace crescent::web

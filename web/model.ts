@@ -1,0 +1,175 @@
+// The bench behind the pictures: an experiment as it is set, its films growing rung by rung, its reference, its meters.
+// One instance of the module on the page's own thread puts the tiles together; workers compute them.
+import { Box, Door, DoorError, pixelsOf } from "./door";
+import { Opening } from "./jobs";
+import { Pool } from "./pool";
+
+export interface Arm {
+  name: string; sampler: string; n: number[]; techniques: number; summary: string; formula: string; misses: string;
+}
+export interface Knob {
+  path: string; label: string; unit: string; low: number; high: number; log: boolean; value: number | number[];
+}
+export interface Region { name: string; box: [number, number, number, number] }
+export interface Described {
+  title: string; width: number; height: number; seed: number; s: number; n: number; firefly_k: number; hash: string;
+  arms: Arm[]; regions: Region[]; knobs: Knob[]; source: string;
+}
+export interface Meter { value: number | string; text: string; published?: string }
+export interface Meters {
+  key: string; largest: number; bad: number; hash: string; meters: Record<string, Meter>; unsure?: string[];
+}
+export interface Tail { k?: number; se?: number; heavy?: boolean; text?: string; words: string }
+
+/** One picture: an arm of the experiment and what is known of it so far. */
+export interface Shown {
+  arm: number; name: string; n: number; rungs: { n: number; meters: Meters }[]; tails: Record<string, Tail>;
+}
+
+/** Whom the model tells. */
+export interface Viewer {
+  opened(described: Described, shown: Shown[]): void;
+  painted(index: number, box: Box): void; // index -1: the reference
+  measured(): void;
+  failed(error: DoorError): void;
+}
+
+export const ladder = [1, 4, 16, 64, 256, 1024];
+const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
+
+export class Model {
+  door: Door;
+  described!: Described;
+  shown: Shown[] = [];
+  referenceDone = false;
+  finished = false;
+  startedAt = 0;
+  took = 0;
+  private era = 0;
+  private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
+
+  constructor(private readonly module: WebAssembly.Module, readonly pool: Pool, private readonly viewer: Viewer) {
+    this.door = new Door(module);
+  }
+
+  /** A fresh instance where the last call broke it; throws what the core says of the input. */
+  private describe(opening: Opening): Described {
+    try {
+      return this.door.ask<Described>("open", opening);
+    } catch (error) {
+      this.door = new Door(this.module);
+      throw error;
+    }
+  }
+
+  /** Opens, and begins to compute up to n samples a pixel of these arms; throws DoorError for settings that are wrong. */
+  async run(opening: Opening, arms: string[], n: number): Promise<void> {
+    this.described = this.describe(opening);
+    const era = ++this.era;
+    this.startedAt = performance.now();
+    this.finished = this.referenceDone = false;
+    this.shown = arms.map((name) => {
+      const arm = this.described.arms.findIndex((a) => a.name === name);
+      return { arm, name, n: 0, rungs: [], tails: {} };
+    });
+    const rungs = [...ladder.filter((rung) => rung > 1 && rung < n), n];
+    this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, rungs[0]!));
+    this.viewer.opened(this.described, this.shown);
+    await this.pool.open(opening);
+    try {
+      await this.compute(era, opening, rungs);
+    } catch (error) {
+      if (era === this.era) this.viewer.failed(error instanceof DoorError ? error : new DoorError("bug", String(error)));
+    }
+  }
+
+  private async compute(era: number, opening: Opening, rungs: number[]): Promise<void> {
+    await this.rung(era, rungs[0]!);
+    await this.reference(era, opening);
+    for (const [k, n] of rungs.entries()) {
+      if (k > 0) await this.rung(era, n);
+    }
+    this.finished = true;
+    this.took = performance.now() - this.startedAt;
+    this.viewer.measured();
+    await this.tails(era);
+  }
+
+  private async rung(era: number, n: number): Promise<void> {
+    const { width, height } = this.described;
+    this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, n));
+    const boxes = this.pool.tiles(width, height, n);
+    const jobs: Promise<void>[] = [];
+    const left = this.shown.map(() => boxes.length);
+    for (const box of boxes)
+      this.shown.forEach((s, index) => jobs.push(this.tile(era, index, s, n, box, left)));
+    await Promise.all(jobs);
+  }
+
+  private async tile(era: number, index: number, s: Shown, n: number, box: Box, left: number[]): Promise<void> {
+    const { bytes } = await this.pool.ask({ kind: "tile", arm: s.arm, n, box });
+    if (era !== this.era || !bytes) return;
+    this.door.give(bytes);
+    this.door.number("put", index, box.x0, box.y0, box.x1, box.y1);
+    this.viewer.painted(index, box);
+    if (--left[index]! > 0) return;
+    s.n = n;
+    if (this.referenceDone) this.measure(index);
+  }
+
+  private measure(index: number): void {
+    const s = this.shown[index]!;
+    s.rungs.push({ n: s.n, meters: this.door.ask<Meters>("meters", undefined, index) });
+    this.viewer.measured();
+  }
+
+  /** The reference, by quadrature; kept where only seeds, arms, regions or k have changed. */
+  private async reference(era: number, opening: Opening): Promise<void> {
+    const key = JSON.stringify([opening.text, opening.set.filter((set) => !untouchedByReference.test(set))]);
+    if (this.tiles.key !== key) this.tiles = { key, parts: [] };
+    const { parts } = this.tiles;
+    const put = (box: Box, bytes: ArrayBuffer): void => {
+      this.door.give(bytes);
+      this.door.number("put_reference", box.x0, box.y0, box.x1, box.y1);
+      this.viewer.painted(-1, box);
+    };
+    for (const { box, bytes } of parts) put(box, bytes);
+    const have = new Set(parts.map(({ box }) => `${box.x0} ${box.y0} ${box.y1}`));
+    const missing = this.pool
+      .tiles(this.described.width, this.described.height, 1000)
+      .filter((box) => !have.has(`${box.x0} ${box.y0} ${box.y1}`));
+    await Promise.all(missing.map(async (box) => {
+      const { bytes } = await this.pool.ask({ kind: "reference", box });
+      if (era !== this.era || !bytes) return;
+      parts.push({ box, bytes });
+      put(box, bytes);
+    }));
+    this.referenceDone = true;
+    this.shown.forEach((_, index) => this.measure(index));
+  }
+
+  private async tails(era: number): Promise<void> {
+    const jobs: Promise<void>[] = [];
+    for (const s of this.shown)
+      for (const region of this.described.regions)
+        jobs.push(this.ask<Tail>("tail", { arm: s.name, box: region.box }).then((tail) => {
+          if (era !== this.era) return;
+          s.tails[region.name] = tail;
+          this.viewer.measured();
+        }));
+    await Promise.all(jobs);
+  }
+
+  /** A question to any worker, of another experiment where one is given: that one is answered whatever is opened meanwhile. */
+  async ask<T>(call: string, request: unknown, opening?: Opening): Promise<T> {
+    if (!opening) return (await this.pool.ask({ kind: "ask", call, request })).said as T;
+    return (await this.pool.ask({ kind: "ask", call, request, opening }, true)).said as T;
+  }
+
+  /** RGBA of a box, rows from the top. */
+  pixels(picture: number, index: number, other: number, top: number, box: Box): ImageData {
+    const size = 4 * pixelsOf(box), { x0, y0, x1, y1 } = box;
+    const bytes = this.door.bytes("paint", size, picture, index, other, top, x0, y0, x1, y1);
+    return new ImageData(new Uint8ClampedArray(bytes), x1 - x0, y1 - y0);
+  }
+}

@@ -1,0 +1,127 @@
+// Jobs -> answers, in workers or, where a browser has none, in slices on the page's own thread. A new opening cancels
+// all that was asked before it: what is under way is dropped when it comes.
+import { Box, DoorError } from "./door";
+import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
+
+type Done = (answer: Answer) => void;
+type Failed = (error: DoorError) => void;
+interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
+
+const underWay = 2; // jobs that a worker holds, so that it never waits for the page
+const sliceMs = 10;
+
+class Hand {
+  private readonly held = new Map<number, Waiting>();
+  private next = 0;
+  constructor(private readonly worker: Worker, private readonly free: () => void) {
+    worker.onmessage = ({ data }: MessageEvent): void => this.take(data as Reply);
+  }
+  get room(): boolean { return this.held.size < underWay; }
+  give(waiting: Waiting): void {
+    this.held.set(++this.next, waiting);
+    this.worker.postMessage({ id: this.next, job: waiting.job });
+  }
+  private take(reply: Reply): void {
+    const waiting = this.held.get(reply.id);
+    this.held.delete(reply.id);
+    if (waiting && reply.answer) waiting.done(reply.answer);
+    else if (waiting && reply.error) waiting.failed(new DoorError(reply.error.kind, reply.error.text));
+    this.free();
+  }
+}
+
+export class Pool {
+  private hands: Hand[] = [];
+  private alone: Answering | undefined;
+  private queue: Waiting[] = [];
+  private era = 0;
+  private timer = 0;
+
+  private constructor(private readonly module: WebAssembly.Module) {}
+
+  /** `source`: the worker's script. */
+  static async start(module: WebAssembly.Module, source: string, count: number): Promise<Pool> {
+    const pool = new Pool(module);
+    const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    const starting = Array.from({ length: count }, () => pool.startOne(url));
+    const started = await Promise.all(starting);
+    URL.revokeObjectURL(url);
+    if (!started.some(Boolean)) pool.alone = new Answering(module);
+    return pool;
+  }
+
+  private startOne(url: string): Promise<boolean> {
+    return new Promise((resolve) => {
+      const late = setTimeout(() => resolve(false), 4000);
+      const settle = (good: boolean): void => { clearTimeout(late); resolve(good); };
+      try {
+        const worker = new Worker(url);
+        worker.onerror = (event): void => { event.preventDefault(); settle(false); };
+        worker.onmessage = (): void => { this.hands.push(new Hand(worker, () => this.pump())); settle(true); };
+        worker.postMessage(this.module);
+      } catch {
+        settle(false);
+      }
+    });
+  }
+
+  /** Workers at work; 0: slices of the page's own thread. */
+  get workers(): number { return this.hands.length; }
+
+  /** Every instance opens this; what was asked before is never answered. */
+  async open(opening: Opening): Promise<void> {
+    ++this.era;
+    this.queue = this.queue.filter((waiting) => waiting.lasting);
+    const job: Job = { kind: "open", opening };
+    if (this.alone) { this.alone.answer(job); return; }
+    for (const hand of this.hands) hand.give({ job, lasting: true, done: () => {}, failed: () => {} });
+  }
+
+  /** `lasting`: a question that stands whatever is opened meanwhile, and goes before all others. */
+  ask(job: Job, lasting = false): Promise<Answer> {
+    const era = this.era;
+    return new Promise((resolve, reject) => {
+      const here = (): boolean => lasting || era === this.era;
+      const waiting: Waiting = { job, lasting, done: (a) => here() && resolve(a), failed: (e) => here() && reject(e) };
+      if (lasting) this.queue.unshift(waiting);
+      else this.queue.push(waiting);
+      this.pump();
+    });
+  }
+
+  /** Boxes of a size that one job should have: what a slice can do where there are no workers. */
+  tiles(width: number, height: number, cost: number): Box[] {
+    const side = 64;
+    const rows = this.alone ? Math.max(1, Math.min(side, Math.floor(3000 / Math.max(cost, 1)))) : side;
+    const all: Box[] = [];
+    for (let y0 = 0; y0 < height; y0 += rows)
+      for (let x0 = 0; x0 < width; x0 += side)
+        all.push({ x0, y0, x1: Math.min(x0 + side, width), y1: Math.min(y0 + rows, height) });
+    const far = (b: Box): number => Math.hypot(b.x0 + b.x1 - width, (b.y0 + b.y1 - height) * 1.5);
+    return all.sort((a, b) => far(a) - far(b));
+  }
+
+  private pump(): void {
+    if (this.alone) {
+      if (!this.timer) this.timer = window.setTimeout(() => this.slice(), 0);
+      return;
+    }
+    for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.queue.shift()!);
+  }
+  private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
+
+  private slice(): void {
+    this.timer = 0;
+    const until = performance.now() + sliceMs;
+    while (this.queue.length > 0 && performance.now() < until) {
+      const waiting = this.queue.shift()!;
+      try {
+        waiting.done(this.alone!.answer(waiting.job));
+      } catch (error) {
+        const { kind, text } = failure(error);
+        waiting.failed(new DoorError(kind, text));
+      }
+    }
+    if (this.queue.length > 0) this.pump();
+  }
+}
