@@ -1,0 +1,29 @@
+// Faults whose causes were written down before a diagnosis was asked for them: four of five are named, and nothing is
+// said of those that have no such cause.
+#include <gtest/gtest.h>
+
+#include "laws/planted/planted.h"
+
+namespace crescent {
+namespace {
+
+TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
+    ProgressMonitor watch;
+    std::size_t with = 0, named = 0;
+    std::string told;
+    const std::vector<PlantedFault> faults = held_out_faults();
+    EXPECT_GE(faults.size(), 20u);
+    for (const PlantedFault& fault : faults) {
+        const Judgement j = judge(fault.trials, TestSettings::quick(), watch);
+        EXPECT_EQ(j.state, State::wrong) << fault.name;
+        const Explained e = explained(fault, j);
+        with += !e.cause.empty();
+        named += e.right;
+        told += e.fault + ": " + e.cause + " -> " + e.said + "\n";
+        if (e.cause.empty()) EXPECT_EQ(e.said, "none") << e.fault;
+    }
+    EXPECT_GE(10 * named, 8 * with) << told;
+}
+
+}  // namespace
+}  // namespace crescent
