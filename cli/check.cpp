@@ -203,13 +203,13 @@ void tell_cost(std::span<const Trial> trials, const TestSettings& rigour, Progre
         "--full asks at most {} questions: {} at each of {} w_o", judged * rigour.questions, rigour.questions, judged));
 }
 
-/// B on the trials of A: an arm of the list by its name, or a program.
+/// B on the trials of A: a built-in arm by its name, or a program.
 std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const ProgressMonitor& watch) {
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end()) return arm_against(flags.against, a);
     const std::string near = nearest(flags.against, names);
     if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
-        throw InputError({"--against " + flags.against, 0, 0}, "no sampler of the list; did you mean '" + near + "'?");
+        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm; did you mean '" + near + "'?");
     PipeLimits limits;
     limits.stop = &watch.stop;
     if (flags.patience > 0) limits.total_seconds = flags.patience;
@@ -262,8 +262,8 @@ int check(const CheckFlags& flags) {
     if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
     print(verdict_table(j));
     if (whole_list)
-        print(j.as_expected ? "every arm gets the verdicts that the list expects\n"
-                            : "not every arm gets the verdicts that the list expects\n");
+        print(j.as_expected ? "every arm gets the verdicts expected of it\n"
+                            : "not every arm gets the verdicts expected of it\n");
     write_files(flags, j);
     return exit_of(j.state, flags);
 }

@@ -56,10 +56,10 @@ struct SchemaFlags {
 int schema(const SchemaFlags& flags);
 
 struct CheckFlags {
-    std::string arm;                    // "": all of the list
+    std::string arm;                    // "": all built-in arms
     std::vector<std::string> settings;  // s=128
     std::string exec, plugin, samples, table;
-    std::string against;                    // an arm of the list, or a program
+    std::string against;                    // a built-in arm, or a program
     std::vector<std::string> expect;        // waivers, files of them, or "same": with against, a difference fails
     std::vector<std::string> wo;            // x,y,z or degrees
     std::string json, timing, junit, html;  // files to write

@@ -7,16 +7,17 @@ namespace crescent::cli {
 namespace {
 
 constexpr const char* check_footer = R"(Nine verdicts, in order: valid, support, normalised, density, identity, physics,
-tail, mean, efficiency. Without ARM the whole list is judged, and 0 means that every
-arm gets what the list expects of it. Else: 0 right, 1 wrong, 3 error (the sampler
-crashed, fell silent or spoke another language), 4 inconclusive: something could not
-be told, or was not looked at. Wrong comes before error, error before inconclusive.
-docs/verdicts.md says what each verdict means and how --exec is spoken to.)";
+tail, mean, efficiency. Without ARM every built-in arm is judged, and 0 means that
+each gets the verdicts expected of it. Else: 0 right, 1 wrong, 3 error (the
+sampler crashed, stopped answering or broke the protocol), 4 inconclusive: something
+could not be decided, or was not examined. Wrong comes before error, error before
+inconclusive. docs/verdicts.md says what each verdict means, and how a program
+behind --exec is asked.)";
 
 /// --against.
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
-        "hold the sampler against an arm of the list, or a program: same distribution, same f, variance ratio");
+        "hold the sampler against a built-in arm or a program: same distribution, same f, variance ratio");
     against->type_name("ARM|'PROGRAM'")->check(told);
     return against;
 }
@@ -49,7 +50,7 @@ void add_check(CLI::App& app, Work& work) {
     std::shared_ptr<CheckFlags> f;
     CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
     c->footer(check_footer);
-    auto* arm = c->add_option("ARM", f->arm, "a sampler of the list; without it, all")->type_name("");
+    auto* arm = c->add_option("ARM", f->arm, "a built-in arm; without it, all")->type_name("");
     auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
                     ->type_name("KEY=VALUE")
                     ->take_all()
