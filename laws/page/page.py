@@ -180,7 +180,7 @@ def two_hundred_settings():
 
 @law
 def nothing_for_axe():
-    """axe-core finds nothing: the bench with a pixel open, a lesson, the sheet; light and dark."""
+    """axe-core finds nothing: the bench with a pixel open, a lesson before and after the guess; light and dark."""
     if not axe.exists():
         print("  skipped: no axe-core (npm ci in laws/page)")
         return
