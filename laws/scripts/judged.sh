@@ -18,6 +18,9 @@ grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep
 
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
+# Every built-in arm gets the verdicts that are expected of it.
+expect 0 "$CRESCENT" check --quiet
+
 expect 0 "$CRESCENT" check --quiet --exec ./cosine --json c.json --junit c.xml --html c.html
 grep -q '"state": "right"' c.json || die "cosine.c is not right: $(head -c 300 c.json)"
 expect 0 "$CRESCENT" check --quiet --exec "python3 $pipes/cosine.py"
