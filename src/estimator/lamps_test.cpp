@@ -11,18 +11,6 @@
 namespace crescent::inline estimator {
 namespace {
 
-void shift(Experiment& e, Vec3d by) {
-    for (Vec3d* at : {&e.camera.eye, &e.camera.target}) *at = *at + by;
-    const auto moved = [&]<class Form>(Form& form) {
-        if constexpr (requires { form.center; }) form.center = form.center + by;
-        if constexpr (requires { form.min; }) form.min = form.min + by, form.max = form.max + by;
-        if constexpr (requires { form.corner; }) form.corner = form.corner + by;
-        if constexpr (requires { form.point; }) form.point = form.point + by;
-    };
-    for (Shape& shape : e.shapes) std::visit(moved, shape.form);
-    for (DiskLight& disk : e.disks) disk.center = disk.center + by;
-}
-
 /// The test scene without fill, its lamps of another size and moved.
 Experiment lamps(double radius, double offset, const std::vector<std::string>& overrides = {}) {
     Experiment e = test::small_scene(overrides);
@@ -30,7 +18,7 @@ Experiment lamps(double radius, double offset, const std::vector<std::string>& o
     e.fill = {};
     for (DiskLight& disk : e.disks) disk.radius = radius;
     e.disks[0].center = {-1.5, 3.5, 1.0}, e.disks[1].center = {3, 3, 2};  // a lamp of 1 m clears ball, block and ground
-    shift(e, {offset, -0.5 * offset, offset / 3});
+    test::shift(e, {offset, -0.5 * offset, offset / 3});
     return e;
 }
 

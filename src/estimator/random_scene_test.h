@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "estimator/test_scene.h"
 #include "experiment/experiment.h"
 #include "lobes/all.h"
 #include "simd/frame.h"
@@ -33,7 +34,7 @@ public:
         const int bodies = static_cast<int>(between(0, 3.5));
         for (int k = 0; k < bodies; ++k) body(e);
         if (newcomers_) newcomer(e);
-        if (far_) large_body(e), shift(e, scale(1, 1e6) * direction());
+        if (far_) large_body(e), move(e, scale(1, 1e6) * direction());
         return e;
     }
     std::string what;  // of the last scene, for messages
@@ -167,17 +168,8 @@ private:
         e.shapes.push_back(s);
         what += ", large body " + std::to_string(kind) + " of " + std::to_string(size) + " m";
     }
-    void shift(Experiment& e, Vec3d by) {
-        for (Vec3d* at : {&e.camera.eye, &e.camera.target}) *at = *at + by;
-        const auto moved = [&]<class Form>(Form& form) {
-            if constexpr (requires { form.center; }) form.center = form.center + by;
-            if constexpr (requires { form.min; }) form.min = form.min + by, form.max = form.max + by;
-            if constexpr (requires { form.corner; }) form.corner = form.corner + by;
-            if constexpr (requires { form.point; }) form.point = form.point + by;
-        };
-        for (Shape& shape : e.shapes) std::visit(moved, shape.form);
-        for (Light& light : e.lights) std::visit(moved, light.form);
-        for (DiskLight& disk : e.disks) disk.center = disk.center + by;
+    void move(Experiment& e, Vec3d by) {
+        shift(e, by);
         what += ", moved by " + std::to_string(std::sqrt(dot(by, by))) + " m";
     }
 

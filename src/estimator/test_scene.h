@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "arms/all.h"
@@ -80,6 +81,20 @@ n = [4, 64]
 box = [0, 0, 66, 44]
 )",
         "test.toml", overrides);
+}
+
+/// Moves camera, bodies and lights.
+inline void shift(Experiment& e, Vec3d by) {
+    for (Vec3d* at : {&e.camera.eye, &e.camera.target}) *at = *at + by;
+    const auto moved = [&]<class Form>(Form& form) {
+        if constexpr (requires { form.center; }) form.center = form.center + by;
+        if constexpr (requires { form.min; }) form.min = form.min + by, form.max = form.max + by;
+        if constexpr (requires { form.corner; }) form.corner = form.corner + by;
+        if constexpr (requires { form.point; }) form.point = form.point + by;
+    };
+    for (Shape& shape : e.shapes) std::visit(moved, shape.form);
+    for (Light& light : e.lights) std::visit(moved, light.form);
+    for (DiskLight& disk : e.disks) disk.center = disk.center + by;
 }
 
 }  // namespace crescent::test
