@@ -51,6 +51,7 @@ Azimuths azimuths_of_corners(std::span<const Vec3d> points, const Frame<double>&
     for (std::size_t k = 0; k < points.size(); ++k) corners[k] = flat(points[k], frame);
     Flat middle = {0, 0};
     for (std::size_t k = 0; k < points.size(); ++k) middle.x += corners[k].x, middle.y += corners[k].y;
+    if (middle.x == 0 && middle.y == 0) return {};  // the axis meets their hull, and there is no azimuth to count from
     double lo = pi, hi = -pi;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double off = math::atan2(cross(middle, corners[k]), dot(middle, corners[k]));
