@@ -1,5 +1,5 @@
-// What is known of built-in arms shows in their verdicts, and what is planted is caught. That every built-in arm gets the
-// verdicts that are expected of it is shown by scripts/judged.sh.
+// What is known of built-in arms shows in their verdicts, and planted faults are caught. scripts/judged.sh shows that
+// every built-in arm gets the verdicts that are expected of it.
 #include <cmath>
 #include <gtest/gtest.h>
 
