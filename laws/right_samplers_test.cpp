@@ -4,6 +4,7 @@
 
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
+#include "laws/right/renderers.h"
 #include "verdicts/list.h"
 
 namespace crescent {
@@ -43,6 +44,18 @@ TEST(RightSamplers, WithAnisotropicVisibleNormalsAreLeftAlone) {
         const Judgement full = judge({&trial, 1}, rigour, watch);
         EXPECT_EQ(full.state, State::right) << what_is_wrong(full);
     }
+}
+
+/// Differences of the warp are rounded there far more than its directions are, and its warp bends at every texel.
+TEST(RightSamplers, WithASkyThatIsInterpolatedInSinglePrecisionAreLeftAlone) {
+    ProgressMonitor watch;
+    for (const auto& [cells, sun] : {std::pair{16, 5.0}, {8, 0.5}, {32, 40.0}})
+        for (std::uint32_t seed : {1u, 2u}) {
+            TestSettings rigour = TestSettings::quick();
+            rigour.seed = seed;
+            const Judgement j = judge(trials_of_subject(subject_of(smooth_sky(cells, sun)), false), rigour, watch);
+            EXPECT_EQ(j.state, State::right) << cells << " cells, seed " << seed << ": " << what_is_wrong(j);
+        }
 }
 
 /// What explains a fault is named for four of five planted faults that have such a cause, and never where nothing is

@@ -84,6 +84,9 @@ Recipe recipe_of(std::shared_ptr<const Sky> sky);
 /// Texels of noise, and a sun of a few that holds `sun` of the light.
 std::shared_ptr<const Sky> sky_with_sun(Dice& d, int rows, int columns, double sun, bool by_alias);
 
+/// A sky whose p is bilinear between cells x cells points, in single precision, with a sun `sun` times as bright.
+Recipe smooth_sky(int cells, double sun);
+
 std::vector<RecipeFamily> renderer_families();
 
 }  // namespace crescent

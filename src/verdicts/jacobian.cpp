@@ -93,12 +93,38 @@ struct Suspect {
     double p, p_j;  // over the share of the choosing number
     double share = 1, allowed = 0;
     bool stands = true;
+    double grain = 0, before = 0;  // rounding of the warp there; p |J| by the step before this one
+    bool settled = false;          // two steps agree
 };
 
-/// Looks at every suspect again with steps down to 2^-18, as far as rounding allows; one that reaches 1 in any quadrant
-/// is let go.
+/// How finely the warp is computed at each suspect: how far moves of u by 2^-19 are from straight. A difference of two
+/// nearly equal numbers within the sampler may cost most of its digits, of which the direction's own grain knows
+/// nothing.
+void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
+    constexpr int moves = 6;
+    std::vector<Numbers> u;
+    for (const Suspect& s : suspects)
+        for (int axis = 0; axis < 2; ++axis)
+            for (int k = 0; k < moves; ++k) u.push_back(s.u), u.back()[axis] += k * tiny_step;
+    std::vector<Draw> w(u.size());
+    work.subject.sample(technique, work.trial.wo, u, w);
+    for (std::size_t i = 0; i < suspects.size(); ++i) {
+        suspects[i].grain = work.direction_resolution();
+        for (int line = 0; line < 2; ++line)
+            for (int k = 1; k + 1 < moves; ++k) {
+                const Draw* at = &w[i * 2 * moves + static_cast<std::size_t>(line * moves + k)];
+                if (!(at[-1].pdf > 0) || !(at[0].pdf > 0) || !(at[1].pdf > 0)) continue;
+                suspects[i].grain = std::max(suspects[i].grain, 0.5 * length(at[-1].wi - at[0].wi * 2.0 + at[1].wi));
+            }
+    }
+}
+
+/// Looks at every suspect again with steps down to 2^-18, as far as rounding allows. One that reaches 1 in any quadrant
+/// is let go, and so is one of which no two steps in turn say the same: there the difference is the step's, not the
+/// density's.
 void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
-    for (double h = step; h >= 0x1p-18; h /= 4) {
+    find_grains(work, technique, suspects);
+    for (const double h : {0x1p-7, 0x1p-8, 0x1p-10, 0x1p-12, 0x1p-14, 0x1p-16, 0x1p-18}) {
         std::vector<Numbers> u;
         for (const Suspect& s : suspects)
             for (const Numbers& v : stencil_at(s.u, h)) u.push_back(v);
@@ -106,12 +132,15 @@ void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& 
         work.subject.sample(technique, work.trial.wo, u, w);
         for (std::size_t i = 0; i < suspects.size(); ++i) {
             Suspect& s = suspects[i];
-            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), work.direction_resolution(), h);
-            const double lacking = 1 - s.p_j;
+            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), s.grain, h);
+            const double lacking = 1 - s.p_j, here = s.p * q.largest;
             if (h < step && 2 * q.noise > 0.25 * lacking) continue;  // lost in rounding: the wider steps decide
-            if (s.p * q.largest > 1 - 0.3 * lacking) s.stands = false;
+            if (h <= step && (here > 1 - 0.3 * lacking || q.noise > lacking)) s.stands = false;
+            s.settled = s.before > 0 && std::fabs(here - s.before) < 0.5 * lacking;
+            s.before = here;
         }
     }
+    for (Suspect& s : suspects) s.stands = s.stands && s.settled;
 }
 
 /// A number may choose at a few points alone: seen from the denser side glass lets little through. Every suspect is
@@ -136,7 +165,7 @@ std::vector<Numbers> stencils_of(const TrialContext& work, const SampleBatch& b,
     std::vector<Numbers> u;
     for (std::size_t i = 0; i < b.u.size() && u.size() < wanted * stencil; ++i) {
         const Numbers& c = b.u[i];
-        if (std::min({c.x, c.y, 1 - c.x, 1 - c.y}) < 2 * step) continue;
+        if (std::min({c.x, c.y, 1 - c.x, 1 - c.y}) <= 2 * step) continue;
         if (work.traits.numbers > 2 && !(b.draws[i].pdf > 0)) continue;
         for (const Numbers& v : stencil_at(c)) u.push_back(v);
     }

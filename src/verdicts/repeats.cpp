@@ -2,12 +2,43 @@
 // weight.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
+
+namespace {
+
+/// How many are equal to one that stands before them.
+std::size_t met_before(const std::vector<std::array<double, 3>>& all) {
+    const std::size_t places = std::bit_ceil(2 * all.size());
+    std::vector<std::uint32_t> at(places, 0);  // one more than the index; 0: free
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        std::uint64_t key = 0;
+        for (double v : all[i]) {  // -0 is 0
+            key = (key ^ std::bit_cast<std::uint64_t>(v + 0.0)) * 0x9e3779b97f4a7c15u;
+            key ^= key >> 32;
+        }
+        for (std::size_t k = key & (places - 1);; k = (k + 1) & (places - 1)) {
+            if (at[k] == 0) {
+                at[k] = static_cast<std::uint32_t>(i + 1);
+                break;
+            }
+            if (all[at[k] - 1] == all[i]) {
+                ++out;
+                break;
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace
 
 /// Draws with the very direction of another, where that is no chance: rounding brings together as many pairs as N^2 / 2
 /// times the mean of p times the solid angle of a rounding. 0: none worth telling.
@@ -23,9 +54,7 @@ std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b) 
     if (all.empty() || !work.traits.has_pdf || !work.subject.draws_at_will()) return 0;
     const double n = static_cast<double>(all.size()),
                  chance = 0.5 * n * p * 16 * work.direction_resolution() * work.direction_resolution();
-    std::sort(all.begin(), all.end());
-    std::size_t out = 0;
-    for (std::size_t i = 1; i < all.size(); ++i) out += all[i] == all[i - 1];
+    const std::size_t out = met_before(all);
     return static_cast<double>(out) > std::max(64.0, 20 * chance + 1e-3 * n) ? out : 0;
 }
 
