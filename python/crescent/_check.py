@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._judgement import Judgement
+from ._libraries import Library, library_wanted
 
 Progress = Callable[[str, float, float], None]
 Domain = Literal["sphere", "hemisphere"]
@@ -36,6 +37,9 @@ class Sampler:
     importance: bool = False  #: f is scaled as importance is, not as radiance
     reciprocal: bool = True  #: False: f is known not to be reciprocal
     serial: bool = False  #: its callables want one thread, the caller's own
+    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
+    array_module: Any = None
+    device: Any = None  #: where these arrays lie, as that library says it
 
     def __post_init__(self) -> None:
         if not callable(self.sample):
@@ -66,11 +70,36 @@ def _grid(wo_deg: Grid | None) -> list[tuple[float, float]]:
     return out
 
 
+def _asked(n: int, numbers: int) -> tuple[_arrays.Array, _arrays.Array]:
+    """A few rows to look at a sampler with: w_o and u."""
+    wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
+    return wo, (np.arange(n)[:, None] + 0.5) / n * np.ones((1, numbers)) * np.linspace(1, 0.6, numbers)
+
+
+def _of_library(s: Sampler) -> Sampler:
+    """The sampler with callables that take NumPy's arrays, whatever its own take."""
+    wanted = s.array_module
+    if wanted is None:
+        rows = _asked(8, s.u)
+        wanted = library_wanted(s.sample, *(rows if s.wo != "none" else rows[1:]))
+    if wanted is None or wanted is np or wanted == "numpy":
+        return s
+    library = Library(wanted, s.device)
+    return replace(
+        s,
+        sample=library.samples(s.sample, s.title()),
+        pdf=s.pdf and library.asks(s.pdf),
+        f=s.f and library.asks(s.f),
+        name=s.title(),
+        serial=s.serial or library.name == "torch",  # it has threads of its own
+        array_module=np,
+    )
+
+
 def _look(s: Sampler) -> tuple[int, bool, bool]:
     """Channels, whether it gives weights, whether it gives delta parts: seen from a few answers."""
     n, takes_wo = 8, s.wo != "none"
-    wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
-    u = (np.arange(n)[:, None] + 0.5) / n * np.ones((1, s.u)) * np.linspace(1, 0.6, s.u)
+    wo, u = _asked(n, s.u)
     wi, _, weight, delta = _arrays.asks_sample(s.sample, s.title(), takes_wo)(wo, u)
     up = np.where(np.all(np.isfinite(wi), axis=1, keepdims=True), wi, [[0.0, 0.0, 1.0]])
     if s.pdf is not None:
@@ -82,6 +111,7 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
 
 
 def _trials(s: Sampler, full: bool, grid: list[tuple[float, float]]) -> _crescent.Trials:
+    s = _of_library(s)
     channels, weighs, delta = _look(s)
     count = s.channels or channels
     takes_wo = s.wo != "none"

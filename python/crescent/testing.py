@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import _arrays
-from ._check import Sampler, check
+from ._check import Sampler, _of_library, check
 from ._judgement import Judgement
 
 ALPHA = 1e-3  #: of a whole session
@@ -127,7 +127,7 @@ def _with_nan(wi: Any) -> Any:
 
 def mutants(sampler: Sampler) -> Iterator[Mutant]:
     """The sampler with one fault planted at a time, as samplers are broken: what a suite of tests ought to notice."""
-    s = sampler
+    s = _of_library(sampler)
 
     def of(name: str, **bends: Any) -> Mutant:
         return Mutant(name, _bent(s, **bends))

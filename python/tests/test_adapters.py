@@ -1,10 +1,14 @@
 """Samplers of other libraries: triples of NumPy, JAX and PyTorch, and Mitsuba's own."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import crescent
 from crescent import adapters
+from crescent._libraries import Library
+from crescent.testing import mutants
 
 WO = [(30.0, 0.0), (75.0, 310.0)]
 
@@ -57,6 +61,71 @@ def test_a_triple_in_torch():
     torch = pytest.importorskip("torch")
     sample, eval, pdf = triple(torch)
     assert crescent.check(adapters.torch(sample, eval, pdf), wo_deg=WO).state == "right"
+
+
+def plain(xp, pi=np.pi):
+    """The same without the cosine in f, as crescent.check takes it."""
+    sample, eval, pdf = triple(xp)
+    return lambda wo, u: sample(wo, u)[:2], pdf, lambda wo, wi: xp.where(wi[:, 2] > 0, 0.5 / pi + 0 * wi[:, 2], 0.0)
+
+
+@pytest.mark.parametrize("name, module", [("torch", "torch"), ("jax", "jax.numpy")])
+def test_the_library_of_callables_is_seen_and_what_lies_there_stays(name, module):
+    xp = pytest.importorskip(module)
+    sample, pdf, f = plain(xp)
+    gave, handed = [], []
+
+    def drawn(wo, u):
+        parts = sample(wo, u)
+        gave.append(parts[0])
+        return parts
+
+    def counted(wo, wi):
+        handed.append(any(wi is mine for mine in gave))
+        return pdf(wo, wi)
+
+    for known in ({}, {"array_module": name}, {"array_module": xp}):
+        assert crescent.check(drawn, counted, f, wo_deg=[30], **known).state == "right"
+    assert sum(handed) >= 9 and not all(handed)
+
+
+def test_what_a_callable_writes_into_its_tensors_is_not_handed_again():
+    torch = pytest.importorskip("torch")
+    sample, pdf, f = plain(torch)
+
+    def writes(wo, wi):
+        out = pdf(wo, wi)
+        wi *= 0.5
+        return out
+
+    assert crescent.check(sample, writes, f, wo_deg=[30]).state == "right"
+
+
+def test_any_module_with_asarray_is_a_library():
+    class Rows:
+        def __init__(self, rows):
+            self.rows = rows
+
+        def __array__(self, dtype=None, copy=None):
+            return self.rows if dtype is None else self.rows.astype(dtype)
+
+    mine = SimpleNamespace(__name__="mine", asarray=lambda rows, device: Rows(rows) if device == "here" else None)
+    sample, pdf, f = plain(np)
+
+    def of(call):
+        return lambda *at: call(*(a.rows for a in at))
+
+    bare = (of(sample), of(pdf), of(f))
+    known = {"array_module": mine, "device": "here", "wo_deg": [30]}
+    assert crescent.check(*bare, **known).state == "right"
+    assert crescent.check(bare[0], lambda wo, wi: Rows(1.02 * pdf(wo.rows, wi.rows)), **known).state == "wrong"
+    with pytest.raises(AttributeError, match="rows"):
+        crescent.check(*bare)
+    assert "wrong" == crescent.check(next(iter(mutants(crescent.Sampler(*bare, **known_of(known))))).sampler).state
+
+
+def known_of(known):
+    return {key: value for key, value in known.items() if key != "wo_deg"}
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,8 @@ template <class Bsdf> class Nori {
     using Direction = std::array<double, 3>;
 
 public:
-    explicit Nori(Bsdf bsdf) : bsdf_(std::move(bsdf)) {}
+    explicit Nori(Bsdf bsdf, Traits known = {}) : bsdf_(std::move(bsdf)), known_(known) {}
+    Traits traits() const { return known_; }
 
     std::optional<Drawn> sample(Direction wo, std::array<double, 2> u) const {
         Record r(vector(wo));
@@ -36,6 +37,7 @@ public:
 
 private:
     Bsdf bsdf_;
+    Traits known_;
     static Vector vector(Direction w) { return Vector(float(w[0]), float(w[1]), float(w[2])); }
     static Record record(Direction wo, Direction wi) { return Record(vector(wo), vector(wi), static_cast<Measure>(1)); }
     template <class Color> static double mean(const Color& c) {

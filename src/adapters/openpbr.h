@@ -30,7 +30,8 @@ template <class Vec3, class Prepare> class OpenPbrSampler {
     using Direction = std::array<double, 3>;
 
 public:
-    explicit OpenPbrSampler(Prepare prepare) : prepare_(std::move(prepare)) {}
+    explicit OpenPbrSampler(Prepare prepare, Traits known = {}) : prepare_(std::move(prepare)), known_(known) {}
+    Traits traits() const { return known_; }
 
     std::optional<ColouredDraw> sample(Direction wo, std::array<double, 3> u) const {
         const Prepared at = prepare_(vector(wo));
@@ -51,6 +52,7 @@ public:
 
 private:
     Prepare prepare_;
+    Traits known_;
     static Vec3 vector(Direction w) { return Vec3{float(w[0]), float(w[1]), float(w[2])}; }
     template <class Weight> static Direction colour(const Weight& weight) {
         const auto sum = openpbr_get_sum_of_diffuse_specular(weight);
@@ -58,8 +60,8 @@ private:
     }
 };
 
-template <class Vec3, class Prepare> OpenPbrSampler<Vec3, Prepare> OpenPbr(Prepare prepare) {
-    return OpenPbrSampler<Vec3, Prepare>(std::move(prepare));
+template <class Vec3, class Prepare> OpenPbrSampler<Vec3, Prepare> OpenPbr(Prepare prepare, Traits known = {}) {
+    return OpenPbrSampler<Vec3, Prepare>(std::move(prepare), known);
 }
 
 }  // namespace crescent::adapters

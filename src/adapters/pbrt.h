@@ -4,8 +4,9 @@
 //   Sample_f(wo, uc, u, mode, ...) -> an optional of something with .f, .wi, .pdf, .flags or IsSpecular()
 //   PDF(wo, wi, mode, ...)         -> 1/sr
 //
-// Local frame, n = +z; Vector3f and Point2f are built from floats, a spectrum has Average() or is a number. Nothing of
-// pbrt is included: types follow from the class.
+// Local frame, n = +z; Vector3f and Point2f are built from floats, a spectrum has Average() or is a number. What else
+// is known goes into Traits, here and in the other adapters: Pbrt(glass, {.wo = Traits::Asked::both, .eta = ...}), or
+// {.own_random = true} of a layered one. Nothing of pbrt is included: types follow from the class.
 #pragma once
 
 #include <array>
@@ -39,7 +40,8 @@ template <class BxDF> class Pbrt {
     using Direction = std::array<double, 3>;
 
 public:
-    explicit Pbrt(BxDF bxdf) : bxdf_(std::move(bxdf)) {}
+    explicit Pbrt(BxDF bxdf, Traits known = {}) : bxdf_(std::move(bxdf)), known_(known) {}
+    Traits traits() const { return known_; }
 
     std::optional<Drawn> sample(Direction wo, double uc, std::array<double, 2> u) const {
         const auto s = bxdf_.Sample_f(vector(wo), static_cast<float>(uc), Point{float(u[0]), float(u[1])}, Mode{});
@@ -52,6 +54,7 @@ public:
 
 private:
     BxDF bxdf_;
+    Traits known_;
     static Vector vector(Direction w) { return Vector{float(w[0]), float(w[1]), float(w[2])}; }
 };
 

@@ -1,0 +1,139 @@
+"""Arrays of other libraries: what a callable is handed are arrays of its own library, on its device and of its dtype.
+
+What lies there stays there between calls: directions that `sample` gave and `pdf` and `f` are asked for are handed as
+they lie, and so are rows that were asked before. What is judged is brought to the host by DLPack, or by NumPy's
+protocol where the host cannot read it in place.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _arrays
+from ._arrays import Array
+
+Call = Callable[..., Any]
+
+#: The module of an array's type, and the library that its callables take; these tell by their errors that they want it.
+KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy"}
+_KEPT = 4  # arrays a thread: w_o, the numbers, directions that were drawn, directions that were asked for
+
+
+class Library:
+    """One library's arrays: rows of doubles in, its own arrays out, and back."""
+
+    def __init__(self, module: Any, device: Any = None, dtype: Any = None) -> None:
+        name = module if isinstance(module, str) else module.__name__
+        self.name = name.partition(".")[0]
+        if isinstance(module, str) or self.name == "jax":
+            module = importlib.import_module("jax.numpy" if self.name == "jax" else name)
+        self._module, self._device, self._dtype = module, device, dtype
+        self._keeps = self.name in ("torch", "jax")  # what a callable writes into is known of these
+        self._of_thread: dict[int, list[tuple[Array, Any, int]]] = {}  # a threading.local ends with each call
+
+    def _made(self, rows: Array) -> Any:
+        if self.name == "torch":
+            kind = self._dtype or self._module.get_default_dtype()
+            return self._module.from_numpy(rows).to(device=self._device or "cpu", dtype=kind)
+        if self.name == "jax":  # filled up to a power of two, so that few shapes are compiled
+            count = 1 << max(len(rows) - 1, 63).bit_length()
+            rows = np.concatenate([rows, np.broadcast_to(rows[-1:], (count - len(rows), rows.shape[1]))])
+            made = self._module.asarray(rows, self._dtype or self._module.float32)
+            if self._device is None:
+                return made
+            return importlib.import_module("jax").device_put(made, self._device)
+        more = {key: value for key, value in (("dtype", self._dtype), ("device", self._device)) if value is not None}
+        return self._module.asarray(rows, **more)
+
+    def _kept(self) -> list[tuple[Array, Any, int]]:
+        return self._of_thread.setdefault(threading.get_ident(), [])
+
+    def _keep(self, rows: Array, own: Any) -> None:
+        if self._keeps:
+            kept = self._kept()
+            kept.insert(0, (rows, own, getattr(own, "_version", 0)))
+            del kept[_KEPT:]
+
+    def into(self, rows: Array) -> Any:
+        """The library's array of these rows; the one that lies there already where one holds the same."""
+        kept = self._kept()
+        for i, (host, own, version) in enumerate(kept):
+            if host.shape != rows.shape or not np.array_equal(host[:1], rows[:1]) or not np.array_equal(host, rows):
+                continue
+            kept.insert(0, kept.pop(i))
+            if getattr(own, "_version", 0) == version:  # PyTorch counts what is written into a tensor
+                return own
+            del kept[0]
+            break
+        own = self._made(rows)
+        self._keep(rows, own)
+        return own
+
+    def _cut(self, answer: Any, n: int) -> Any:
+        """The rows that were asked, of an answer to more."""
+        if isinstance(answer, Mapping):
+            return {key: self._cut(part, n) for key, part in answer.items()}
+        if isinstance(answer, (tuple, list)):
+            return tuple(self._cut(part, n) for part in answer)
+        return answer if self.name != "jax" or answer is None or np.ndim(answer) == 0 else answer[:n]
+
+    def asks(self, call: Call) -> Call:
+        """`call` with arrays of the library in the place of NumPy's."""
+
+        def asked(*rows: Array) -> Any:
+            return self._cut(call(*map(self.into, rows)), len(rows[-1]))
+
+        return asked
+
+    def samples(self, sample: Call, name: str) -> Call:
+        """The same of `sample`, whose directions are kept as they lie."""
+        if not self._keeps:
+            return self.asks(sample)
+
+        def asked(*rows: Array) -> Any:
+            n = len(rows[-1])
+            whole = sample(*map(self.into, rows))
+            parts = self._cut(whole, n)
+            named = isinstance(parts, Mapping)
+            if not (named and "wi" in parts) and not (isinstance(parts, tuple) and len(parts) > 1):
+                return parts  # told by what looks at shapes
+            wi = _arrays.directions(parts["wi"] if named else parts[0], n, f"{name}: sample's wi")
+            self._keep(wi, whole["wi"] if named else whole[0])
+            return {**parts, "wi": wi} if named else (wi, *parts[1:])
+
+        return asked
+
+
+def library_of(answer: Any) -> str | None:
+    """The library that an answer is made of; None: NumPy, or one that is not known."""
+    part = next(iter(answer.values()), None) if isinstance(answer, Mapping) else answer
+    part = part[0] if isinstance(part, (tuple, list)) and part else part
+    return KNOWN.get(type(part).__module__.partition(".")[0])
+
+
+def library_wanted(call: Call, *rows: Array) -> str | None:
+    """The library whose arrays `call` takes: that of its answer to NumPy's arrays; where it refuses those, one of those
+    loaded that it does not refuse. What it raises with NumPy's arrays is raised where there is none."""
+    try:
+        name = library_of(call(*rows))
+        candidates = [name] if name else []
+    except Exception as refused:
+        for name in dict.fromkeys(KNOWN.values()):
+            if name in sys.modules and _takes(call, name, rows):
+                return name
+        raise refused
+    return next((name for name in candidates if _takes(call, name, rows)), None)
+
+
+def _takes(call: Call, name: str, rows: tuple[Array, ...]) -> bool:
+    try:
+        Library(name).asks(call)(*rows)
+    except Exception:
+        return False
+    return True
