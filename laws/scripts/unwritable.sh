@@ -42,6 +42,19 @@ if mount --bind held/junit.xml held/junit.xml 2>/dev/null; then
     diff -r held-before held >difference || die "some outputs are new: $(cat difference)"
 fi
 
+# A link where an output belongs leads nothing astray, and is told before the work.
+mkdir planted planted/films
+ln -s /tmp planted/plates
+echo mine >victim.json
+expect 3 "$CRESCENT" run "$tiny" --out planted
+grep -q 'seed 1 of' said && die "a link on the way is found only after the work: $(cat said)"
+grep -q 'planted/plates/' said || die "the message does not name what is in the way: $(cat said)"
+rm planted/plates && ln -s "$work/victim.json" planted/metrics.json
+expect 3 "$CRESCENT" run "$tiny" --out planted
+grep -q 'seed 1 of' said && die "a planted link is found only after the work: $(cat said)"
+grep -q 'metrics.json: a link' said || die "the message does not name the link: $(cat said)"
+[ "$(cat victim.json)" = mine ] || die "a planted link was followed"
+
 # A disk of 64 KiB, where this process may mount one.
 mkdir disk
 if mount -t tmpfs -o size=64k none disk 2>/dev/null; then

@@ -116,6 +116,11 @@ Staging::~Staging() {
     fs::remove_all(fs::path(folder_) / stage_, ignored);
 }
 
+void Staging::expect(const std::vector<std::string>& names) const {
+    const Publication publication(out_, folder_, stage_);
+    for (const std::string& name : names) publication.check_place(name, false);
+}
+
 std::string Staging::path(const std::string& name) {
     const fs::path at = fs::path(folder_) / stage_ / "new" / name;
     if (!out_.sub(stage_ + "/new").parent_of(name, true))

@@ -22,6 +22,8 @@ public:
     Staging(const Staging&) = delete;
     Staging& operator=(const Staging&) = delete;
 
+    /// Throws where one of these outputs could not be brought to its place: to be told before the work.
+    void expect(const std::vector<std::string>& names) const;
     /// Where to write "plates/hero.png" for now.
     std::string path(const std::string& name);
     void write(const std::string& name, std::span<const unsigned char> bytes);

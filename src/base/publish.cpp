@@ -64,16 +64,21 @@ void Publication::fail(const std::string& name, const std::string& why) const {
         fmt::format("cannot write {}/{}: {}; every output there is the one of before", shown_as_, name, why));
 }
 
+void Publication::check_place(const std::string& name, bool make) const {
+    const Folder at = out_.parent_of(name, make);
+    if (!at && errno == ENOENT && !make) return;
+    if (!at)
+        fail(name,
+            errno == ELOOP || errno == ENOTDIR ? "something else than a folder stands on the way"
+                                               : std::strerror(errno));
+    const Folder::Kind there = at.kind(leaf_of(name));
+    if (there == Folder::Kind::folder) fail(name, std::strerror(EISDIR));
+    if (there != Folder::Kind::none && there != Folder::Kind::file) fail(name, "a link or a device has that name");
+}
+
 void Publication::check_places(const std::vector<std::string>& names) const {
     for (const std::string& name : names) {
-        const Folder at = out_.parent_of(name, true);
-        if (!at)
-            fail(name,
-                errno == ELOOP || errno == ENOTDIR ? "something else than a folder stands on the way"
-                                                   : std::strerror(errno));
-        const Folder::Kind there = at.kind(leaf_of(name));
-        if (there == Folder::Kind::folder) fail(name, std::strerror(EISDIR));
-        if (there != Folder::Kind::none && there != Folder::Kind::file) fail(name, "a link or a device has that name");
+        check_place(name, true);
         const Folder made = out_.sub(stage_ + "/new").parent_of(name, false);
         if (!made || made.kind(leaf_of(name)) != Folder::Kind::file) fail(name, "it was not made");
     }

@@ -36,6 +36,9 @@ public:
     /// Brings stage/new/NAMES under their final names, in place of what the last work of this kind wrote. Throws
     /// OutputError where that cannot be: everything old then.
     void publish(std::vector<std::string> names, const std::string& kind, std::atomic<Outputs>& outputs);
+    /// Throws OutputError where a file cannot stand under that final name: where a link, a device or a folder does.
+    /// `make` makes the folders on the way.
+    void check_place(const std::string& name, bool make) const;
     /// Ends what publish() began, in whichever step it was; nothing where none was begun. False where that failed.
     bool settle();
     /// What was kept under another name, a line each.

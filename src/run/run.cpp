@@ -75,6 +75,7 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     if (options.parts.draws()) check_font(plan.experiment);
     Prepared prepared = look(plan, engine);
     Staging staging(options.out);
+    staging.expect(outputs_of(plan, options.parts));
     std::optional<Checkpoint> checkpoint;  // what a program drew yesterday it may not draw today
     if (!may_change(plan.experiment))
         checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);

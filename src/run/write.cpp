@@ -120,6 +120,19 @@ Plates draw_plates(const Measured& m, const ProgressMonitor& watch) {
     return out;
 }
 
+std::vector<std::string> outputs_of(const RunPlan& plan, const OutputParts& parts) {
+    std::vector<std::string> out = {"timing.json"};
+    if (parts.metrics) out.insert(out.end(), {"metrics.json", "metrics.csv", "junit.xml"});
+    if (parts.report) out.push_back("report.html");
+    if (parts.films)
+        for (const Job& job : plan.jobs)
+            out.push_back("films/" + film_file(job.arm, job.s, plan.experiment.s()) + ".exr");
+    if (parts.films) out.push_back(fmt::format("films/{}.exr", reference_file));
+    if (parts.plates)
+        for (const PlatePlan& plate : plan.experiment.plates) out.push_back("plates/" + plate.name + ".png");
+    return out;
+}
+
 ReportInputs report_inputs(const Measured& m) { return {m.experiment, m.metrics, m.evidence, m.provenance, m.plates}; }
 
 void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputParts& parts) {

@@ -17,6 +17,9 @@ namespace crescent::inline runs {
 /// "metrics,report" -> those alone. Throws InputError, which names the nearest word, for any other word.
 OutputParts output_parts(const std::string& words);
 
+/// The names that a run of this plan writes `parts` under, about: references that are not asked for and SVGs apart.
+std::vector<std::string> outputs_of(const RunPlan& plan, const OutputParts& parts);
+
 /// Every plate of the experiment, on as many threads as on_threads() allows. Throws OutputError where the font is
 /// missing, Interrupted where the watch says so.
 Plates draw_plates(const Measured& measured, const ProgressMonitor& watch);
