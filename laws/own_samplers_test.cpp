@@ -71,6 +71,41 @@ private:
     std::vector<Call>& calls_;
 };
 
+/// Half goes through; nobody said that w_o may lie under the surface, nor an index.
+TEST(OwnSamplers, AskedFromBelowWithoutAnIndexAreNotHeldToOne) {
+    Recipe r = cosine();
+    r.pdf = [](Vec3d, Vec3d wi) { return 0.5 * std::fabs(wi.z) / pi; };
+    r.f = [](Vec3d, Vec3d) { return 0.3 / pi; };
+    r.sample = [](Vec3d, Vec2d u) {
+        const double side = u.x < 0.5 ? 1 : -1, x = u.x < 0.5 ? 2 * u.x : 2 * u.x - 1;
+        const double phi = 2 * pi * u.y, z = std::sqrt(1 - x), s = std::sqrt(x);
+        return Draw{{s * std::cos(phi), s * std::sin(phi), side * z}, 0.5 * z / pi, {}, {}};
+    };
+    for (double theta : {30.0, 150.0}) {
+        const Judgement j = judged(subject_of(r), theta);
+        const Verdict& v = named(j, "physics");
+        EXPECT_EQ(v.state, State::right) << v.say;
+        EXPECT_EQ(v.say.find("with eta^2"), std::string::npos) << v.say;
+    }
+}
+
+/// An even p under the surface, drawn otherwise, by a sampler whose warp cannot be looked at: what is known of the
+/// upper side alone explains nothing there.
+TEST(OwnSamplers, AreExplainedByNoFactorThatIsNoNumber) {
+    Recipe r = cosine();
+    r.traits.own_random = true;
+    r.pdf = [](Vec3d, Vec3d wi) { return wi.z < 0 ? 0.5 / pi : 0; };
+    r.f = [](Vec3d, Vec3d wi) { return wi.z < 0 ? 0.3 / pi : 0; };
+    r.sample = [](Vec3d, Vec2d u) {
+        const double phi = 2 * pi * u.y, z = std::pow(u.x, 0.3), s = std::sqrt(1 - z * z);
+        return Draw{{s * std::cos(phi), s * std::sin(phi), -z}, 0.5 / pi, {}, {}};
+    };
+    const Judgement j = judged(subject_of(r), 150);
+    const Verdict& v = named(j, "density");
+    EXPECT_EQ(v.state, State::wrong);
+    EXPECT_EQ(v.say.find("nan"), std::string::npos) << v.say;
+}
+
 /// Seven turns, each of every sampler once, and nothing beside them: their times can be compared.
 TEST(OwnSamplers, AreTimedInTurnsWhileNothingElseIsAsked) {
     std::mutex lock;

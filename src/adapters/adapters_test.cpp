@@ -59,6 +59,17 @@ struct PbrtLike {
     float PDF(Vec wo, Vec wi, Mode) const { return wo.z > 0 ? 0.75f * off * cosine_pdf(wi) : 0; }
 };
 
+/// As some classes of pbrt are: what is asked for comes last, without a default.
+enum class Asked { none, reflection, transmission, all };
+struct AskedPbrtLike : PbrtLike {
+    std::optional<Sample> Sample_f(Vec wo, float uc, Point u, Mode mode, Asked asked) const {
+        return asked == Asked::all ? PbrtLike::Sample_f(wo, uc, u, mode) : std::nullopt;
+    }
+    float PDF(Vec wo, Vec wi, Mode mode, Asked asked) const {
+        return asked == Asked::all ? PbrtLike::PDF(wo, wi, mode) : 0;
+    }
+};
+
 // --- of Nori's shape ---------------------------------------------------------------------------------------------
 enum Measure { unknown = 0, solid_angle, discrete };
 struct Record {
@@ -127,6 +138,14 @@ template <class Sampler> void expect(const Sampler& sampler, crescent::State sta
 TEST(Adapters, AClassOfPbrtsShapeIsJudgedWithItsDeltaPart) {
     expect(crescent::adapters::Pbrt(PbrtLike{}), crescent::State::right);
     expect(crescent::adapters::Pbrt(PbrtLike{1.03f}), crescent::State::wrong);
+    expect(crescent::adapters::Pbrt(AskedPbrtLike{}), crescent::State::right);
+}
+
+TEST(Adapters, AreToldWhatElseIsKnown) {
+    const crescent::Traits both{.wo = crescent::Traits::Asked::both, .reciprocal = false};
+    const crescent::adapters::Nori known(NoriLike{}, both);
+    EXPECT_EQ(crescent::user::traits_of(known).wo, crescent::Traits::Asked::both);
+    EXPECT_FALSE(crescent::user::traits_of(crescent::adapters::Pbrt(PbrtLike{}, both)).reciprocal);
 }
 
 TEST(Adapters, AClassOfNorisShapeIsJudged) {

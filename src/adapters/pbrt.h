@@ -44,17 +44,31 @@ public:
     Traits traits() const { return known_; }
 
     std::optional<Drawn> sample(Direction wo, double uc, std::array<double, 2> u) const {
-        const auto s = bxdf_.Sample_f(vector(wo), static_cast<float>(uc), Point{float(u[0]), float(u[1])}, Mode{});
+        const auto s = sampled(vector(wo), static_cast<float>(uc), Point{float(u[0]), float(u[1])});
         if (!s) return {};
-        const double pdf = static_cast<double>(s->pdf), cosine = std::fabs(static_cast<double>(s->wi.z));
-        return Drawn{{s->wi.x, s->wi.y, s->wi.z}, pdf, pdf > 0 ? average_of(s->f) * cosine / pdf : 0, s->IsSpecular()};
+        const double cosine = std::fabs(static_cast<double>(s->wi.z));
+        double pdf = static_cast<double>(s->pdf);
+        const double weight = pdf > 0 ? average_of(s->f) * cosine / pdf : 0;
+        if constexpr (requires { s->pdfIsProportional; })  // f / pdf is meant, pdf alone is no density
+            if (s->pdfIsProportional && pdf > 0) pdf = this->pdf(wo, {s->wi.x, s->wi.y, s->wi.z});
+        return Drawn{{s->wi.x, s->wi.y, s->wi.z}, pdf, weight, s->IsSpecular()};
     }
-    double pdf(Direction wo, Direction wi) const { return bxdf_.PDF(vector(wo), vector(wi), Mode{}); }
+    double pdf(Direction wo, Direction wi) const {
+        if constexpr (requires { bxdf_.PDF(vector(wo), vector(wi), Mode{}); })
+            return bxdf_.PDF(vector(wo), vector(wi), Mode{});
+        else return bxdf_.PDF(vector(wo), vector(wi), Mode{}, everything<Parameter<4>>);
+    }
     double f(Direction wo, Direction wi) const { return average_of(bxdf_.f(vector(wo), vector(wi), Mode{})); }
 
 private:
     BxDF bxdf_;
     Traits known_;
+    /// Some classes have no default for the last parameter, what is asked for: 1 reflection, 2 transmission.
+    template <class Flags> static constexpr Flags everything = static_cast<Flags>(3);
+    auto sampled(Vector wo, float uc, Point u) const {
+        if constexpr (requires { bxdf_.Sample_f(wo, uc, u, Mode{}); }) return bxdf_.Sample_f(wo, uc, u, Mode{});
+        else return bxdf_.Sample_f(wo, uc, u, Mode{}, everything<Parameter<4>>);
+    }
     static Vector vector(Direction w) { return Vector{float(w[0]), float(w[1]), float(w[2])}; }
 };
 

@@ -64,7 +64,8 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
     if (!shape && norm < std::max(0.005, 6 * as_is.relative_se)) return {};
     for (const Factor& factor : usual_factors(work)) {
         const Binned by = weigh(d, b, factor);
-        if (by.statistic > 1.5 * by.degrees || by.degrees < 8) continue;
+        // NaN where the factor is none of the w_i that were drawn.
+        if (!(by.statistic <= 1.5 * by.degrees) || !(by.constant > 0) || by.degrees < 8) continue;
         if (shape &&
             (factor.name == "a constant" ||
                 by.off > 0.1 * as_is.off + 2 / std::sqrt(static_cast<double>(b.draws.size()))))

@@ -41,7 +41,7 @@ std::vector<Pair> pairs_of(const TrialContext& work) {
         if (pairs.size() >= 768) break;
         if (d.pdf > 0 && (d.wi.z > 0.02 || (both && d.wi.z < -0.02))) pairs.push_back({work.trial.wo, normalize(d.wi)});
     }
-    if (both && !work.traits.eta)  // how f scales across the surface is not known
+    if (!work.traits.eta)  // how f scales across the surface is not known; a w_o below may be asked of any sampler
         std::erase_if(pairs, [](const Pair& p) { return p.wo.z * p.wi.z < 0; });
     return pairs;
 }
