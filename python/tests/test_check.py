@@ -120,7 +120,7 @@ def test_a_length_that_goes_wrong_later_is_told_too_and_so_is_what_a_callable_ra
 
 
 @pytest.mark.parametrize("serial", [False, True])
-def test_ctrl_c_ends_a_judgement(serial):
+def test_ctrl_c_ends_a_judgement(serial, interruptible):
     began = threading.Event()
 
     def slow(wo, wi):

@@ -111,7 +111,7 @@ def test_a_folder_is_written_as_one(measured, tmp_path):
         measured.write(tmp_path / "file")
 
 
-def test_ctrl_c_ends_a_run():
+def test_ctrl_c_ends_a_run(interruptible):
     e = crescent.parse(TINY).with_({"arms.cosine.n": [1 << 20], "image.width": 480, "image.height": 320})
     asked = []
 
