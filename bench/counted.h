@@ -46,7 +46,7 @@ namespace bench {
 
 /// What the estimator does with a direction: g = cos/p, X, its square, the test against one disk; the lobe where there
 /// is one.
-template <class L> Counted carry(const ShadingPoint<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
+template <class L> Counted accumulate(const ShadingPoint<Counted>& site, const Drawn<Counted>& drawn, Counted weight) {
     const LocalDisk<Counted>& disk = site.disks[0];
     const L lobe(site.s, site.alpha);
     const Counted g = weight * (drawn.wi.z / drawn.pdf.v), f = lobe(site.wo, drawn.wi);
@@ -67,9 +67,10 @@ template <template <class> class A, class L> std::uint64_t operations_per_sample
     if constexpr (requires { A<Counted>::techniques; }) {
         const Drawn<Counted> a = arm.template sample_technique<0>(site.wo, u),
                              b = arm.template sample_technique<1>(site.wo, u);
-        carry<L>(site, a, arm.template weight<0>(site.wo, a)), carry<L>(site, b, arm.template weight<1>(site.wo, b));
+        accumulate<L>(site, a, arm.template weight<0>(site.wo, a)),
+            accumulate<L>(site, b, arm.template weight<1>(site.wo, b));
     } else {
-        carry<L>(site, arm.sample(site.wo, u), c(1));
+        accumulate<L>(site, arm.sample(site.wo, u), c(1));
     }
     return Counted::operations;
 }

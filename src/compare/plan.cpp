@@ -88,49 +88,49 @@ void from_folder(Node& root, const std::string& file) {
             for (Member& member : named->members) from_folder(at(member.value, key), folder);
 }
 
-void check_names(ParseContext& draft, const ComparePlan& plan) {
+void check_names(ParseContext& context, const ComparePlan& plan) {
     std::vector<std::string> regions{whole_frame}, arms;
     for (const Region& r : plan.regions) regions.push_back(r.name);
     for (const MaskPlan& m : plan.masks) {
         if (std::count(regions.begin(), regions.end(), m.name))
-            draft.complain("masks." + m.name, m.at, fmt::format("the name '{}' is a region already", m.name));
+            context.complain("masks." + m.name, m.at, fmt::format("the name '{}' is a region already", m.name));
         regions.push_back(m.name);
     }
     for (const Region& r : plan.regions)
         if (r.name == whole_frame)
-            draft.complain("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
+            context.complain("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
     for (const RenderArm& a : plan.arms) arms.push_back(a.name);
     for (const AssertionPlan& a : plan.assertions) {
         std::string why;
         const auto check = parse_comparison(a.left, why, compare_words());
         if (!check) {
-            draft.complain(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
+            context.complain(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
             continue;
         }
         for (const ParsedQuantity* q : {&check->left, &check->right}) {
             if (q->number) continue;
             if (!std::count(arms.begin(), arms.end(), q->subject))
-                draft.complain(a.name, a.at,
+                context.complain(a.name, a.at,
                     fmt::format("{}: no arm '{}': expected one of {}{}", a.left, q->subject, listed(arms, ", "),
                         hint(q->subject, arms)));
             if (!std::count(regions.begin(), regions.end(), q->region))
-                draft.complain(a.name, a.at,
+                context.complain(a.name, a.at,
                     fmt::format("{}: no region '{}': expected one of {}{}", a.left, q->region, listed(regions, ", "),
                         hint(q->region, regions)));
         }
     }
     if (plan.expect == Expectation::same && plan.arms.size() < 2 && plan.reference.empty())
-        draft.complain("expect", "expect = \"same\": expected two arms, or an arm and a reference");
+        context.complain("expect", "expect = \"same\": expected two arms, or an arm and a reference");
 }
 
-ComparePlan read_plan(Node root, ParseContext& draft, const std::vector<CompareFlag>& flags) {
+ComparePlan read_plan(Node root, ParseContext& context, const std::vector<CompareFlag>& flags) {
     std::set<std::string> begun;
     for (const CompareFlag& flag : flags) put(root, flag, begun);
     ComparePlan plan;
-    plan.file = draft.e.file;
-    read_tree(draft, compare_schema(), root, &plan);
-    if (draft.complaints.empty()) check_names(draft, plan);
-    throw_if_any(std::move(draft.complaints));
+    plan.file = context.e.file;
+    read_tree(context, compare_schema(), root, &plan);
+    if (context.complaints.empty()) check_names(context, plan);
+    throw_if_any(std::move(context.complaints));
     for (AssertionPlan& a : plan.assertions) {
         std::string why;
         const auto check = parse_comparison(a.left, why, compare_words());
@@ -142,14 +142,14 @@ ComparePlan read_plan(Node root, ParseContext& draft, const std::vector<CompareF
 }  // namespace
 
 ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& file) {
-    ParseContext draft;
-    draft.e.file = file.empty() ? "crescent compare" : file;
+    ParseContext context;
+    context.e.file = file.empty() ? "crescent compare" : file;
     Node root;
     if (!file.empty()) {
-        root = read_toml(read_text(file, "a compare file"), file, &draft.complaints);
+        root = read_toml(read_text(file, "a compare file"), file, &context.complaints);
         from_folder(root, file);
     }
-    return read_plan(std::move(root), draft, flags);
+    return read_plan(std::move(root), context, flags);
 }
 
 std::vector<std::string> compare_arms(const std::string& file) {

@@ -54,8 +54,8 @@ template <class A, class L, class F> struct Lane : Lights<F> {
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
-    template <class D>
-    [[gnu::always_inline]] F carry(RunningSums<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
+    template <class D> [[gnu::always_inline]] F accumulate(
+        RunningSums<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
@@ -92,10 +92,10 @@ template <class A, class L, class F> struct Lane : Lights<F> {
                                   : Vec2<F>{unit_float<F>(second.x), unit_float<F>(second.y)};
             const auto a = arm.template sample_technique<0>(c.wo, u);
             const auto b = arm.template sample_technique<1>(c.wo, v);
-            x = carry(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
-            x = x + carry(to, c, brdf, b, arm.template weight<1>(c.wo, b));
+            x = accumulate(to, c, brdf, a, arm.template weight<0>(c.wo, a));  // one after the other: sums have an order
+            x = x + accumulate(to, c, brdf, b, arm.template weight<1>(c.wo, b));
         } else {
-            x = carry(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
+            x = accumulate(to, c, brdf, arm.sample(c.wo, u), number<F>(1));
         }
         const F off = x - to.pivot;
         to.off = to.off + off;

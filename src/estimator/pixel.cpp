@@ -214,7 +214,7 @@ double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
 
 std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
     const ShadingPoint<float> site = aimed_from();
-    const Carrier carry(sites_, {local_, others_}, disks_, fill_);
+    const Carrier accumulate(sites_, {local_, others_}, disks_, fill_);
     std::vector<PixelSample> out;
     with_arm(sampler, [&]<template <class> class A>() {
         const A<float> arm(site);
@@ -224,10 +224,10 @@ std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint6
                 const Vec2<float> v = draw(seed, sites_.pixel[0], k, 1);
                 const auto a = arm.template sample_technique<0>(site.wo, u);
                 const auto b = arm.template sample_technique<1>(site.wo, v);
-                out.push_back(carry(u, a, arm.template weight<0>(site.wo, a), 0));
-                out.push_back(carry(v, b, arm.template weight<1>(site.wo, b), 1));
+                out.push_back(accumulate(u, a, arm.template weight<0>(site.wo, a), 0));
+                out.push_back(accumulate(v, b, arm.template weight<1>(site.wo, b), 1));
             } else {
-                out.push_back(carry(u, arm.sample(site.wo, u), 1, 0));
+                out.push_back(accumulate(u, arm.sample(site.wo, u), 1, 0));
             }
         }
     });

@@ -137,7 +137,7 @@ void ShadingPoints::reserve(std::size_t sites) {
     each_array([&](auto& array) { array.reserve(whole_packs(sites)); });
 }
 
-void ShadingPoints::make_room(std::size_t more) {
+void ShadingPoints::grow(std::size_t more) {
     each_array([&](auto& array) { array.resize(count + more); });
 }
 
@@ -149,7 +149,7 @@ void ShadingPoints::pad() {
     });
 }
 
-void ShadingPoints::prune(const Scene& scene) {
+void ShadingPoints::cull_occluders(const Scene& scene) {
     const auto range = [](const std::vector<float>& v) {
         const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
         return std::pair(0.5 * (static_cast<double>(*lo) + *hi), 0.5 * (static_cast<double>(*hi) - *lo));
@@ -180,7 +180,7 @@ public:
           area_(columns_ * static_cast<std::size_t>(tile.y1 - tile.y0)) {}
 
     void next_row() {
-        for (ShadingPoints& group : groups) group.make_room(columns_);
+        for (ShadingPoints& group : groups) group.grow(columns_);
     }
 
     void add(std::uint32_t pixel, const Hit& hit) {
@@ -193,7 +193,7 @@ public:
         if (group == groups.end()) {
             group = groups.insert(group, empty_sites(scene_, lobe));
             group->reserve(area_);
-            group->make_room(columns_);
+            group->grow(columns_);
         }
         group->add(scene_, pixel, hit, *shading_);
     }
@@ -225,7 +225,7 @@ std::vector<ShadingPoints> sites_of(const Scene& scene, const TileBox& tile, std
     }
     for (ShadingPoints& group : sorter.groups) {
         group.pad();
-        group.prune(scene);
+        group.cull_occluders(scene);
     }
     return std::move(sorter.groups);
 }

@@ -77,12 +77,12 @@ struct ShadingPoints {
 
     /// Adds a site where room was made for it.
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading);
-    void make_room(std::size_t more);
+    void grow(std::size_t more);
     void reserve(std::size_t sites);
     /// Repeats the last site until every pack is full.
     void pad();
     /// Drops the occluders that stand between no site and no disk.
-    void prune(const Scene& scene);
+    void cull_occluders(const Scene& scene);
 
 private:
     template <class Work> void each_array(Work&& work);

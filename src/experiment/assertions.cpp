@@ -10,15 +10,16 @@ namespace {
 
 bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
 
-void resolve(ParseContext& draft, AssertionPlan& plan, const std::string& path) {
+void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path) {
     std::string why;
     std::optional<Comparison> check = parse_comparison(plan.left, why);
     if (check && is_number(*check)) check.reset(), why = "expected a quantity on one side at least, found two numbers";
     if (check)
-        if (why = resolve_quantity(check->left, draft.e); why.empty()) why = resolve_quantity(check->right, draft.e);
+        if (why = resolve_quantity(check->left, context.e); why.empty())
+            why = resolve_quantity(check->right, context.e);
     if (why.empty() && plan.median && (check->left.word == "tail" || check->right.word == "tail"))
         why = "expected over = \"seed\": tails are measured at the experiment's seed alone";
-    if (!why.empty()) return draft.complain(path, fmt::format("{}: {}", path, why));
+    if (!why.empty()) return context.complain(path, fmt::format("{}: {}", path, why));
     plan.left = to_string(check->left);
     plan.op = check->op;
     plan.right = to_string(check->right);
@@ -26,10 +27,10 @@ void resolve(ParseContext& draft, AssertionPlan& plan, const std::string& path) 
 
 }  // namespace
 
-void resolve_assertions(ParseContext& draft) {
-    for (AssertionPlan& plan : draft.e.assertions) {
+void resolve_assertions(ParseContext& context) {
+    for (AssertionPlan& plan : context.e.assertions) {
         const std::string path = fmt::format("assertions.{}.check", plan.name);
-        if (draft.is_valid(path)) resolve(draft, plan, path);
+        if (context.is_valid(path)) resolve(context, plan, path);
     }
 }
 

@@ -24,94 +24,96 @@ template <class T> std::vector<std::string> names_of(const std::vector<T>& all) 
     return names;
 }
 
-void check_camera(ParseContext& draft) {
-    const Camera& c = draft.e.camera;
-    if (!draft.is_valid("camera") || !draft.is_valid("camera.eye") || !draft.is_valid("camera.target")) return;
+void check_camera(ParseContext& context) {
+    const Camera& c = context.e.camera;
+    if (!context.is_valid("camera") || !context.is_valid("camera.eye") || !context.is_valid("camera.target")) return;
     const Vec3d view = c.target - c.eye;
     if (length(view) < 1e-9)
-        return draft.complain("camera.target", "camera.target: expected a point other than camera.eye, found the same");
-    if (draft.is_valid("camera.up") && length(cross(view, c.up)) < parallel * length(view))
-        draft.complain(
+        return context.complain(
+            "camera.target", "camera.target: expected a point other than camera.eye, found the same");
+    if (context.is_valid("camera.up") && length(cross(view, c.up)) < parallel * length(view))
+        context.complain(
             "camera.up", "camera.up: expected a direction that is not parallel to the view from eye to target");
 }
 
-void check_box_on_image(ParseContext& draft, const std::string& path, const Box& box) {
-    const Image& image = draft.e.image;
-    if (!draft.is_valid(path) || !draft.is_valid("image") || !draft.is_valid("image.width") ||
-        !draft.is_valid("image.height"))
+void check_box_on_image(ParseContext& context, const std::string& path, const Box& box) {
+    const Image& image = context.e.image;
+    if (!context.is_valid(path) || !context.is_valid("image") || !context.is_valid("image.width") ||
+        !context.is_valid("image.height"))
         return;
     if (box.x0 >= 0 && box.y0 >= 0 && box.x1 < image.width && box.y1 < image.height) return;
-    draft.complain(path,
+    context.complain(path,
         fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
             image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
 }
 
 /// What the parameters of a kind say of each other, where all of them could be read.
-template <class Any> void check_form(ParseContext& draft, const std::string& path, const Any& any) {
-    if (!draft.is_valid(path + ".kind")) return;
+template <class Any> void check_form(ParseContext& context, const std::string& path, const Any& any) {
+    if (!context.is_valid(path + ".kind")) return;
     std::visit(
         [&]<class Kind>(const Kind& kind) {
             if constexpr (requires { kind.mistake(); }) {
                 for (const Parameter<Kind>& parameter : Kind::parameters())
-                    if (!draft.is_valid(fmt::format("{}.{}", path, parameter.name))) return;
+                    if (!context.is_valid(fmt::format("{}.{}", path, parameter.name))) return;
                 if (const std::optional<Mistake> mistake = kind.mistake()) {
                     const std::string key = fmt::format("{}.{}", path, mistake->key);
-                    draft.complain(key, fmt::format("{}: {}", key, mistake->says));
+                    context.complain(key, fmt::format("{}: {}", key, mistake->says));
                 }
             }
         },
         any);
 }
 
-void check_material(ParseContext& draft, const Shape& shape) {
+void check_material(ParseContext& context, const Shape& shape) {
     const std::string path = "shapes." + shape.name;
     const Material& m = shape.material;
-    if (!draft.is_valid(path + ".brdf") || !(m.rho_s > 0)) return;
+    if (!context.is_valid(path + ".brdf") || !(m.rho_s > 0)) return;
     const LobeInfo& lobe = lobe_info(m.brdf);
     const bool by_alpha = lobe.parameter == LobeParameter::alpha;
-    if (by_alpha && !m.alpha && draft.is_valid(path + ".alpha"))
-        draft.complain(path + ".alpha",
+    if (by_alpha && !m.alpha && context.is_valid(path + ".alpha"))
+        context.complain(path + ".alpha",
             fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, above 0, up to 1", path,
                 lobe.name));
-    if (!by_alpha && !m.s && draft.is_valid(path + ".s"))
-        draft.complain(path + ".s",
+    if (!by_alpha && !m.s && context.is_valid(path + ".s"))
+        context.complain(path + ".s",
             fmt::format(
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
 }
 
-void check_light(ParseContext& draft) {
-    const auto& disks = draft.e.disks;
-    const auto& lights = draft.e.lights;
+void check_light(ParseContext& context) {
+    const auto& disks = context.e.disks;
+    const auto& lights = context.e.lights;
     if (const std::size_t all = disks.size() + lights.size(); all > most_lights)
-        draft.complain(disks.size() > most_lights ? "disks." + disks[most_lights].name
-                                                  : "lights." + lights[most_lights - disks.size()].name,
+        context.complain(disks.size() > most_lights ? "disks." + disks[most_lights].name
+                                                    : "lights." + lights[most_lights - disks.size()].name,
             fmt::format("disks and lights: expected at most {}, found {}", most_lights, all));
-    for (const Light& light : lights) check_form(draft, "lights." + light.name, light.form);
-    const Rgb& fill = draft.e.fill;
+    for (const Light& light : lights) check_form(context, "lights." + light.name, light.form);
+    const Rgb& fill = context.e.fill;
     const auto is_dark = [](const auto& light) {
         return light.radiance[0] + light.radiance[1] + light.radiance[2] <= 0;
     };
     const bool dark =
         std::all_of(disks.begin(), disks.end(), is_dark) && std::all_of(lights.begin(), lights.end(), is_dark);
-    if (dark && draft.is_valid("disks") && draft.is_valid("lights") && draft.is_valid("fill") &&
-        draft.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
-        draft.complain("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
+    if (dark && context.is_valid("disks") && context.is_valid("lights") && context.is_valid("fill") &&
+        context.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
+        context.complain("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
 }
 
-void check_outside_arms(ParseContext& draft) {
-    for (const ArmPlan& arm : draft.e.arms) {
+void check_outside_arms(ParseContext& context) {
+    for (const ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
         if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
-            draft.complain(path, fmt::format("{}: expected one of sampler, exec and plugin, found several", path));
+            context.complain(path, fmt::format("{}: expected one of sampler, exec and plugin, found several", path));
         for (const auto& [key, text] : {std::pair("exec", arm.exec), std::pair("plugin", arm.plugin)})
             if (text && text->empty())
-                draft.complain(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
+                context.complain(
+                    path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
     }
 }
 
 /// No two arms may write their films into one file.
-void check_film_files(ParseContext& draft) {
-    const Experiment& e = draft.e;
+void check_film_files(ParseContext& context) {
+    const Experiment& e = context.e;
     std::map<std::string, std::string, std::less<>> taken = {{std::string(reference_file), "the references"}};
     if (e.exponent)
         for (const double s : e.exponent->s)
@@ -119,49 +121,49 @@ void check_film_files(ParseContext& draft) {
                 taken.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
     for (const ArmPlan& arm : e.arms)
         if (const auto other = taken.find(arm.name); other != taken.end())
-            draft.complain("arms." + arm.name,
+            context.complain("arms." + arm.name,
                 fmt::format("arms.{}: films/{}.exr is where those of {} go: expected another name", arm.name, arm.name,
                     other->second));
 }
 
 }  // namespace
 
-void check_geometry(ParseContext& draft) {
-    check_camera(draft);
-    for (const Shape& shape : draft.e.shapes)
-        check_form(draft, "shapes." + shape.name, shape.form), check_material(draft, shape);
-    for (const Region& region : draft.e.regions)
-        check_box_on_image(draft, "regions." + region.name + ".box", region.box);
-    for (const PlatePlan& plate : draft.e.plates)
-        if (plate.crop) check_box_on_image(draft, "plates." + plate.name + ".crop", *plate.crop);
-    check_light(draft);
+void check_geometry(ParseContext& context) {
+    check_camera(context);
+    for (const Shape& shape : context.e.shapes)
+        check_form(context, "shapes." + shape.name, shape.form), check_material(context, shape);
+    for (const Region& region : context.e.regions)
+        check_box_on_image(context, "regions." + region.name + ".box", region.box);
+    for (const PlatePlan& plate : context.e.plates)
+        if (plate.crop) check_box_on_image(context, "plates." + plate.name + ".crop", *plate.crop);
+    check_light(context);
 }
 
-void check_names(ParseContext& draft) {
-    const std::vector<std::string> arms = names_of(draft.e.arms), shapes = names_of(draft.e.shapes);
-    for (const Reference& r : draft.references) {
+void check_names(ParseContext& context) {
+    const std::vector<std::string> arms = names_of(context.e.arms), shapes = names_of(context.e.shapes);
+    for (const Reference& r : context.references) {
         const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
         const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
-        draft.complain(r.path,
+        context.complain(r.path,
             fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64), listed(valid, ", "),
                 hint(r.name, valid)));
     }
-    check_film_files(draft);
-    check_outside_arms(draft);
+    check_film_files(context);
+    check_outside_arms(context);
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
-        if (const Shape* shape = draft.e.find_shape(name))
-            draft.complain(path + name,
+        if (const Shape* shape = context.e.find_shape(name))
+            context.complain(path + name,
                 fmt::format("duplicate name '{}': expected a {} to be named unlike the shape at {}", name, what,
                     to_string(shape->at)));
     };
-    for (const DiskLight& disk : draft.e.disks) unlike_shapes("disk", "disks.", disk.name);
-    for (const Light& light : draft.e.lights) {
+    for (const DiskLight& disk : context.e.disks) unlike_shapes("disk", "disks.", disk.name);
+    for (const Light& light : context.e.lights) {
         unlike_shapes("light", "lights.", light.name);
-        for (const DiskLight& disk : draft.e.disks)
+        for (const DiskLight& disk : context.e.disks)
             if (disk.name == light.name)
-                draft.complain("lights." + light.name,
+                context.complain("lights." + light.name,
                     fmt::format("duplicate name '{}': expected a light to be named unlike the disk at {}", light.name,
                         to_string(disk.at)));
     }

@@ -16,22 +16,22 @@ namespace crescent::inline experiment {
 namespace {
 
 ParseContext draft_of(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-    ParseContext draft;
-    draft.e.file = name;
-    draft.e.overrides = overrides;
-    Node root = read_toml(text, name, &draft.complaints);
-    apply_overrides(draft, root, overrides);
-    read_tree(draft, root);
-    check_geometry(draft);
-    check_names(draft);
-    resolve_runs(draft);
-    resolve_assertions(draft);
-    Experiment& e = draft.e;
+    ParseContext context;
+    context.e.file = name;
+    context.e.overrides = overrides;
+    Node root = read_toml(text, name, &context.complaints);
+    apply_overrides(context, root, overrides);
+    read_tree(context, root);
+    check_geometry(context);
+    check_names(context);
+    resolve_runs(context);
+    resolve_assertions(context);
+    Experiment& e = context.e;
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     if (e.published) e.published = (folder / *e.published).string();
     for (ArmPlan& arm : e.arms)
         if (arm.plugin) arm.plugin = (folder / *arm.plugin).string();
-    return draft;
+    return context;
 }
 
 }  // namespace
@@ -47,9 +47,9 @@ void throw_if_any(std::vector<Diagnostic> all) {
 }
 
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
-    ParseContext draft = draft_of(text, name, overrides);
-    throw_if_any(std::move(draft.complaints));
-    return std::move(draft.e);
+    ParseContext context = draft_of(text, name, overrides);
+    throw_if_any(std::move(context.complaints));
+    return std::move(context.e);
 }
 
 Experiment load(const std::string& path, const std::vector<std::string>& overrides) {
@@ -59,14 +59,14 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
                 "expected an experiment, a TOML file: scenes of other programs cannot be read; README.md says what a "
                 "scene "
                 "can be");
-    ParseContext draft = draft_of(read_text(path, "an experiment file"), path, overrides);
-    if (draft.e.published) {
+    ParseContext context = draft_of(read_text(path, "an experiment file"), path, overrides);
+    if (context.e.published) {
         try {
-            draft.e.figures = load_published(*draft.e.published);
-        } catch (const InputError& error) { draft.complain("published", fmt::format("published: {}", error.what())); }
+            context.e.figures = load_published(*context.e.published);
+        } catch (const InputError& error) { context.complain("published", fmt::format("published: {}", error.what())); }
     }
-    throw_if_any(std::move(draft.complaints));
-    return std::move(draft.e);
+    throw_if_any(std::move(context.complaints));
+    return std::move(context.e);
 }
 
 Experiment with_figures(Experiment experiment) {

@@ -72,8 +72,8 @@ void move_to(Node& node, const SourceLocation& at) {
 
 class Override {
 public:
-    Override(ParseContext& draft, Node& root, const std::string& text)
-        : draft_(draft), root_(root), place_{"--set " + text, 0, 0} {}
+    Override(ParseContext& context, Node& root, const std::string& text)
+        : draft_(context), root_(root), place_{"--set " + text, 0, 0} {}
 
     void apply(const std::string& text) {
         const std::size_t equals = text.find('=');
@@ -166,8 +166,8 @@ private:
 
 }  // namespace
 
-void apply_overrides(ParseContext& draft, Node& root, const std::vector<std::string>& overrides) {
-    for (const std::string& text : overrides) Override(draft, root, text).apply(text);
+void apply_overrides(ParseContext& context, Node& root, const std::vector<std::string>& overrides) {
+    for (const std::string& text : overrides) Override(context, root, text).apply(text);
 }
 
 }  // namespace crescent::inline experiment

@@ -33,30 +33,30 @@ struct ParseContext {
 std::string hint(std::string_view word, const std::vector<std::string>& valid);
 
 /// Checks one value against its key; complains and returns false where it does not fit.
-bool read_value(ParseContext& draft, const Key& key, const Node& node, const std::string& path, Value& value);
+bool read_value(ParseContext& context, const Key& key, const Node& node, const std::string& path, Value& value);
 
-/// Walks the table over the tree: unknown and missing keys, types, ranges; fills draft.e.
-void read_tree(ParseContext& draft, const Node& root);
-/// The same over another table: values go into `object`, places and complaints into the draft.
-void read_tree(ParseContext& draft, const Section& table, const Node& root, void* object);
+/// Walks the table over the tree: unknown and missing keys, types, ranges; fills context.e.
+void read_tree(ParseContext& context, const Node& root);
+/// The same over another table: values go into `object`, places and complaints into the context.
+void read_tree(ParseContext& context, const Section& table, const Node& root, void* object);
 
 /// Throws one InputError with all complaints in file order; returns where there is none.
 void throw_if_any(std::vector<Diagnostic> all);
 
 /// Puts "path=value" overrides into the tree.
-void apply_overrides(ParseContext& draft, Node& root, const std::vector<std::string>& overrides);
+void apply_overrides(ParseContext& context, Node& root, const std::vector<std::string>& overrides);
 
 /// What keys say of each other: names that must exist, regions on the image, the camera, degenerate shapes.
-void check_geometry(ParseContext& draft);
-void check_names(ParseContext& draft);
+void check_geometry(ParseContext& context);
+void check_names(ParseContext& context);
 
 /// Fills in what depends on other keys (s, n, the rungs of ladder plates) and checks runs against arms and exponents.
-void resolve_runs(ParseContext& draft);
+void resolve_runs(ParseContext& context);
 
 /// Why the experiment makes no run of this arm at this s (0: its own); "" where it does. The rung is checked apart.
 std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64_t n, double s);
 
 /// Parses every check and makes sure that all it names will be measured.
-void resolve_assertions(ParseContext& draft);
+void resolve_assertions(ParseContext& context);
 
 }  // namespace crescent::inline experiment

@@ -31,7 +31,7 @@ std::string where(const std::string& path) { return path.empty() ? "the experime
 
 class TreeReader {
 public:
-    explicit TreeReader(ParseContext& draft) : draft_(draft) {}
+    explicit TreeReader(ParseContext& context) : draft_(context) {}
 
     void table(
         const Section& section, const Node& node, const std::string& path, const SourceLocation& at, void* object) {
@@ -220,11 +220,11 @@ private:
 
 }  // namespace
 
-void read_tree(ParseContext& draft, const Section& table, const Node& root, void* object) {
-    const SourceLocation top{draft.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
-    TreeReader(draft).table(table, root, "", top, object);
+void read_tree(ParseContext& context, const Section& table, const Node& root, void* object) {
+    const SourceLocation top{context.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
+    TreeReader(context).table(table, root, "", top, object);
 }
 
-void read_tree(ParseContext& draft, const Node& root) { read_tree(draft, schema(), root, &draft.e); }
+void read_tree(ParseContext& context, const Node& root) { read_tree(context, schema(), root, &context.e); }
 
 }  // namespace crescent::inline experiment

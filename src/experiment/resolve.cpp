@@ -37,12 +37,12 @@ static_assert(
     }(),
     "a row for each kind of plate, in the order of the enumeration");
 
-void resolve_s(ParseContext& draft) {
-    Experiment& e = draft.e;
-    if (e.exponent && draft.is_valid("exponent.shape")) {
+void resolve_s(ParseContext& context) {
+    Experiment& e = context.e;
+    if (e.exponent && context.is_valid("exponent.shape")) {
         const Shape* shape = e.find_shape(e.exponent->shape);
-        if (shape && !shape->material.s && draft.is_valid("shapes." + shape->name + ".s"))
-            draft.complain("exponent.shape",
+        if (shape && !shape->material.s && context.is_valid("shapes." + shape->name + ".s"))
+            context.complain("exponent.shape",
                 fmt::format(
                     "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
     }
@@ -51,22 +51,22 @@ void resolve_s(ParseContext& draft) {
     for (Shape& shape : e.shapes)
         if (!shape.material.s && s > 0) shape.material.s = s, shape.material.inherits_s = true;
     if (s > 0 || std::any_of(e.shapes.begin(), e.shapes.end(), [&](const Shape& x) {
-            return !draft.is_valid("shapes." + x.name + ".s");
+            return !context.is_valid("shapes." + x.name + ".s");
         }))
         return;
     for (const ArmPlan& arm : e.arms)
         if (const ArmInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
-            draft.complain("arms." + arm.name,
+            context.complain("arms." + arm.name,
                 fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
 }
 
-void resolve_ladders(ParseContext& draft) {
-    for (ArmPlan& arm : draft.e.arms) {
+void resolve_ladders(ParseContext& context) {
+    for (ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
-        if (!arm.n.empty() || !draft.is_valid(path + ".n") || !draft.is_valid("n")) continue;
-        if (draft.e.n > 0) arm.n = {draft.e.n};
+        if (!arm.n.empty() || !context.is_valid(path + ".n") || !context.is_valid("n")) continue;
+        if (context.e.n > 0) arm.n = {context.e.n};
         else
-            draft.complain(path + ".n",
+            context.complain(path + ".n",
                 fmt::format("missing key 'n' in [{}]: expected ascending integers from 1 to "
                             "16777216 (samples/pixel), or an n for the whole experiment",
                     path));
@@ -74,30 +74,30 @@ void resolve_ladders(ParseContext& draft) {
 }
 
 /// The n of a run, its arm's where it names none; complains where the arm has no such rung.
-std::uint64_t rung(ParseContext& draft, const std::string& path, const std::string& arm_name, std::uint64_t n) {
-    const ArmPlan* arm = draft.e.find_arm(arm_name);
+std::uint64_t rung(ParseContext& context, const std::string& path, const std::string& arm_name, std::uint64_t n) {
+    const ArmPlan* arm = context.e.find_arm(arm_name);
     if (!arm || arm->n.empty()) return n;
-    if (n == 0) return draft.e.n_of(*arm);
+    if (n == 0) return context.e.n_of(*arm);
     if (!std::count(arm->n.begin(), arm->n.end(), n))
-        draft.complain(path,
+        context.complain(path,
             fmt::format(
                 "{}: the arm '{}' has no rung n = {}: expected one of {}", path, arm_name, n, listed(arm->n, ", ")));
     return n;
 }
 
-void check_s(ParseContext& draft, const std::string& path, const PlateRun& run) {
-    std::string why = why_not_run(draft.e, run.arm, run.n, run.s);
-    if (!why.empty()) draft.complain(path, fmt::format("{}: {}", path, why));
+void check_s(ParseContext& context, const std::string& path, const PlateRun& run) {
+    std::string why = why_not_run(context.e, run.arm, run.n, run.s);
+    if (!why.empty()) context.complain(path, fmt::format("{}: {}", path, why));
 }
 
-void resolve_plate(ParseContext& draft, PlatePlan& plate) {
+void resolve_plate(ParseContext& context, PlatePlan& plate) {
     const std::string path = "plates." + plate.name;
-    if (!draft.is_valid(path + ".kind") || !draft.is_valid(path + ".runs")) return;
+    if (!context.is_valid(path + ".kind") || !context.is_valid(path + ".runs")) return;
     const RunCount& count = run_counts[static_cast<std::size_t>(plate.kind)];
     if (plate.runs.size() < count.least || plate.runs.size() > count.most) {
         const std::string many = count.least == count.most ? fmt::format("{}", count.least)
                                                            : fmt::format("{} to {}", count.least, count.most);
-        draft.complain(path + ".runs",
+        context.complain(path + ".runs",
             fmt::format(
                 "{}.runs: expected {} for a plate of kind {}, found {}", path, many, count.word, plate.runs.size()));
     }
@@ -105,20 +105,20 @@ void resolve_plate(ParseContext& draft, PlatePlan& plate) {
     for (std::size_t i = 0; i < plate.runs.size(); ++i) {
         PlateRun run = plate.runs[i];
         const std::string own = fmt::format("{}.runs.{}", path, i);
-        const ArmPlan* arm = draft.e.find_arm(run.arm);
-        const bool open = run.n == 0 && draft.is_valid(own + ".n") && arm && !arm->n.empty();
+        const ArmPlan* arm = context.e.find_arm(run.arm);
+        const bool open = run.n == 0 && context.is_valid(own + ".n") && arm && !arm->n.empty();
         if (open && plate.kind == PlateKind::ladder) {
             for (const std::uint64_t n : arm->n) runs.push_back({run.arm, n, run.s});
             continue;
         }
-        const auto& control = draft.e.exponent;
-        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && draft.is_valid(own + ".s") && control &&
+        const auto& control = context.e.exponent;
+        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && context.is_valid(own + ".s") && control &&
             control->arm == run.arm) {
             for (const double s : control->s) runs.push_back({run.arm, control->n, s});
             continue;
         }
-        run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(draft, own + ".n", run.arm, run.n);
-        if (draft.is_valid(own + ".n") && draft.is_valid(own + ".s")) check_s(draft, own + ".s", run);
+        run.n = open && plate.kind == PlateKind::hero ? arm->n.back() : rung(context, own + ".n", run.arm, run.n);
+        if (context.is_valid(own + ".n") && context.is_valid(own + ".s")) check_s(context, own + ".s", run);
         runs.push_back(run);
     }
     plate.runs = std::move(runs);
@@ -138,14 +138,14 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
         arm, n, s, e.s(), control.arm, control.n, listed(control.s, ", "));
 }
 
-void resolve_runs(ParseContext& draft) {
-    resolve_s(draft);
-    resolve_ladders(draft);
-    if (draft.e.exponent) {
-        ExponentControl& control = *draft.e.exponent;
-        if (draft.is_valid("exponent.n")) control.n = rung(draft, "exponent.n", control.arm, control.n);
+void resolve_runs(ParseContext& context) {
+    resolve_s(context);
+    resolve_ladders(context);
+    if (context.e.exponent) {
+        ExponentControl& control = *context.e.exponent;
+        if (context.is_valid("exponent.n")) control.n = rung(context, "exponent.n", control.arm, control.n);
     }
-    for (PlatePlan& plate : draft.e.plates) resolve_plate(draft, plate);
+    for (PlatePlan& plate : context.e.plates) resolve_plate(context, plate);
 }
 
 }  // namespace crescent::inline experiment

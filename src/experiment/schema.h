@@ -109,7 +109,7 @@ const Section& schema();
 
 /// The manual of a table: a line or two a key, at most 80 columns.
 std::string manual_of(const Section& root);
-/// The table as a JSON Schema, draft 7, under this title.
+/// The table as a JSON Schema, context 7, under this title.
 std::string json_schema_of(const Section& root, const char* title);
 
 /// Whether a key belongs to this kind of shape; an empty kind (not known yet) has every key.
@@ -220,9 +220,9 @@ template <auto First, auto... Rest> constexpr Slot to =
     to_owner<typename OwnerOf<decltype(First)>::type, First, Rest...>;
 
 /// The object that the next table is read into: the member itself, or a new element.
-template <class T> T* make_room(T& member) { return &member; }
-template <class T> T* make_room(std::optional<T>& member) { return &member.emplace(); }
-template <class T> T* make_room(std::vector<T>& member) { return &member.emplace_back(); }
+template <class T> T* emplaced(T& member) { return &member; }
+template <class T> T* emplaced(std::optional<T>& member) { return &member.emplace(); }
+template <class T> T* emplaced(std::vector<T>& member) { return &member.emplace_back(); }
 
 /// The objects that a member holds: itself, none or one, or its elements.
 template <class T> std::span<const T> all_of(const T& member) { return {&member, 1}; }
@@ -234,7 +234,7 @@ template <class T> std::span<const T> all_of(const std::vector<T>& member) { ret
 /// The objects that a section's keys are stored into: the member itself, or its elements.
 template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
 constexpr Family in = {[](void* parent, const std::string& name, const SourceLocation& at) -> void* {
-                           auto* object = make_room(static_cast<Owner*>(parent)->*M);
+                           auto* object = emplaced(static_cast<Owner*>(parent)->*M);
                            if constexpr (requires { object->name; }) object->name = name;
                            if constexpr (requires { object->at; }) object->at = at;
                            return object;

@@ -27,8 +27,8 @@ std::size_t count_of(Type type) {
 
 class ValueReader {
 public:
-    ValueReader(ParseContext& draft, const Key& key, const std::string& path, Value& value)
-        : draft_(draft), key_(key), path_(path), value_(value) {}
+    ValueReader(ParseContext& context, const Key& key, const std::string& path, Value& value)
+        : draft_(context), key_(key), path_(path), value_(value) {}
 
     bool read(const Node& node) {
         switch (key_.type) {
@@ -188,8 +188,8 @@ std::string hint(std::string_view word, const std::vector<std::string>& valid) {
     return is_beyond(word) ? "; README.md says what a scene can be" : "";
 }
 
-bool read_value(ParseContext& draft, const Key& key, const Node& node, const std::string& path, Value& value) {
-    return ValueReader(draft, key, path, value).read(node);
+bool read_value(ParseContext& context, const Key& key, const Node& node, const std::string& path, Value& value) {
+    return ValueReader(context, key, path, value).read(node);
 }
 
 }  // namespace crescent::inline experiment

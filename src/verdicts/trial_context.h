@@ -1,4 +1,5 @@
-// One trial under way: its draws, its grain, its guides and its integrals, made once and shared by the verdicts.
+// One trial under way: its draws, how finely its directions are resolved, where it draws most, and its integrals, made
+// once and shared by the verdicts.
 #pragma once
 
 #include <array>
