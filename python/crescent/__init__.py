@@ -9,7 +9,8 @@ f in 1/sr without the cosine.
 """
 
 from ._check import Sampler, check
-from ._crescent import __version__, commit
+from ._crescent import commit
+from ._crescent import version as __version__
 from ._judgement import Judgement, Verdict
 from .arms import Tail, arm, arm_names, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, load, parse, run

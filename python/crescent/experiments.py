@@ -145,7 +145,8 @@ class Measured:
     @property
     def metrics(self) -> dict[str, Any]:
         """metrics.json as data: bands over seeds, ladders, furnaces, assertions, provenance."""
-        return json.loads(self._core.json())
+        numbers: dict[str, Any] = json.loads(self._core.json())
+        return numbers
 
     @property
     def holds(self) -> bool:

@@ -67,7 +67,7 @@ void alike(std::size_t a, std::size_t b) {
     if (a != b) throw nb::value_error(fmt::format("{} rows beside {}: expected as many", a, b).c_str());
 }
 
-nb::tuple sample(const ListedArm& arm, const In& wo, const Uniforms& u) {
+nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const Uniforms& u) {
     const std::size_t n = wo.shape(0);
     alike(n, u.shape(0));
     std::vector<double> wi(3 * n), pdf(n);

@@ -36,8 +36,12 @@ nb::dict planes_of(const ReferenceFilm& f, nb::handle owner) {
     return out;
 }
 
+using Planes = nb::typed<nb::dict, std::string, nb::any>;
+using FilmList = nb::typed<nb::list, nb::typed<nb::tuple, std::string, int, double, int, Planes>>;
+using ReferenceList = nb::typed<nb::list, nb::typed<nb::tuple, double, Planes>>;
+
 /// Every film of the run with its key, (arm, n, s, seed, planes).
-nb::list films_of(nb::handle self) {
+FilmList films_of(nb::handle self) {
     const Measured& m = nb::cast<const Measured&>(self);
     nb::list out;
     for (const auto& [key, film] : m.films)
@@ -46,7 +50,7 @@ nb::list films_of(nb::handle self) {
 }
 
 /// The references that the meters use, (s, planes).
-nb::list references_of(nb::handle self) {
+ReferenceList references_of(nb::handle self) {
     const Measured& m = nb::cast<const Measured&>(self);
     nb::list out;
     for (const ReferenceFilm& film : m.quadrature) out.append(nb::make_tuple(film.s, planes_of(film, self)));

@@ -137,7 +137,9 @@ void draw_batches(const Trials& trials, std::uint32_t batches) {
     tell(trials, nullptr);
 }
 
-nb::dict as_dict(const Verdict& v) {
+using AsDict = nb::typed<nb::dict, std::string, nb::any>;
+
+AsDict as_dict(const Verdict& v) {
     nb::dict out;
     out["arm"] = v.arm;
     out["case"] = v.trial;
@@ -151,8 +153,8 @@ nb::dict as_dict(const Verdict& v) {
     return out;
 }
 
-std::vector<nb::dict> verdicts_of(const Judged& j) {
-    std::vector<nb::dict> out;
+std::vector<AsDict> verdicts_of(const Judged& j) {
+    std::vector<AsDict> out;
     for (const Verdict& v : j.judgement.verdicts) out.push_back(as_dict(v));
     return out;
 }

@@ -21,7 +21,7 @@ NB_MODULE(_crescent, m) {
     });
     nb::set_leak_warnings(false);  // a callable of the main module may live until the interpreter ends
     m.doc() = "The C++ core of crescent; use the package `crescent`.";
-    m.attr("__version__") = crescent::version();
+    m.attr("version") = crescent::version();
     m.attr("commit") = crescent::commit();
     crescent::python::add_judging(m);
     crescent::python::add_experiments(m);

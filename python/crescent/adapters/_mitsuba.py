@@ -20,10 +20,11 @@ def _library() -> Any:
 
     if not mi.variant():
         mi.set_variant("llvm_ad_rgb", "scalar_rgb")
-    if mi.variant().startswith("scalar"):
-        raise ValueError(f"the variant {mi.variant()} has no arrays: mi.set_variant('llvm_ad_rgb')")
-    if "spectral" in mi.variant() or "polarized" in mi.variant():
-        raise ValueError(f"the variant {mi.variant()} has channels of its own: mi.set_variant('llvm_ad_rgb')")
+    variant = str(mi.variant())
+    if variant.startswith("scalar"):
+        raise ValueError(f"the variant {variant} has no arrays: mi.set_variant('llvm_ad_rgb')")
+    if "spectral" in variant or "polarized" in variant:
+        raise ValueError(f"the variant {variant} has channels of its own: mi.set_variant('llvm_ad_rgb')")
     return mi
 
 

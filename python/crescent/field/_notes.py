@@ -16,7 +16,7 @@ class Note:
     plugins: str  #: a regular expression over the plugin and its parameters
     verdicts: str  #: over the verdict's name
     says: str  #: over its sentence
-    kind: str  #: "bug", "no picture changes", "corner", "approximation", "single precision", "the model", "the bench"
+    kind: str  #: "bug", "no picture changes", "corner", "approximation", "single precision", "the model"
     because: str
     script: str = ""  #: that shows it, in place of one made for the verdict
 
@@ -51,15 +51,6 @@ NOTES = [
         "Moving the "
         "term out of the half mends it. The script integrates the density of one fibre lobe, which should come to 1.",
         _FIBER,
-    ),
-    Note(
-        "envmap",
-        "identity",
-        "Jacobian of the warp",
-        "the bench",
-        "A false accusation: as the step of the differences goes to 0, p |Jacobian| goes to 1 at that u. The warp "
-        "bends within "
-        "a texel more than the bench's difference allows for.",
     ),
     Note(
         "",

@@ -26,7 +26,7 @@ class Shipped:
         if self.label:
             return self.label
         told = [f"{k} = {_told(v)}" for k, v in self.plugin.items() if k != "type"]
-        return self.plugin["type"] + (": " + ", ".join(told) if told else "")
+        return str(self.plugin["type"]) + (": " + ", ".join(told) if told else "")
 
     def code(self) -> str:
         """The dictionary as Python."""
@@ -35,7 +35,7 @@ class Shipped:
 
 def _told(value: Any) -> str:
     if isinstance(value, dict):
-        return value["type"]
+        return str(value["type"])
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -99,7 +99,7 @@ def emitters() -> list[Shipped]:
     at = mi.ScalarTransform4f
     rows, columns = np.indices((8, 16))
     picture = np.stack([1 + 5 * np.exp(-((rows - 2.0) ** 2 + (columns - 5.0) ** 2) / 4)] * 3, -1).astype(np.float32)
-    shapes = {
+    shapes: dict[str, dict[str, Any]] = {
         "constant": {"type": "constant"},
         "envmap of 16 x 8 texels": {"type": "envmap", "bitmap": mi.Bitmap(picture)},
         "area on a sphere": {"type": "sphere", "center": [0.0, 1.0, 2.0], "radius": 0.5, "emitter": light},
