@@ -138,7 +138,9 @@ def main():
     print(table(rows))
     if args.write:
         command = shlex.join(["bench/compare.py", *sys.argv[1:]])
-        (ROOT / "docs" / "speed.md").write_text(page(facts, rows, args.rounds, command))
+        file = ROOT / "docs" / "speed.md"
+        _, title, rest = (file.read_text() if file.exists() else "").partition("\n## The page\n")  # bench/page.py's
+        file.write_text(page(facts, rows, args.rounds, command) + title + rest)
     against_mitsuba = [(row["arm"], row["ratios"]["mitsuba"]) for row in rows if "mitsuba" in row["ratios"]]
     slow = [arm for arm, ratios in against_mitsuba if statistics.median(ratios) < LEAST]
     if slow:

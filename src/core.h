@@ -28,3 +28,6 @@
 #include "scene/scene.h"
 #include "simd/random.h"
 #include "stats/tail.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/numbers.h"

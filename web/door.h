@@ -46,6 +46,8 @@ struct Bench {
     Scene scene;
     ShapeMap shapes;
     std::vector<Slot> slots;
+    TileBox seen{};  // the box whose primary rays were traced last, for the arms that follow
+    std::vector<ShadingPoints> sites;
     ReferenceFilm reference;
     std::unique_ptr<PixelQuadrature> quadrature;
 

@@ -73,13 +73,15 @@ export class Door {
     }
   }
 
+  private request(request: unknown): void {
+    const bytes = new TextEncoder().encode(JSON.stringify(request));
+    const at = this.number("room", bytes.length);
+    new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
+  }
+
   /** A call that answers in words. */
   say(name: string, request?: unknown, ...given: number[]): string {
-    if (request !== undefined) {
-      const bytes = new TextEncoder().encode(JSON.stringify(request));
-      const at = this.number("room", bytes.length);
-      new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
-    }
+    if (request !== undefined) this.request(request);
     this.number(name, ...given);
     return this.words(this.number("said_at"), this.number("said_size"));
   }
@@ -92,6 +94,12 @@ export class Door {
   bytes(name: string, size: number, ...given: number[]): ArrayBuffer {
     const at = this.number(name, ...given);
     return this.memory.buffer.slice(at, at + size);
+  }
+
+  /** The same with a request in words. */
+  bytesAbout(name: string, request: unknown, size: number, ...given: number[]): ArrayBuffer {
+    this.request(request);
+    return this.bytes(name, size, ...given);
   }
 
   /** Bytes into the module, for the call that follows. */

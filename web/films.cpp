@@ -50,6 +50,16 @@ std::uint32_t within(std::uint32_t pixel, const TileBox& box, std::size_t width)
     return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
 }
 
+/// What the primary rays of a box meet; asked for arm after arm, they are traced once.
+std::vector<ShadingPoints>& sites_seen(Bench& b, const TileBox& box) {
+    const bool same = b.seen.x0 == box.x0 && b.seen.y0 == box.y0 && b.seen.x1 == box.x1 && b.seen.y1 == box.y1;
+    if (same) return b.sites;
+    b.shapes.shape.resize(b.pixels());
+    b.sites = sites_of(b.scene, box, b.shapes.shape.data());
+    b.seen = box;
+    return b.sites;
+}
+
 }  // namespace
 
 /// The arm at n samples over a box: the nine planes of a film, which shape each pixel sees, and how many samples were
@@ -58,20 +68,21 @@ CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const 
     Bench& b = bench();
     const TileBox box = box_of(x0, y0, x1, y1);
     const ArmPlan& plan = b.experiment.arms.at(static_cast<std::size_t>(arm));
-    std::vector<std::int16_t>& seen = b.shapes.shape;
-    seen.resize(b.pixels());
     Film film(x1 - x0, y1 - y0, static_cast<std::uint64_t>(n));
     double bad = 0;
-    for (ShadingPoints& sites : sites_of(b.scene, box, seen.data())) {
+    for (ShadingPoints& sites : sites_seen(b, box)) {
         const Moments moments = estimate_sites(sites, plan.sampler, film.n, b.experiment.seed, "", nullptr);
+        const std::vector<std::uint32_t> of_image = sites.pixel;
         for (std::uint32_t& pixel : sites.pixel) pixel = within(pixel, box, b.width());
         resolve_film(b.scene, sites, moments, film);
+        sites.pixel = of_image;
         bad += bad_of(moments, sites.count);
     }
     std::vector<std::byte>& out = all_planes(film);
     std::vector<std::int32_t> tail;
     for (int j = y0; j < y1; ++j)
-        for (int i = x0; i < x1; ++i) tail.push_back(seen[static_cast<std::size_t>(j) * b.width() + std::size_t(i)]);
+        for (int i = x0; i < x1; ++i)
+            tail.push_back(b.shapes.shape[static_cast<std::size_t>(j) * b.width() + std::size_t(i)]);
     tail.push_back(static_cast<std::int32_t>(bad));
     const auto* bytes = reinterpret_cast<const std::byte*>(tail.data());
     out.insert(out.end(), bytes, bytes + tail.size() * sizeof tail[0]);

@@ -46,10 +46,9 @@ function marks(pen: CanvasRenderingContext2D, pixel: Opened): void {
 
 /** The draws: area by weight, those that met a light square, so that it is told without colour. */
 function points(pen: CanvasRenderingContext2D, pixel: Opened): void {
-  const largest = Math.max(1e-30, ...pixel.draws.map((d) => d[2]));
-  for (const [x, y, weight, met] of pixel.draws) {
+  for (const [x, y, side, met] of pixel.draws) {
     if (met === -2) continue;
-    const [a, b] = onDisk(x, y), r = 1.5 + 7 * Math.sqrt(Math.max(0, weight) / largest);
+    const [a, b] = onDisk(x, y), r = 1.5 + 7 * side;
     pen.beginPath();
     if (met >= 0) pen.rect(a - r, b - r, 2 * r, 2 * r);
     else pen.arc(a, b, r, 0, 2 * Math.PI);

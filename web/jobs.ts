@@ -5,11 +5,11 @@ export interface Opening { file: string; text: string; set: string[]; published:
 
 export type Job =
   | { kind: "open"; opening: Opening }
-  | { kind: "tile"; arm: number; n: number; box: Box }
+  | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
   | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: asked of another experiment
 
-export type Answer = { bytes?: ArrayBuffer; said?: unknown };
+export type Answer = { bytes?: ArrayBuffer[]; said?: unknown };
 export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string } };
 
 const filmPlanes = 9, referencePlanes = 5;
@@ -21,11 +21,11 @@ export function perform(door: Door, job: Job): Answer {
       return { said: door.ask("open", job.opening) };
     case "tile": {
       const { x0, y0, x1, y1 } = job.box, pixels = pixelsOf(job.box);
-      return { bytes: door.bytes("tile", 4 * ((filmPlanes + 1) * pixels + 1), job.arm, job.n, x0, y0, x1, y1) };
+      return { bytes: job.arms.map((arm) => door.bytes("tile", 4 * ((filmPlanes + 1) * pixels + 1), arm, job.n, x0, y0, x1, y1)) };
     }
     case "reference": {
       const { x0, y0, x1, y1 } = job.box;
-      return { bytes: door.bytes("reference_tile", 4 * referencePlanes * pixelsOf(job.box), x0, y0, x1, y1) };
+      return { bytes: [door.bytes("reference_tile", 4 * referencePlanes * pixelsOf(job.box), x0, y0, x1, y1)] };
     }
     case "ask":
       return { said: door.ask(job.call, job.request) };

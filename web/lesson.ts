@@ -1,11 +1,14 @@
 // A lesson on the page: it asks, measures, shows the guess beside what was measured, and lets play. The sheet for
 // teachers is made of the same data and of numbers that are measured when it is opened.
 import { Asker, Found } from "./answers";
-import { el } from "./dom";
+import { checkPanel, samplerPictures } from "./check";
+import { el, made } from "./dom";
 import { Lesson, lessons } from "./lessons";
+import { Model } from "./model";
 
 export interface Lessons {
   root: HTMLElement;
+  model: Model;
   asker(): Asker;
   answered(lesson: Lesson, answer: string): void;
   go(lesson: string): void;
@@ -49,11 +52,14 @@ function question(lesson: Lesson, given: string | undefined, take: (answer: stri
     hint, el("button", { type: "submit", class: "main", id: "measure" }, "Measure"));
 }
 
-function revealed(lesson: Lesson, answer: string, found: Found): HTMLElement {
+/** Words with formulas, as the core sets them. */
+const set = (model: Model, words: string): DocumentFragment => made(model.door.say("html", words));
+
+function revealed(model: Model, lesson: Lesson, answer: string, found: Found): HTMLElement {
   const words = (value: string): string => (lesson.ask.kind === "choice" ? lesson.ask.options.find((o) => o.value === value)?.words ?? value : `${value} ${lesson.ask.unit}`);
   return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
     el("p", {}, "You said ", el("b", {}, words(answer)), "; measured here: ", el("b", {}, words(found.answer)), "."),
-    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", {}, lesson.reveal));
+    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? "")));
 }
 
 export function showLesson(to: Lessons, lesson: Lesson, given: string | undefined): void {
@@ -64,9 +70,10 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
     result.replaceChildren(el("p", {}, "Measuring …"));
     try {
       const found = await to.asker().find(lesson);
-      const shown = revealed(lesson, answer, found);
-      result.replaceChildren(shown, el("p", {}, "Now play: the pictures and settings below are this lesson's."), el("p", {},
-        el("button", { type: "button", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
+      const shown = revealed(to.model, lesson, answer, found);
+      const play = lesson.check ? checkPanel(to.asker(), lesson) : el("p", {}, "Now play: the pictures and settings below are this lesson's.");
+      result.replaceChildren(shown, play, el("p", {},
+        el("button", { type: "button", id: "next", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
       shown.focus();
       to.say(`Measured: ${found.answer}`);
     } catch (error) {
@@ -75,28 +82,32 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
   };
   to.root.replaceChildren(
     el("p", {}, el("a", { href: "#", onclick: (e) => { e.preventDefault(); to.go(""); } }, "All lessons")),
-    el("h2", {}, lesson.title), el("div", { class: "asking" }, el("p", {}, lesson.aim), question(lesson, given, (a) => void measure(a)), result));
+    el("h2", {}, lesson.title), el("div", { class: "asking" }, el("p", {}, set(to.model, lesson.aim)),
+      ...(lesson.answer.by === "which" ? [samplerPictures(to.model, lesson.check!.samplers, lesson.answer.theta)] : []), question(lesson, given, (a) => void measure(a)), result));
   if (given !== undefined) void measure(given);
 }
 
-export function showSheet(root: HTMLElement, asker: Asker): void {
+export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
   const articles = lessons.map((lesson, k) => {
-    const place = el("p", {}, "Expected: being measured …");
-    return { lesson, place, article: el("article", {}, el("h3", {}, `${k + 1}. ${lesson.title}`),
-      el("p", { class: "footnote" }, `${lesson.minutes} minutes`), el("p", {}, el("b", {}, "Aim. "), lesson.aim),
-      el("p", {}, el("b", {}, "Question. "), lesson.question), place, el("p", {}, el("b", {}, "Say. "), lesson.reveal)) };
+    const place = el("p", {}, "Expected: being measured …"), say = el("p");
+    return { lesson, place, say, article: el("article", {}, el("h3", {}, `${k + 1}. ${lesson.title}`),
+      el("p", { class: "footnote" }, `${lesson.minutes} minutes`), el("p", {}, el("b", {}, "Aim. "), set(model, lesson.aim)),
+      el("p", {}, el("b", {}, "Question. "), lesson.question), place, say) };
   });
+  delete root.dataset["measured"];
   root.replaceChildren(el("h2", {}, "For teachers"),
     el("p", {}, `${lessons.length} lessons of ${lessons.reduce((sum, l) => sum + l.minutes, 0)} minutes in all. The answers below were measured now, by this page. `,
       el("button", { type: "button", onclick: () => window.print() }, "Print this sheet")), ...articles.map((a) => a.article));
   void (async (): Promise<void> => {
-    for (const { lesson, place } of articles) {
+    for (const { lesson, place, say } of articles) {
       try {
         const found = await asker.find(lesson);
-        place.replaceChildren(el("b", {}, "Expected. "), `${found.answer}: ${found.lines.join("; ")}.`);
+        place.replaceChildren(el("b", {}, "Expected. "), `${found.answer}: ${found.lines.map((line) => line.replace(/\.$/, "")).join("; ")}.`);
+        say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? ""));
       } catch (error) {
         place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;
       }
     }
+    root.dataset["measured"] = "all";
   })();
 }

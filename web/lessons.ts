@@ -1,30 +1,33 @@
-// Lessons: what is asked, what answers it, what one may play with. No number is typed in here: the core measures.
+// Lessons: what is asked, what answers it, what one may play with. No number is typed in here: the core measures, and
+// names what it found; of `says` that sentence is shown which belongs to it. Formulas stand between dollar signs.
 
-/** Which number the core is asked for; `a` over `b` where both are there. */
-export interface Measured {
-  arm: string; n: number; region: "H" | "S"; seeds?: number; set?: readonly string[]; of?: "rmse" | "mean" | "spread";
-}
+/** An arm over a region at one N on several seeds; `as`: its name where that is not the arm's. */
+export interface Measured { arm: string; n: number; region: "H" | "S"; seeds: number; set?: readonly string[]; as?: string }
 
 export type Ask =
   | { kind: "choice"; options: readonly { value: string; words: string }[] }
   | { kind: "slider"; low: number; high: number; step: number; unit: string };
 
-/** How the core answers: the arm with the largest or smallest number, a ratio, or one of the special questions. */
+/** How the core answers: from measurements, from one sample, from a furnace, or from the verdicts of samplers. */
 export type Answer =
-  | { by: "largest" | "smallest"; of: readonly Measured[] }
-  | { by: "ratio"; of: readonly [Measured, Measured] }
+  | { by: "largest" | "smallest" | "factor" | "spread"; of: readonly Measured[] }
   | { by: "firefly"; arm: string; n: number; region: "H" | "S" }
-  | { by: "furnace"; name: string; n: number };
+  | { by: "furnace"; name: string; n: number }
+  | { by: "support" | "chi-square" | "t-test" | "which"; samplers: readonly string[]; theta: number; surface?: string };
 
 export interface Lesson {
   id: string; title: string; minutes: number; aim: string; question: string; ask: Ask; answer: Answer;
-  reveal: string; arms: readonly string[]; n: number; view?: "heat"; play: readonly string[];
+  says: Readonly<Record<string, string>>; // by what was found
+  arms: readonly string[]; n: number; view?: "heat"; play: readonly string[];
+  check?: { samplers: readonly { value: string; words: string }[]; theta: readonly number[] }; // plays with these instead
 }
 
 const names = (words: readonly string[]): readonly { value: string; words: string }[] =>
   words.map((word) => ({ value: word, words: word }));
 const three = ["uniform", "cosine", "phong"] as const;
-const at = (arm: string, region: "H" | "S", n = 64, more: Partial<Measured> = {}): Measured => ({ arm, n, region, ...more });
+const at = (arm: string, region: "H" | "S", n = 64, more: Partial<Measured> = {}): Measured => ({ arm, n, region, seeds: 8, ...more });
+const overlap = "The intervals of these seeds overlap: more seeds, not a louder claim, would rank the arms.";
+const six = ["sqrt forgotten", "pdf off by 1 %", "phi over half a turn", "cosine", "cosine folded in twice", "s+2 for s+1 in the pdf"] as const;
 
 export const lessons: readonly Lesson[] = [
   {
@@ -32,46 +35,108 @@ export const lessons: readonly Lesson[] = [
     aim: "Same image, same number of samples, same random numbers: only the aim differs, and with it the place of the noise.",
     question: "Three arms draw 64 samples a pixel. In which one will the highlight H be noisiest?",
     ask: { kind: "choice", options: names(three) }, answer: { by: "largest", of: three.map((arm) => at(arm, "H")) },
-    reveal: "The wider an arm aims, the seldomer it meets the small light that makes the highlight, and the heavier each meeting weighs.",
+    says: {
+      uniform: "The wider an arm aims, the seldomer it meets the small light that makes the highlight, and the heavier each meeting weighs.",
+      cosine: "Here the arm that follows the cosine is the noisiest: the highlight lies where that density is small.",
+      phong: "Here the sharpest aim is the noisiest: its density is small where this highlight stands.", overlap,
+    },
   },
   {
     id: "four-times", title: "Four times the samples", minutes: 5, arms: ["cosine"], n: 64, play: ["seed"],
-    aim: "The error of a mean falls as one over the square root of N.",
+    aim: "Where the variance is finite, the error of a mean falls as $\\frac{1}{\\sqrt{N}}$.",
     question: "Cosine draws 16 samples a pixel, then 64. By what factor does the RMSE of H fall?",
     ask: { kind: "slider", low: 1, high: 8, step: 0.1, unit: "times" },
-    answer: { by: "ratio", of: [at("cosine", "H", 16), at("cosine", "H", 64)] },
-    reveal: "Four times the samples halve the error, where the variance is finite and the samples are many.",
+    answer: { by: "factor", of: [at("cosine", "H", 16), at("cosine", "H", 64)] },
+    says: {
+      falls: "The error fell on every seed. Hold the factor beside the one that a finite variance gives: the region has few pixels, and each seed its own luck.",
+      rises: "On some seeds the error rose: so few lit samples are no law of large numbers yet.",
+    },
   },
   {
     id: "four-times-phong", title: "The same, for Phong in the surround", minutes: 5, arms: ["phong"], n: 256, play: ["seed", "sphere.s"],
     aim: "Where the tail is heavy, more samples need not mean a smaller error.",
     question: "Phong draws 64 samples a pixel, then 256. By what factor does the RMSE of the surround S fall? A number below 1 says that it rises.",
     ask: { kind: "slider", low: 0.1, high: 4, step: 0.1, unit: "times" },
-    answer: { by: "ratio", of: [at("phong", "S", 64), at("phong", "S", 256)] },
-    reveal: "Far from the mirror direction the density nearly vanishes and 1/p is huge. Whenever such a sample comes, the error jumps: the law of the square root has no hold here.",
+    answer: { by: "factor", of: [at("phong", "S", 64), at("phong", "S", 256)] },
+    says: {
+      rises: "On some seeds more samples gave a larger error. Far from the mirror direction the density nearly vanishes and $\\frac{1}{p}$ is huge: whenever such a sample comes, the error jumps, and the law of the square root has no hold.",
+      falls: "On these seeds the error fell each time. The tail says how far to trust that: its $k$ stands under the picture.",
+    },
   },
   {
     id: "firefly", title: "Who made this firefly?", minutes: 5, arms: ["phong"], n: 64, view: "heat", play: ["sphere.s", "firefly_k"],
-    aim: "A sample is a quotient: f L cos over p. A small divisor makes a large sample.",
+    aim: "A sample is a quotient, $X=\\frac{f\\,L\\,\\cos\\theta}{p}$. A small divisor makes a large sample.",
     question: "In S, phong's brightest pixel was made by one sample. Which factor of f, L, cos and 1/p is the largest?",
     ask: { kind: "choice", options: names(["f", "L", "cos", "1/p"]) }, answer: { by: "firefly", arm: "phong", n: 64, region: "S" },
-    reveal: "Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
+    says: {
+      "1/p": "The divisor made it: the arm drew a direction that it hardly ever draws. Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
+      "L": "The light made it: a sample met the key. Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
+      "f": "The lobe made it. Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
+    },
   },
   {
     id: "sharper", title: "Sharper and sharper", minutes: 5, arms: ["phong"], n: 64, play: ["sphere.s"],
     aim: "An exponent changes the lobe, the density and the truth together: a sharper aim is not a better one everywhere.",
     question: "s = 8, 32 and 128: at which one is phong's RMSE of the highlight H largest?",
     ask: { kind: "choice", options: names(["8", "32", "128"]) },
-    answer: { by: "largest", of: ["8", "32", "128"].map((s) => at("phong", "H", 64, { set: [`sphere.s=${s}`] })) },
-    reveal: "A sharp lobe leaves most of the region H without samples, while the light still stands there.",
+    answer: { by: "largest", of: ["8", "32", "128"].map((s) => at("phong", "H", 64, { set: [`sphere.s=${s}`], as: `phong, s = ${s}` })) },
+    says: {
+      "8": "The wide lobe seldom meets the small light, as cosine does.",
+      "32": "Neither the wide nor the sharp lobe, the one between is the noisiest here.",
+      "128": "A sharp lobe leaves most of the region H without samples, while the light still stands there.", overlap,
+    },
   },
   {
     id: "furnace", title: "A furnace that reads short", minutes: 8, arms: ["cosine", "phong"], n: 64, play: ["sphere.s", "sphere.rho_d"],
     aim: "A sum that comes out short may lack precision, hold a bug, or wait for samples that are too rare.",
-    question: "Light of 1 from everywhere: phong must read rho_d + rho_s and reads less. Is it precision, a bug, or the tail?",
+    question: "Light of 1 from everywhere: phong ought to read rho_d + rho_s, and does not. Is it precision, a bug, or the tail?",
     ask: { kind: "choice", options: [{ value: "precision", words: "precision" }, { value: "bug", words: "a bug" }, { value: "tail", words: "the tail" }] },
     answer: { by: "furnace", name: "phong_combined", n: 1024 },
-    reveal: "The weights of the diffuse part have so heavy a tail that the sample mean lies below the true one nearly always.",
+    says: {
+      tail: "It is farther off than sums of floats can be, and the tail says that the variance is infinite: what is missing sits in samples that are too rare to have come.",
+      bug: "It is off by more than its standard error allows, and no tail excuses it.",
+      precision: "It is no farther off than sums of floats may be.",
+      none: "It is not off by more than its standard error allows.",
+    },
+  },
+  {
+    id: "unbiased", title: "Is the Phong arm unbiased off the normal?", minutes: 8, arms: ["cosine", "phong"], n: 256, play: [],
+    aim: "A density that is 0 where f is not loses that light for ever, however many samples there are.",
+    question: "Phong aims about the mirror direction R. With R 60 degrees off the normal, does its mean come out right on a surface that is partly diffuse?",
+    ask: { kind: "choice", options: [{ value: "right", words: "yes, it is unbiased" }, { value: "wrong", words: "no, some light is out of reach" }] },
+    answer: { by: "support", samplers: ["phong"], theta: 60, surface: "Lambert + Phong" },
+    check: { samplers: names(["phong", "cosine", "mixture", "blinn"]), theta: [0, 15, 30, 45, 60, 75, 85] },
+    says: {
+      wrong: "What lies more than 90 degrees from R is never drawn, and a diffuse surface reflects it all the same. Check it at the normal, and check the mixture, which also aims by the cosine.",
+      right: "No light is out of reach at this w_o.",
+    },
+  },
+  {
+    id: "chi-square", title: "A chi-square test passes. Is the sampler right?", minutes: 8, arms: ["phong"], n: 64, play: [],
+    aim: "A chi-square test compares draws with the density, and nothing else.",
+    question: "This sampler draws what its density says, and a chi-square test passes. Can it still be wrong?",
+    ask: { kind: "choice", options: [{ value: "wrong", words: "yes" }, { value: "right", words: "no" }] },
+    answer: { by: "chi-square", samplers: ["cosine left out of the weight"], theta: 45 },
+    check: { samplers: names(["cosine left out of the weight", "clamped weights", "BRDF scaled by 1.01", "non-reciprocal f", "phong"]), theta: [0, 45, 75] },
+    says: {
+      "right-wrong": "The density is the one that is drawn, but the weight lacks its cosine: only a verdict that looks at f and at the mean can see it.",
+      "right-right": "Chi-square passes, and nothing else is wrong either.",
+      "wrong-wrong": "Here chi-square does not even pass.", "wrong-right": "Here chi-square alone accuses it.",
+    },
+  },
+  {
+    id: "t-test", title: "A t-test rejects. Is the sampler wrong?", minutes: 8, arms: ["phong"], n: 64, play: [],
+    aim: "A t-test needs a variance. Where the tail has none, its rejection says nothing.",
+    question: "At the normal, the mean of phong on a surface that is partly diffuse lies many standard errors off. Is the sampler proved wrong?",
+    ask: { kind: "choice", options: [{ value: "wrong", words: "yes, rejected is rejected" }, { value: "inconclusive", words: "no, it cannot be told that way" }, { value: "right", words: "no, it is right" }] },
+    answer: { by: "t-test", samplers: ["phong"], theta: 0, surface: "Lambert + Phong" },
+    check: { samplers: names(["phong", "cosine", "mixture", "uniform"]), theta: [0, 15, 30, 45, 60, 75, 85] },
+    says: {
+      "rejects-inconclusive": "The t-test rejects, and the bench does not follow it: the standard error comes from a variance that is infinite, so that the samples seen do not tell how far off their mean may be.",
+      "rejects-wrong": "The t-test rejects, and the tail allows it to: the sampler is wrong.",
+      "passes-inconclusive": "This time the t-test does not even reject; it could not be believed either way.",
+      "passes-right": "The t-test does not reject, and the tail allows the question.",
+    },
   },
   {
     id: "mixture", title: "How much of each in a mixture?", minutes: 5, arms: ["cosine", "phong", "mixture"], n: 64, play: ["sphere.s", "sphere.rho_s"],
@@ -79,14 +144,32 @@ export const lessons: readonly Lesson[] = [
     question: "Cosine, phong, or a mixture of both by their albedos: which one has the smallest RMSE of the surround S?",
     ask: { kind: "choice", options: names(["cosine", "phong", "mixture"]) },
     answer: { by: "smallest", of: ["cosine", "phong", "mixture"].map((arm) => at(arm, "S")) },
-    reveal: "The mixture keeps the cosine's reach, and pays for the highlight with samples taken from the surround.",
+    says: {
+      cosine: "In the surround cosine is the best of the three: each sample that the mixture spends on the lobe is one that it lacks there. Look at the highlight before you choose.",
+      mixture: "The mixture keeps the cosine's reach, and the lobe's aim where there is a lobe.",
+      phong: "In the surround the lobe's own aim is the best of the three here.", overlap,
+    },
   },
   {
     id: "seeds", title: "One seed or sixteen?", minutes: 8, arms: ["phong"], n: 64, view: "heat", play: ["seed"],
     aim: "A number from one seed has no interval; from sixteen it has one, and it may be wide.",
     question: "Sixteen seeds of phong give sixteen RMSEs of S. How many times the 5 % quantile is the 95 % quantile?",
-    ask: { kind: "slider", low: 1, high: 20, step: 0.5, unit: "times" },
-    answer: { by: "ratio", of: [at("phong", "S", 64, { seeds: 16, of: "spread" }), at("phong", "S", 64, { seeds: 16, of: "spread" })] },
-    reveal: "Another seed is another firefly. Arms whose intervals overlap are not ranked.",
+    ask: { kind: "slider", low: 1, high: 20, step: 0.5, unit: "times" }, answer: { by: "spread", of: [at("phong", "S", 64, { seeds: 16 })] },
+    says: {
+      wide: "Another seed is another firefly: the number of one seed alone is off by more than a factor of two between lucky and unlucky ones. Arms whose intervals overlap are not ranked.",
+      narrow: "These seeds agree within a factor of two. Arms whose intervals overlap are not ranked.",
+    },
+  },
+  {
+    id: "fault", title: "Find the fault", minutes: 10, arms: ["cosine", "phong"], n: 64, play: [],
+    aim: "A sampler is judged by its draws, its density and its weight, each against the others.",
+    question: "Six samplers, one of them right, five with one fault each. Which one is right? The pictures show 512 draws of each over the density that it claims.",
+    ask: { kind: "choice", options: [..."abcdef"].map((letter) => ({ value: letter, words: `sampler ${letter}` })) },
+    answer: { by: "which", samplers: six, theta: 45 },
+    check: { samplers: [..."abcdef"].map((letter, k) => ({ value: six[k]!, words: `sampler ${letter}` })), theta: [0, 45, 75] },
+    says: {
+      one: "The first verdict that says wrong names what disagrees with what. A fault that no eye sees in the draws may stand in the density alone.",
+      none: "Not one of the six alone is free of a wrong verdict.",
+    },
   },
 ];

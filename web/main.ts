@@ -16,6 +16,8 @@ declare const DecompressionStream: new (format: "gzip") => ReadableWritablePair<
 interface Data { version: string; sources: Record<string, Source> }
 interface Sampler { name: string; label: string; summary: string }
 
+const tooLarge = "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below.";
+
 class Page implements Viewer {
   private state!: State;
   private model!: Model;
@@ -23,7 +25,10 @@ class Page implements Viewer {
   private samplers: Sampler[] = [];
   private top = 1;
   private timer = 0;
+  private openedAt = 0;
+  private movedAt = 0; // when a hand changed what is not yet painted
   private tab = "bench";
+  private known: Asker | undefined;
   private readonly speaker = new Speaker(byId("status"));
 
   constructor(private readonly data: Data) {}
@@ -60,15 +65,16 @@ class Page implements Viewer {
   /** Opens what the state says; settings that the core refuses are told and left out. */
   private open(said: string[] = []): void {
     const { state, source } = this;
+    this.openedAt = performance.now();
     const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
     byId("wrong").replaceChildren(...said.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
-      const words = error instanceof Error ? error.message : String(error);
+      const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
       const plain = fresh(state.experiment, source);
       const touched = Object.keys(state.set).length > 0 || state.arms.join() !== plain.arms.join();
-      if (!touched) return this.failed(error instanceof DoorError ? error : new DoorError("bug", words));
+      if (!touched || why.kind === "memory") return this.failed(why, true);
       Object.assign(state, { set: {}, arms: plain.arms, arm: 0 });
-      this.open([...said, `These settings cannot be: ${words}. The experiment is as it was written.`]);
+      this.open([...said, `These settings cannot be: ${why.message}. The experiment is as it was written.`]);
     });
   }
 
@@ -76,7 +82,9 @@ class Page implements Viewer {
   private change(path: string, value: string | undefined): void {
     if (value === undefined) delete this.state.set[path];
     else this.state.set[path] = value;
-    if (!this.timer) this.timer = window.setTimeout(() => { this.timer = 0; this.open(); }, 30);
+    this.movedAt ||= performance.now();
+    const wait = this.openedAt + 30 - performance.now();
+    if (!this.timer) this.timer = window.setTimeout(() => { this.timer = 0; this.open(); }, Math.max(0, wait));
   }
 
   opened(d: Described, shown: Shown[]): void {
@@ -97,7 +105,7 @@ class Page implements Viewer {
       picture.outlines(this.state.pixel);
       picture.canvas.addEventListener("keydown", (event) => this.key(event, d));
       if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
-      else picture.meters(shown[picture.index]!);
+      else picture.about(d.arms[shown[picture.index]!.arm]!), picture.meters(shown[picture.index]!);
     }
     byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
     if (!document.activeElement?.closest("[data-path]")) this.knobs();
@@ -132,7 +140,9 @@ class Page implements Viewer {
 
   painted(index: number, box: Box): void {
     const picture = index < 0 ? this.pictures.at(-1) : this.pictures[index];
-    if (!document.documentElement.dataset["first"]) document.documentElement.dataset["first"] = String(Math.round(performance.now()));
+    const told = document.documentElement.dataset;
+    told["first"] ??= String(Math.round(performance.now()));
+    if (this.movedAt && index >= 0) (told["moved"] = String(Math.round(performance.now() - this.movedAt))), (this.movedAt = 0);
     if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
   }
 
@@ -147,6 +157,7 @@ class Page implements Viewer {
     });
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
+    document.documentElement.dataset["films"] = String(Math.round(this.model.filmsTook));
     document.documentElement.dataset["memory"] = String(this.model.door.size);
     document.documentElement.dataset["took"] = String(Math.round(this.model.took));
     this.charts();
@@ -165,6 +176,7 @@ class Page implements Viewer {
     const { width, height } = this.model.described;
     this.top = this.model.referenceDone ? this.model.door.number("scale", this.model.shown.length) : 1;
     for (const picture of this.pictures) picture.paint(this.model, this.state, this.top, { x0: 0, y0: 0, x1: width, y1: height });
+    this.pictures.at(-1)?.legend(this.model, this.state, this.top);
   }
 
   private key(event: KeyboardEvent, d: Described): void {
@@ -201,10 +213,15 @@ class Page implements Viewer {
     }), inside);
   }
 
-  failed(error: DoorError): void {
-    const what = error.kind === "memory"
-      ? "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below."
-      : error.kind === "input" ? `This cannot be: ${error.message}.`
+  /** A sentence with what to do; `all`: there is nothing to show of these settings but their command. */
+  failed(error: DoorError, all = false): void {
+    if (all) {
+      byId("command").textContent = command(this.state, this.source);
+      for (const id of ["pictures", "charts", "pixel"]) byId(id).replaceChildren();
+      this.pictures = [];
+      this.choices();
+    }
+    const what = error.kind === "memory" ? tooLarge : error.kind === "input" ? `This cannot be: ${error.message}.`
       : `The kernels stopped: ${error.message}. Reload the page; the address holds your settings.`;
     byId("wrong").replaceChildren(el("p", {}, what));
   }
@@ -217,26 +234,28 @@ class Page implements Viewer {
     const lesson = lessons.find((l) => l.id === this.state.lesson);
     byId("lessons").hidden = tab !== "lessons";
     byId("sheet").hidden = tab !== "sheet";
-    byId("bench").hidden = tab === "sheet" || (tab === "lessons" && (!lesson || this.state.answers[lesson.id] === undefined));
+    byId("bench").hidden = tab === "sheet" || (tab === "lessons" && (!lesson || Boolean(lesson.check) || this.state.answers[lesson.id] === undefined));
     byId<HTMLDetailsElement>("controls").open = tab === "lessons";
     this.knobs();
-    if (tab === "sheet") showSheet(byId("sheet"), this.asker());
+    if (tab === "sheet") showSheet(byId("sheet"), this.model, this.asker());
     if (tab === "lessons") lesson ? showLesson(this.lessons(), lesson, this.state.answers[lesson.id]) : lessonList(this.lessons(), this.state.answers);
   }
 
   private asker(): Asker {
     const [, source] = Object.entries(this.data.sources)[0]!;
     const opening = { file: source.file, text: source.text, published: source.published, set: [] };
-    return new Asker(this.model, opening, source.regions);
+    return (this.known ??= new Asker(this.model, opening, source.regions));
   }
 
   private lessons(): Lessons {
     return {
       root: byId("lessons"),
+      model: this.model,
       asker: () => this.asker(),
       say: (line) => this.speaker.say(line),
       answered: (lesson, answer) => {
         this.state.answers[lesson.id] = answer;
+        if (lesson.check) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
         Object.assign(this.state, { experiment: Object.keys(this.data.sources)[0]!, arms: [...lesson.arms], n: lesson.n, view: lesson.view ?? "photograph", arm: 0 });
         byId("bench").hidden = false;
         this.open();

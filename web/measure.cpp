@@ -1,4 +1,7 @@
-// What lessons ask: an arm over a region at one N on several seeds, and furnaces. Every number with its seeds.
+// What lessons ask: an arm over a region at one N on several seeds, the largest sample, furnaces. Every number with its
+// seeds; conclude.cpp says what they come to.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,12 +40,6 @@ std::vector<double> reference_over(const TileBox& box) {
     return out;
 }
 
-double mean_of(const std::vector<double>& all) {
-    double sum = 0;
-    for (const double x : all) sum += x;
-    return sum / static_cast<double>(all.size());
-}
-
 double rms_of(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
@@ -51,7 +48,8 @@ double rms_of(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-/// {arm, n, box, seeds} -> {rmse: [one a seed], mean: [one a seed], reference: mean Y, median, q05, q95}.
+/// {arm, n, region, box, seeds, as} -> {name, n, rmse: [one a seed], median, q05, q95}; `as`: its name where that is
+/// not the arm's.
 CRESCENT_EXPORT(measure)()->void {
     const ordered_json asked = request();
     const Box box = box_of(asked.at("box"));
@@ -60,22 +58,24 @@ CRESCENT_EXPORT(measure)()->void {
     const std::vector<double> reference = reference_over(tile);
     Experiment series = bench().experiment;
     series.seeds = asked.at("seeds").get<int>();
-    std::vector<double> rmse, mean;
+    std::vector<double> rmse;
+    const auto arm = asked.at("arm").get<std::string>();
+    const auto n = asked.at("n").get<std::uint64_t>();
     for (int k = 0; k < series.seeds; ++k) {
         const std::uint32_t seed = k == 0 ? series.seed : seed_of(series.seed, static_cast<std::uint32_t>(k));
-        const std::vector<double> y = means_over(tile, sampler, asked.at("n").get<std::uint64_t>(), seed);
+        const std::vector<double> y = means_over(tile, sampler, n, seed);
         rmse.push_back(rms_of(y, reference));
-        mean.push_back(mean_of(y));
     }
-    ordered_json out = {{"reference", told(mean_of(reference))}, {"median", told(quantile(rmse, 0.5))},
-        {"q05", told(quantile(rmse, 0.05))}, {"q95", told(quantile(rmse, 0.95))},
-        {"mean_median", told(quantile(mean, 0.5))}};
+    ordered_json out = {
+        {"name",
+            fmt::format("{}, N = {}: RMSE of {}", asked.value("as", arm), n, asked.at("region").get<std::string>())},
+        {"n", n}, {"median", told(quantile(rmse, 0.5))}, {"q05", told(quantile(rmse, 0.05))},
+        {"q95", told(quantile(rmse, 0.95))}, {"rmse", ordered_json::array()}};
     for (const double x : rmse) out["rmse"].push_back(told(x));
-    for (const double x : mean) out["mean"].push_back(told(x));
     say(out);
 }
 
-/// {arm, n, box} -> the largest sample of a box: its pixel, and X = f L cos / p taken apart.
+/// {arm, n, box} -> the largest sample of a box: X = f L cos / p taken apart, and which factor is the largest.
 CRESCENT_EXPORT(firefly)()->void {
     const ordered_json asked = request();
     const Box box = box_of(asked.at("box"));
@@ -87,27 +87,41 @@ CRESCENT_EXPORT(firefly)()->void {
         resolve_film(scene, sites, estimate_sites(sites, sampler, n, bench().experiment.seed, "", nullptr), film);
     const auto at = static_cast<int>(std::ranges::max_element(film.largest) - film.largest.begin());
     const int i = at % film.width, j = at / film.width;
-    if (!(film.largest[static_cast<std::size_t>(at)] > 0)) return say(ordered_json{{"i", i}, {"j", j}, {"x", "0"}});
+    if (!(film.largest[static_cast<std::size_t>(at)] > 0))
+        return say(ordered_json{{"answer", "none"}, {"kind", "none"}, {"lines", {"no sample met any light"}}});
     const std::vector<PixelSample> all = OpenPixel(scene, i, j).samples(sampler, n, bench().experiment.seed);
     const PixelSample& s = *std::ranges::max_element(all, {}, &PixelSample::x);
-    say(ordered_json{{"i", std::to_string(i)}, {"j", std::to_string(j)}, {"x", figures(s.x)}, {"f", figures(s.f)},
-        {"light", figures(s.light)}, {"cos", figures(s.cos)}, {"over_p", figures(1 / double(s.pdf))}});
+    const std::vector<std::pair<std::string, double>> factors = {
+        {"f", s.f}, {"L", s.light}, {"cos", s.cos}, {"1/p", 1 / double(s.pdf)}};
+    const auto& most = *std::ranges::max_element(factors, {}, &std::pair<std::string, double>::second);
+    const std::string line = fmt::format("pixel ({}, {}): X = {} of f = {}/sr, L = {}, cos = {}, 1/p = {} sr", i, j,
+        figures(s.x), figures(s.f), figures(s.light), figures(s.cos), figures(1 / double(s.pdf)));
+    say(ordered_json{{"answer", most.first}, {"kind", most.first}, {"lines", {line}}});
 }
 
-/// {n} -> every furnace of the experiment at n samples: [{name, measured, expected, se, k, words}].
+/// {n, name} -> what that furnace of the experiment reads at n samples and why; a line for each furnace.
+/// tail: it is off and k-hat says that the variance is infinite; bug: it is off by more than four standard errors
+/// though it is not; precision: float sums of n terms may be that far off, n 2^-24; none: it is not off.
 CRESCENT_EXPORT(furnaces_of)()->void {
     Experiment e = bench().experiment;
-    for (FurnacePlan& plan : e.furnaces) plan.n = request().at("n").get<std::uint64_t>();
+    const auto n = request().at("n").get<std::uint64_t>();
+    for (FurnacePlan& plan : e.furnaces) plan.n = n;
     ProgressMonitor watch;
-    ordered_json out = ordered_json::array();
+    ordered_json lines = ordered_json::array();
+    std::string why = "none";
     for (const FurnaceMeter& f : furnaces(e, e.figures ? &*e.figures : nullptr, "", watch)) {
-        ordered_json one = {
-            {"name", f.name}, {"measured", told(f.measured)}, {"expected", told(f.expected)}, {"se", told(f.se)}};
-        if (f.tail) one["k"] = told(f.tail->k);
-        if (f.published) one["published"] = *f.published;
-        out.push_back(one);
+        const double off = std::fabs(f.measured - f.expected), rounding = std::ldexp(f.expected * double(n), -24);
+        std::string name = f.name;
+        std::ranges::replace(name, '_', ' ');
+        lines.push_back(fmt::format("{}: reads {} ± {}, expected {}{}", name, figures(f.measured), figures(f.se, 2),
+            figures(f.expected),
+            f.tail ? fmt::format(", tail k\u0302 {} ± {}", figures(f.tail->k, 2), figures(f.tail->se, 1)) : ""));
+        if (f.name != request().at("name").get<std::string>()) continue;
+        if (off <= rounding) why = "precision";
+        else if (f.tail && f.tail->heavy()) why = "tail";
+        else if (off > 4 * f.se) why = "bug";
     }
-    say(out);
+    say(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}});
 }
 
 }  // namespace crescent::web

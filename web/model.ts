@@ -35,6 +35,8 @@ export interface Viewer {
 }
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
+const referenceAfter = 64; // rungs up to here come before it
+const referenceCost = 1000; // of one pixel, in samples
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
@@ -44,7 +46,8 @@ export class Model {
   referenceDone = false;
   finished = false;
   startedAt = 0;
-  took = 0;
+  took = 0; // ms to the last meter, and to the last film
+  filmsTook = 0;
   private era = 0;
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
@@ -52,28 +55,22 @@ export class Model {
     this.door = new Door(module);
   }
 
-  /** A fresh instance where the last call broke it; throws what the core says of the input. */
-  private describe(opening: Opening): Described {
-    try {
-      return this.door.ask<Described>("open", opening);
-    } catch (error) {
-      this.door = new Door(this.module);
-      throw error;
-    }
-  }
-
   /** Opens, and begins to compute up to n samples a pixel of these arms; throws DoorError for settings that are wrong. */
   async run(opening: Opening, arms: string[], n: number): Promise<void> {
-    this.described = this.describe(opening);
-    const era = ++this.era;
+    const era = ++this.era, rungs = [...ladder.filter((rung) => rung > 1 && rung < n), n];
     this.startedAt = performance.now();
     this.finished = this.referenceDone = false;
-    this.shown = arms.map((name) => {
-      const arm = this.described.arms.findIndex((a) => a.name === name);
-      return { arm, name, n: 0, rungs: [], tails: {} };
-    });
-    const rungs = [...ladder.filter((rung) => rung > 1 && rung < n), n];
-    this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, rungs[0]!));
+    try {
+      this.described = this.door.ask<Described>("open", opening);
+      this.shown = arms.map((name) => {
+        const arm = this.described.arms.findIndex((a) => a.name === name);
+        return { arm, name, n: 0, rungs: [], tails: {} };
+      });
+      this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, rungs[0]!));
+    } catch (error) {
+      this.door = new Door(this.module); // a call that failed leaves its instance as it was in the midst of it
+      throw error;
+    }
     this.viewer.opened(this.described, this.shown);
     await this.pool.open(opening);
     try {
@@ -83,12 +80,16 @@ export class Model {
     }
   }
 
+  /** Films first: the reference costs more than a film at the rungs before it, and no picture waits for it. Rungs that
+      were over before it was there are made once more, for their meters. */
   private async compute(era: number, opening: Opening, rungs: number[]): Promise<void> {
-    await this.rung(era, rungs[0]!);
-    await this.reference(era, opening);
-    for (const [k, n] of rungs.entries()) {
-      if (k > 0) await this.rung(era, n);
-    }
+    const known = this.keep(opening), early = rungs.filter((n) => !known && n <= referenceAfter), late = rungs.filter((n) => !early.includes(n));
+    for (const n of early) await this.rung(era, n);
+    this.filmsTook = performance.now() - this.startedAt;
+    await this.reference(era);
+    for (const n of early.slice(0, -1)) await this.again(era, n);
+    for (const n of late) await this.rung(era, n);
+    if (late.length > 0) this.filmsTook = performance.now() - this.startedAt;
     this.finished = true;
     this.took = performance.now() - this.startedAt;
     this.viewer.measured();
@@ -96,37 +97,57 @@ export class Model {
   }
 
   private async rung(era: number, n: number): Promise<void> {
-    const { width, height } = this.described;
     this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, n));
-    const boxes = this.pool.tiles(width, height, n);
-    const jobs: Promise<void>[] = [];
-    const left = this.shown.map(() => boxes.length);
-    for (const box of boxes)
-      this.shown.forEach((s, index) => jobs.push(this.tile(era, index, s, n, box, left)));
-    await Promise.all(jobs);
+    const boxes = this.pool.tiles(this.described.width, this.described.height, n);
+    let left = boxes.length;
+    await Promise.all(boxes.map(async (box) => {
+      if (!(await this.tile(era, this.shown.map((s, index) => [index, s.arm]), n, box))) return;
+      this.shown.forEach((_, index) => this.viewer.painted(index, box));
+      if (--left > 0) return;
+      for (const s of this.shown) s.n = n;
+      if (this.referenceDone) this.measure();
+    }));
   }
 
-  private async tile(era: number, index: number, s: Shown, n: number, box: Box, left: number[]): Promise<void> {
-    const { bytes } = await this.pool.ask({ kind: "tile", arm: s.arm, n, box });
-    if (era !== this.era || !bytes) return;
-    this.door.give(bytes);
-    this.door.number("put", index, box.x0, box.y0, box.x1, box.y1);
-    this.viewer.painted(index, box);
-    if (--left[index]! > 0) return;
-    s.n = n;
-    if (this.referenceDone) this.measure(index);
+  /** A rung for its meters alone, in a film that no picture shows. */
+  private async again(era: number, n: number): Promise<void> {
+    const spare = this.shown.length;
+    for (const s of this.shown) {
+      this.door.number("begin", spare, s.arm, n);
+      await Promise.all(this.pool.tiles(this.described.width, this.described.height, n).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
+      if (era !== this.era) return;
+      s.rungs.push({ n, meters: this.door.ask<Meters>("meters", undefined, spare) });
+      s.rungs.sort((a, b) => a.n - b.n);
+    }
   }
 
-  private measure(index: number): void {
-    const s = this.shown[index]!;
-    s.rungs.push({ n: s.n, meters: this.door.ask<Meters>("meters", undefined, index) });
+  /** One tile of each arm put into its film, [film, arm]; false where something else was opened meanwhile. */
+  private async tile(era: number, films: [number, number][], n: number, box: Box): Promise<boolean> {
+    const { bytes } = await this.pool.ask({ kind: "tile", arms: films.map(([, arm]) => arm), n, box });
+    if (era !== this.era || !bytes) return false;
+    films.forEach(([film], k) => {
+      this.door.give(bytes[k]!);
+      this.door.number("put", film, box.x0, box.y0, box.x1, box.y1);
+    });
+    return true;
+  }
+
+  /** The meters of every arm at the rung that is complete. */
+  private measure(): void {
+    this.shown.forEach((s, index) => s.rungs.push({ n: s.n, meters: this.door.ask<Meters>("meters", undefined, index) }));
     this.viewer.measured();
   }
 
-  /** The reference, by quadrature; kept where only seeds, arms, regions or k have changed. */
-  private async reference(era: number, opening: Opening): Promise<void> {
+  /** The reference is kept where only seeds, arms, regions or k have changed; whether all of it is there. */
+  private keep(opening: Opening): boolean {
     const key = JSON.stringify([opening.text, opening.set.filter((set) => !untouchedByReference.test(set))]);
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
+    return this.tiles.parts.length === this.referenceBoxes().length;
+  }
+  private referenceBoxes(): Box[] { return this.pool.tiles(this.described.width, this.described.height, referenceCost); }
+
+  /** By quadrature; what is kept is put first. */
+  private async reference(era: number): Promise<void> {
     const { parts } = this.tiles;
     const put = (box: Box, bytes: ArrayBuffer): void => {
       this.door.give(bytes);
@@ -134,18 +155,17 @@ export class Model {
       this.viewer.painted(-1, box);
     };
     for (const { box, bytes } of parts) put(box, bytes);
-    const have = new Set(parts.map(({ box }) => `${box.x0} ${box.y0} ${box.y1}`));
-    const missing = this.pool
-      .tiles(this.described.width, this.described.height, 1000)
-      .filter((box) => !have.has(`${box.x0} ${box.y0} ${box.y1}`));
+    const have = new Set(parts.map(({ box }) => `${box.x0} ${box.y0}`));
+    const missing = this.referenceBoxes().filter((box) => !have.has(`${box.x0} ${box.y0}`));
     await Promise.all(missing.map(async (box) => {
       const { bytes } = await this.pool.ask({ kind: "reference", box });
       if (era !== this.era || !bytes) return;
-      parts.push({ box, bytes });
-      put(box, bytes);
+      parts.push({ box, bytes: bytes[0]! });
+      put(box, bytes[0]!);
     }));
+    if (era !== this.era) return;
     this.referenceDone = true;
-    this.shown.forEach((_, index) => this.measure(index));
+    if (this.shown[0]!.n > 0) this.measure();
   }
 
   private async tails(era: number): Promise<void> {

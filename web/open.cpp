@@ -72,6 +72,7 @@ ordered_json described(const Experiment& e) {
     for (const Region& r : e.regions)
         out["regions"].push_back({{"name", r.name}, {"box", {r.box.x0, r.box.y0, r.box.x1, r.box.y1}}});
     out["knobs"] = knobs(e);
+    out["quadrature"] = e.reference.kind == ReferenceKind::quadrature;
     out["source"] = e.figures ? e.figures->source : "";
     return out;
 }

@@ -3,10 +3,10 @@
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { dirname, join, resolve } from "node:path";
 import { gzipSync } from "node:zlib";
 
-const [build, out] = process.argv.slice(2);
+const [built, out] = process.argv.slice(2), build = resolve(built);
 const web = import.meta.dirname ?? dirname(new URL(import.meta.url).pathname);
 const experiments = join(web, "..", "experiments");
 const text = (path) => readFileSync(path, "utf8");
@@ -34,7 +34,7 @@ function sources(door) {
     const published = figures ? text(join(experiments, figures[1])) : "";
     const d = door.ask("open", { file, text: body, published, set: [] });
     const arms = Object.fromEntries(d.arms.map((arm) => [arm.name, arm.n]));
-    all[name.replace(/\.toml$/, "")] = { file, title: d.title, text: body, published, arms, regions: d.regions };
+    all[name.replace(/\.toml$/, "")] = { file, title: d.title, text: body, published, arms, regions: d.regions, quadrature: d.quadrature };
   }
   return all;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "door.h"
+#include "disk.h"
 
 namespace crescent::web {
 
@@ -41,7 +41,42 @@ Srgb8 colour(Picture picture, int index, int other, double top, std::size_t at) 
     return two_hues((residual(slot(other).film, at) - a) / top);
 }
 
+void put(std::byte* to, const Srgb8& colour) {
+    for (std::size_t c = 0; c < 3; ++c) to[c] = static_cast<std::byte>(colour[c]);
+    to[3] = std::byte{255};
+}
+
 }  // namespace
+
+const void* Disk::paint(int size, const std::function<double(Vec3d)>& value) const {
+    const auto side = static_cast<std::size_t>(size);
+    std::vector<std::byte>& out = scratch<std::byte>();
+    out.assign(side * side * 4, std::byte{0});
+    std::vector<double> values(side * side, -1);
+    double largest = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const double x = (2 * double(k % side) + 1) / size - 1, y = 1 - (2 * double(k / side) + 1) / size;
+        if (const auto wi = direction(x, y)) values[k] = value(*wi);
+        if (std::isfinite(values[k])) largest = std::max(largest, values[k]);
+    }
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (values[k] < 0) continue;
+        const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
+        put(&out[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
+    }
+    return out.data();
+}
+
+/// The scale of maps as a row of `size` pixels: turbo, or for 2 the two hues with neither in the middle.
+CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
+    std::vector<std::byte>& out = scratch<std::byte>();
+    out.resize(static_cast<std::size_t>(size) * 4);
+    for (int k = 0; k < size; ++k) {
+        const double t = (k + 0.5) / size;
+        put(&out[4 * static_cast<std::size_t>(k)], picture == 2 ? two_hues(2 * t - 1) : turbo(t));
+    }
+    return out.data();
+}
 
 /// The pixels of a box: of film `index`, or of the reference for -1. picture 0: its photograph; 1: |Y - Y_ref|, turbo
 /// from 0 to `top`; 2: |Y_other - Y_ref| - |Y - Y_ref| over `top`, in the first hue where `other` is nearer.
@@ -58,9 +93,8 @@ CRESCENT_EXPORT(paint)
     for (int j = y1 - 1; j >= y0; --j)
         for (int i = x0; i < x1; ++i) {
             const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
-            for (const unsigned char c : colour(static_cast<Picture>(picture), index, other, top, at))
-                *to++ = static_cast<std::byte>(c);
-            *to++ = std::byte{255};
+            put(to, colour(static_cast<Picture>(picture), index, other, top, at));
+            to += 4;
         }
     return out.data();
 }

@@ -1,8 +1,8 @@
 // The pictures side by side, each with its meters: a canvas of the experiment's size, regions drawn over it, a pixel to
 // choose by pointer or by arrow keys, a region to draw by dragging.
 import { Box } from "./door";
-import { el } from "./dom";
-import { Described, Meter, Model, Shown } from "./model";
+import { el, made } from "./dom";
+import { Arm, Described, Meter, Model, Shown } from "./model";
 import { State } from "./state";
 
 export interface Picking {
@@ -18,13 +18,14 @@ export class Picture {
   readonly root: HTMLElement;
   private readonly over = el("div", { class: "over" });
   private readonly words = el("figcaption");
+  private readonly aim = el("p", { class: "aim" });
   private readonly table = el("div", { class: "meters" });
   private from: [number, number] | undefined;
 
   constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
     this.canvas = el("canvas", { width: d.width, height: d.height, tabindex: 0, role: "img" });
     const frame = el("div", { class: "frame" }, this.canvas, this.over);
-    this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, frame, this.words, this.table);
+    this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, frame, this.words, this.aim, this.table);
     this.canvas.addEventListener("pointerdown", (e) => { this.from = this.at(e); this.canvas.setPointerCapture(e.pointerId); });
     this.canvas.addEventListener("pointermove", (e) => this.drag(e));
     this.canvas.addEventListener("pointerup", (e) => this.drop(e));
@@ -34,6 +35,21 @@ export class Picture {
   name(title: string, line: string): void {
     this.words.replaceChildren(el("b", {}, title), line ? ` ${line}` : "");
     this.canvas.setAttribute("aria-label", `${title} ${line}. Arrow keys choose a pixel.`);
+  }
+
+  /** What the arm aims by, and its density; of two techniques, their weights. */
+  about(arm: Arm): void {
+    this.aim.replaceChildren(made(`${arm.summary}: <math><mi>${arm.techniques > 1 ? "w" : "p"}</mi><mo>=</mo>${arm.formula}</math>`));
+  }
+
+  /** The scale of the maps beside, under the reference. */
+  legend(model: Model, state: State, top: number): void {
+    if (state.view === "photograph" || !model.referenceDone) return this.table.replaceChildren();
+    const heat = state.view === "heat", width = 256, end = model.door.say("figures", undefined, top);
+    const bar = el("canvas", { width, height: 1, class: "bar", role: "img", "aria-label": heat ? `the colours of |Y − Y_ref| from 0 to ${end}` : "the two colours of the signed maps" });
+    bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.door.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
+    const ends = heat ? ["|Y − Y_ref| = 0", end] : [`the next is nearer by ${end}`, `this one by ${end}`];
+    this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
 
   /** Pixel (i, j) under the pointer, from the bottom-left. */

@@ -2,7 +2,7 @@
 // gives its default, and a line that says so.
 import { ladder, Region } from "./model";
 
-export interface Source { file: string; title: string; text: string; published: string; arms: Record<string, number[]>; regions: Region[] }
+export interface Source { file: string; title: string; text: string; published: string; arms: Record<string, number[]>; regions: Region[]; quadrature: boolean }
 
 export interface State {
   experiment: string;
@@ -101,5 +101,6 @@ export function overrides(state: State, source: Source): string[] {
 
 export function command(state: State, source: Source): string {
   const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
-  return ["./run", source.file, ...overrides(state, source).flatMap((word) => ["--set", quoted(word)])].join(" ");
+  const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, whatever the file says
+  return ["./run", source.file, ...[...overrides(state, source), ...measured].flatMap((word) => ["--set", quoted(word)])].join(" ");
 }

@@ -48,6 +48,11 @@ CRESCENT_EXPORT(room)(std::size_t size)->char* {
 CRESCENT_EXPORT(said_at)()->const char* { return answered.data(); }
 CRESCENT_EXPORT(said_size)()->std::size_t { return answered.size(); }
 
+/// Words with formulas between dollar signs as HTML with MathML.
+CRESCENT_EXPORT(html)()->void { say(formula::html(request().get<std::string>())); }
+/// A number for reading.
+CRESCENT_EXPORT(figures)(double x)->void { say(crescent::figures(x)); }
+
 CRESCENT_EXPORT(style)()->void { say(std::string(style_sheet)); }
 CRESCENT_EXPORT(version_of)()->void { say(version() + ", " + commit()); }
 

@@ -17,7 +17,7 @@ scope.onmessage = ({ data }: MessageEvent): void => {
   const { id, job } = data as { id: number; job: Job };
   try {
     const answer = answering.answer(job);
-    scope.postMessage({ id, answer }, answer.bytes ? [answer.bytes] : []);
+    scope.postMessage({ id, answer }, answer.bytes ?? []);
   } catch (error) {
     scope.postMessage({ id, error: failure(error) }, []);
   }

@@ -5,19 +5,18 @@ import time
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
 
-def chromium(width=1280, height=900, dark=False, flags=()):
+def chromium(width=1280, height=900, flags=()):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
     for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
-                 "--host-resolver-rules=MAP * ~NOTFOUND", f"--window-size={width},{height}", *flags):
+                 "--disable-ipc-flooding-protection", "--host-resolver-rules=MAP * ~NOTFOUND", f"--window-size={width},{height}", *flags):
         options.add_argument(flag)
-    if dark:
-        options.add_argument("--force-dark-mode")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    driver.set_script_timeout(300)
+    driver.set_script_timeout(60)
     size(driver, width, height)
     return driver
 
@@ -28,9 +27,12 @@ def size(driver, width, height):
                            {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
 
 
-def dark(driver, on=True):
-    driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                           {"features": [{"name": "prefers-color-scheme", "value": "dark" if on else "light"}]})
+def media(driver, kind="", **features):
+    """What the reader prefers: media(driver, prefers_color_scheme="dark"); kind: "print". The rest is as by default."""
+    features = {"prefers-color-scheme": "light", "prefers-reduced-motion": "no-preference", "forced-colors": "none",
+                **{name.replace("_", "-"): value for name, value in features.items()}}
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
+        "media": kind, "features": [{"name": name, "value": value} for name, value in features.items()]})
 
 
 def wait(driver, script, seconds=60):
@@ -48,10 +50,33 @@ def wait(driver, script, seconds=60):
 FINISHED = "document.documentElement.dataset.took"
 
 
-def open_page(driver, page, address="", seconds=90):
+def open_page(driver, page, address="", seconds=90, until=FINISHED):
     driver.get("about:blank")
     driver.get(page + address)
-    return wait(driver, FINISHED, seconds)
+    return wait(driver, until, seconds)
+
+
+def keys(driver, *words):
+    """To whatever has the focus."""
+    driver.switch_to.active_element.send_keys(*words)
+
+
+def tab_to(driver, css, most=150):
+    """By the tabulator alone, from where the focus is; how many strokes it took."""
+    for count in range(most):
+        if driver.execute_script("return document.activeElement.matches(arguments[0])", css):
+            return count
+        keys(driver, Keys.TAB)
+    raise AssertionError(f"{most} strokes of the tabulator do not reach {css}")
+
+
+def axe(driver, source):
+    """What axe-core finds on the page as it stands."""
+    driver.execute_script(source)
+    return driver.execute_async_script(
+        "axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']})"
+        ".then((r) => arguments[0](r.violations.map("
+        "(v) => v.id + ': ' + v.nodes.map((n) => n.html).slice(0, 3).join(' '))))")
 
 
 def console(driver):

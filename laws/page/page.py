@@ -1,232 +1,187 @@
-"""The page in Chromium, from a file, offline: page.py PAGE BUNDLE NATIVE EXPERIMENT... .
-NATIVE has the program's hashes."""
+"""The page in Chromium, from a file, offline: page.py PAGE BUNDLE NATIVE EXPERIMENT... . NATIVE has the program's
+hashes. One browser for all; ONLY names laws to run alone, SHOTS a folder for pictures of what they look at."""
 import base64
 import gzip
+import json
+import math
 import os
 import pathlib
 import random
 import re
+import shlex
+import subprocess
 import sys
+import tempfile
+import time
 
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 import browser
+import reach
 
 page_path, bundle, native_path, *experiments = sys.argv[1:]
 page = pathlib.Path(page_path).resolve().as_uri()
-axe = pathlib.Path(page_path).resolve().parent / "node_modules/axe-core/axe.min.js"
-laws = []
+small = "#experiment=three-glosses&n=4"
 
 
-def law(test):
-    laws.append(test)
-    return test
-
-
-def quiet(driver):
-    assert (said := browser.console(driver)) == [], f"the console has lines: {said}"
-    assert (asked := browser.requests(driver)) == [], f"the page asked for {asked}"
-
-
-@law
-def same_bits():
+def same_bits(driver):
     """Every arm, three scenes, every rung, and the references: the program's hashes in Chromium."""
     native = set(pathlib.Path(native_path).read_text().split("\n"))
-    driver = browser.chromium()
-    try:
-        driver.get("about:blank")
-        driver.execute_script(pathlib.Path(bundle).read_text())
-        packed = re.search(r'id="module">([^<]+)<', pathlib.Path(page_path).read_text()).group(1)
-        module = base64.b64encode(gzip.decompress(base64.b64decode(packed))).decode()
-        for file in experiments:
-            lines = driver.execute_async_script(
-                "const [b, f, t, done] = arguments;"
-                "WebAssembly.compile(Uint8Array.from(atob(b), (c) => c.charCodeAt(0)))"
-                ".then((m) => done(crescentHashes(m, f, t)), (e) => done([String(e)]))",
-                module, file, pathlib.Path(file).read_text())
-            assert len(lines) > 3, lines
-            for line in lines:
-                assert line in native, f"not of the program: {line}"
-    finally:
-        driver.quit()
+    driver.get("about:blank")
+    driver.execute_script(pathlib.Path(bundle).read_text())
+    packed = re.search(r'id="module">([^<]+)<', pathlib.Path(page_path).read_text()).group(1)
+    module = base64.b64encode(gzip.decompress(base64.b64decode(packed))).decode()
+    for file in experiments:
+        lines = driver.execute_async_script(
+            "const [b, f, t, done] = arguments;"
+            "WebAssembly.compile(Uint8Array.from(atob(b), (c) => c.charCodeAt(0)))"
+            ".then((m) => done(crescentHashes(m, f, t)), (e) => done([String(e)]))",
+            module, file, pathlib.Path(file).read_text())
+        assert len(lines) > 3, lines
+        for line in lines:
+            assert line in native, f"not of the program: {line}"
 
 
-@law
-def opens_and_measures():
-    """The gallery to N = 64 without a console line or a request, and the note's figures beside."""
-    driver = browser.chromium()
-    try:
-        took = browser.open_page(driver, page)
-        first = driver.execute_script("return document.documentElement.dataset.first")
-        workers = driver.execute_script("return document.documentElement.dataset.workers")
-        print(f"  first picture after {first} ms, "
-              f"three arms at N = 64 with the reference after {took} ms, {workers} workers")
-        assert int(workers) >= 1
-        assert "published" in browser.text(driver, "#pictures")
-        assert len(driver.find_elements(By.CSS_SELECTOR, "#pictures canvas")) == 4
-        quiet(driver)
-    finally:
-        driver.quit()
+def opens_and_measures(driver):
+    """The gallery to N = 64, with the note's figures beside; a slider's move gives new pixels."""
+    took = browser.open_page(driver, page)
+    told = driver.execute_script("return {...document.documentElement.dataset}")
+    print(f"  first picture after {told['first']} ms, three arms at N = 64 after {told['films']} ms, "
+          f"with the reference and all meters {took} ms, {told['workers']} workers")
+    assert int(told["workers"]) >= 1
+    assert "published" in browser.text(driver, "#pictures")
+    assert len(driver.find_elements(By.CSS_SELECTOR, "#pictures canvas")) == 4
+    rungs = driver.execute_script(
+        "return [...document.querySelectorAll('#charts figure')].map((s) => s.querySelectorAll('circle').length)")
+    assert rungs and all(count == 9 for count in rungs), f"three arms at three rungs are charted, not {rungs}"
+    driver.execute_script(
+        "document.getElementById('controls').open = true;"
+        "const at = document.querySelector('[data-path=\"sphere.s\"] input[type=range]');"
+        "at.focus(); at.value = 500; at.dispatchEvent(new Event('input', {bubbles: true}))")
+    moved = browser.wait(driver, "document.documentElement.dataset.moved")
+    print(f"  new pixels {moved} ms after the slider's move")
+    assert "sphere.s" in driver.execute_script("return location.hash")
 
 
-@law
-def address_is_data():
+def address_is_data(driver):
     """Nonsense in the address gives defaults and lines that say so."""
-    driver = browser.chromium()
-    try:
-        browser.open_page(driver, page, "#experiment=%3Cscript%3E&arms=evil,phong&n=7&view=x"
-                          "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9")
-        said = browser.text(driver, "#wrong")
-        for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm="):
-            assert word in said, f"{word} is not told: {said}"
-        assert "sphere.s" in said, f"a value out of range is not told: {said}"
-        quiet(driver)
-    finally:
-        driver.quit()
+    browser.open_page(driver, page, "#experiment=%3Cscript%3E&arms=evil,phong&n=7&view=x"
+                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9", until="document.getElementById('wrong').textContent")
+    said = browser.text(driver, "#wrong")
+    for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm="):
+        assert word in said, f"{word} is not told: {said}"
+    assert "sphere.s" in said, f"a value out of range is not told: {said}"
 
 
-@law
-def slices_without_workers():
+def faults_are_sentences(driver):
+    """A scene that does not fit into memory gives a sentence, and the page goes on from there."""
+    browser.open_page(driver, page, small + "&set=image.width=16384&set=image.height=16384",
+                      until="document.getElementById('wrong').textContent")
+    said = browser.text(driver, "#wrong")
+    assert "not enough memory" in said and "image.width=16384" in browser.text(driver, "#command"), said
+    driver.execute_script("document.getElementById('reset').focus()")
+    browser.keys(driver, Keys.ENTER)
+    browser.wait(driver, browser.FINISHED)
+    assert browser.text(driver, "#wrong") == "" and driver.find_elements(By.CSS_SELECTOR, "[data-hash]")
+
+
+def shown(driver):
+    return sorted(e.text for e in driver.find_elements(By.CSS_SELECTOR, "[data-hash]"))
+
+
+def the_link_back(driver):
+    """Three states, each with its command: the program makes the same films and the same numbers."""
+    states = ("#experiment=three-glosses&arms=phong,cosine&n=16",
+              "#experiment=two-lamps&arms=mis-balance,light-area&n=4&set=image.width=96&set=image.height=54&set=seed=99",
+              "#arms=phong,mixture,uniform&n=4&set=image.width=96&set=image.height=54&set=sphere.s=8&set=key.radius=0.3"
+              "&set=regions.H.box=[50, 36, 58, 44]&set=regions.S.box=[30, 10, 60, 30]")
+    for state in states:
+        browser.open_page(driver, page, state)
+        films, words = shown(driver), browser.text(driver, "#command")
+        assert words.startswith("./run experiments/"), words
+        assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
+        rmse = driver.execute_script(
+            "return [...document.querySelectorAll('.shown')].flatMap((f) => [...f.querySelectorAll('tr')].map("
+            "(r) => [f.querySelector('b').textContent, r.cells[0].textContent, r.cells[1].firstChild.textContent]))")
+        with tempfile.TemporaryDirectory() as out:
+            command = shlex.split(words)[1:] + ["--seeds", "1", "--only", "metrics", "--quiet", "--out", out]
+            subprocess.run([os.environ["CRESCENT"], "run", *command], cwd=os.environ["CRESCENT_SOURCE"],
+                           stdout=subprocess.DEVNULL)  # exit 1 where an assertion of the experiment fails at this N
+            metrics = json.loads((pathlib.Path(out) / "metrics.json").read_text())
+        for film in films:
+            assert film in metrics["films"].values(), f"{words}: {film} is none of {metrics['films']}"
+        n = max(run["n"] for run in metrics["runs"])
+        checked = 0
+        for arm, name, text in rmse:
+            if name.startswith("RMSE of "):  # an arm may have run at other exponents too
+                here = [run["regions"][name[8:]]["rmse"] for run in metrics["runs"] if run["arm"] == arm and run["n"] == n]
+                assert any(math.isclose(float(text), x, rel_tol=1e-3) for x in here), f"{words}: {arm}, {name}: {text}, not {here}"
+                checked += 1
+        assert checked >= len(films), f"{words}: {rmse}"
+        print(f"  {words[:60]} ...: {len(films)} films, {checked} RMSEs")
+
+
+def slices_without_workers(driver):
     """The program's hash stands under the picture; where workers are refused, the same come in slices."""
-    small = "#experiment=three-glosses&n=16"
     found = []
     for refuse in (False, True):
-        driver = browser.chromium()
-        try:
-            if refuse:
-                driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
-                    "source": "window.Worker = function () { throw new Error('refused'); };"})
-            browser.open_page(driver, page, small, 120)
-            workers = driver.execute_script("return document.documentElement.dataset.workers")
-            assert (workers == "0") == refuse, workers
-            found.append([e.text for e in driver.find_elements(By.CSS_SELECTOR, "[data-hash]")])
-            quiet(driver)
-        finally:
-            driver.quit()
+        if refuse:
+            script = driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
+                "source": "window.Worker = function () { throw new Error('refused'); };"})
+        browser.open_page(driver, page, "#experiment=three-glosses&n=16", 120)
+        workers = driver.execute_script("return document.documentElement.dataset.workers")
+        assert (workers == "0") == refuse, workers
+        found.append(shown(driver))
+    driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
     assert os.environ["SHOWN"] in found[0] and found[0] == found[1], found
 
 
-@law
-def lessons_by_keyboard():
-    """Every lesson from its question to what was measured, by keys alone."""
-    driver = browser.chromium()
-    try:
-        browser.open_page(driver, page, "#experiment=three-glosses&n=16")
-        ids = driver.execute_script(
-            "document.querySelector('[data-tab=lessons]').focus(); return null")
-        driver.switch_to.active_element.send_keys(Keys.ENTER)
-        ids = [e.get_attribute("data-lesson") for e in driver.find_elements(By.CSS_SELECTOR, "[data-lesson]")]
-        assert len(ids) >= 8, ids
-        first = driver.find_element(By.CSS_SELECTOR, "[data-lesson]")
-        driver.execute_script("arguments[0].focus()", first)
-        first.send_keys(Keys.ENTER)
-        for lesson in ids:
-            radios = driver.find_elements(By.CSS_SELECTOR, "#lessons input[type=radio]")
-            active = radios[0] if radios else driver.find_element(By.ID, "guess")
-            driver.execute_script("arguments[0].focus()", active)
-            active.send_keys(Keys.SPACE if radios else Keys.ARROW_RIGHT)
-            active.send_keys(Keys.ENTER)
-            browser.wait(driver, "document.getElementById('reveal') || document.querySelector('#lessons .bad')", 120)
-            assert not driver.find_elements(By.CSS_SELECTOR, "#lessons .bad"), \
-                f"{lesson}: {browser.text(driver, '#lessons')}"
-            said = browser.text(driver, "#reveal")
-            assert "measured here" in said, f"{lesson}: {said}"
-            print(f"  {lesson}: {said.splitlines()[0]}")
-            button = driver.find_element(By.CSS_SELECTOR, "#lessons button[type=button]")
-            button.send_keys(Keys.ENTER)
-        quiet(driver)
-    finally:
-        driver.quit()
-
-
-@law
-def fits_every_screen():
-    """From 360 px to 4K, light and dark: nothing scrolls sideways."""
-    driver = browser.chromium()
-    try:
-        browser.open_page(driver, page, "#experiment=three-glosses&n=16&pixel=80,30")
-        for dark in (False, True):
-            browser.dark(driver, dark)
-            for width, height in ((360, 740), (768, 1024), (1280, 900), (3840, 2160)):
-                browser.size(driver, width, height)
-                wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
-                assert wide <= 0, f"{width} px: {wide} px too wide"
-        quiet(driver)
-    finally:
-        driver.quit()
-
-
-@law
-def two_hundred_settings():
+def two_hundred_settings(driver):
     """Two hundred random settings, each to its end: the module takes no more memory than after the first twenty."""
     draw = random.Random(7)
-    driver = browser.chromium()
-    try:
-        browser.open_page(driver, page, "#experiment=three-glosses&n=4")
-        sizes = []
-        for turn in range(200):
-            arms = draw.sample(["uniform", "cosine", "phong", "mixture", "ggx-vndf", "mis-balance"], 3)
-            fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference now and then
-            driver.execute_script("location.hash = arguments[0]", f"experiment=three-glosses&n=4&arms={','.join(arms)}"
-                                  f"&set=seed={draw.randrange(2**32)}{fill}")
-            browser.wait(driver, f"{browser.FINISHED} && document.getElementById('arm-0').value === '{arms[0]}'")
-            sizes.append(int(driver.execute_script("return document.documentElement.dataset.memory")))
-        assert max(sizes[20:]) <= max(sizes[:20]), f"memory grew: {sizes[::20]}"
-        quiet(driver)
-    finally:
-        driver.quit()
+    browser.open_page(driver, page, small)
+    names = ["uniform", "cosine", "phong", "mixture", "ggx-vndf", "mis-balance"]
+    settings = []
+    for turn in range(200):
+        fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference now and then
+        settings.append(f"experiment=three-glosses&n=4&arms={','.join(draw.sample(names, 3))}"
+                        f"&set=seed={draw.randrange(2**32)}{fill}")
+    sizes = driver.execute_async_script("""
+        const [settings, done] = arguments, told = document.documentElement.dataset, sizes = [];
+        const next = (k) => {
+            if (k === settings.length) return done(sizes);
+            delete told.took;
+            location.hash = settings[k];
+            const seed = /seed=[0-9]+/.exec(settings[k])[0], command = document.getElementById('command');
+            const look = () => told.took && command.textContent.includes(seed) ? (sizes.push(Number(told.memory)), next(k + 1)) : setTimeout(look, 5);
+            setTimeout(look, 5);
+        };
+        next(0);""", settings)
+    assert len(sizes) == 200 and max(sizes[20:]) <= max(sizes[:20]), f"memory grew: {sizes[::20]}"
+    assert settings[-1].split("arms=")[1].split("&")[0] in driver.execute_script("return location.hash")
 
 
-@law
-def nothing_for_axe():
-    """axe-core finds nothing: the bench with a pixel open, a lesson before and after the guess; light and dark."""
-    if not axe.exists():
-        print("  skipped: no axe-core (npm ci in laws/page)")
-        return
-    driver = browser.chromium()
-    try:
-        for dark in (False, True):
-            for address in ("#experiment=three-glosses&n=4&pixel=80,30", "#lesson=sparkle",
-                            "#lesson=four-times&answer=four-times:2"):
-                browser.dark(driver, dark)
-                driver.get("about:blank")
-                driver.get(page + address)
-                browser.wait(driver, f"{browser.FINISHED} || document.getElementById('guess') || "
-                             "document.getElementById('measure')")
-                driver.execute_script(axe.read_text())
-                found = driver.execute_async_script(
-                    "axe.run({runOnly: ['wcag2a', 'wcag2aa', "
-                    "'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']})"
-                    ".then((r) => arguments[0](r.violations.map("
-                    "(v) => v.id + ': ' + v.nodes.map((n) => n.html).slice(0, 3).join(' '))))")
-                assert found == [], f"{address}, dark {dark}: {found}"
-    finally:
-        driver.quit()
-
-
-@law
-def everything_has_a_name():
-    """Each control and picture of the accessibility tree has a name."""
-    driver = browser.chromium()
-    try:
-        browser.open_page(driver, page, "#experiment=three-glosses&n=4&pixel=80,30")
-        tree = driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
-        wanted = {"button", "link", "textbox", "slider", "combobox", "radio", "img", "image",
-                  "heading", "graphics-document"}
-        nameless = [n for n in tree if not n.get("ignored") and n.get("role", {}).get("value") in wanted
-                    and not n.get("name", {}).get("value")]
-        assert nameless == [], nameless[:3]
-    finally:
-        driver.quit()
-
-
-wanted = [test for test in laws if not os.environ.get('ONLY')
-          or test.__name__ in os.environ['ONLY']]
-for test in wanted:
-    try:
-        test()
-    except AssertionError as error:
-        print(f"{test.__name__}: {test.__doc__}\n{error}", file=sys.stderr)
-        sys.exit(1)
-    print(f"{test.__name__}: {test.__doc__}")
+laws = [same_bits, opens_and_measures, address_is_data, faults_are_sentences, the_link_back, slices_without_workers,
+        two_hundred_settings, *reach.laws(page, pathlib.Path(page_path).resolve().parent)]
+driver = browser.chromium()
+failed = 0
+try:
+    for law in laws:
+        if os.environ.get("ONLY") and law.__name__ not in os.environ["ONLY"]:
+            continue
+        start = time.monotonic()
+        try:
+            browser.size(driver, 1280, 900)
+            browser.media(driver)
+            law(driver)
+            said, asked = browser.console(driver), browser.requests(driver)
+            assert said == [], f"the console has lines: {said}"
+            assert asked == [], f"the page asked for {asked}"
+        except Exception as error:  # the others are still worth knowing
+            failed += 1
+            print(f"{law.__name__}: {law.__doc__}\n{type(error).__name__}: {error}", file=sys.stderr)
+        print(f"{law.__name__}: {law.__doc__} {time.monotonic() - start:.1f} s")
+finally:
+    driver.quit()
+sys.exit(failed > 0)

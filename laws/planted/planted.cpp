@@ -271,7 +271,7 @@ void weight_faults(std::vector<Plan>& out) {
 
 }  // namespace
 
-std::vector<PlantedFault> planted_faults(bool full) {
+std::vector<PlantedFault> arm_faults(bool full) {
     std::vector<Plan> plans;
     density_faults(plans);
     several_light_faults(plans);
@@ -279,7 +279,7 @@ std::vector<PlantedFault> planted_faults(bool full) {
     weight_faults(plans);
     std::vector<PlantedFault> out;
     for (const Plan& p : plans) {
-        PlantedFault fault{p.name, p.arm, {}, cause_of(p.name)};
+        PlantedFault fault{p.name, p.arm, {}};
         const Stage on = stage(p.lobe, p.lambert, p.light, p.sharpness);
         for (const auto& [theta, azimuth] : wo_grid(full)) {
             if (theta != 0 && theta != 45 && theta != 75) continue;  // what shows at three of them shows at sixteen
@@ -293,6 +293,12 @@ std::vector<PlantedFault> planted_faults(bool full) {
         }
         out.push_back(std::move(fault));
     }
+    return out;
+}
+
+std::vector<PlantedFault> planted_faults(bool full) {
+    std::vector<PlantedFault> out = arm_faults(full);
+    for (PlantedFault& fault : out) fault.cause = cause_of(fault.name);
     for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
     return out;
 }

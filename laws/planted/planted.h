@@ -18,6 +18,8 @@ struct PlantedFault {
 };
 
 std::vector<PlantedFault> planted_faults(bool full);
+/// Those of the list's arms, which are the first of them; their causes are not filled in.
+std::vector<PlantedFault> arm_faults(bool full);
 /// Those of samplers as renderers have them, which are among the planted faults.
 std::vector<PlantedFault> renderer_faults();
 /// Faults of other families, kept apart: by them it is measured how often a cause is named rightly.

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Speed of the page: its module in node beside the program's SSE4 code, and the page itself in Chromium.
+
+    bench/page.py [--build FOLDER] [--page FILE] [--crescent PROGRAM] [--write]
+
+What ./page has built is measured: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
+three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last meter, and from a
+slider's move to the first new pixels, the median of twenty moves. --write puts all of it under "The page" in
+docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
+"""
+import argparse
+import datetime
+import json
+import os
+import pathlib
+import shlex
+import statistics
+import subprocess
+import sys
+import time
+
+from compare import processor
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "laws" / "page"))
+import browser  # noqa: E402
+
+TITLE = "\n## The page\n"
+
+
+def rates(crescent, build):
+    done = subprocess.run(["node", "--no-warnings", ROOT / "bench/page.mjs", crescent, build], check=True,
+                          stdout=subprocess.PIPE, text=True)
+    *rows, facts = [json.loads(line) for line in done.stdout.splitlines()]
+    return rows, facts
+
+
+def opened(page):
+    """ms to the first picture, to the last film, to the last meter, of a browser that was just started."""
+    driver = browser.chromium()
+    try:
+        browser.open_page(driver, page)
+        told = driver.execute_script("return {...document.documentElement.dataset}")
+        told["browser"] = f"Chromium {driver.capabilities['browserVersion']}"
+        return told
+    finally:
+        driver.quit()
+
+
+def moved(page, turns=20):
+    """ms from the move of the slider of s to the first new pixels, each time while the reference is being computed."""
+    driver = browser.chromium()
+    try:
+        browser.open_page(driver, page)
+        driver.execute_script("document.getElementById('controls').open = true")
+        found = []
+        for turn in range(turns):
+            driver.execute_script(
+                "delete document.documentElement.dataset.moved;"
+                "const at = document.querySelector('[data-path=\"sphere.s\"] input[type=range]');"
+                "at.focus(); at.value = arguments[0]; at.dispatchEvent(new Event('input', {bubbles: true}))",
+                400 + 10 * turn)
+            found.append(int(browser.wait(driver, "document.documentElement.dataset.moved")))
+            time.sleep(0.4)
+        return statistics.median(found), max(found)
+    finally:
+        driver.quit()
+
+
+def section(rows, facts, openings, slider, command):
+    least = {key: min(int(one[key]) for one in openings) for key in ("first", "films", "took")}
+    load = os.getloadavg()[0]
+    table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |" for r in rows)
+    return f"""{TITLE}
+Msamples/s of one thread, the best of three turns: the page's module beside the program's SSE4 code.
+
+| arm | page | program, SSE4 | page / program |
+|---|---|---|---|
+{table}
+
+| in Chromium, {openings[0]['workers']} workers, best of {len(openings)} | ms |
+|---|---|
+| from opening the file to the first picture | {least['first']} |
+| the gallery's three arms at N = 64, its rungs 4 and 16 before | {least['films']} |
+| the same with the reference and all meters | {least['took']} |
+| from a slider's move to the first new pixels, median of 20 moves | {slider[0]:.0f} |
+| the slowest of the 20 | {slider[1]} |
+
+- {datetime.date.today().isoformat()}, {processor()}, {os.cpu_count()} threads, load {load:.1f} at the end;
+  {openings[0]['browser']}; {facts['engine']}; crescent {facts['commit']}
+- `{command}` writes this part.
+- The reference by the module on one thread: {facts['reference']:.1f} s.
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build-web")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "out/page/crescent.html")
+    parser.add_argument("--crescent", type=pathlib.Path, default=ROOT / "build/crescent")
+    parser.add_argument("--write", action="store_true", help="write the part of docs/speed.md")
+    args = parser.parse_args()
+    page = args.page.resolve().as_uri()
+    rows, facts = rates(args.crescent.resolve(), args.build.resolve())
+    text = section(rows, facts, [opened(page) for _ in range(3)], moved(page), shlex.join(["bench/page.py", *sys.argv[1:]]))
+    print(text)
+    if args.write:
+        file = ROOT / "docs" / "speed.md"
+        file.write_text(file.read_text().split(TITLE)[0].rstrip("\n") + "\n" + text)
+
+
+if __name__ == "__main__":
+    main()

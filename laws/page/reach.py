@@ -1,0 +1,183 @@
+"""Who can use the page: by keys alone, on every screen, with other colours, on paper, heard instead of seen."""
+import base64
+import os
+import pathlib
+
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+import browser
+
+small = "#experiment=three-glosses&n=4"
+SHEET = "document.getElementById('sheet').dataset.measured"
+
+
+def laws(page, folder):
+    def shot(driver, name):
+        if os.environ.get("SHOTS"):
+            driver.save_screenshot(str(pathlib.Path(os.environ["SHOTS"]) / f"{name}.png"))
+
+    def answer(driver, lesson):
+        """From the question to what was measured; the focus stands on the page before it."""
+        browser.tab_to(driver, "#lessons input[name=answer], #guess")
+        choice = driver.execute_script("return document.activeElement.type === 'radio'")
+        browser.keys(driver, Keys.SPACE if choice else Keys.ARROW_RIGHT)
+        browser.tab_to(driver, "#measure")
+        browser.keys(driver, Keys.ENTER)
+        browser.wait(driver, "document.getElementById('reveal') || document.querySelector('#lessons .bad')", 120)
+        assert not driver.find_elements(By.CSS_SELECTOR, "#lessons .bad"), \
+            f"{lesson}: {browser.text(driver, '#lessons')}"
+        said = browser.text(driver, "#reveal")
+        assert "measured here" in said, f"{lesson}: {said}"
+        kind = driver.find_element(By.CSS_SELECTOR, "#reveal [data-kind]")
+        assert kind.text, f"{lesson}: nothing is said of '{kind.get_attribute('data-kind')}'"
+        focused = driver.execute_script("return document.activeElement.id")
+        assert focused == "reveal", f"{lesson}: the focus is on '{focused}'"
+        print(f"  {lesson}: {said.splitlines()[0]} ({kind.get_attribute('data-kind')})")
+
+    def lessons_by_keyboard(driver):
+        """Every lesson from its question to what was measured and on to the next, by keys alone."""
+        browser.open_page(driver, page, small)
+        browser.tab_to(driver, "[data-tab=lessons]")
+        browser.keys(driver, Keys.ENTER)
+        ids = [e.get_attribute("data-lesson") for e in driver.find_elements(By.CSS_SELECTOR, "[data-lesson]")]
+        assert len(ids) == 12, ids
+        browser.tab_to(driver, "[data-lesson]")
+        browser.keys(driver, Keys.ENTER)
+        for lesson in ids:
+            answer(driver, lesson)
+            if lesson == "unbiased":  # `check` in the page: another w_o
+                browser.tab_to(driver, "#check-theta")
+                browser.keys(driver, Keys.HOME)
+                browser.tab_to(driver, "#check")
+                browser.keys(driver, Keys.ENTER)
+                browser.wait(driver, "document.querySelector('#judged table')")
+                assert "--wo 0" in browser.text(driver, "#judged"), browser.text(driver, "#judged")
+                shot(driver, "check")
+            browser.tab_to(driver, "#next")
+            browser.keys(driver, Keys.ENTER)
+        assert len(driver.find_elements(By.CSS_SELECTOR, "[data-lesson]")) == 12
+        assert browser.text(driver, "#lessons").count("answered") == 12
+
+    def sheet_for_teachers(driver):
+        """Twelve lessons with the numbers of this page; it prints alone, and axe finds nothing on it."""
+        if "answer=" not in driver.current_url:
+            browser.open_page(driver, page, small)
+        driver.find_element(By.CSS_SELECTOR, "[data-tab=sheet]").click()
+        browser.wait(driver, SHEET, 120)
+        articles = [a.text for a in driver.find_elements(By.CSS_SELECTOR, "#sheet article")]
+        assert len(articles) == 12
+        for text in articles:
+            for word in ("minutes", "Aim.", "Question.", "Expected.", "Say."):
+                assert word in text, f"no '{word}' in {text}"
+            assert any(c.isdigit() for c in text.split("Expected.")[1].split("Say.")[0]), text
+        nothing_found(driver, "the sheet")
+        shot(driver, "sheet")
+        browser.media(driver, "print")
+        hidden = driver.execute_script("return ['#tabs', '#bench', '#sheet button'].map((css) => "
+                                       "getComputedStyle(document.querySelector(css)).display)")
+        assert set(hidden) == {"none"}, hidden
+        browser.media(driver)
+        paper = base64.b64decode(driver.execute_cdp_cmd("Page.printToPDF", {"paperWidth": 8.27, "paperHeight": 11.69})["data"])
+        pages = paper.count(b"/Type /Page\n")
+        assert 2 <= pages <= 8, f"{pages} sheets of paper"
+        if os.environ.get("SHOTS"):
+            (pathlib.Path(os.environ["SHOTS"]) / "sheet.pdf").write_bytes(paper)
+
+    def fits_every_screen(driver):
+        """From 320 px, which is 1280 px at 400 %, to 4K, light and dark: nothing scrolls sideways."""
+        for address, until in ((small + "&pixel=80,30", browser.FINISHED), ("#lesson=fault", "document.getElementById('measure')"),
+                               (small + "&view=heat", browser.FINISHED)):
+            browser.open_page(driver, page, address, until=until)
+            for scheme in ("light", "dark"):
+                browser.media(driver, prefers_color_scheme=scheme)
+                for width, height in ((320, 256), (360, 740), (768, 1024), (1280, 900), (3840, 2160)):
+                    browser.size(driver, width, height)
+                    wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
+                    assert wide <= 0, f"{address} at {width} px: {wide} px too wide"
+                    shot(driver, f"{address[1:14].replace('=', '-')}-{'heat-' if 'heat' in address else ''}{scheme}-{width}")
+
+    def other_colours_and_no_motion(driver):
+        """Forced colours keep borders, outlines and focus; with reduced motion, as without, nothing moves by itself."""
+        browser.media(driver, forced_colors="active", prefers_reduced_motion="reduce")
+        browser.open_page(driver, page, small + "&pixel=80,30")
+        shot(driver, "forced")
+        driver.execute_script("document.getElementById('n').focus()")
+        facts = driver.execute_script("""
+            const style = (css) => getComputedStyle(document.querySelector(css));
+            return {forced: matchMedia('(forced-colors: active)').matches, still: matchMedia('(prefers-reduced-motion: reduce)').matches,
+                border: style('.over .region').borderTopStyle, button: style('button').borderTopStyle,
+                moving: document.getAnimations().length, focus: style('#n').outlineStyle,
+                chosen: style('#tabs a[aria-current]').borderBottomColor !== style('#tabs a:not([aria-current])').borderBottomColor}""")
+        assert facts == {"forced": True, "still": True, "border": "solid", "button": "solid", "moving": 0,
+                         "focus": "solid", "chosen": True}, facts
+        nothing_found(driver, "forced colours")
+        before = driver.execute_script("return document.querySelector('canvas').toDataURL()")
+        driver.execute_async_script("setTimeout(arguments[0], 300)")
+        assert before == driver.execute_script("return document.querySelector('canvas').toDataURL()"), "noise moves unasked"
+
+    def tab_order(driver):
+        """The tabulator goes through everything that can be used, in the order in which it is read, and leaves no one
+        behind; where the focus stands is seen."""
+        browser.open_page(driver, page, small + "&pixel=80,30")
+        driver.execute_script("document.getElementById('controls').open = true")
+        order = driver.execute_script("""
+            const can = 'a[href], button, input, select, summary, [tabindex="0"]';
+            return [...document.querySelectorAll(can)].filter((e) => e.checkVisibility()).map((e, k) => (e.dataset.order = k))""")
+        driver.execute_script("document.activeElement.blur(); window.getSelection().removeAllRanges()")
+        seen = []
+        for _ in order:
+            browser.keys(driver, Keys.TAB)
+            at, outline, name = driver.execute_script(
+                "const e = document.activeElement; return [e.dataset.order, getComputedStyle(e).outlineStyle, e.outerHTML.slice(0, 120)]")
+            assert outline != "none", f"the focus on {name} is not seen"
+            seen.append(int(at) if at is not None else name)
+        assert seen == order, f"reached {seen}"
+
+    def regions_are_drawn(driver):
+        """A region is dragged on a picture or typed: both reach the address, the outline and the meters."""
+        browser.open_page(driver, page, small)
+        canvas = driver.find_element(By.CSS_SELECTOR, "#pictures canvas")
+        ActionChains(driver).move_to_element_with_offset(canvas, -60, 20).click_and_hold().move_by_offset(90, -40).release().perform()
+        browser.wait(driver, f"location.hash.includes('regions.mine.box') && {browser.FINISHED}")
+        assert "RMSE of mine" in browser.text(driver, "#pictures")
+        driver.execute_script("document.getElementById('controls').open = true")
+        browser.tab_to(driver, "[aria-label='region mine left']")
+        browser.keys(driver, Keys.CONTROL, "a")
+        browser.keys(driver, "7", Keys.TAB)
+        browser.wait(driver, f"/regions.mine.box=\\[7,/.test(decodeURIComponent(location.hash)) && {browser.FINISHED}")
+        driver.execute_script("document.querySelector('#pictures canvas').focus()")
+        browser.keys(driver, Keys.ARROW_RIGHT)
+        browser.wait(driver, "document.querySelector('#pixel .disk')")
+
+    source = folder / "node_modules/axe-core/axe.min.js"
+
+    def nothing_found(driver, where):
+        if source.exists():
+            found = browser.axe(driver, source.read_text())
+            assert found == [], f"{where}: {found}"
+
+    def nothing_for_axe(driver):
+        """axe-core finds nothing: the bench with a pixel open, a lesson before and after the guess; light and dark."""
+        if not source.exists():
+            print("  skipped: no axe-core (npm ci in laws/page)")
+        for scheme in ("light", "dark"):
+            browser.media(driver, prefers_color_scheme=scheme)
+            for address, until in ((small + "&view=heat&pixel=80,30", browser.FINISHED), ("#lesson=fault", "document.getElementById('measure')"),
+                                   ("#lesson=chi-square&answer=chi-square:wrong", "document.getElementById('reveal')")):
+                browser.open_page(driver, page, address, until=until)
+                nothing_found(driver, f"{address}, {scheme}")
+
+    def everything_has_a_name(driver):
+        """Each control and picture of the accessibility tree has a name."""
+        browser.open_page(driver, page, small + "&pixel=80,30")
+        tree = driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
+        wanted = {"button", "link", "textbox", "slider", "combobox", "radio", "img", "image",
+                  "heading", "graphics-document"}
+        nameless = [n for n in tree if not n.get("ignored") and n.get("role", {}).get("value") in wanted
+                    and not n.get("name", {}).get("value")]
+        assert nameless == [], nameless[:3]
+
+    return [lessons_by_keyboard, sheet_for_teachers, fits_every_screen, other_colours_and_no_motion, tab_order,
+            regions_are_drawn, nothing_for_axe, everything_has_a_name]

@@ -1,0 +1,176 @@
+// What the measurements of a lesson come to, in words: which is largest, by what factor, what a sampler's verdicts say.
+// Every number was measured for this answer, and `kind` names what was found, so that what is said can follow it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "door.h"
+
+namespace crescent::web {
+
+namespace {
+
+struct Found {
+    std::string answer, kind;
+    std::vector<std::string> lines{};
+};
+
+/// A measurement of measure.cpp with its words.
+struct Series {
+    std::string name;  // "cosine, N = 64: RMSE of H"
+    double n = 0, median = 0, low = 0, high = 0;
+    std::vector<double> rmse;
+
+    std::string line() const {
+        if (rmse.size() < 2) return fmt::format("{} {}", name, figures(median));
+        return fmt::format("{} {}, from {} to {} between the 5 % and 95 % quantiles of {} seeds", name, figures(median),
+            figures(low), figures(high), rmse.size());
+    }
+};
+
+Series series_of(const ordered_json& v) {
+    Series out{v.at("name").get<std::string>(), v.at("n").get<double>(), v.at("median").get<double>(),
+        v.at("q05").get<double>(), v.at("q95").get<double>(), {}};
+    for (const auto& x : v.at("rmse")) out.rmse.push_back(x.get<double>());
+    return out;
+}
+
+/// The largest or the smallest, and whether its band lies apart from every other.
+Found extreme(const ordered_json& asked) {
+    const double sign = asked.at("by").get<std::string>() == "largest" ? 1 : -1;
+    std::vector<Series> all;
+    for (const auto& v : asked.at("of")) all.push_back(series_of(v));
+    const auto best = std::ranges::max_element(all, {}, [&](const Series& s) { return sign * s.median; });
+    Found out{asked.at("options").at(static_cast<std::size_t>(best - all.begin())).get<std::string>(), ""};
+    bool apart = true;
+    for (const Series& s : all) {
+        out.lines.push_back(s.line());
+        if (&s != &*best) apart = apart && (sign > 0 ? s.high < best->low : best->high < s.low);
+    }
+    out.kind = apart ? out.answer : "overlap";
+    if (!apart) out.lines.emplace_back("Its interval overlaps another's: these seeds do not rank them.");
+    return out;
+}
+
+/// The factor from the first to the second, seed by seed.
+Found factor(const ordered_json& asked) {
+    const Series a = series_of(asked.at("of").at(0)), b = series_of(asked.at("of").at(1));
+    std::vector<double> each;
+    for (std::size_t k = 0; k < a.rmse.size(); ++k) each.push_back(a.rmse[k] / b.rmse[k]);
+    const double median = quantile(each, 0.5), low = quantile(each, 0.05), high = quantile(each, 0.95);
+    const auto risen = std::ranges::count_if(each, [](double x) { return x < 1; });
+    Found out{figures(median, 3), risen > 0 ? "rises" : "falls", {a.line(), b.line()}};
+    out.lines.push_back(
+        fmt::format("Seed by seed the error falls by a factor of {}, from {} to {}; it rises for {} of {} seeds",
+            figures(median, 3), figures(low, 3), figures(high, 3), risen, each.size()));
+    out.lines.push_back(fmt::format("A finite variance gives √({:g} / {:g}) = {} in the mean of squares", b.n, a.n,
+        figures(std::sqrt(b.n / a.n), 3)));
+    return out;
+}
+
+Found spread_over_seeds(const ordered_json& asked) {
+    const Series s = series_of(asked.at("of").at(0));
+    const double times = s.high / s.low;
+    return {figures(times, 3), times > 2 ? "wide" : "narrow",
+        {s.line(), fmt::format("the 95 % quantile is {} times the 5 % quantile", figures(times, 3))}};
+}
+
+const ordered_json& verdict_of(const ordered_json& one, const std::string& name) {
+    for (const auto& v : one.at("verdicts"))
+        if (v.at("name").get<std::string>() == name) return v;
+    throw InputError({"lesson", 0, 0}, "no verdict '" + name + "' in " + one.dump());
+}
+std::string told_of(const ordered_json& v) {
+    return fmt::format("{}: {}. {}", v.at("name").get<std::string>(), v.at("state").get<std::string>(),
+        v.at("say").get<std::string>());
+}
+std::string state_of(const ordered_json& v) { return v.at("state").get<std::string>(); }
+
+/// The case on a surface, of the only one where none is asked for.
+const ordered_json& case_on(const ordered_json& judged, const std::string& surface) {
+    for (const auto& one : judged.at("cases"))
+        if (surface.empty() || one.at("surface").get<std::string>() == surface) return one;
+    throw InputError({"lesson", 0, 0}, "'" + surface + "' is no surface that it was judged on");
+}
+
+/// Whether light is out of reach.
+Found unbiased(const ordered_json& one) {
+    const ordered_json& support = verdict_of(one, "support");
+    Found out{state_of(support), state_of(support), {"on " + one.at("trial").get<std::string>(), told_of(support)}};
+    out.lines.push_back(told_of(verdict_of(one, "mean")));
+    return out;
+}
+
+/// What chi-square says, and what the other verdicts say.
+Found beside_chi_square(const ordered_json& one) {
+    const ordered_json& density = verdict_of(one, "density");
+    Found out{"right", "", {told_of(density)}};
+    for (const auto& v : one.at("verdicts")) {
+        if (v.at("name").get<std::string>() == "density" || state_of(v) != "wrong") continue;
+        out.answer = "wrong";
+        out.lines.push_back(told_of(v));
+    }
+    out.kind = state_of(density) + "-" + out.answer;
+    return out;
+}
+
+/// A t-test as it is commonly made, on the weights that `mean` looked at, beside what `mean` says.
+Found beside_t_test(const ordered_json& one) {
+    const ordered_json& mean = verdict_of(one, "mean");
+    const ordered_json& e = mean.at("evidence");
+    const double off = e.at("mean").get<double>() - e.at("quadrature").get<double>(),
+                 t = off / e.at("standard_error").get<double>();
+    const double draws = verdict_of(one, "valid").at("evidence").at("draws").get<double>();
+    const double p = student_p(t, draws - 1);
+    const bool rejects = p < TestSettings{}.alpha;
+    Found out{state_of(mean), (rejects ? "rejects-" : "passes-") + state_of(mean), {}};
+    out.lines.push_back(fmt::format("The t-test: mean {} ± {}, integral {}, t = {}, p {} {}: it {}",
+        figures(e.at("mean").get<double>()), figures(e.at("standard_error").get<double>(), 2),
+        figures(e.at("quadrature").get<double>()), figures(t, 3), p < 1e-6 ? "<" : "=",
+        p < 1e-6 ? "0.000001" : figures(p, 2), rejects ? "rejects" : "does not reject"));
+    for (const char* name : {"support", "density", "tail", "mean"}) out.lines.push_back(told_of(verdict_of(one, name)));
+    return out;
+}
+
+/// Which of several samplers nothing is wrong with.
+Found which_is_right(const ordered_json& asked) {
+    Found out{"", "none"};
+    std::size_t right = 0;
+    for (std::size_t k = 0; k < asked.at("of").size(); ++k) {
+        const ordered_json& judged = asked.at("of").at(k);
+        const std::string option = asked.at("options").at(k).get<std::string>(),
+                          name = judged.at("name").get<std::string>();
+        std::string first;
+        for (const auto& v : judged.at("cases").at(0).at("verdicts"))
+            if (first.empty() && state_of(v) == "wrong") first = told_of(v);
+        if (first.empty()) out.answer = option, ++right;
+        out.lines.push_back(
+            fmt::format("sampler {}, {}: {}", option, name, first.empty() ? "no verdict is wrong" : first));
+    }
+    if (right == 1) out.kind = "one";
+    return out;
+}
+
+Found concluded(const ordered_json& asked) {
+    const auto by = asked.at("by").get<std::string>();
+    if (by == "largest" || by == "smallest") return extreme(asked);
+    if (by == "factor") return factor(asked);
+    if (by == "spread") return spread_over_seeds(asked);
+    if (by == "which") return which_is_right(asked);
+    const ordered_json& one = case_on(asked.at("of").at(0), asked.value("surface", ""));
+    if (by == "support") return unbiased(one);
+    if (by == "chi-square") return beside_chi_square(one);
+    if (by == "t-test") return beside_t_test(one);
+    throw InputError({"lesson", 0, 0}, "no way to conclude by '" + by + "'");
+}
+
+}  // namespace
+
+/// {by, options, surface, of: [what measure or judged said]} -> {answer, kind, lines}.
+CRESCENT_EXPORT(concluded)()->void {
+    const Found found = concluded(request());
+    say(ordered_json{{"answer", found.answer}, {"kind", found.kind}, {"lines", found.lines}});
+}
+
+}  // namespace crescent::web

@@ -1,0 +1,37 @@
+// A hemisphere as a disk: Lambert's azimuthal equal-area projection from n, (x, y) / sqrt(1 + z), the horizon at 1;
+// turned about n so that R lies towards +x, hence the plane of incidence is the picture's middle row.
+#pragma once
+
+#include <cmath>
+#include <functional>
+
+#include "door.h"
+
+namespace crescent::web {
+
+class Disk {
+public:
+    explicit Disk(Vec3d mirror) {
+        const double length = std::sqrt(mirror.x * mirror.x + mirror.y * mirror.y);
+        if (length > 1e-9) c_ = mirror.x / length, s_ = mirror.y / length;
+    }
+    /// Where a direction of the upper half lies in the unit disk.
+    ordered_json place(Vec3d w) const {
+        const double by = 1 / std::sqrt(1 + std::max(w.z, 0.0));
+        return {(c_ * w.x + s_ * w.y) * by, (c_ * w.y - s_ * w.x) * by};
+    }
+    /// What lies there; nothing outside the disk.
+    std::optional<Vec3d> direction(double x, double y) const {
+        const double r2 = x * x + y * y;
+        if (r2 >= 1) return std::nullopt;
+        const double by = std::sqrt(2 - r2);
+        return Vec3d{(c_ * x - s_ * y) * by, (c_ * y + s_ * x) * by, 1 - r2};
+    }
+    /// A picture `size` pixels across: values through turbo on a logarithmic scale of four decades below the largest.
+    const void* paint(int size, const std::function<double(Vec3d)>& value) const;
+
+private:
+    double c_ = 1, s_ = 0;
+};
+
+}  // namespace crescent::web
