@@ -70,7 +70,8 @@ def moved(page, turns=20):
 def section(rows, facts, openings, slider, command):
     least = {key: min(int(one[key]) for one in openings) for key in ("first", "films", "took")}
     load = os.getloadavg()[0]
-    table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |" for r in rows)
+    table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |"
+                      for r in rows)
     return f"""{TITLE}
 Msamples/s of one thread, the best of three turns: the page's module beside the program's SSE4 code.
 
@@ -102,7 +103,8 @@ def main():
     args = parser.parse_args()
     page = args.page.resolve().as_uri()
     rows, facts = rates(args.crescent.resolve(), args.build.resolve())
-    text = section(rows, facts, [opened(page) for _ in range(3)], moved(page), shlex.join(["bench/page.py", *sys.argv[1:]]))
+    command = shlex.join(["bench/page.py", *sys.argv[1:]])
+    text = section(rows, facts, [opened(page) for _ in range(3)], moved(page), command)
     print(text)
     if args.write:
         file = ROOT / "docs" / "speed.md"

@@ -55,10 +55,13 @@ function question(lesson: Lesson, given: string | undefined, take: (answer: stri
 /** Words with formulas, as the core sets them. */
 const set = (model: Model, words: string): DocumentFragment => made(model.door.say("html", words));
 
+/** An answer as the question words it. */
+const worded = ({ ask }: Lesson, value: string): string =>
+  ask.kind === "choice" ? ask.options.find((o) => o.value === value)?.words ?? value : `${value} ${ask.unit}`;
+
 function revealed(model: Model, lesson: Lesson, answer: string, found: Found): HTMLElement {
-  const words = (value: string): string => (lesson.ask.kind === "choice" ? lesson.ask.options.find((o) => o.value === value)?.words ?? value : `${value} ${lesson.ask.unit}`);
   return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
-    el("p", {}, "You said ", el("b", {}, words(answer)), "; measured here: ", el("b", {}, words(found.answer)), "."),
+    el("p", {}, "You said ", el("b", {}, worded(lesson, answer)), "; measured here: ", el("b", {}, worded(lesson, found.answer)), "."),
     el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? "")));
 }
 
@@ -89,7 +92,7 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
 
 export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
   const articles = lessons.map((lesson, k) => {
-    const place = el("p", {}, "Expected: being measured …"), say = el("p");
+    const place = el("div", {}, el("p", {}, "Expected: being measured …")), say = el("p");
     return { lesson, place, say, article: el("article", {}, el("h3", {}, `${k + 1}. ${lesson.title}`),
       el("p", { class: "footnote" }, `${lesson.minutes} minutes`), el("p", {}, el("b", {}, "Aim. "), set(model, lesson.aim)),
       el("p", {}, el("b", {}, "Question. "), lesson.question), place, say) };
@@ -102,7 +105,7 @@ export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
     for (const { lesson, place, say } of articles) {
       try {
         const found = await asker.find(lesson);
-        place.replaceChildren(el("b", {}, "Expected. "), `${found.answer}: ${found.lines.map((line) => line.replace(/\.$/, "")).join("; ")}.`);
+        place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, line))));
         say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? ""));
       } catch (error) {
         place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;

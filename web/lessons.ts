@@ -24,9 +24,11 @@ export interface Lesson {
 
 const names = (words: readonly string[]): readonly { value: string; words: string }[] =>
   words.map((word) => ({ value: word, words: word }));
+const ranked = (words: readonly string[]): readonly { value: string; words: string }[] =>
+  [...names(words), { value: "overlap", words: "none: the intervals of the seeds overlap" }];
 const three = ["uniform", "cosine", "phong"] as const;
 const at = (arm: string, region: "H" | "S", n = 64, more: Partial<Measured> = {}): Measured => ({ arm, n, region, seeds: 8, ...more });
-const overlap = "The intervals of these seeds overlap: more seeds, not a louder claim, would rank the arms.";
+const overlap = "The first and the next overlap on these seeds: more seeds may rank them, one seed cannot.";
 const six = ["sqrt forgotten", "pdf off by 1 %", "phi over half a turn", "cosine", "cosine folded in twice", "s+2 for s+1 in the pdf"] as const;
 
 export const lessons: readonly Lesson[] = [
@@ -34,7 +36,7 @@ export const lessons: readonly Lesson[] = [
     id: "sparkle", title: "Which column sparkles where?", minutes: 5, arms: three, n: 64, play: ["sphere.s", "seed"],
     aim: "Same image, same number of samples, same random numbers: only the aim differs, and with it the place of the noise.",
     question: "Three arms draw 64 samples a pixel. In which one will the highlight H be noisiest?",
-    ask: { kind: "choice", options: names(three) }, answer: { by: "largest", of: three.map((arm) => at(arm, "H")) },
+    ask: { kind: "choice", options: ranked(three) }, answer: { by: "largest", of: three.map((arm) => at(arm, "H")) },
     says: {
       uniform: "The wider an arm aims, the seldomer it meets the small light that makes the highlight, and the heavier each meeting weighs.",
       cosine: "Here the arm that follows the cosine is the noisiest: the highlight lies where that density is small.",
@@ -78,7 +80,7 @@ export const lessons: readonly Lesson[] = [
     id: "sharper", title: "Sharper and sharper", minutes: 5, arms: ["phong"], n: 64, play: ["sphere.s"],
     aim: "An exponent changes the lobe, the density and the truth together: a sharper aim is not a better one everywhere.",
     question: "s = 8, 32 and 128: at which one is phong's RMSE of the highlight H largest?",
-    ask: { kind: "choice", options: names(["8", "32", "128"]) },
+    ask: { kind: "choice", options: ranked(["8", "32", "128"]) },
     answer: { by: "largest", of: ["8", "32", "128"].map((s) => at("phong", "H", 64, { set: [`sphere.s=${s}`], as: `phong, s = ${s}` })) },
     says: {
       "8": "The wide lobe seldom meets the small light, as cosine does.",
@@ -142,7 +144,7 @@ export const lessons: readonly Lesson[] = [
     id: "mixture", title: "How much of each in a mixture?", minutes: 5, arms: ["cosine", "phong", "mixture"], n: 64, play: ["sphere.s", "sphere.rho_s"],
     aim: "One arm for the lobe, one for the rest, chosen at random: a density that is small nowhere.",
     question: "Cosine, phong, or a mixture of both by their albedos: which one has the smallest RMSE of the surround S?",
-    ask: { kind: "choice", options: names(["cosine", "phong", "mixture"]) },
+    ask: { kind: "choice", options: ranked(["cosine", "phong", "mixture"]) },
     answer: { by: "smallest", of: ["cosine", "phong", "mixture"].map((arm) => at(arm, "S")) },
     says: {
       cosine: "In the surround cosine is the best of the three: each sample that the mixture spends on the lobe is one that it lacks there. Look at the highlight before you choose.",

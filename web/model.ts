@@ -60,6 +60,7 @@ export class Model {
     const era = ++this.era, rungs = [...ladder.filter((rung) => rung > 1 && rung < n), n];
     this.startedAt = performance.now();
     this.finished = this.referenceDone = false;
+    const workers = this.pool.open({ ...opening, published: "" }).catch(() => undefined); // what they refuse is refused here too
     try {
       this.described = this.door.ask<Described>("open", opening);
       this.shown = arms.map((name) => {
@@ -72,7 +73,7 @@ export class Model {
       throw error;
     }
     this.viewer.opened(this.described, this.shown);
-    await this.pool.open(opening);
+    await workers;
     try {
       await this.compute(era, opening, rungs);
     } catch (error) {

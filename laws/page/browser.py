@@ -4,7 +4,6 @@ import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
-from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 
@@ -12,7 +11,8 @@ def chromium(width=1280, height=900, flags=()):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
     for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
-                 "--disable-ipc-flooding-protection", "--host-resolver-rules=MAP * ~NOTFOUND", f"--window-size={width},{height}", *flags):
+                 "--disable-ipc-flooding-protection", "--host-resolver-rules=MAP * ~NOTFOUND",
+                 f"--window-size={width},{height}", *flags):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
@@ -96,4 +96,4 @@ def requests(driver):
 
 
 def text(driver, css):
-    return driver.find_element(By.CSS_SELECTOR, css).text
+    return driver.execute_script("return document.querySelector(arguments[0]).innerText", css)

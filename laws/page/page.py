@@ -67,7 +67,8 @@ def opens_and_measures(driver):
 def address_is_data(driver):
     """Nonsense in the address gives defaults and lines that say so."""
     browser.open_page(driver, page, "#experiment=%3Cscript%3E&arms=evil,phong&n=7&view=x"
-                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9", until="document.getElementById('wrong').textContent")
+                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9",
+                      until="document.getElementById('wrong').textContent")
     said = browser.text(driver, "#wrong")
     for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm="):
         assert word in said, f"{word} is not told: {said}"
@@ -87,15 +88,15 @@ def faults_are_sentences(driver):
 
 
 def shown(driver):
-    return sorted(e.text for e in driver.find_elements(By.CSS_SELECTOR, "[data-hash]"))
+    return driver.execute_script("return [...document.querySelectorAll('[data-hash]')].map((e) => e.textContent).sort()")
 
 
 def the_link_back(driver):
     """Three states, each with its command: the program makes the same films and the same numbers."""
     states = ("#experiment=three-glosses&arms=phong,cosine&n=16",
-              "#experiment=two-lamps&arms=mis-balance,light-area&n=4&set=image.width=96&set=image.height=54&set=seed=99",
-              "#arms=phong,mixture,uniform&n=4&set=image.width=96&set=image.height=54&set=sphere.s=8&set=key.radius=0.3"
-              "&set=regions.H.box=[50, 36, 58, 44]&set=regions.S.box=[30, 10, 60, 30]")
+              "#experiment=two-lamps&arms=mis-balance,light-area&n=4&set=seed=99",
+              "#experiment=three-glosses&arms=phong,mixture,uniform&n=4&set=gloss.s=8&set=gloss.rho_s=0.2"
+              "&set=regions.mine.box=[50, 16, 90, 44]&set=fill.radiance=[0.5, 0.6, 0.7]")
     for state in states:
         browser.open_page(driver, page, state)
         films, words = shown(driver), browser.text(driver, "#command")
@@ -111,12 +112,14 @@ def the_link_back(driver):
             metrics = json.loads((pathlib.Path(out) / "metrics.json").read_text())
         for film in films:
             assert film in metrics["films"].values(), f"{words}: {film} is none of {metrics['films']}"
-        n = max(run["n"] for run in metrics["runs"])
+        n = int(re.search(r"[#&]n=(\d+)", state)[1])
         checked = 0
         for arm, name, text in rmse:
             if name.startswith("RMSE of "):  # an arm may have run at other exponents too
-                here = [run["regions"][name[8:]]["rmse"] for run in metrics["runs"] if run["arm"] == arm and run["n"] == n]
-                assert any(math.isclose(float(text), x, rel_tol=1e-3) for x in here), f"{words}: {arm}, {name}: {text}, not {here}"
+                here = [run["regions"][name[8:]]["rmse"] for run in metrics["runs"]
+                        if run["arm"] == arm and run["n"] == n]
+                assert any(math.isclose(float(text), x, rel_tol=1e-3) for x in here), \
+                    f"{words}: {arm}, {name}: {text}, not {here}"
                 checked += 1
         assert checked >= len(films), f"{words}: {rmse}"
         print(f"  {words[:60]} ...: {len(films)} films, {checked} RMSEs")
@@ -154,7 +157,11 @@ def two_hundred_settings(driver):
             delete told.took;
             location.hash = settings[k];
             const seed = /seed=[0-9]+/.exec(settings[k])[0], command = document.getElementById('command');
-            const look = () => told.took && command.textContent.includes(seed) ? (sizes.push(Number(told.memory)), next(k + 1)) : setTimeout(look, 5);
+            const look = () => {
+                if (!told.took || !command.textContent.includes(seed)) return setTimeout(look, 5);
+                sizes.push(Number(told.memory));
+                next(k + 1);
+            };
             setTimeout(look, 5);
         };
         next(0);""", settings)

@@ -10,6 +10,7 @@ from selenium.webdriver.common.keys import Keys
 import browser
 
 small = "#experiment=three-glosses&n=4"
+ASKED = "document.getElementById('measure')"
 SHEET = "document.getElementById('sheet').dataset.measured"
 
 
@@ -79,7 +80,8 @@ def laws(page, folder):
                                        "getComputedStyle(document.querySelector(css)).display)")
         assert set(hidden) == {"none"}, hidden
         browser.media(driver)
-        paper = base64.b64decode(driver.execute_cdp_cmd("Page.printToPDF", {"paperWidth": 8.27, "paperHeight": 11.69})["data"])
+        printed = driver.execute_cdp_cmd("Page.printToPDF", {"paperWidth": 8.27, "paperHeight": 11.69})
+        paper = base64.b64decode(printed["data"])
         pages = paper.count(b"/Type /Page\n")
         assert 2 <= pages <= 8, f"{pages} sheets of paper"
         if os.environ.get("SHOTS"):
@@ -87,7 +89,7 @@ def laws(page, folder):
 
     def fits_every_screen(driver):
         """From 320 px, which is 1280 px at 400 %, to 4K, light and dark: nothing scrolls sideways."""
-        for address, until in ((small + "&pixel=80,30", browser.FINISHED), ("#lesson=fault", "document.getElementById('measure')"),
+        for address, until in ((small + "&pixel=80,30", browser.FINISHED), ("#lesson=fault", ASKED),
                                (small + "&view=heat", browser.FINISHED)):
             browser.open_page(driver, page, address, until=until)
             for scheme in ("light", "dark"):
@@ -96,7 +98,8 @@ def laws(page, folder):
                     browser.size(driver, width, height)
                     wide = driver.execute_script("return document.documentElement.scrollWidth - innerWidth")
                     assert wide <= 0, f"{address} at {width} px: {wide} px too wide"
-                    shot(driver, f"{address[1:14].replace('=', '-')}-{'heat-' if 'heat' in address else ''}{scheme}-{width}")
+                    name = "heat" if "heat" in address else "lesson" if "lesson" in address else "bench"
+                    shot(driver, f"{name}-{scheme}-{width}")
 
     def other_colours_and_no_motion(driver):
         """Forced colours keep borders, outlines and focus; with reduced motion, as without, nothing moves by itself."""
@@ -106,16 +109,19 @@ def laws(page, folder):
         driver.execute_script("document.getElementById('n').focus()")
         facts = driver.execute_script("""
             const style = (css) => getComputedStyle(document.querySelector(css));
-            return {forced: matchMedia('(forced-colors: active)').matches, still: matchMedia('(prefers-reduced-motion: reduce)').matches,
+            const line = (css) => style(css).borderBottomColor;
+            return {forced: matchMedia('(forced-colors: active)').matches,
+                still: matchMedia('(prefers-reduced-motion: reduce)').matches,
                 border: style('.over .region').borderTopStyle, button: style('button').borderTopStyle,
                 moving: document.getAnimations().length, focus: style('#n').outlineStyle,
-                chosen: style('#tabs a[aria-current]').borderBottomColor !== style('#tabs a:not([aria-current])').borderBottomColor}""")
+                chosen: line('#tabs a[aria-current]') !== line('#tabs a:not([aria-current])')}""")
         assert facts == {"forced": True, "still": True, "border": "solid", "button": "solid", "moving": 0,
                          "focus": "solid", "chosen": True}, facts
         nothing_found(driver, "forced colours")
-        before = driver.execute_script("return document.querySelector('canvas').toDataURL()")
+        picture = "return document.querySelector('canvas').toDataURL()"
+        before = driver.execute_script(picture)
         driver.execute_async_script("setTimeout(arguments[0], 300)")
-        assert before == driver.execute_script("return document.querySelector('canvas').toDataURL()"), "noise moves unasked"
+        assert before == driver.execute_script(picture), "noise moves unasked"
 
     def tab_order(driver):
         """The tabulator goes through everything that can be used, in the order in which it is read, and leaves no one
@@ -124,13 +130,15 @@ def laws(page, folder):
         driver.execute_script("document.getElementById('controls').open = true")
         order = driver.execute_script("""
             const can = 'a[href], button, input, select, summary, [tabindex="0"]';
-            return [...document.querySelectorAll(can)].filter((e) => e.checkVisibility()).map((e, k) => (e.dataset.order = k))""")
+            const all = [...document.querySelectorAll(can)].filter((e) => e.checkVisibility());
+            return all.map((e, k) => (e.dataset.order = k))""")
         driver.execute_script("document.activeElement.blur(); window.getSelection().removeAllRanges()")
         seen = []
         for _ in order:
             browser.keys(driver, Keys.TAB)
             at, outline, name = driver.execute_script(
-                "const e = document.activeElement; return [e.dataset.order, getComputedStyle(e).outlineStyle, e.outerHTML.slice(0, 120)]")
+                "const e = document.activeElement;"
+                "return [e.dataset.order, getComputedStyle(e).outlineStyle, e.outerHTML.slice(0, 120)]")
             assert outline != "none", f"the focus on {name} is not seen"
             seen.append(int(at) if at is not None else name)
         assert seen == order, f"reached {seen}"
@@ -139,7 +147,8 @@ def laws(page, folder):
         """A region is dragged on a picture or typed: both reach the address, the outline and the meters."""
         browser.open_page(driver, page, small)
         canvas = driver.find_element(By.CSS_SELECTOR, "#pictures canvas")
-        ActionChains(driver).move_to_element_with_offset(canvas, -60, 20).click_and_hold().move_by_offset(90, -40).release().perform()
+        hand = ActionChains(driver).move_to_element_with_offset(canvas, -60, 20)
+        hand.click_and_hold().move_by_offset(90, -40).release().perform()
         browser.wait(driver, f"location.hash.includes('regions.mine.box') && {browser.FINISHED}")
         assert "RMSE of mine" in browser.text(driver, "#pictures")
         driver.execute_script("document.getElementById('controls').open = true")
@@ -164,7 +173,7 @@ def laws(page, folder):
             print("  skipped: no axe-core (npm ci in laws/page)")
         for scheme in ("light", "dark"):
             browser.media(driver, prefers_color_scheme=scheme)
-            for address, until in ((small + "&view=heat&pixel=80,30", browser.FINISHED), ("#lesson=fault", "document.getElementById('measure')"),
+            for address, until in ((small + "&view=heat&pixel=80,30", browser.FINISHED), ("#lesson=fault", ASKED),
                                    ("#lesson=chi-square&answer=chi-square:wrong", "document.getElementById('reveal')")):
                 browser.open_page(driver, page, address, until=until)
                 nothing_found(driver, f"{address}, {scheme}")

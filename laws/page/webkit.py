@@ -5,6 +5,7 @@ import sys
 import time
 
 from selenium import webdriver
+from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.webkitgtk.options import Options
 
@@ -18,8 +19,11 @@ driver = webdriver.WebKitGTK(executable_path="/usr/bin/WebKitWebDriver", options
 def wait(script, seconds=120):
     end = time.monotonic() + seconds
     while time.monotonic() < end:
-        if value := driver.execute_script("return " + script):
-            return value
+        try:
+            if value := driver.execute_script("return " + script):
+                return value
+        except WebDriverException:  # asked while one page makes way for the next
+            pass
         time.sleep(0.2)
     raise SystemExit(f"after {seconds} s still not: {script}; "
                      f"{driver.execute_script('return document.body.innerText.slice(0, 800)')}")

@@ -40,6 +40,13 @@ std::string cause_of(const std::string& fault) {
     return at == causes.end() ? "" : at->second;
 }
 
+std::vector<PlantedFault> planted_faults(bool full) {
+    std::vector<PlantedFault> out = arm_faults(full);
+    for (PlantedFault& fault : out) fault.cause = cause_of(fault.name);
+    for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
+    return out;
+}
+
 Explained explained(const PlantedFault& fault, const Judgement& judgement) {
     Explained out{fault.name, fault.cause, "none", false};
     std::set<std::string> said;

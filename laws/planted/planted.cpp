@@ -296,11 +296,4 @@ std::vector<PlantedFault> arm_faults(bool full) {
     return out;
 }
 
-std::vector<PlantedFault> planted_faults(bool full) {
-    std::vector<PlantedFault> out = arm_faults(full);
-    for (PlantedFault& fault : out) fault.cause = cause_of(fault.name);
-    for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
-    return out;
-}
-
 }  // namespace crescent
