@@ -146,9 +146,11 @@ class Page implements Viewer {
     if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
   }
 
+  tailed(): void { this.model.shown.forEach((s, k) => this.pictures[k]?.meters(s)); }
+
   measured(): void {
     const { shown } = this.model;
-    shown.forEach((s, k) => this.pictures[k]?.meters(s));
+    this.tailed();
     if (this.model.referenceDone && this.state.view !== "photograph") this.repaint();
     const region = this.model.described.regions[0]?.name;
     const lines = shown.filter((s) => s.rungs.length > 0).map((s) => {

@@ -31,6 +31,7 @@ export interface Viewer {
   opened(described: Described, shown: Shown[]): void;
   painted(index: number, box: Box): void; // index -1: the reference
   measured(): void;
+  tailed(): void;
   failed(error: DoorError): void;
 }
 
@@ -176,7 +177,7 @@ export class Model {
         jobs.push(this.ask<Tail>("tail", { arm: s.name, box: region.box }).then((tail) => {
           if (era !== this.era) return;
           s.tails[region.name] = tail;
-          this.viewer.measured();
+          this.viewer.tailed();
         }));
     await Promise.all(jobs);
   }

@@ -88,7 +88,8 @@ def faults_are_sentences(driver):
 
 
 def shown(driver):
-    return driver.execute_script("return [...document.querySelectorAll('[data-hash]')].map((e) => e.textContent).sort()")
+    return driver.execute_script(
+        "return [...document.querySelectorAll('[data-hash]')].map((e) => e.textContent).sort()")
 
 
 def the_link_back(driver):
