@@ -141,8 +141,8 @@ def main(argv: list[str] | None = None) -> int:
         "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; "
         "*no "
         "picture changes*: sample and pdf differ where eval is 0; *corner*: at random numbers that hardly ever come; "
-        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; *open*: "
-        "not decided.",
+        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; "
+        "*open*: not decided.",
         *_shipped_text(args.only),
         *(_faults_text(faults_in(args.faults)) if Path(args.faults).is_dir() else []),
     ]

@@ -1,0 +1,106 @@
+"""How fast `crescent.check` asks NumPy callables: draws a second through the door alone, and in a whole judgement.
+
+    PYTHONPATH=build/python python bench/python_draws.py [--repeats 20] [--write docs/python.md]
+
+Processor time is that of the whole process over all its threads, the best of the repeats. With --write the table is put between the lines of the file that say "measured by python_draws.py" and
+"end of python_draws.py".
+"""
+import argparse
+import re
+import time
+
+import numpy as np
+
+import crescent
+from crescent import _check, _crescent
+
+BATCHES = 64  # of 32768
+
+
+def sample(wo, u):
+    r, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
+    z = np.sqrt(1 - u[:, 0])
+    return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), z / np.pi
+
+
+def pdf(wo, wi):
+    return np.maximum(wi[:, 2], 0) / np.pi
+
+
+def f(wo, wi):
+    return np.where(wi[:, 2] > 0, 1 / np.pi, 0)
+
+
+def best(repeats, work):
+    """The least processor time of `work()`, in s."""
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        work()
+        times.append(time.process_time() - start)
+    return min(times)
+
+
+def numpy_alone():
+    rng = np.random.default_rng(1)
+    wo = np.tile([0.0, 0.0, 1.0], (32768, 1))
+    u = np.asfortranarray(rng.random((32768, 2)))
+    return lambda: [sample(wo, u) for _ in range(BATCHES)]
+
+
+def asked():
+    """Rows that one judgement asks of sample, pdf and f."""
+    rows = {"sample": 0, "pdf": 0, "f": 0}
+
+    def counted(call):
+        def count(*at):
+            rows[call.__name__] += len(at[-1])
+            return call(*at)
+
+        return count
+
+    crescent.check(*map(counted, (sample, pdf, f)), name="cosine")
+    return rows
+
+
+def table(repeats):
+    trials = _check._trials(crescent.Sampler(sample, pdf, f), False, [])
+    rows = asked()
+    lines = ["| | draws | million draws a second of processor time | time of `sample` itself |", "|---|---|---|---|"]
+    alone = None  # s of processor time a draw
+    for what, draws, work in (
+        ("`sample` by itself, in NumPy", BATCHES * 32768, numpy_alone()),
+        ("drawn by the bench and dropped", BATCHES * 32768, lambda: _crescent.draw(trials, BATCHES)),
+        ("a whole judgement, nine verdicts at 8 w_o", rows["sample"], lambda: crescent.check(sample, pdf, f)),
+    ):
+        cpu = best(repeats, work)
+        alone = alone or cpu / draws
+        lines.append(f"| {what} | {draws:,} | {draws / cpu / 1e6:.1f} | {cpu / draws / alone:.1f} x |")
+    return "\n".join(lines) + (
+        f"\n\nA judgement asks for {rows['pdf']:,} rows of pdf and {rows['f']:,} of f beside its draws, "
+        f"{sum(rows.values()) / best(repeats, lambda: crescent.check(sample, pdf, f)) / 1e6:.1f} million rows in all "
+        "a second of processor time."
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--repeats", type=int, default=20)
+    parser.add_argument("--write", metavar="FILE")
+    args = parser.parse_args()
+    text = table(args.repeats)
+    print(text)
+    if not args.write:
+        return
+    with open(args.write, encoding="utf-8") as file:
+        page = file.read()
+    lines = r"(<!-- measured by python_draws.py -->\n).*?(<!-- end of python_draws.py -->)"
+    page, found = re.subn(lines, lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
+    if not found:
+        raise SystemExit(f"{args.write}: no lines 'measured by python_draws.py' and 'end of python_draws.py'")
+    with open(args.write, "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+if __name__ == "__main__":
+    main()
