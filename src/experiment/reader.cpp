@@ -27,7 +27,7 @@ std::string join(const std::string& path, std::string_view name) {
     return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
 }
 
-std::string where(const std::string& path) { return path.empty() ? "the experiment" : "[" + path + "]"; }
+std::string where(const std::string& path) { return path.empty() ? "the file" : "[" + path + "]"; }
 
 class TreeReader {
 public:
