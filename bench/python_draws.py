@@ -2,8 +2,8 @@
 
     PYTHONPATH=build/python python bench/python_draws.py [--repeats 20] [--write docs/python.md]
 
-Processor time is that of the whole process over all its threads, the best of the repeats. With --write the table is put between the lines of the file that say "measured by python_draws.py" and
-"end of python_draws.py".
+Processor time is that of the whole process over all its threads, the best of the repeats. With --write the table is put
+between the lines of the file that say "measured by python_draws.py" and "end of python_draws.py".
 """
 import argparse
 import re
