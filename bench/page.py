@@ -73,7 +73,7 @@ def section(rows, facts, openings, slider, command):
     table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |"
                       for r in rows)
     return f"""{TITLE}
-Msamples/s of one thread, the best of three turns: the page's module beside the program's SSE4 code.
+Msamples/s of one thread, the best of five turns: the page's module beside the program's SSE4 code.
 
 | arm | page | program, SSE4 | page / program |
 |---|---|---|---|

@@ -26,7 +26,8 @@ class Page implements Viewer {
   private top = 1;
   private timer = 0;
   private openedAt = 0;
-  private movedAt = 0; // when a hand changed what is not yet painted
+  private movedAt = 0; // when a hand changed what is not yet open
+  private awaited = 0; // and what is not yet painted
   private tab = "bench";
   private known: Asker | undefined;
   private readonly speaker = new Speaker(byId("status"));
@@ -88,6 +89,7 @@ class Page implements Viewer {
   }
 
   opened(d: Described, shown: Shown[]): void {
+    if (this.movedAt) (this.awaited = this.movedAt), (this.movedAt = 0);
     delete document.documentElement.dataset["took"];
     history.replaceState(null, "", write(this.state));
     byId("command").textContent = command(this.state, this.source);
@@ -142,7 +144,7 @@ class Page implements Viewer {
     const picture = index < 0 ? this.pictures.at(-1) : this.pictures[index];
     const told = document.documentElement.dataset;
     told["first"] ??= String(Math.round(performance.now()));
-    if (this.movedAt && index >= 0) (told["moved"] = String(Math.round(performance.now() - this.movedAt))), (this.movedAt = 0);
+    if (this.awaited && index >= 0) (told["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
     if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
   }
 

@@ -170,16 +170,17 @@ export class Model {
     if (this.shown[0]!.n > 0) this.measure();
   }
 
+  /** Once the hand rests, and one after another: each takes a worker for a while, and a new setting is to find one free. */
   private async tails(era: number): Promise<void> {
-    const jobs: Promise<void>[] = [];
+    await new Promise((done) => setTimeout(done, 300));
     for (const s of this.shown)
-      for (const region of this.described.regions)
-        jobs.push(this.ask<Tail>("tail", { arm: s.name, box: region.box }).then((tail) => {
-          if (era !== this.era) return;
-          s.tails[region.name] = tail;
-          this.viewer.tailed();
-        }));
-    await Promise.all(jobs);
+      for (const region of this.described.regions) {
+        if (era !== this.era) return;
+        const tail = await this.ask<Tail>("tail", { arm: s.name, box: region.box });
+        if (era !== this.era) return;
+        s.tails[region.name] = tail;
+        this.viewer.tailed();
+      }
   }
 
   /** A question to any worker, of another experiment where one is given: that one is answered whatever is opened meanwhile. */
