@@ -49,7 +49,8 @@ NOTES = [
         "x is "
         "large, and f with it, which loses that much energy; weights are not touched, since both share the error. "
         "Moving the "
-        "term out of the half mends it. The script integrates the density of one fibre lobe, which should come to 1.",
+        "term out of the half mends it; `LogI0` of pbrt-v4 has the same. The script integrates the density of one "
+        "fibre lobe, which should come to 1.",
         _FIBER,
     ),
     Note(
