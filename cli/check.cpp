@@ -180,8 +180,8 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
         v.trial = "start";
         v.name = name;
         v.state = j.state;
-        v.say = name == "valid" ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
-                                : "It could not be asked: the sampler never came to be judged.";
+        v.say = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
+                                         : "It could not be asked: the sampler never came to be judged.";
         v.expected = false;
         j.verdicts.push_back(v);
     }

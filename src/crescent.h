@@ -71,5 +71,6 @@
 #include "verdicts/print.h"
 #include "verdicts/samples.h"
 #include "verdicts/user.h"
+#include "verdicts/verdict_kind.h"
 #include "verdicts/waivers.h"
 #include "run/version.h"

@@ -12,6 +12,7 @@ jsonschema.Draft202012Validator.check_schema(schema)
 for path in sys.argv[2:]: jsonschema.Draft202012Validator(schema).validate(json.load(open(path)))
 PY
 }
+verdicts() { "$CRESCENT" list verdicts | awk '{ print $1 }'; }
 check() { "$CRESCENT" check --quiet "$@"; }
 
 expect 1 check phong --set s=32 --json a.json --junit a.xml --html a.html --timing a.timing
@@ -19,6 +20,9 @@ expect 1 check phong --set s=32 --json b.json
 cmp a.json b.json || die "equal calls differ: $(diff a.json b.json | head -n 5)"
 ! grep -q "nanoseconds" a.json && grep -q "nanoseconds" a.timing || die "times are not where they belong"
 fits a.json
+verdicts >names
+sed -n 's/^   "name": "\(.*\)",$/\1/p' a.json | head -n "$(wc -l <names)" | cmp -s - names ||
+    die "the verdicts of a case are not those of the list: $(cat names)"
 python3 - <<'PY' || die "JUnit or HTML: $(head -c 600 a.xml)"
 import re, xml.etree.ElementTree as x
 root = x.parse("a.xml").getroot()

@@ -10,6 +10,7 @@
 #include "verdicts/judge.h"
 #include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
@@ -133,5 +134,8 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
     }
     return out;
 }
+
+constinit const VerdictKind kinds::efficiency = {
+    .question = "what does a sample cost?", .compare = judge_efficiency, .may_stay_open = true};
 
 }  // namespace crescent::inline verdicts

@@ -8,7 +8,7 @@
 #include "math/distributions.h"
 #include "simd/random.h"
 #include "verdicts/list.h"
-#include "verdicts/ordered.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
@@ -20,10 +20,9 @@ bool is_right(const Trial& t) {
 
 /// The first verdict that is wrong of those that depend on the draws at hand.
 std::optional<Verdict> accusation(TrialContext& work) {
-    for (auto* verdict : {+[](TrialContext& w) { return judge_normalised(w); },
-             +[](TrialContext& w) { return judge_density(w); }, +[](TrialContext& w) { return judge_identity(w); },
-             +[](TrialContext& w) { return judge_physics(w); }, +[](TrialContext& w) { return judge_mean(w); }})
-        if (Verdict v = verdict(work); v.state == State::wrong) return v;
+    for (const VerdictKind* kind : verdict_kinds)
+        if (kind->asked_of_other_seeds)
+            if (Verdict v = kind->judge(work); v.state == State::wrong) return v;
     return {};
 }
 

@@ -87,7 +87,7 @@ std::string expected_html(const Verdict& v) {
     return fmt::format(" <em>{}: {}.</em>", v.waived ? "Waived" : "As the list expects", escape(v.why_expected));
 }
 
-/// One line a finding, then every case with its nine verdicts.
+/// One line a finding, then every case with its verdicts.
 std::string overview(const Judgement& j) {
     std::string out;
     for (const Finding& f : findings_of(j))

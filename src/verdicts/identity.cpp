@@ -12,6 +12,7 @@
 #include "verdicts/delta.h"
 #include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
@@ -185,7 +186,9 @@ double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, in
     return 2 * largest_change(values, f);
 }
 
-Verdict judge_identity(const TrialContext& work) {
+namespace {
+
+Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("identity", State::right, "");
     double one_to_one = 1;
     int choosers = 0;
@@ -282,5 +285,10 @@ Verdict judge_identity(const TrialContext& work) {
     v.say += ".";
     return v;
 }
+
+}  // namespace
+
+constinit const VerdictKind kinds::identity = {
+    .question = "does the sampler agree with itself?", .judge = judge, .asked_of_other_seeds = true};
 
 }  // namespace crescent::inline verdicts

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <numeric>
 
-#include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t few_draws = 256;
 
-/// The middle first, then the grazing one: between them they meet most faults. Yardsticks last.
+/// The middle first, then the grazing one: between them they meet most faults. Arms to rank against last.
 std::vector<std::size_t> order_of(std::span<const Trial> trials) {
     std::vector<std::size_t> order(trials.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -32,8 +32,8 @@ std::vector<std::size_t> order_of(std::span<const Trial> trials) {
 Outcome look(const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally) {
     Outcome out;
     try {
-        const TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(index));
-        out.verdicts.push_back(judge_valid(work));
+        TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        out.verdicts.push_back(kinds::valid.judge(work));
     } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
 }

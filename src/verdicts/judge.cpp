@@ -7,8 +7,8 @@
 #include "base/stopwatch.h"
 #include "verdicts/asked_once.h"
 #include "verdicts/diagnosis.h"
-#include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
@@ -24,20 +24,21 @@ Verdict skipped(const Trial& trial, std::string_view name, std::string say) {
     return v;
 }
 
+/// Of the verdicts on one trial, those from the second on.
 void skip_rest(const Trial& trial, Outcome& out, const std::string& why) {
-    while (out.verdicts.size() + 1 < verdict_names.size())
-        out.verdicts.push_back(skipped(trial, verdict_names[out.verdicts.size()], why));
+    for (std::size_t k = 1; k < verdict_kinds.size(); ++k)
+        if (verdict_kinds[k]->judge) out.verdicts.push_back(skipped(trial, verdict_names[k], why));
 }
 
-void expect(const Trial& trial, Verdict& v) {
-    const bool unmet = v.evidence.contains("unmet_share");
-    const bool may_doubt = unmet || v.name == "tail" || v.name == "mean" || v.name == "efficiency";
+/// Whether it is what is expected of a right sampler, or of a built-in arm here.
+void expect(const Trial& trial, const VerdictKind& kind, Verdict& v) {
+    const bool may_stay_open = kind.may_stay_open || v.evidence.contains("unmet_share");
     const bool must_be_wrong = trial.theory.wrong && *trial.theory.wrong == v.name;
     const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= 0.5;
     if (must_be_wrong) {
         v.expected = v.state == State::wrong;
         v.why_expected = trial.theory.why;
-    } else if (infinite && (v.name == "tail" || v.name == "mean")) {
+    } else if (infinite && kind.needs_variance) {
         v.expected = v.state == State::inconclusive;
         v.why_expected = trial.theory.why;
     } else if (!trial.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
@@ -45,45 +46,41 @@ void expect(const Trial& trial, Verdict& v) {
         v.why_expected = trial.theory.underflows;
     } else {
         v.expected =
-            v.state == State::right || v.state == State::skipped || (may_doubt && v.state == State::inconclusive);
+            v.state == State::right || v.state == State::skipped || (may_stay_open && v.state == State::inconclusive);
     }
 }
 
 /// Another arm on a program's own BRDF: each draw costs a question, and a variance to 3 % ranks well enough.
-TestSettings for_yardstick(const Trial& trial, TestSettings rigour) {
+TestSettings settings_of_baseline(const Trial& trial, TestSettings rigour) {
     if (trial.subject->serial()) rigour.draws = std::min<std::uint64_t>(rigour.draws, 4096);
     return rigour;
 }
 
 /// f goes on under the surface and was not followed there.
-void own_up_to_one_half(const TrialContext& work, Verdict& v) {
-    if (!work.below().transmits || work.whole() || v.state != State::right || (v.name != "physics" && v.name != "mean"))
-        return;
+void limit_to_upper_half(const TrialContext& work, const VerdictKind& kind, Verdict& v) {
+    if (!work.below().transmits || work.whole() || v.state != State::right || !kind.of_all_light) return;
     v.state = State::inconclusive;
     v.settle = "An f that returns 0 under the surface, or a sampler that draws there.";
     v.say = "f transmits, or does not return 0 under the surface; this is of the upper half only. " + v.say;
 }
 
 /// One verdict with the time that it took.
-template <class Judge> void judge_next(TrialContext& work, Outcome& out, const ProgressMonitor& watch, Judge&& judge) {
+void judge_next(TrialContext& work, Outcome& out, const VerdictKind& kind, const ProgressMonitor& watch) {
     watch.check();
     const Stopwatch start;
-    Verdict v = judge(work);
-    own_up_to_one_half(work, v);
+    Verdict v = kind.judge(work);
+    limit_to_upper_half(work, kind, v);
     v.seconds = start.seconds();
     out.verdicts.push_back(std::move(v));
 }
 
 void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const ProgressMonitor& watch) {
-    judge_next(work, out, watch, judge_valid);
+    judge_next(work, out, *verdict_kinds[0], watch);
     if (out.verdicts[0].state == State::wrong && !out.verdicts[0].evidence.contains("usable"))
         return skip_rest(work.trial, out, "The sampler is not valid here.");
     work.measure_density();
-    for (auto* verdict : {+[](TrialContext& w) { return judge_support(w); },
-             +[](TrialContext& w) { return judge_normalised(w); }, +[](TrialContext& w) { return judge_density(w); },
-             +[](TrialContext& w) { return judge_identity(w); }, +[](TrialContext& w) { return judge_physics(w); },
-             +[](TrialContext& w) { return judge_tail(w); }, +[](TrialContext& w) { return judge_mean(w); }})
-        judge_next(work, out, watch, verdict);
+    for (const VerdictKind* kind : std::span(verdict_kinds).subspan(1))
+        if (kind->judge) judge_next(work, out, *kind, watch);
     diagnose(work, out.verdicts);
     if (work.subject.has_f() && work.weighs()) out.efficiency = measure_efficiency(work, index);
 }
@@ -105,24 +102,47 @@ void settle(Judgement& j) {
 
 namespace {
 
+using Compared = std::vector<std::vector<Verdict>>;  // by verdict, none of those that are of one trial; by trial
+
 /// A program that broke off while it was asked for an arm to rank against: said where it is ranked, at the same w_o.
-void blame_yardsticks(std::span<const Trial> trials, std::span<const Outcome> outcomes, std::vector<Verdict>& ranks) {
+void blame_baselines(std::span<const Trial> trials, std::span<const Outcome> outcomes, Compared& compared) {
     std::size_t judged = 0;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const std::optional<Cut>& cut = outcomes[i].cut;
         if (!trials[i].baseline) judged = i;
         else if (cut && cut->state == State::error && !cut->evidence.empty())
-            ranks[judged].state = State::error, ranks[judged].say = cut->first;
+            for (std::vector<Verdict>& of_kind : compared)
+                if (!of_kind.empty()) of_kind[judged].state = State::error, of_kind[judged].say = cut->first;
     }
 }
 
-/// Which verdicts of a trial there was no time for.
-void note_left_out(const Trial& trial, const Outcome& out, Judgement& j) {
-    if (!out.cut || out.cut->state == State::error) return;
-    LeftOut left{trial.arm, trial.text(), {}, out.cut->first};
-    for (std::size_t k = out.verdicts.size(); k < verdict_names.size(); ++k)
-        left.verdicts.emplace_back(verdict_names[k]);
-    j.left_out.push_back(std::move(left));
+Verdict missing(const Trial& trial, std::string_view name, const Cut& cut, bool first) {
+    Verdict v = skipped(trial, name, first ? cut.first : cut.rest);
+    v.state = cut.state;
+    if (v.state == State::inconclusive) v.settle = "More time (--patience), or a program that answers faster.";
+    if (first) v.evidence = cut.evidence;
+    return v;
+}
+
+/// Every verdict of the trial at `index`, in the order of the list. Where it ended early, those that are missing say
+/// why, and what there was no time for is noted.
+void complete(const Trial& trial, Outcome& out, Compared& compared, std::size_t index, Judgement& j) {
+    std::vector<Verdict> given = std::move(out.verdicts);
+    LeftOut left{trial.arm, trial.text(), {}, out.cut ? out.cut->first : ""};
+    out.verdicts.clear();
+    auto next = given.begin();
+    for (std::size_t k = 0; k < verdict_kinds.size(); ++k) {
+        if (verdict_kinds[k]->judge && next != given.end()) {
+            out.verdicts.push_back(std::move(*next++));
+        } else if (!out.cut) {
+            out.verdicts.push_back(std::move(compared[k][index]));
+        } else {
+            out.verdicts.push_back(missing(trial, verdict_names[k], *out.cut, left.verdicts.empty()));
+            left.verdicts.emplace_back(verdict_names[k]);
+        }
+        expect(trial, *verdict_kinds[k], out.verdicts.back());
+    }
+    if (out.cut && out.cut->state != State::error) j.left_out.push_back(std::move(left));
 }
 
 }  // namespace
@@ -135,17 +155,6 @@ Cut cut_by(const SubjectFault& fault) {
         State::error, fmt::format("The sampler broke off: {}.", fault.what()), rest, {{"first_fault", fault.what()}}};
 }
 
-void fill_up(const Trial& trial, Outcome& out) {
-    if (!out.cut) return;
-    for (bool first = true; out.verdicts.size() < verdict_names.size(); first = false) {
-        Verdict v = skipped(trial, verdict_names[out.verdicts.size()], first ? out.cut->first : out.cut->rest);
-        v.state = out.cut->state;
-        if (v.state == State::inconclusive) v.settle = "More time (--patience), or a program that answers faster.";
-        if (first) v.evidence = out.cut->evidence;
-        out.verdicts.push_back(std::move(v));
-    }
-}
-
 Outcome judge_one(
     const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
     Outcome out;
@@ -154,7 +163,8 @@ Outcome judge_one(
     try {
         if (trial.baseline) {
             out.efficiency = measure_efficiency(
-                TrialContext(kept, for_yardstick(trial, rigour), tally, static_cast<std::uint32_t>(index)), index);
+                TrialContext(kept, settings_of_baseline(trial, rigour), tally, static_cast<std::uint32_t>(index)),
+                index);
             return out;
         }
         TrialContext work(kept, rigour, tally, static_cast<std::uint32_t>(index));
@@ -176,55 +186,65 @@ std::string_view word(State state) {
     return "";
 }
 
-/// Per technique four p-values of the density and one of the share that draws nothing; then the furnace and the mean.
 std::uint64_t count_tests(std::span<const Trial> trials) {
     std::uint64_t tests = 0;
     for (const Trial& t : trials)
-        if (!t.baseline)
-            tests += 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->has_f() ? 2 : 0) +
-                (t.subject->traits().delta ? 1 : 0);
+        for (const VerdictKind* kind : verdict_kinds)
+            if (!t.baseline && kind->tests) tests += kind->tests(t);
     return tests;
 }
+
+namespace {
+
+std::vector<Outcome> judge_all(
+    std::span<const Trial> trials, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
+    if (std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); }))
+        return judge_in_turn(trials, rigour, tally, watch);
+    std::vector<Outcome> outcomes(trials.size());
+    parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+        watch.check();
+        outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
+        watch.advance(1);
+    });
+    return outcomes;
+}
+
+/// Trials against one another; the call does nothing else while it takes times.
+Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcomes, const TestSettings& rigour,
+    const ProgressMonitor& watch) {
+    std::vector<Efficiency> efficiencies;
+    for (const Outcome& o : outcomes)
+        if (o.efficiency) efficiencies.push_back(*o.efficiency);
+    measure_costs(trials, rigour, efficiencies, watch);
+    Compared out(verdict_kinds.size());
+    for (std::size_t k = 0; k < verdict_kinds.size(); ++k)
+        if (verdict_kinds[k]->compare) out[k] = verdict_kinds[k]->compare(trials, efficiencies);
+    blame_baselines(trials, outcomes, out);
+    return out;
+}
+
+}  // namespace
 
 Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& watch) {
     TestSettings rigour = given;
     rigour.share(count_tests(trials));
     TestCounts tally;
     watch.begin("verdicts", static_cast<double>(trials.size()));
-    const bool serial = std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); });
-    std::vector<Outcome> outcomes(trials.size());
-    if (serial) {
-        outcomes = judge_in_turn(trials, rigour, tally, watch);
-    } else {
-        parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
-            watch.check();
-            outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
-            watch.advance(1);
-        });
-    }
+    std::vector<Outcome> outcomes = judge_all(trials, rigour, tally, watch);
     Judgement out;
     out.alpha = rigour.alpha;
     out.tests = tally.tests;
     out.screened = tally.screened;
     out.confirmed = tally.confirmed;
-    std::vector<Efficiency> efficiencies;
-    for (const Outcome& o : outcomes)
-        if (o.efficiency) efficiencies.push_back(*o.efficiency);
-    measure_costs(trials, rigour, efficiencies, watch);  // the call does nothing else by now
-    std::vector<Verdict> ranks = judge_efficiency(trials, efficiencies);
-    blame_yardsticks(trials, outcomes, ranks);
+    Compared compared = compare(trials, outcomes, rigour, watch);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;
-        note_left_out(trials[i], outcomes[i], out);
-        if (!outcomes[i].cut) outcomes[i].verdicts.push_back(std::move(ranks[i]));
-        fill_up(trials[i], outcomes[i]);
+        complete(trials[i], outcomes[i], compared, i, out);
         out.questions = std::max(out.questions, trials[i].subject->spending().answers);
-        for (Verdict& v : outcomes[i].verdicts) {
-            expect(trials[i], v);
-            out.verdicts.push_back(std::move(v));
-        }
-        std::move(outcomes[i].maps.begin(), outcomes[i].maps.end(), std::back_inserter(out.maps));
-        std::move(outcomes[i].pictures.begin(), outcomes[i].pictures.end(), std::back_inserter(out.weights));
+        const auto append = [](auto& to, auto& from) { std::ranges::move(from, std::back_inserter(to)); };
+        append(out.verdicts, outcomes[i].verdicts);
+        append(out.maps, outcomes[i].maps);
+        append(out.weights, outcomes[i].pictures);
     }
     settle(out);
     return out;

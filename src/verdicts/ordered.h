@@ -1,20 +1,11 @@
-// The verdicts in their order, each from one trial's work; a verdict that builds on one that failed is skipped.
+// What the verdicts share: measurements on one trial that more than one of them reads, or that have a file of their
+// own.
 #pragma once
 
 #include "stats/tail.h"
 #include "verdicts/trial_context.h"
 
 namespace crescent::inline verdicts {
-
-/// The verdicts in the order in which they are given: each stands on those before it.
-Verdict judge_valid(const TrialContext& work);
-Verdict judge_support(const TrialContext& work);
-Verdict judge_normalised(const TrialContext& work);
-Verdict judge_density(TrialContext& work);
-Verdict judge_identity(const TrialContext& work);
-Verdict judge_physics(const TrialContext& work);
-Verdict judge_tail(TrialContext& work);
-Verdict judge_mean(const TrialContext& work);
 
 /// What is wrong with the first of these draws that cannot be used, "" where all can.
 std::string first_fault(const TrialContext& work, int technique, const SampleBatch& b);
@@ -27,6 +18,9 @@ struct CornerFaults {
 /// What comes back at the corners of u.
 CornerFaults corner_faults(const TrialContext& work, int technique);
 
+inline constexpr const char* no_weights =
+    "There is neither a pdf nor a weight with the draws, hence nothing to weigh them by.";
+
 struct Spread {
     double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
 };
@@ -37,6 +31,9 @@ Spread spread(std::span<const double> x);
 double johnson_t(const Spread& s, double expected);
 /// Of the largest of these weights.
 std::optional<Tail> tail_of(std::span<const double> x);
+/// A tail with k >= 1/2 has a largest weight of the order of sqrt(n) means; one of a few means among thousands is
+/// bounded, whatever a fit to the few weights that stand out may say.
+bool is_bounded(const Spread& s);
 /// k-hat surely below 1/2 and theory does not say otherwise.
 bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const ExpectedBehaviour& theory);
 /// Two-sided p-value of the mean, the quadrature's own error granted, and the two-stage test. Where |skew| / sqrt(n) >

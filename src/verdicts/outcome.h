@@ -22,7 +22,7 @@ struct Outcome {
     std::optional<Cut> cut;
 };
 
-/// All verdicts of one trial but efficiency, which needs the other trials.
+/// All verdicts of one trial but those that hold it against other trials.
 Outcome judge_one(
     const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch);
 /// Trials of a program, one after the other: first `valid` at every w_o from a few draws, then all verdicts, the middle
@@ -31,7 +31,5 @@ std::vector<Outcome> judge_in_turn(
     std::span<const Trial> trials, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch);
 /// What a sampler that can no more be asked leaves: an error, or too little time.
 Cut cut_by(const SubjectFault& fault);
-/// Adds the verdicts that are missing, as `cut` has them.
-void fill_up(const Trial& trial, Outcome& out);
 
 }  // namespace crescent::inline verdicts

@@ -7,6 +7,7 @@
 #include "simd/random.h"
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
@@ -129,9 +130,7 @@ std::string missing_across(const TrialContext& work, const Reciprocity& r) {
     return "";
 }
 
-}  // namespace
-
-Verdict judge_physics(const TrialContext& work) {
+Verdict judge(TrialContext& work) {
     if (!work.subject.has_f()) return work.verdict("physics", State::skipped, "There is no BRDF.");
     Verdict v = work.verdict("physics", State::right, "");
     const Reciprocity r = reciprocity(work);
@@ -205,5 +204,13 @@ Verdict judge_physics(const TrialContext& work) {
     }
     return v;
 }
+
+/// The white furnace.
+std::uint64_t tests(const Trial& t) { return t.subject->has_f() ? 1 : 0; }
+
+}  // namespace
+
+constinit const VerdictKind kinds::physics = {
+    .question = "is f a BRDF?", .judge = judge, .tests = tests, .asked_of_other_seeds = true, .of_all_light = true};
 
 }  // namespace crescent::inline verdicts

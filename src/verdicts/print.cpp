@@ -18,7 +18,7 @@ State worst(State a, State b) {
     return rank(b) > rank(a) ? b : a;
 }
 
-/// The worst state of each of the nine verdicts of one arm.
+/// The worst state of each verdict of one arm.
 using Row = std::map<std::string, State>;
 
 std::string rows_of(const Judgement& judgement) {

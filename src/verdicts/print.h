@@ -13,7 +13,7 @@ struct JudgementSource {
     std::string version, commit, command;
 };
 
-/// One line a finding over all w_o, an arm a line with its nine verdicts, then the details; `all`: every verdict.
+/// One line a finding over all w_o, an arm a line with its verdicts, then the details; `all`: every verdict.
 std::string verdict_table(const Judgement& judgement, bool all = false);
 /// docs/check.schema.json. Equal calls give equal bytes: what varies from run to run stands in verdict_timing.
 std::string verdict_json(const Judgement& judgement, const JudgementSource& source = {});

@@ -1,20 +1,18 @@
-// The ordered verdicts and what goes with each: a sentence, and the numbers behind it.
+// Verdicts and what goes with each: a sentence, and the numbers behind it.
 #pragma once
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "verdicts/all.h"
 
 namespace crescent::inline verdicts {
 
 /// error: the sampler could not be asked; it crashed, threw, spoke another language or fell silent.
 enum class State { right, wrong, inconclusive, skipped, error };
 std::string_view word(State state);
-
-inline constexpr std::array<std::string_view, 9> verdict_names = {
-    "valid", "support", "normalised", "density", "identity", "physics", "tail", "mean", "efficiency"};
 
 struct Verdict {
     std::string arm;
@@ -28,7 +26,7 @@ struct Verdict {
     double seconds = 0;
     std::string say_timed;
     nlohmann::ordered_json timing = nlohmann::ordered_json::object();
-    bool expected = true;      // the list expects this state
+    bool expected = true;      // of a right sampler, or of this built-in arm here
     std::string why_expected;  // said where a wrong one is expected
     bool waived = false;       // the caller expects it, so that it does not count
 };
@@ -66,8 +64,8 @@ struct Judgement {
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
     std::uint64_t questions = 0;                           // that a program answered
-    State state = State::right;                            // of everything as drawn
-    bool as_expected = true;                               // of everything beside what the list expects
+    State state = State::right;                            // of everything together
+    bool as_expected = true;                               // whether every verdict is the expected one
 };
 
 }  // namespace crescent::inline verdicts

@@ -1,0 +1,51 @@
+// The list of verdicts is what a judgement holds, in its order, and what the manual says.
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "verdicts/list.h"
+#include "verdicts/verdict_kind.h"
+
+namespace crescent {
+namespace {
+
+TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
+    TestSettings few;
+    few.draws = 512;
+    few.wo = {{45, 0}};
+    ProgressMonitor watch;
+    const Judgement j = judge(trials_of("uniform", {}, false, few.wo), few, watch);
+    ASSERT_EQ(j.verdicts.size() % verdict_names.size(), 0u);
+    for (std::size_t i = 0; i < j.verdicts.size(); ++i)
+        EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);
+}
+
+TEST(VerdictList, EachIsGivenOfOneTrialOrAmongTrials) {
+    ASSERT_NE(verdict_kinds.front()->judge, nullptr) << "the first says whether there is anything to judge";
+    for (std::size_t k = 0; k < verdict_kinds.size(); ++k) {
+        EXPECT_NE(verdict_kinds[k]->judge == nullptr, verdict_kinds[k]->compare == nullptr) << verdict_names[k];
+        EXPECT_FALSE(verdict_kinds[k]->question.empty()) << verdict_names[k];
+    }
+}
+
+/// Every row is of a verdict of the list, in its order; `crescent list verdicts` has those that have no row yet.
+TEST(VerdictList, TheManualTellsItInItsOrderWithItsQuestions) {
+    std::ifstream manual(std::string(CRESCENT_SOURCE_DIR) + "/docs/verdicts.md");
+    std::vector<std::string> rows;
+    bool in_table = false;
+    for (std::string line; std::getline(manual, line);) {
+        if (line == "| verdict | question | how |") in_table = true;
+        else if (in_table && !line.starts_with('|')) break;
+        else if (in_table && !line.starts_with("|---")) rows.push_back(line);
+    }
+    ASSERT_FALSE(rows.empty());
+    auto row = rows.begin();
+    for (std::size_t k = 0; k < verdict_names.size(); ++k) {
+        const std::string begins =
+            "| " + std::string(verdict_names[k]) + " | " + std::string(verdict_kinds[k]->question) + " |";
+        if (row != rows.end() && row->starts_with(begins)) ++row;
+    }
+    EXPECT_EQ(row, rows.end()) << "no verdict of the list comes here with this question: " << *row;
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,68 @@
+// mean: whether the mean of the weights X = f L cos / p is the integral, where the tail allows the question.
+#include <cmath>
+#include <fmt/format.h>
+
+#include "verdicts/delta.h"
+#include "verdicts/ordered.h"
+#include "verdicts/verdict_kind.h"
+
+namespace crescent::inline verdicts {
+
+namespace {
+
+Verdict judge(TrialContext& work) {
+    if (!work.subject.has_f())
+        return work.verdict("mean", State::skipped,
+            work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with."
+                                       : "There is no BRDF, hence no integral to compare the mean with.");
+    if (!work.weighs()) return work.verdict("mean", State::skipped, no_weights);
+    Verdict v = work.verdict("mean", State::right, "");
+    const Integral expected = due_mean(work, false);
+    const std::vector<double>& x = work.first_weights(false);
+    const Spread s = spread(x);
+    v.evidence["mean"] = s.mean;
+    v.evidence["standard_error"] = s.sd / std::sqrt(s.n);
+    v.evidence["quadrature"] = expected.value;
+    v.evidence["quadrature_error"] = expected.error;
+    v.evidence["skewness"] = s.skew;
+    if (!mean_is_testable(s, tail_of(x), work.trial.theory)) {
+        v.state = State::inconclusive;
+        v.settle = "What settles the tail.";
+        v.say = fmt::format(
+            "inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a "
+            "right sampler as readily as a wrong one.",
+            x.size(), s.mean, expected.value);
+        return v;
+    }
+    const double z = johnson_t(s, expected.value), p = mean_p(s, expected);
+    v.evidence["z"] = z;
+    v.evidence["p"] = p;
+    if (has_unmet_tail(work, false)) {
+        v.say = fmt::format("{} samples read {:.6g} where quadrature says {:.6g}. ", x.size(), s.mean, expected.value);
+        tell_unmet(v, work.unmet(false), expected, x.size());
+        return v;
+    }
+    const bool wrong = mean_fails(work, p, expected, false);
+    v.state = wrong ? State::wrong : State::right;
+    v.say = wrong ? fmt::format(
+                        "The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, and again on a fresh "
+                        "seed. The estimator is biased.",
+                        s.mean, expected.value, z)
+                  : fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, p = {:.3g}.",
+                        s.mean, expected.value, z, p);
+    return v;
+}
+
+std::uint64_t tests(const Trial& t) { return t.subject->has_f() ? 1 : 0; }
+
+}  // namespace
+
+constinit const VerdictKind kinds::mean = {.question = "is the mean of X the integral?",
+    .judge = judge,
+    .tests = tests,
+    .asked_of_other_seeds = true,
+    .may_stay_open = true,
+    .needs_variance = true,
+    .of_all_light = true};
+
+}  // namespace crescent::inline verdicts
