@@ -21,6 +21,12 @@ std::vector<Word> words_of_key(const char* section, const char* key) {
     return out;
 }
 
+std::vector<Word> plates() {
+    std::vector<Word> out;
+    for (const PlateInfo& plate : plate_infos) out.push_back({std::string(plate.name), std::string(plate.shows)});
+    return out;
+}
+
 std::vector<Word> arms() {
     std::vector<Word> out;
     for (const ArmInfo& arm : arm_infos()) {
@@ -40,6 +46,13 @@ std::vector<Word> lobes() {
 std::vector<Word> meters() {
     std::vector<Word> out;
     for (const QuantityWord& word : quantity_words()) out.push_back({form_of(word), std::string(word.means)});
+    return out;
+}
+
+std::vector<Word> verdicts() {
+    std::vector<Word> out;
+    for (std::size_t k = 0; k < verdict_names.size(); ++k)
+        out.push_back({std::string(verdict_names[k]), std::string(verdict_kinds[k]->question)});
     return out;
 }
 
@@ -68,8 +81,9 @@ const std::vector<Topic>& topics() {
         {"arms", "samplers on trial", arms},
         {"shapes", "kinds of shape", [] { return words_of_key("shapes", "kind"); }},
         {"brdfs", "lobes beside the Lambert term", lobes},
-        {"plates", "kinds of picture", [] { return words_of_key("plates", "kind"); }},
+        {"plates", "kinds of picture", plates},
         {"meters", "quantities that a check can name", meters},
+        {"verdicts", "what `check` says of a sampler, in this order", verdicts},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
         {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},
     };

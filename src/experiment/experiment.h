@@ -13,6 +13,7 @@
 #include "color/theme.h"
 #include "base/errors.h"
 #include "base/vec.h"
+#include "experiment/plate_kinds.h"
 #include "experiment/published.h"
 #include "scene/scene_data.h"
 
@@ -67,9 +68,6 @@ struct FurnacePlan {
     std::uint64_t n = 0;
     SourceLocation at;
 };
-
-/// The pictures, each drawn by a file of plates/.
-enum class PlateKind { hero, gallery, columns, ladder, exponent, surround, reference, heat, rose, meters };
 
 /// One picture. `runs` names what it shows; crops are boxes in image pixels, or the whole frame.
 struct PlateRun {

@@ -12,31 +12,6 @@ namespace crescent::inline experiment {
 
 namespace {
 
-struct RunCount {
-    PlateKind kind;
-    std::string_view word;
-    std::size_t least, most;
-};
-constexpr RunCount run_counts[] = {
-    {PlateKind::hero, "hero", 1, 1},
-    {PlateKind::gallery, "gallery", 0, 1},
-    {PlateKind::columns, "columns", 1, 4},
-    {PlateKind::ladder, "ladder", 1, 64},
-    {PlateKind::exponent, "exponent", 1, 4},
-    {PlateKind::surround, "surround", 1, 4},
-    {PlateKind::reference, "reference", 0, 1},
-    {PlateKind::heat, "heat", 1, 4},
-    {PlateKind::rose, "rose", 1, 4},
-    {PlateKind::meters, "meters", 0, 64},
-};
-static_assert(
-    [] {
-        for (std::size_t k = 0; k < std::size(run_counts); ++k)
-            if (run_counts[k].kind != PlateKind(k)) return false;
-        return std::size(run_counts) == std::size_t(PlateKind::meters) + 1;
-    }(),
-    "a row for each kind of plate, in the order of the enumeration");
-
 void resolve_s(ParseContext& context) {
     Experiment& e = context.e;
     if (e.exponent && context.is_valid("exponent.shape")) {
@@ -93,13 +68,13 @@ void check_s(ParseContext& context, const std::string& path, const PlateRun& run
 void resolve_plate(ParseContext& context, PlatePlan& plate) {
     const std::string path = "plates." + plate.name;
     if (!context.is_valid(path + ".kind") || !context.is_valid(path + ".runs")) return;
-    const RunCount& count = run_counts[static_cast<std::size_t>(plate.kind)];
-    if (plate.runs.size() < count.least || plate.runs.size() > count.most) {
-        const std::string many = count.least == count.most ? fmt::format("{}", count.least)
-                                                           : fmt::format("{} to {}", count.least, count.most);
+    const PlateInfo& kind = plate_info(plate.kind);
+    if (plate.runs.size() < kind.least || plate.runs.size() > kind.most) {
+        const std::string many =
+            kind.least == kind.most ? fmt::format("{}", kind.least) : fmt::format("{} to {}", kind.least, kind.most);
         context.complain(path + ".runs",
             fmt::format(
-                "{}.runs: expected {} for a plate of kind {}, found {}", path, many, count.word, plate.runs.size()));
+                "{}.runs: expected {} for a plate of kind {}, found {}", path, many, kind.name, plate.runs.size()));
     }
     std::vector<PlateRun> runs;
     for (std::size_t i = 0; i < plate.runs.size(); ++i) {

@@ -190,8 +190,11 @@ Section plates() {
     return {"plates", Multiplicity::named, optional, "The pictures; a plate's name is its file's name.",
         in<&Experiment::plates>,
         {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
-             words_to<PlateKind::meters>({"hero", "gallery", "columns", "ladder", "exponent", "surround", "reference",
-                 "heat", "rose", "meters"})},
+             [] {
+                 std::vector<std::string> words;
+                 for (const PlateInfo& plate : plate_infos) words.emplace_back(plate.name);
+                 return words;
+             }()},
             {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last",
                 "The part that is enlarged.", to<&PlatePlan::crop>},
             {"caption", Type::text, none, "", defaulted, "\"\"", "Stands alone under the picture.",

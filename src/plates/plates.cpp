@@ -1,46 +1,25 @@
 #include "plates/plates.h"
 
-#include <array>
-
 #include "plates/sheet.h"
 
 namespace crescent::plates {
 
 namespace {
 
-struct Row {
-    PlateKind kind;
-    void (*draw)(Sheet&);
-};
-constexpr std::array<Row, 10> kinds{{
-    {PlateKind::hero, draw_still},
-    {PlateKind::gallery, draw_still},
-    {PlateKind::columns, draw_strip},
-    {PlateKind::ladder, draw_strip},
-    {PlateKind::exponent, draw_strip},
-    {PlateKind::surround, draw_strip},
-    {PlateKind::reference, draw_reference},
-    {PlateKind::heat, draw_heat},
-    {PlateKind::rose, draw_rose},
-    {PlateKind::meters, draw_meters},
-}};
-static_assert(kinds.size() == std::size_t(PlateKind::meters) + 1, "a row for each kind of plate");
+/// By PlateKind.
+#define CRESCENT_PAINTER(name, painter, ...) draw_##painter,
+constexpr void (*painters[])(Sheet&) = {CRESCENT_PLATES(CRESCENT_PAINTER)};
+#undef CRESCENT_PAINTER
 
 }  // namespace
 
 void draw(Sheet& sheet) {
-    for (const Row& row : kinds) {
-        if (row.kind == sheet.plan.kind) {
-            row.draw(sheet);
-            finish(sheet);
-            return;
-        }
-    }
-    ensure(false, "every kind of plate has a function that draws it");
+    painters[static_cast<std::size_t>(sheet.plan.kind)](sheet);
+    finish(sheet);
 }
 
 std::string draw_plate_svg(const PlatePlan& plan, const PlateInputs& in) {
-    if (plan.kind != PlateKind::meters) return {};
+    if (plate_info(plan.kind).look != PlateLook::drawing) return {};
     Sheet sheet(plan, in, Medium::svg);
     draw(sheet);
     return sheet.canvas.svg();

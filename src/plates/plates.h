@@ -33,7 +33,7 @@ struct Picture {
 /// Draws one plate. Throws OutputError where the font Inter is missing.
 Picture draw_plate(const PlatePlan& plan, const PlateInputs& in);
 
-/// The same plate as an SVG document, of a kind that is lines and text alone (meters); "" of the others.
+/// The same plate as an SVG document, of a kind that is lines and text alone; "" of the others.
 std::string draw_plate_svg(const PlatePlan& plan, const PlateInputs& in);
 
 /// PNG bytes with the provenance as text chunks.

@@ -61,13 +61,10 @@ void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);
 /// Round steps that cut 0..top into about `about` parts.
 double round_step(double top, int about);
 
-// The plates by kind; the table stands in plates.cpp.
-void draw_still(Sheet& sheet);  // hero, gallery
-void draw_strip(Sheet& sheet);  // columns, ladder, exponent, surround
-void draw_reference(Sheet& sheet);
-void draw_heat(Sheet& sheet);
-void draw_rose(Sheet& sheet);
-void draw_meters(Sheet& sheet);
+// The painters of the list, experiment/plate_kinds.h; several kinds may share one.
+#define CRESCENT_PAINTER(name, painter, ...) void draw_##painter(Sheet& sheet);
+CRESCENT_PLATES(CRESCENT_PAINTER)
+#undef CRESCENT_PAINTER
 
 /// Draws by kind onto a fresh sheet; what draw_plate and the tests of the layout share.
 void draw(Sheet& sheet);
