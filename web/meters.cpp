@@ -35,8 +35,8 @@ CRESCENT_EXPORT(meters)(int index)->void {
     const Slot& s = slot(index);
     const RunMeter run = measure(b.experiment, s.key, s.film, b.reference, b.shapes);
     ordered_json out = {{"key", to_string(s.key)}, {"largest", told(run.largest)}, {"bad", run.bad}};
-    for (const std::string& name : meter_names(b.experiment))
-        if (!(name.starts_with("var.") && s.key.n < 2)) out["meters"][name] = one_meter(run, name);
+    for (const auto& [name, info] : meter_names(b.experiment))
+        if (!(info->from_two_samples && s.key.n < 2)) out["meters"][name] = one_meter(run, name);
     for (const Region& region : b.experiment.regions) {
         const double error = rms(b.reference.error, b.reference.width, region.box);
         const double rmse = run.region(region.name)->rmse;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "experiment/parse_context.h"
+#include "measures/all.h"
 
 namespace crescent::inline experiment {
 
@@ -146,11 +147,18 @@ template <class T> std::string missing(const std::vector<T>& all, const char* wh
         names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
 }
 
+/// Null where there is no such word.
+const QuantityWord* word_of(const ParsedQuantity& q) {
+    const auto& words = quantity_words();
+    const auto known = std::ranges::find(words, q.word, &QuantityWord::word);
+    return known == words.end() ? nullptr : &*known;
+}
+
 std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
     if (std::string why = missing(e.arms, "arm", q.subject); !why.empty()) return why;
     const ArmPlan& arm = *e.find_arm(q.subject);
     if (arm.n.empty()) return "";
-    if (q.n == 0) q.n = q.word == "bad" || q.word == "largest" ? arm.n.back() : e.n_of(arm);
+    if (q.n == 0) q.n = word_of(q)->of_single_samples ? arm.n.back() : e.n_of(arm);
     if (!std::count(arm.n.begin(), arm.n.end(), q.n))
         return fmt::format("the arm '{}' has no rung n = {}: expected one of {}", arm.name, q.n, listed(arm.n, ", "));
     return why_not_run(e, q.subject, q.n, q.s);
@@ -159,26 +167,20 @@ std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
 }  // namespace
 
 const std::vector<QuantityWord>& quantity_words() {
+#define CRESCENT_OF_REGION(name, Type) {#name, true, QuantityOf::run, Type::info.means, Type::info.of_single_samples},
+#define CRESCENT_OF_FRAME(name, Type) {#name, false, QuantityOf::run, Type::info.means, Type::info.of_single_samples},
     static const std::vector<QuantityWord> words = {
-        {"rmse", true, QuantityOf::run, "root mean square error of Y against the reference over a region"},
-        {"var", true, QuantityOf::run, "mean over a region of the variance of the mean of Y"},
-        {"tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
-        {"fireflies", false, QuantityOf::run, "geometry pixels with |Y - Y_ref| > firefly_k Y_ref"},
-        {"horizon_frac", false, QuantityOf::run,
-            "part of the directions drawn at geometry pixels that fall under the horizon"},
-        {"y_mean", false, QuantityOf::run, "mean Y of the whole frame"},
-        {"rmse_frame", false, QuantityOf::run, "root mean square error of Y over the whole frame"},
-        {"largest", false, QuantityOf::run,
-            "largest single sample of the frame; the arm's highest rung unless n is said"},
-        {"bad", false, QuantityOf::run,
-            "samples that are not a number, infinite or negative; the arm's highest rung unless n is said"},
-        {"furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
+        CRESCENT_REGION_METERS(CRESCENT_OF_REGION){
+            "tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
+        CRESCENT_FRAME_METERS(CRESCENT_OF_FRAME){"furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
         {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
         {"shape_pixels", false, QuantityOf::shape, "pixels in which the camera sees a shape"},
         {"region_pixels", false, QuantityOf::region, "pixels of a region's box"},
         {"geometry_pixels", false, QuantityOf::none, "pixels in which the camera sees any shape"},
         {"plate_bytes", false, QuantityOf::plate, "size of a plate's PNG file"},
     };
+#undef CRESCENT_OF_REGION
+#undef CRESCENT_OF_FRAME
     return words;
 }
 
@@ -213,10 +215,8 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     if (q.number) return "";
     if (!q.region.empty())
         if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
-    const auto& words = quantity_words();
-    const auto known =
-        std::find_if(words.begin(), words.end(), [&](const QuantityWord& w) { return w.word == q.word; });
-    switch (known == words.end() ? QuantityOf::none : known->subject) {
+    const QuantityWord* known = word_of(q);
+    switch (known ? known->subject : QuantityOf::none) {
         case QuantityOf::none: return "";
         case QuantityOf::run: return resolve_run(q, e);
         case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.subject);

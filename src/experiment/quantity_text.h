@@ -23,6 +23,7 @@ struct QuantityWord {
     bool of_region;  // word.REGION
     QuantityOf subject;
     std::string_view means;
+    bool of_single_samples = false;  // n is the arm's highest rung unless it is said
 };
 /// Every quantity that a check can name.
 const std::vector<QuantityWord>& quantity_words();

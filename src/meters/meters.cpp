@@ -27,36 +27,56 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
+namespace {
+
+#define CRESCENT_READER(name, Type) Type name;
+struct RegionReaders {
+    CRESCENT_REGION_METERS(CRESCENT_READER)
+};
+struct FrameReaders {
+    CRESCENT_FRAME_METERS(CRESCENT_READER)
+};
+#undef CRESCENT_READER
+
+FilmPixel pixel_at(const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, std::size_t at) {
+    return {static_cast<double>(film.y[at]), static_cast<double>(reference.y[at]), static_cast<double>(film.var[at]),
+        static_cast<double>(film.largest[at]), static_cast<double>(film.horizon[at]), shapes.shape[at] >= 0};
+}
+
+}  // namespace
+
 RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
     const ShapeMap& shapes) {
     RunMeter run;
     run.key = key;
-    run.bad = film.bad;
+    FilmFacts facts{0, film.n, film.directions, film.bad, experiment.firefly_k};
     for (const Region& region : experiment.regions) {
         RegionMeter m;
         m.region = region.name;
         m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
-        m.rmse = rms_difference(film.y, reference.y, film.width, region.box);
-        m.var = film.n < 2
-            ? std::nan("")
-            : box_mean(film.width, region.box, [&](std::size_t at) { return static_cast<double>(film.var[at]); });
+        facts.pixels = static_cast<double>(m.pixels);
+        RegionReaders readers;
+        for (int j = region.box.y0; j <= region.box.y1; ++j)
+            for (int i = region.box.x0; i <= region.box.x1; ++i) {
+                const FilmPixel p = pixel_at(film, reference, shapes, index_of(i, j, film.width));
+#define CRESCENT_ADD(name, Type) readers.name.add(p, facts);
+                CRESCENT_REGION_METERS(CRESCENT_ADD)
+            }
+#define CRESCENT_VALUE(name, Type) m.name = readers.name.value(facts);
+        CRESCENT_REGION_METERS(CRESCENT_VALUE)
+#undef CRESCENT_VALUE
         run.regions.push_back(m);
     }
-    double y = 0, squares = 0, horizon = 0, geometry = 0;
+    facts.pixels = static_cast<double>(film.size());
+    FrameReaders readers;
     for (std::size_t at = 0; at < film.size(); ++at) {
-        const double difference = static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
-        y += static_cast<double>(film.y[at]);
-        squares += difference * difference;
-        run.largest = std::max(run.largest, static_cast<double>(film.largest[at]));
-        if (shapes.shape[at] < 0) continue;
-        ++geometry;
-        horizon += film.horizon[at];
-        if (std::fabs(difference) > experiment.firefly_k * static_cast<double>(reference.y[at])) ++run.fireflies;
+        const FilmPixel p = pixel_at(film, reference, shapes, at);
+        CRESCENT_FRAME_METERS(CRESCENT_ADD)
+#undef CRESCENT_ADD
     }
-    const double pixels = static_cast<double>(film.size());
-    run.y_mean = y / pixels;
-    run.rmse_frame = std::sqrt(squares / pixels);
-    run.horizon_frac = geometry > 0 ? horizon / (geometry * static_cast<double>(film.n * film.directions)) : 0;
+#define CRESCENT_VALUE(name, Type) run.name = readers.name.value(facts);
+    CRESCENT_FRAME_METERS(CRESCENT_VALUE)
+#undef CRESCENT_VALUE
     return run;
 }
 
@@ -92,24 +112,29 @@ ReferenceMeter compare(const ReferenceFilm& q, const ReferenceFilm* note, const 
     return m;
 }
 
-double meter_value(const RunMeter& run, const std::string& meter) {
-    if (meter == "fireflies") return static_cast<double>(run.fireflies);
-    if (meter == "horizon_frac") return run.horizon_frac;
-    if (meter == "y_mean") return run.y_mean;
-    if (meter == "rmse_frame") return run.rmse_frame;
-    const std::size_t dot = meter.find('.');
-    ensure(dot != std::string::npos, "a meter's name");
-    const RegionMeter* region = run.region(meter.substr(dot + 1));
-    ensure(region != nullptr, "a meter of a region that was measured");
-    return meter.starts_with("rmse.") ? region->rmse : region->var;
+std::vector<MeterName> meter_names(const Experiment& experiment) {
+    std::vector<MeterName> names;
+#define CRESCENT_NAME(meter, Type) \
+    for (const Region& region : experiment.regions) names.push_back({#meter "." + region.name, &Type::info});
+    CRESCENT_REGION_METERS(CRESCENT_NAME)
+#undef CRESCENT_NAME
+    const RunMeter none;
+    for_each_meter(none, [&](std::string_view name, const MeterInfo& info, auto) {
+        if (!info.of_single_samples) names.push_back({std::string(name), &info});
+    });
+    return names;
 }
 
-std::vector<std::string> meter_names(const Experiment& experiment) {
-    std::vector<std::string> names;
-    for (const char* kind : {"rmse.", "var."})
-        for (const Region& region : experiment.regions) names.push_back(kind + region.name);
-    for (const char* name : {"fireflies", "horizon_frac", "y_mean", "rmse_frame"}) names.emplace_back(name);
-    return names;
+double meter_value(const RunMeter& run, const std::string& meter) {
+    const std::size_t dot = meter.find('.');
+    std::optional<double> found;
+    const auto look = [&](std::string_view name, const MeterInfo&, auto value) {
+        if (name == std::string_view(meter).substr(0, dot)) found = static_cast<double>(value);
+    };
+    if (dot == std::string::npos) for_each_meter(run, look);
+    else if (const RegionMeter* region = run.region(meter.substr(dot + 1))) for_each_meter(*region, look);
+    ensure(found.has_value(), "a meter of the list, of a region that was measured");
+    return *found;
 }
 
 double quantile(std::vector<double> values, double q) {
@@ -148,8 +173,8 @@ std::vector<BandMeter> bands(
     std::vector<BandMeter> out;
     for (const RunMeter& run : runs) {
         if (run.key.seed != experiment.seed) continue;
-        for (const std::string& meter : meter_names(experiment)) {
-            if (run.key.n < 2 && meter.starts_with("var.")) continue;  // one sample has no spread
+        for (const auto& [meter, info] : meter_names(experiment)) {
+            if (run.key.n < 2 && info->from_two_samples) continue;
             const std::vector<double> values = over_seeds(runs, run.key, meter);
             BandMeter b;
             b.key = run.key;

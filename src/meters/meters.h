@@ -24,9 +24,15 @@ double rms(const std::vector<float>& a, int width, const Box& box);
 ReferenceMeter compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
 
-/// The value of a meter by its name: rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame.
+/// A meter of the list as it stands in a band: rmse.<region>, ..., fireflies, ...
+struct MeterName {
+    std::string name;
+    const MeterInfo* info;
+};
+/// Those that have a spread over seeds, those of the regions first.
+std::vector<MeterName> meter_names(const Experiment& experiment);
+/// The value of any meter of the list by its name. Throws Bug where there is none.
 double meter_value(const RunMeter& run, const std::string& meter);
-std::vector<std::string> meter_names(const Experiment& experiment);
 
 /// Quantile q of values by linear interpolation between order statistics (R type 7).
 double quantile(std::vector<double> values, double q);

@@ -8,31 +8,40 @@
 #include <vector>
 
 #include "films/film.h"
+#include "measures/all.h"
 #include "stats/tail.h"
 
 namespace crescent::inline meters {
 
-/// The error of one film in one region. Y in W/(sr m^2).
+#define CRESCENT_FIELD(name, Type) MeterOf<Type> name{};
+/// What is measured of one film in one region: a field for each meter of the list.
 struct RegionMeter {
     std::string region;
-    double rmse = 0;           // against the reference, of Y
-    double var = 0;            // mean over pixels of the variance of the mean; NaN where n = 1 leaves it unknown
+    CRESCENT_REGION_METERS(CRESCENT_FIELD)
     std::uint64_t pixels = 0;  // geometry pixels in the box count alike with misses: |box|
     std::optional<Tail> tail;  // of the samples X of the region; published seed only
 };
 
-/// All that is measured of one film.
+/// All that is measured of one film; of the whole frame a field for each meter of the list.
 struct RunMeter {
     RunKey key;
     std::vector<RegionMeter> regions;
-    std::uint64_t fireflies = 0;  // geometry pixels with |Y - Y_ref| > k Y_ref
-    double horizon_frac = 0;  // of the directions drawn at geometry pixels; two a sample for an arm of two techniques
-    double y_mean = 0;        // over the whole frame
-    double rmse_frame = 0;    // whole frame: a footnote, never a headline
-    double largest = 0;       // the largest single sample of the frame
-    std::uint64_t bad = 0;    // NaN, infinite or negative samples
+    CRESCENT_FRAME_METERS(CRESCENT_FIELD)
+
+    /// Null where no region has that name.
     const RegionMeter* region(const std::string& name) const;
 };
+#undef CRESCENT_FIELD
+
+/// Calls f(name, info, value) for each meter of a region, or of the frame, in the order of the list.
+template <class F> void for_each_meter(const RegionMeter& of, F&& f) {
+#define CRESCENT_CALL(name, Type) f(std::string_view(#name), Type::info, of.name);
+    CRESCENT_REGION_METERS(CRESCENT_CALL)
+}
+template <class F> void for_each_meter(const RunMeter& of, F&& f) {
+    CRESCENT_FRAME_METERS(CRESCENT_CALL)
+#undef CRESCENT_CALL
+}
 
 /// Spread of one number over seeds: quantiles 5 %, 50 %, 95 % (linear between order statistics).
 struct Band {
@@ -44,7 +53,7 @@ struct Band {
 /// One number of one run over all seeds: "rmse.H" of "cosine n=64 s=32".
 struct BandMeter {
     RunKey key;           // seed: the published one
-    std::string meter;    // rmse.<region>, var.<region>, fireflies, horizon_frac, y_mean, rmse_frame
+    std::string meter;    // rmse.<region>, ..., fireflies, ...: see meter_names()
     double measured = 0;  // at the published seed
     Band band;
     std::optional<double> published;

@@ -15,8 +15,6 @@ constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
 
 double of_run(const ParsedQuantity& q, const RunMeter* run) {
     if (!run) return unmeasured;
-    if (q.word == "largest") return run->largest;
-    if (q.word == "bad") return static_cast<double>(run->bad);
     if (q.region.empty()) return meter_value(*run, q.word);
     const RegionMeter* region = run->region(q.region);
     if (!region) return unmeasured;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "meters/meters.h"
+
 namespace crescent::inline report {
 
 RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b) {
@@ -111,9 +113,8 @@ std::uint64_t Findings::bad_samples() const {
 
 std::vector<std::string> headline_meters(const Experiment& experiment) {
     std::vector<std::string> all;
-    for (const char* kind : {"rmse.", "var."})
-        for (const Region& region : experiment.regions) all.push_back(kind + region.name);
-    for (const char* frame : {"fireflies", "horizon_frac", "y_mean"}) all.emplace_back(frame);
+    for (const MeterName& meter : meter_names(experiment))
+        if (meter.info->in_tables) all.push_back(meter.name);
     return all;
 }
 

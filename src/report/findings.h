@@ -58,7 +58,7 @@ private:
     const ReportInputs& in_;
 };
 
-/// Meters in the order in which they are told, without the whole-frame RMSE: rmse.*, var.*, fireflies, ...
+/// Meters that stand in tables, in their order: rmse.*, var.*, fireflies, ...
 std::vector<std::string> headline_meters(const Experiment& experiment);
 
 }  // namespace crescent::inline report

@@ -19,16 +19,18 @@ struct Rows {
         out += run + csv_field(meter) + "," + csv_field(region) + "," + value + set + "\r\n";
     }
     void add(std::string_view meter, std::string_view region, double value) { add(meter, region, shortest(value)); }
+    void add(std::string_view meter, std::string_view region, std::uint64_t value) {
+        add(meter, region, std::to_string(value));
+    }
 };
 
 void add_region(Rows& rows, const RegionMeter& r) {
-    rows.add("rmse", r.region, r.rmse);
-    rows.add("var", r.region, r.var);
-    rows.add("pixels", r.region, std::to_string(r.pixels));
+    for_each_meter(r, [&](std::string_view name, const MeterInfo&, auto value) { rows.add(name, r.region, value); });
+    rows.add("pixels", r.region, r.pixels);
     if (!r.tail) return;
     rows.add("tail_k", r.region, r.tail->k);
     rows.add("tail_se", r.region, r.tail->se);
-    rows.add("tail_exceedances", r.region, std::to_string(r.tail->exceedances));
+    rows.add("tail_exceedances", r.region, std::uint64_t{r.tail->exceedances});
 }
 
 /// What --set gave, key by key in the order of first mention; of a key that was given twice the last value, which
@@ -60,12 +62,7 @@ std::string metrics_csv(const ReportInputs& in) {
         rows.run = csv_field(run.key.arm) + "," + std::to_string(run.key.n) + "," + shortest(run.key.s) + "," +
             std::to_string(run.key.seed) + ",";
         for (const RegionMeter& r : run.regions) add_region(rows, r);
-        rows.add("fireflies", "", std::to_string(run.fireflies));
-        rows.add("horizon_frac", "", run.horizon_frac);
-        rows.add("y_mean", "", run.y_mean);
-        rows.add("rmse_frame", "", run.rmse_frame);
-        rows.add("largest", "", run.largest);
-        rows.add("bad", "", std::to_string(run.bad));
+        for_each_meter(run, [&](std::string_view name, const MeterInfo&, auto value) { rows.add(name, "", value); });
     }
     return rows.out;
 }

@@ -14,16 +14,27 @@ Json tail_json(const Tail& tail) {
     return {{"k", number(tail.k)}, {"se", number(tail.se)}, {"exceedances", tail.exceedances}};
 }
 
+Json json_of(double x) { return number(x); }
+Json json_of(std::uint64_t count) { return count; }
+
+/// Every meter of a region or of the frame.
+template <class Of> void add_meters(Json& out, const Of& of) {
+    for_each_meter(
+        of, [&](std::string_view name, const MeterInfo&, auto value) { out[std::string(name)] = json_of(value); });
+}
+
 Json run_json(const RunMeter& run) {
     Json regions = Json::object();
     for (const RegionMeter& r : run.regions) {
-        Json& at = regions[r.region] = {{"rmse", number(r.rmse)}, {"var", number(r.var)}, {"pixels", r.pixels}};
+        Json& at = regions[r.region] = Json::object();
+        add_meters(at, r);
+        at["pixels"] = r.pixels;
         if (r.tail) at["tail"] = tail_json(*r.tail);
     }
-    return {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
-        {"regions", std::move(regions)}, {"fireflies", run.fireflies}, {"horizon_frac", number(run.horizon_frac)},
-        {"y_mean", number(run.y_mean)}, {"rmse_frame", number(run.rmse_frame)}, {"largest", number(run.largest)},
-        {"bad", run.bad}};
+    Json out = {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
+        {"regions", std::move(regions)}};
+    add_meters(out, run);
+    return out;
 }
 
 Json interval_json(const Band& band) {

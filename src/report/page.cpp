@@ -12,11 +12,6 @@ namespace {
 
 constexpr std::size_t page_limit = 14'000'000;  // bytes of base64 that may go into the page
 
-bool photograph(PlateKind kind) {
-    return kind != PlateKind::reference && kind != PlateKind::heat && kind != PlateKind::rose &&
-        kind != PlateKind::meters;
-}
-
 /// Letters, digits and hyphens of a name: what an id may hold.
 std::string slug(const std::string& name) {
     std::string out;
@@ -72,7 +67,8 @@ std::string Figures::plate(const std::string& name, const PlatePlan* plan) {
         outside_.count(name) ? escape(source) : source, escape(caption));
     std::string kind;
     if (plan)
-        kind = fmt::format("<span class=\"kind\">{}</span> ", photograph(plan->kind) ? "Photograph" : "Instrument");
+        kind = fmt::format("<span class=\"kind\">{}</span> ",
+            plate_info(plan->kind).look == PlateLook::photograph ? "Photograph" : "Instrument");
     return figure("plate-" + slug(name), picture, kind + escape(caption), "plates/" + name + ".png");
 }
 
@@ -96,11 +92,14 @@ std::string meter_html(const std::string& meter) {
     const auto dot = meter.find('.');
     const std::string kind = meter.substr(0, dot);
     const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(meter.substr(dot + 1)) + "</sub>";
-    if (kind == "rmse") return "RMSE" + region;
-    if (kind == "y_mean") return "<i>Y</i><sub>mean</sub>";
-    if (meter == "rmse_frame") return "whole-frame RMSE";
-    if (meter == "horizon_frac") return "horizon share";
-    return escape(kind) + region;
+    std::string label = escape(kind);
+    const auto look = [&](std::string_view name, const MeterInfo& info, auto) {
+        if (name == kind && !info.label.empty()) label = info.label;
+    };
+    const RegionMeter of_region;
+    const RunMeter of_frame;
+    for_each_meter(of_region, look), for_each_meter(of_frame, look);
+    return label + region;
 }
 
 std::string meter_text(const std::string& meter) {

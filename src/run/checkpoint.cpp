@@ -18,8 +18,10 @@
 namespace crescent::inline runs {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunKey, arm, n, s, seed)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeter, region, rmse, var, pixels)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMeter, key, regions, fireflies, horizon_frac, y_mean, rmse_frame, largest, bad)
+#define CRESCENT_FIELD(name, Type) , name
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeter, region, pixels CRESCENT_REGION_METERS(CRESCENT_FIELD))
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunMeter, key, regions CRESCENT_FRAME_METERS(CRESCENT_FIELD))
+#undef CRESCENT_FIELD
 
 namespace {
 
