@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -117,6 +120,26 @@ std::uint64_t available_memory() {
     const double free = 1024 * field(contents_of("/proc/meminfo"), "MemAvailable:");
     const std::uint64_t machine = free > 0 ? static_cast<std::uint64_t>(free) : no_limit;
     return std::min({machine, granted_memory("", "/proc/self/cgroup"), left_in_address_space()});
+}
+
+std::string host_cpu() {
+    std::istringstream lines(contents_of("/proc/cpuinfo"));
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("model name") && line.find(": ") != std::string::npos)
+            return line.substr(line.find(": ") + 2);
+    return "";
+}
+
+std::string program_file() {
+#ifdef __linux__
+    return "/proc/self/exe";
+#elif defined(__APPLE__)
+    char path[4096];
+    std::uint32_t room = sizeof path;
+    return _NSGetExecutablePath(path, &room) == 0 ? path : "";
+#else
+    return "";
+#endif
 }
 
 }  // namespace crescent::inline base

@@ -13,6 +13,12 @@ int usable_threads();
 /// RLIMIT_AS.
 std::uint64_t available_memory();
 
+/// The processor's name as Linux has it; "" where it does not, and elsewhere.
+std::string host_cpu();
+
+/// The file of the running program, "" where the system does not tell.
+std::string program_file();
+
 /// The same read from files below `root` ("" in use), for tests. `own` is the process's /proc/self/cgroup.
 double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
 std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit

@@ -12,6 +12,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "base/machine.h"
 #include "run/outside.h"
 #include "run/version.h"
 
@@ -27,11 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string mark_of(const char* path) {
+std::string mark_of(const std::string& path) {
     struct stat about{};
-    if (!path || stat(path, &about) != 0) return "";
-    return fmt::format("{:x}-{:x}-{:x}-{:x}.{:x}", about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec,
-        about.st_mtim.tv_nsec);
+    std::error_code unknown;
+    const auto written = fs::last_write_time(path, unknown);
+    if (unknown || stat(path.c_str(), &about) != 0) return "";
+    return fmt::format("{:x}-{:x}-{:x}-{:x}", about.st_dev, about.st_ino, about.st_size,
+        static_cast<std::int64_t>(written.time_since_epoch().count()));
 }
 
 /// Which files the program and, where it is another one, the library with this code are, and of when: what another
@@ -39,7 +42,7 @@ std::string mark_of(const char* path) {
 std::string build_mark() {
     Dl_info about{};
     const bool known = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
-    return mark_of("/proc/self/exe") + " " + mark_of(known ? about.dli_fname : nullptr);
+    return mark_of(program_file()) + " " + mark_of(known ? about.dli_fname : "");
 }
 
 /// CBOR, which holds every double as it is, NaN and infinities too.

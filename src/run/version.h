@@ -8,6 +8,5 @@ namespace crescent::inline runs {
 std::string version();   // "0.1.0"
 std::string commit();    // as `git describe` says it, or "unknown"
 std::string compiler();  // "GNU 12.2.0"
-std::string host_cpu();  // as Linux names it, "" where it does not
 
 }  // namespace crescent::inline runs

@@ -6,7 +6,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#ifdef __linux__
 #include <sys/prctl.h>
+#endif
+#include <sys/select.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <utility>
@@ -41,8 +44,26 @@ int taken(int& fd) { return std::exchange(fd, -1); }
 
 extern "C" void wake(int) {}
 
-/// Kills every child, which hands its own children over to this process, until none is left; two seconds at most.
-void kill_all() {
+/// Takes over the children that a child of this process leaves behind; Linux alone can.
+void adopt_orphans() {
+#ifdef __linux__
+    prctl(PR_SET_CHILD_SUBREAPER, 1);
+#endif
+}
+
+/// No descriptor from `first` on stays open.
+void close_from(int first) {
+#ifdef __linux__
+    if (close_range(static_cast<unsigned>(first), ~0u, 0) == 0) return;
+#endif
+    const long most = sysconf(_SC_OPEN_MAX);
+    for (int fd = first; fd < (most > 0 ? most : 1024); ++fd) close(fd);
+}
+
+/// Kills every child, which hands its own children over to this process, until none is left; two seconds at most. Where
+/// the system does not list children, `group`, which the last of them leads: what moved to another group ends when its
+/// pipes do.
+void kill_all(pid_t group) {
     for (int round = 0; round < 200; ++round) {
         while (waitpid(-1, nullptr, WNOHANG) > 0) {}
         if (waitpid(-1, nullptr, WNOHANG) < 0) return;  // ECHILD
@@ -50,6 +71,7 @@ void kill_all() {
         char text[4096];
         const ssize_t n = list < 0 ? 0 : read(list, text, sizeof text);
         if (list >= 0) close(list);
+        else kill(-group, SIGKILL);
         pid_t pid = 0;
         for (ssize_t i = 0; i < n; ++i) {
             if (text[i] >= '0' && text[i] <= '9') pid = 10 * pid + (text[i] - '0');
@@ -64,7 +86,7 @@ void kill_all() {
 [[noreturn]] void stand_guard(int life, int told, int in, int out, const char* command) {
     for (int* fd : {&life, &told, &in, &out}) *fd = fcntl(*fd, F_DUPFD_CLOEXEC, 3);  // clear of 0 and 1
     setpgid(0, 0);
-    prctl(PR_SET_CHILD_SUBREAPER, 1);
+    adopt_orphans();
     sigset_t child_ended, before;
     sigemptyset(&child_ended);
     sigaddset(&child_ended, SIGCHLD);
@@ -86,7 +108,7 @@ void kill_all() {
     if (shell < 0) _exit(126);
     dup2(life, 0);
     dup2(told, 1);
-    close_range(3, ~0u, 0);
+    close_from(3);
     for (bool lives = true;;) {
         int status = 0;
         for (pid_t ended; (ended = waitpid(-1, &status, WNOHANG)) > 0;)
@@ -94,10 +116,12 @@ void kill_all() {
                 lives = false;
                 static_cast<void>(!write(1, &status, sizeof status));
             }
-        pollfd end{0, POLLIN, 0};
-        if (ppoll(&end, 1, nullptr, &before) > 0) break;
+        fd_set life_end;
+        FD_ZERO(&life_end);
+        FD_SET(0, &life_end);
+        if (pselect(1, &life_end, nullptr, nullptr, nullptr, &before) > 0) break;
     }
-    kill_all();
+    kill_all(shell);
     _exit(0);
 }
 
@@ -121,15 +145,16 @@ Child::Child(const std::string& command) {
 Child::~Child() { end(0); }
 
 ssize_t Child::write(std::string_view text) const {
-    sigset_t pipe, before, pending;
+    sigset_t pipe, before, earlier, pending;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
-    sigpending(&pending);
+    sigpending(&earlier);
     pthread_sigmask(SIG_BLOCK, &pipe, &before);
     const ssize_t n = ::write(to_, text.data(), text.size());
     const int why = errno;
-    const timespec at_once{0, 0};
-    if (n < 0 && why == EPIPE && !sigismember(&pending, SIGPIPE)) sigtimedwait(&pipe, nullptr, &at_once);  // ours alone
+    sigpending(&pending);
+    int ours = 0;
+    if (n < 0 && !sigismember(&earlier, SIGPIPE) && sigismember(&pending, SIGPIPE)) sigwait(&pipe, &ours);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     errno = why;
     return n;
