@@ -1,4 +1,4 @@
-// `crescent schema --json`: the table as a JSON Schema of context 7, the context that TOML editors read (Taplo, Even
+// `crescent schema --json`: the table as a JSON Schema of draft 7, the draft that TOML editors read (Taplo, Even
 // Better TOML). It holds what one value can say of itself: type, range, words, which keys a kind of shape needs. What
 // hangs on several values (names that must exist, unit vectors, boxes inside the image) is for the reader to check.
 #include <nlohmann/json.hpp>
@@ -141,7 +141,7 @@ Json family(const Section& section) {
 }  // namespace
 
 std::string json_schema_of(const Section& root, const char* title) {
-    Json out = {{"$schema", "http://json-schema.org/context-07/schema#"}, {"title", title}};
+    Json out = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
     out.update(table(root));
     return out.dump(2) + "\n";
 }

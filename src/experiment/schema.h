@@ -109,7 +109,7 @@ const Section& schema();
 
 /// The manual of a table: a line or two a key, at most 80 columns.
 std::string manual_of(const Section& root);
-/// The table as a JSON Schema, context 7, under this title.
+/// The table as a JSON Schema, draft 7, under this title.
 std::string json_schema_of(const Section& root, const char* title);
 
 /// Whether a key belongs to this kind of shape; an empty kind (not known yet) has every key.
