@@ -91,7 +91,7 @@ struct AssertionResult {
     // Where not, an RMSE in it is no longer than a few errors of the reference: it does not pass.
     bool reference_good = true;
     bool cannot_fail = false;  // true of every run that ends: a plate that was drawn has bytes
-    std::string skipped;       // why it was not judged, so that it neither holds nor fails; "": it was
+    std::string skipped{};     // why it was not judged, so that it neither holds nor fails; "": it was
     bool failed() const { return !pass && skipped.empty(); }
 };
 

@@ -16,7 +16,8 @@ struct Provenance {
     std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
     std::vector<std::uint32_t> seeds;
     int first_of_series = 1, series = 0;  // the place of the first of them in the experiment's series, and its length
-    std::vector<std::pair<std::string, std::string>> instrument_details;  // what a driver says of itself; none: the CPU
+    std::vector<std::pair<std::string, std::string>>
+        instrument_details{};  // what a driver says of itself; none: the CPU
 };
 
 /// What varies from run to run; stands apart in timing.json.

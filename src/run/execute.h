@@ -24,9 +24,9 @@ class Checkpoint;
 /// What a run is computed with. Films, references and meters are the same bits whatever it says, but for the
 /// instrument.
 struct Engine {
-    int threads = 0;                         // 0: usable_threads()
-    std::string isa;                         // a name of isas(); "": the best of this machine
-    std::shared_ptr<Instrument> instrument;  // null: the CPU
+    int threads = 0;                           // 0: usable_threads()
+    std::string isa{};                         // a name of isas(); "": the best of this machine
+    std::shared_ptr<Instrument> instrument{};  // null: the CPU
 };
 /// With nothing left open. Throws InputError where the instruction set is not known or not here.
 Engine settled(Engine engine);

@@ -13,10 +13,10 @@ struct Material {
     Rgb rho_d{};
     double rho_s = 0;  // of the lobe; where it has a colour, its luminance
     LobeKind brdf{0};
-    std::optional<double> s;      // Phong exponent
-    std::optional<double> alpha;  // GGX roughness, (0, 1], no remapping
-    bool inherits_s = false;      // s is not the shape's own but the scene's
-    std::optional<Rgb> specular;  // the lobe's albedo where it has a colour, rho_s being its luminance
+    std::optional<double> s;        // Phong exponent
+    std::optional<double> alpha;    // GGX roughness, (0, 1], no remapping
+    bool inherits_s = false;        // s is not the shape's own but the scene's
+    std::optional<Rgb> specular{};  // the lobe's albedo where it has a colour, rho_s being its luminance
 
     /// Gives the lobe an albedo of a colour; a grey one is a number.
     void set_specular(const Rgb& color);

@@ -86,7 +86,7 @@ private:
 
     template <class F> F found(const char* symbol) const { return reinterpret_cast<F>(dlsym(library_.get(), symbol)); }
     template <class F> F needed(const char* symbol) const {
-        if (const F f = found<F>(symbol)) return f;
+        if (const F there = found<F>(symbol)) return there;
         throw OutputError(fmt::format("the plugin {} has no function {}: see sampler_plugin.h", path_, symbol));
     }
 
