@@ -2,6 +2,10 @@
 //   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
 //                             it is other than the list expects, and that both say what they are
 //   extending --scene TOML    that with these tables added to the scene arms have the reference's mean
+//   extending --measured METER PLATE
+//                             that a check can name the meter, that metrics.json and metrics.csv have it, that the
+//                             plate is drawn, and that `check` gives every verdict of the list
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -9,6 +13,10 @@
 #include "base/formula.h"
 #include "estimator/estimator.h"
 #include "estimator/reference.h"
+#include "meters/meters.h"
+#include "meters/quantity.h"
+#include "plates/plates.h"
+#include "report/report.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
 #include "verdicts/print.h"
@@ -78,9 +86,46 @@ bool is_judged_as_expected(const std::string& sampler) {
     return j.as_expected;
 }
 
+/// A film of cosine and all that is made of it.
+bool is_measured_and_drawn(const std::string& meter, const std::string& plate) {
+    const Experiment e = parse(std::string(scene_text) + "[plates.it]\nkind = \"" + plate +
+            "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + meter + ".all(it) > 0\"\n",
+        "extending", {"arms.it.sampler=\"cosine\""});
+    const Scene scene(e);
+    ProgressMonitor watch;
+    const RunKey key{"it", 256, e.s(), e.seed};
+    const Film film = estimate_films(scene, "cosine", {256}, e.seed, "scalar", watch)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, watch)[0];
+    const ShapeMap shapes = shape_map(scene);
+    Metrics m;
+    m.runs = {measure(e, key, film, truth, shapes)};
+    m.bands = bands(e, m.runs, nullptr);
+    m.assertions = judge(e, m, {}, false);
+    const Picture drawn = draw_plate(
+        e.plates[0], {e, m, shapes, [&](const RunKey&) { return &film; }, [&](double) { return &truth; }, "CPU"});
+    const std::string json = metrics_json({e, m, {}, {}, {}}), csv = metrics_csv({e, m, {}, {}, {}});
+    std::printf("%s.all = %.6g\n", meter.c_str(), m.assertions[0].measured);
+    return m.all_hold() && !drawn.rgb.empty() && json.find('"' + meter + "\": ") != std::string::npos &&
+        json.find('"' + meter + ".all\"") != std::string::npos && csv.find("," + meter + ",all,") != std::string::npos;
+}
+
+bool has_every_verdict() {
+    ProgressMonitor watch;
+    const Judgement j = judge(trials_of("cosine", {}, false, {{45, 0}}), TestSettings::quick(), watch);
+    const std::string table = verdict_table(j), json = verdict_json(j, {});
+    return j.as_expected && std::ranges::all_of(verdict_names, [&](std::string_view name) {
+        const bool told = table.find(" " + std::string(name)) != std::string::npos &&
+            json.find("\"name\": \"" + std::string(name) + '"') != std::string::npos;
+        if (!told) std::printf("nothing of %s in\n%s", std::string(name).c_str(), table.c_str());
+        return told;
+    });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
+    if (argc == 4 && std::string(argv[1]) == "--measured")
+        return is_measured_and_drawn(argv[2], argv[3]) && has_every_verdict() ? 0 : 1;
     if (argc != 3) return 2;
     if (std::string(argv[1]) == "--scene")
         return has_the_references_mean("cosine", "phong", argv[2]) &&

@@ -9,10 +9,13 @@ tree=$CRESCENT_BUILD/extending/tree build=$CRESCENT_BUILD/extending/build
 
 mkdir -p fresh
 (cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake src cli laws "$work/fresh")
+rm -r fresh/laws/planted fresh/laws/right  # no arm, lobe or verdict needs them
 cp -r fresh plain
 
-# The file of a `<!-- file PATH -->` is the block of code that follows; `<!-- list PATH "HEADER" WORD -->` is two words
-# there.
+# The file of a `<!-- file PATH -->` is the block of code that follows. `<!-- list PATH "HEADER" WORD -->` is two words
+# there; `<!-- line PATH MACRO ["HEADER"] LINE -->` is a line at the end of the list MACRO, and the header that it
+# needs.
+add_header() { sed -i "0,/^#include \"/s||#include $2\n&|" "fresh/$1"; } # PATH "HEADER"
 add_section() { # TITLE
     awk -v title="## $1" '/^## /{on = $0 == title} on' "$page" >section
     [ -s section ] || die "docs/extending.md has no section '$1'"
@@ -25,14 +28,23 @@ add_section() { # TITLE
         [ -s "fresh/$path" ] || die "docs/extending.md has no code for $path"
     done || exit 1
     sed -n 's/^<!-- list \(.*\) -->$/\1/p' section | while read -r path header word; do
-        sed -i "0,/^#include \"/s||#include $header\n&|" "fresh/$path"
+        add_header "$path" "$header"
         sed -i "/^using /,/;/s|>;|, $word>;|" "fresh/$path"
         grep -q "$word>;" "fresh/$path" || die "no list in $path ends where the page says"
+    done || exit 1
+    sed -n 's/^<!-- line \(.*\) -->$/\1/p' section | while read -r path macro line; do
+        case $line in '"'*) add_header "$path" "${line%% *}" && line=${line#* } ;; esac
+        awk -v macro="#define $macro(" -v line="$line" '
+            index($0, macro) { inside = 1 }
+            inside && !/\\$/ { print $0 " \\"; $0 = "    " line; inside = 0 }
+            1
+        ' "fresh/$path" >listed && mv listed "fresh/$path"
+        grep -qF "    $line" "fresh/$path" || die "no list $macro in $path"
     done || exit 1
 }
 
 touched=0
-for title in "An arm" "A lobe" "A shape" "A light"; do
+for title in "An arm" "A lobe" "A shape" "A light" "A meter" "A plate" "A verdict"; do
     add_section "$title"
     diff -rq plain fresh | sort >differences || true
     count=$(wc -l <differences)
@@ -68,3 +80,4 @@ center = [0.4, 2.0, 0.9]
 side = 0.6
 radiance = [6.0, 5.0, 4.0]
 '
+expect 0 "$build/laws/extending" --measured mae error
