@@ -73,7 +73,10 @@ TEST_P(PlantedFaultsInQuickMode, AreCaughtAndExplained) {
     std::size_t with = 0, named = 0;
     std::string told;
     for (std::size_t k = GetParam(); k < faults.size(); k += shards * every) {
-        const Judgement j = judge(faults[k].trials, TestSettings::quick(), watch);
+        // Of 0, 45 and 75 deg two that take turns; crescent check --planted asks at all three.
+        std::vector<Trial> trials = faults[k].trials;
+        if (trials.size() == 3) trials.erase(trials.begin() + 2 * static_cast<int>(k % 2));
+        const Judgement j = judge(trials, TestSettings::quick(), watch);
         EXPECT_EQ(j.state, State::wrong) << faults[k].name;
         const Explained e = explained(faults[k], j);
         with += !e.cause.empty();

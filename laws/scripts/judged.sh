@@ -64,6 +64,8 @@ with open("table.csv", "w") as f:
 PY
 expect 0 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv
 expect 1 "$CRESCENT" check --quiet --samples wrong.csv --wo 0,0,1 --pdf-table table.csv
+expect 0 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv --against cosine --expect same
+expect 1 "$CRESCENT" check --quiet --samples right.csv --wo 0,0,1 --pdf-table table.csv --against uniform --expect same
 sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
 expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
 grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"

@@ -102,7 +102,8 @@ Verdict same_f(const TrialContext& a, const TrialContext& b) {
     Verdict v = a.verdict("same_f", State::right, "");
     if (!a.subject.has_f() || !b.subject.has_f()) {
         v.state = State::skipped;
-        v.say = "There is no f to compare.";
+        v.say = a.subject.has_drawn_f() ? "f of A is known at its own draws alone, or B has none."
+                                        : "There is no f to compare.";
         return v;
     }
     std::vector<Vec3d> wi;

@@ -21,20 +21,46 @@ struct SurfaceSetup {
 /// f of the surface, 1/sr, without the cosine.
 double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 
-/// The site of an arm in number type F; `disks` must outlive it.
-template <class F>
-ShadingPoint<F> site_of(const SurfaceSetup& surface, Vec3d wo, const std::vector<LocalDisk<F>>& disks) {
+/// The site of an arm in number type F; `disks` and `others` must outlive it.
+template <class F> ShadingPoint<F> site_of(const SurfaceSetup& surface, Vec3d wo,
+    const std::vector<LocalDisk<F>>& disks, const std::vector<LocalLight<F>>& others) {
     return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d),
-        static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size())};
+        static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size()), others.data(),
+        static_cast<int>(others.size())};
 }
-/// One-sided disks, each with its share of L r^2.
-template <class F> std::vector<LocalDisk<F>> disks_of(const TrialLight& light) {
+/// L r^2 of the disks, and what the other lights are worth beside it.
+inline double power_of(const TrialLight& light) {
     double total = 0;
     for (const TrialDisk& d : light.disks) total += d.radiance * sqr(d.radius);
+    for (const TrialLamp& lamp : light.lamps) total += lamp.power();
+    return total;
+}
+/// One-sided disks, each with its share of the choice among lights.
+template <class F> std::vector<LocalDisk<F>> disks_of(const TrialLight& light) {
+    const double total = power_of(light);
     std::vector<LocalDisk<F>> out;
     for (const TrialDisk& d : light.disks)
         out.push_back({as<F>(d.center), as<F>(d.normal), static_cast<F>(d.radius), F(0),
             static_cast<F>(d.radiance * sqr(d.radius) / total)});
+    return out;
+}
+
+/// The lights that are no disks, as the surface sees them.
+template <class F> std::vector<LocalLight<F>> others_of(const TrialLight& light) {
+    const double total = power_of(light);
+    const Frame<double> frame = frame_about(Vec3d{0, 0, 1});
+    std::vector<LocalLight<F>> out;
+    for (const TrialLamp& lamp : light.lamps) {
+        const LightNumbers n = std::visit(
+            [&](const auto& l) -> LightNumbers {
+                if constexpr (requires { l.numbers(Vec3d{}, frame); }) return l.numbers(Vec3d{}, frame);
+                else return {};
+            },
+            lamp.form);
+        out.push_back(
+            {lamp.form.index(), static_cast<F>(lamp.power() / total), as<F>(n.a), as<F>(n.b), as<F>(n.c), {}});
+        for (std::size_t k = 0; k < n.number.size(); ++k) out.back().number[k] = static_cast<F>(n.number[k]);
+    }
     return out;
 }
 
@@ -45,8 +71,10 @@ public:
         : surface_(surface),
           disks_single_(disks_of<float>(light)),
           disks_double_(disks_of<double>(light)),
-          single_(site_of<float>(surface, wo, disks_single_)),
-          double_(site_of<double>(surface, wo, disks_double_)) {}
+          others_single_(others_of<float>(light)),
+          others_double_(others_of<double>(light)),
+          single_(site_of<float>(surface, wo, disks_single_, others_single_)),
+          double_(site_of<double>(surface, wo, disks_double_, others_double_)) {}
     BuiltIn(const BuiltIn&) = delete;
     BuiltIn& operator=(const BuiltIn&) = delete;
 
@@ -104,6 +132,8 @@ protected:
     SurfaceSetup surface_;
     std::vector<LocalDisk<float>> disks_single_;
     std::vector<LocalDisk<double>> disks_double_;
+    std::vector<LocalLight<float>> others_single_;
+    std::vector<LocalLight<double>> others_double_;
     A<float> single_;
     A<double> double_;
 };

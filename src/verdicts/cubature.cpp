@@ -198,9 +198,18 @@ Integral integrate(
         if (!edges && !look.found) break;
         edges = refine(cells, g, effort, total, out);
     }
-    if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);
-    add_up(cells, bins, audit(cells, bins, g, 99, 1e300, effort.most_evaluations / 4), out);
-    return out;
+    for (std::uint32_t round = 99;; ++round) {  // the last look is the widest: what it comes upon is halved too
+        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);
+        const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, effort.most_evaluations / 4);
+        if (!look.found || round == 103 || out.evaluations + 4 * look.evaluations >= effort.most_evaluations) {
+            add_up(cells, bins, look, out);
+            return out;
+        }
+        out.evaluations += look.evaluations;
+        Effort rest = effort;  // as much is left for the next look, and for what is cut along jumps
+        rest.most_evaluations -= 3 * look.evaluations;
+        edges = refine(cells, g, rest, total, out);
+    }
 }
 
 Vec3d SphereMap::direction(Vec2d at) const {

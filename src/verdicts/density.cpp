@@ -58,8 +58,8 @@ Pearson pearson(
 struct Fit {
     Pearson joint, rings, sectors;
     double outside_p = 1;  // of as many draws where p integrates to next to nothing
+    Clump clump;
     std::vector<double> observed, expected;
-    double p() const { return std::min({joint.p, rings.p, sectors.p, outside_p}); }
 };
 
 std::vector<double> count(const Density& d, const SampleBatch& b, double& nothing) {
@@ -74,8 +74,9 @@ std::vector<double> count(const Density& d, const SampleBatch& b, double& nothin
     return bins;
 }
 
-Fit fit(const Density& d, const SampleBatch& b) {
+Fit fit(const TrialContext& work, const Density& d, const SampleBatch& b) {
     Fit out;
+    out.clump = densest_clump(work, d, b);
     double nothing = 0;
     out.observed = count(d, b, nothing);
     const double n = static_cast<double>(b.draws.size());
@@ -109,8 +110,7 @@ Fit fit(const Density& d, const SampleBatch& b) {
     out.joint = pearson(observed, expected, slack);
     out.rings = pearson(by_ring, due_ring, slack_ring);
     out.sectors = pearson(by_sector, due_sector, slack_sector);
-    double seen = 0,
-           due = 0;  // rings that expect less than one draw: the Poisson law; the quadrature's own error is granted
+    double seen = 0, due = 0;  // in rings that expect less than one draw: the Poisson law; the error of p is granted
     for (std::size_t i = 0; i < rings; ++i)
         if (due_ring[i] < 1) {
             seen += by_ring[i];
@@ -162,16 +162,16 @@ Verdict judge(TrialContext& work) {
         if (!(d.mass.value > 0) || !std::isfinite(d.mass.value))
             return work.verdict("density", State::skipped,
                 fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
-        const Fit f = fit(d, work.first(t));
+        const Fit f = fit(work, d, work.first(t));
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         v.evidence["coordinates" + tag] = coordinates(d);
         v.evidence["chi2" + tag] = f.joint.statistic;
         v.evidence["degrees" + tag] = f.joint.degrees;
-        v.evidence["p" + tag] = f.joint.p;
-        v.evidence["p_rings" + tag] = f.rings.p;
-        v.evidence["p_sectors" + tag] = f.sectors.p;
-        v.evidence["p_outside" + tag] = f.outside_p;
-        v.evidence["draws" + tag] = work.first(t).draws.size();
+        const std::size_t draws = work.first(t).draws.size();
+        v.evidence["draws" + tag] = draws;
+        for (const auto& [name, p] : {std::pair("p", f.joint.p), {"p_rings", f.rings.p}, {"p_sectors", f.sectors.p},
+                 {"p_outside", f.outside_p}, {"p_clump", f.clump.p}})
+            v.evidence[name + tag] = p;
         v.evidence["pools" + tag] = f.joint.pools;
         v.evidence["empty_bins" + tag] = f.joint.empty;
         v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
@@ -181,7 +181,7 @@ Verdict judge(TrialContext& work) {
         std::optional<Fit> fresh;
         const auto of = [&](auto which) {
             return work.fails(which(f), [&](int round) {
-                if (!fresh) fresh = fit(d, work.draw(t, round));
+                if (!fresh) fresh = fit(work, d, work.draw(t, round));
                 return which(*fresh);
             });
         };
@@ -199,12 +199,18 @@ Verdict judge(TrialContext& work) {
             tell_worst(v, d, f.observed, f.expected);
             return v;
         }
-        v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).",
-            work.first(t).draws.size(), f.joint.statistic, f.joint.degrees, f.joint.p, coordinates(d));
+        if (of([](const Fit& x) { return x.clump.p; })) {
+            tell_clump(v, f.clump);
+            return v;
+        }
+        v.evidence["unseen_in_one_bin" + tag] =
+            unseen_share(f.expected, f.joint.degrees, static_cast<double>(draws), work.rigour.screen);
+        v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).", draws,
+            f.joint.statistic, f.joint.degrees, f.joint.p, coordinates(d));
         if (f.joint.pools < 2) {
             v.state = State::inconclusive;
-            v.say = fmt::format("Fewer than two bins expect 5 draws: {} draws are too few for a chi-square test.",
-                work.first(t).draws.size());
+            v.say =
+                fmt::format("Fewer than two bins expect 5 draws: {} draws are too few for a chi-square test.", draws);
             v.settle = "More draws, or a sampler that draws something more often.";
         }
     }
@@ -215,7 +221,7 @@ Verdict judge(TrialContext& work) {
 /// Of each technique the chi-square over the sphere, over rings and over sectors, and what is drawn where p is next to
 /// nothing; and the shares of delta parts.
 std::uint64_t tests(const Trial& t) {
-    return 4 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->traits().delta ? 1 : 0);
+    return 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->traits().delta ? 1 : 0);
 }
 
 }  // namespace

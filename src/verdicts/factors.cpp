@@ -45,7 +45,7 @@ void add_microfacets(std::vector<Factor>& out, const TrialContext& work) {
 }
 
 void add_light(std::vector<Factor>& out, const TrialContext& work) {
-    if (work.trial.light.disks.size() != 1) return;
+    if (work.trial.light.disks.size() != 1 || !work.trial.light.lamps.empty()) return;
     const TrialDisk disk = work.trial.light.disks[0];
     add(out, "cosine at the light", [disk](Vec3d wi) { return -dot(wi, disk.normal); });
     add(out, "distance^2 / cosine at the light", [disk](Vec3d wi) {

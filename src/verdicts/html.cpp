@@ -62,7 +62,7 @@ constexpr const char* head =
     ".rose "
     "polyline{fill:none;stroke-width:2}.rose-f{stroke:var(--soft)}.rose-p{stroke:var(--c1)}.worst{fill:none;stroke:#"
     "0a0;stroke-width:2}"
-    "@media (min-width:64rem){.wide{overflow-x:auto}}</style><script>"
+    ".wide{overflow-x:auto}details p{margin-top:1em}</style><script>"
     "function paint(w,top,seen,due){const "
     "c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const "
     "night=matchMedia('(prefers-color-scheme:dark)').matches;"
@@ -100,7 +100,7 @@ std::string overview(const Judgement& j) {
     for (const Verdict& v : j.verdicts)
         if (std::find(names.begin(), names.end(), v.name) == names.end()) names.push_back(v.name);
     const bool one_arm = std::ranges::all_of(j.verdicts, [&](const Verdict& v) { return v.arm == j.verdicts[0].arm; });
-    out += "<div style=\"overflow-x:auto\"><table class=matrix><tr><th>case";
+    out += "<div class=wide><table class=matrix><tr><th>case";
     for (std::string_view name : names) out += fmt::format("<th>{}", name);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         const Verdict& v = j.verdicts[i];
@@ -124,7 +124,8 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
             "<p>{} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh "
             "seed{}.</p>\n",
             j.tests, j.alpha, j.screened, j.confirmed,
-            j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "");
+            j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "") +
+        "<p>" + escape(unseen_told(j)) + "</p>\n";
     if (!source.version.empty())
         frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
             escape(source.commit), escape(source.command));
@@ -136,7 +137,7 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
         bool open = false;
         for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
             const Verdict& v = j.verdicts[i];
-            open = open || v.state == State::wrong;
+            open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
             rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state),
                 escape(told(v)), v.why_expected.empty() ? "" : expected_html(v));
         }

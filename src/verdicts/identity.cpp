@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 #include "verdicts/delta.h"
 #include "verdicts/numbers.h"
@@ -19,26 +20,6 @@ namespace crescent::inline verdicts {
 namespace {
 
 constexpr double tolerance = 1e-4;  // relative
-
-std::array<Vec3d, 6> nudges(Vec3d w, double by) {
-    return {{{w.x + by, w.y, w.z}, {w.x - by, w.y, w.z}, {w.x, w.y + by, w.z}, {w.x, w.y - by, w.z},
-        {w.x, w.y, w.z + by}, {w.x, w.y, w.z - by}}};
-}
-
-std::vector<Pair> nudged(Vec3d wo, Vec3d wi, double direction_resolution) {
-    const double by = 4 * std::max(direction_resolution, 0x1p-50);
-    std::vector<Pair> at;
-    for (Vec3d v : nudges(wi, by)) at.push_back({wo, v});
-    for (Vec3d v : nudges(wo, by)) at.push_back({v, wi});
-    return at;
-}
-
-double largest_change(std::span<const double> values, double from) {
-    double most = 0;
-    for (double v : values)
-        if (std::isfinite(v)) most = std::max(most, std::fabs(v - from));
-    return most;
-}
 
 /// Draws for which `said` and `asked` differ beyond tolerance and conditioning.
 struct Mismatch {
@@ -164,29 +145,36 @@ Verdict wrong(const TrialContext& work, Verdict v, const Mismatch& m, std::strin
     return v;
 }
 
-}  // namespace
-
-double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, double p) {
-    const std::vector<Pair> at = nudged(work.trial.wo, wi, work.direction_resolution());
-    std::vector<double> values(at.size());
-    work.subject.pdf(technique, at, values);
-    return 2 * largest_change(values, p);
-}
-
-double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, int channel) {
-    const std::vector<Pair> at = nudged(wo, wi, std::max(work.direction_resolution(), 0x1p-24));
-    std::vector<double> values(at.size());
-    if (work.traits.channels == 3) {
-        std::vector<Vec3d> by_channel(at.size());
-        work.subject.f_channels(at, by_channel);
-        for (std::size_t i = 0; i < at.size(); ++i) values[i] = channel_of(by_channel[i], channel);
-    } else {
-        work.subject.f(at, values);
+/// What the warp's derivatives say against p: true where it is wrong, which `v` then tells.
+bool warp_is_wrong(const TrialContext& work, const WarpFinding& warp, const std::string& tag, Verdict& v) {
+    const auto tell = [&v](std::string say) {
+        v.state = State::wrong;
+        v.say = std::move(say);
+        return true;
+    };
+    if (warp.below >= 3 && static_cast<double>(warp.below) > 5e-3 * static_cast<double>(warp.usable)) {
+        v.evidence["smallest_p_jacobian"] = warp.smallest;
+        return tell(
+            fmt::format("p |Jacobian of the warp| is below 1 at {} of {} points, least at {}: {:.6g}. The sampler "
+                        "is denser there than p says{}.",
+                warp.below, warp.usable, told(warp.at, work.traits.numbers, 4), warp.smallest,
+                work.traits.numbers > 2 ? "; what chooses was held, and its share counts" : ""));
     }
-    return 2 * largest_change(values, f);
+    v.evidence["p_jacobian_third_quartile" + tag] = warp.nowhere_above;
+    if (warp.nowhere_above < 1 - 1.5 * tolerance)  // what normalised grants p, and half as much
+        return tell(
+            fmt::format("p |Jacobian of the warp| is {:.6g} or less at three of four points: the sampler is denser "
+                        "nearly everywhere than p says, and what is left over of p is never drawn.",
+                warp.nowhere_above));
+    v.evidence["steps_of_u" + tag] = warp.steps_tried;
+    v.evidence["steps_without_a_move" + tag] = warp.stuck;
+    if (warp.steps_tried >= 40 && static_cast<double>(warp.stuck) > 0.4 * static_cast<double>(warp.steps_tried))
+        return tell(
+            fmt::format("The direction stands still for {} of {} moves of u by 2^-19: u is used with too few "
+                        "bits, and only a grid of directions is ever drawn.",
+                warp.stuck, warp.steps_tried));
+    return false;
 }
-
-namespace {
 
 Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("identity", State::right, "");
@@ -247,27 +235,7 @@ Verdict judge(TrialContext& work) {
         v.evidence["p_jacobian_is_1" + tag] = warp.one_to_one;
         one_to_one = std::min(one_to_one, warp.one_to_one);
         choosers = std::max(choosers, warp.choosers);
-        if (warp.below >= 3 && static_cast<double>(warp.below) > 5e-3 * static_cast<double>(warp.usable)) {
-            v.state = State::wrong;
-            v.evidence["smallest_p_jacobian"] = warp.smallest;
-            v.say = fmt::format(
-                "p |Jacobian of the warp| is below 1 at {} of {} points, least at {}: {:.6g}. The sampler is denser "
-                "there than p "
-                "says{}.",
-                warp.below, warp.usable, told(warp.at, work.traits.numbers, 4), warp.smallest,
-                work.traits.numbers > 2 ? "; what chooses was held, and its share counts" : "");
-            return v;
-        }
-        v.evidence["steps_of_u" + tag] = warp.steps_tried;
-        v.evidence["steps_without_a_move" + tag] = warp.stuck;
-        if (warp.steps_tried >= 40 && static_cast<double>(warp.stuck) > 0.4 * static_cast<double>(warp.steps_tried)) {
-            v.state = State::wrong;
-            v.say = fmt::format(
-                "The direction stands still for {} of {} moves of u by 2^-19: u is used with too few bits, and only a "
-                "grid of directions is ever drawn.",
-                warp.stuck, warp.steps_tried);
-            return v;
-        }
+        if (warp_is_wrong(work, warp, tag, v)) return v;
     }
     v.say = work.traits.has_pdf ? "The pdf with a draw equals pdf(w)" : "The same u gives the same answer";
     if (work.subject.has_f() && work.traits.has_pdf)

@@ -88,6 +88,14 @@ Quadrants quadrants(std::span<const Draw> w, double direction_resolution, double
     return out;
 }
 
+/// p |J| that three of four points do not exceed, of those at which it is known to 3e-4; 1 where these are too few.
+double third_quartile(std::vector<double> pj) {
+    if (pj.size() < 100) return 1;
+    const auto at = pj.begin() + static_cast<std::ptrdiff_t>(3 * pj.size() / 4);
+    std::nth_element(pj.begin(), at, pj.end());
+    return *at;
+}
+
 struct Suspect {
     Numbers u;
     double p, p_j;  // over the share of the choosing number
@@ -97,25 +105,29 @@ struct Suspect {
     bool settled = false;          // two steps agree
 };
 
-/// How finely the warp is computed at each suspect: how far moves of u by 2^-19 are from straight. A difference of two
-/// nearly equal numbers within the sampler may cost most of its digits, of which the direction's own grain knows
-/// nothing.
+/// How finely the warp is computed at each suspect. A difference of two nearly equal numbers within the sampler may
+/// cost most of its digits, of which the direction's own grain knows nothing. By third differences over moves of u by
+/// 2^-19, which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the
+/// moves cross spoils three of nine.
 void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
-    constexpr int moves = 6;
+    constexpr std::size_t moves = 12;
     std::vector<Numbers> u;
     for (const Suspect& s : suspects)
         for (int axis = 0; axis < 2; ++axis)
-            for (int k = 0; k < moves; ++k) u.push_back(s.u), u.back()[axis] += k * tiny_step;
+            for (std::size_t k = 0; k < moves; ++k)
+                u.push_back(s.u), u.back()[axis] += static_cast<double>(k) * tiny_step;
     std::vector<Draw> w(u.size());
     work.subject.sample(technique, work.trial.wo, u, w);
-    for (std::size_t i = 0; i < suspects.size(); ++i) {
-        suspects[i].grain = work.direction_resolution();
-        for (int line = 0; line < 2; ++line)
-            for (int k = 1; k + 1 < moves; ++k) {
-                const Draw* at = &w[i * 2 * moves + static_cast<std::size_t>(line * moves + k)];
-                if (!(at[-1].pdf > 0) || !(at[0].pdf > 0) || !(at[1].pdf > 0)) continue;
-                suspects[i].grain = std::max(suspects[i].grain, 0.5 * length(at[-1].wi - at[0].wi * 2.0 + at[1].wi));
-            }
+    for (std::size_t line = 0; line < 2 * suspects.size(); ++line) {
+        Suspect& s = suspects[line / 2];
+        std::array<double, moves - 3> rough{};
+        for (std::size_t k = 0; k < rough.size(); ++k) {
+            const Draw* at = &w[line * moves + k];
+            if (at[0].pdf > 0 && at[1].pdf > 0 && at[2].pdf > 0 && at[3].pdf > 0)
+                rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
+        }
+        std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
+        s.grain = std::max({s.grain, work.direction_resolution(), 0.5 * rough[rough.size() / 2]});
     }
 }
 
@@ -202,6 +214,7 @@ WarpFinding studied(const TrialContext& work, int technique) {
     out.choosers = branches.choosers;
     std::size_t one = 0, next = 0;
     std::vector<Suspect> suspects;
+    std::vector<double> known;
     for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
         const Derivative& d = derivatives[i / stencil];
         if (!d.usable) continue;
@@ -213,8 +226,10 @@ WarpFinding studied(const TrialContext& work, int technique) {
         const double pj = w[i].pdf * d.j / share, allowed = 5e-4 + 2 * d.error + branches.known_to / share;
         if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf / share, pj, share, allowed});
         if (std::fabs(pj - 1) <= allowed) ++one;
+        if (allowed < 8e-4) known.push_back(pj);
     }
     if (!work.traits.has_pdf) return out;
+    out.nowhere_above = third_quartile(std::move(known));
     if (work.thrifty() && std::ssize(suspects) > most_suspects)
         suspects.erase(suspects.begin() + most_suspects, suspects.end());
     if (several) recall_choosers(work, technique, suspects);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "math/functions.h"
 #include "simd/random.h"
@@ -45,10 +46,15 @@ std::vector<Gap> gaps_of(const Batch& g) {
         out.back().g0 = v[i];
         out.back().g1 = v[i + 1];
     }
-    const std::size_t most = 240;  // evenly chosen among them
+    const std::size_t most = 240;  // the largest and, in a table all are large, others evenly chosen
     if (out.size() <= most) return out;
+    const auto size = [](const Gap& x) { return std::fabs(x.g1 - x.g0) / std::max(x.g0, x.g1); };
     std::vector<Gap> some;
-    for (std::size_t i = 0; i < most; ++i) some.push_back(out[i * out.size() / most]);
+    for (std::size_t i = 0; i < most / 2; ++i) some.push_back(out[i * out.size() / (most / 2)]);
+    std::sort(out.begin(), out.end(), [&](const Gap& x, const Gap& y) {
+        return std::tuple(-size(x), x.along_a, x.across, x.t0) < std::tuple(-size(y), y.along_a, y.across, y.t0);
+    });
+    some.insert(some.end(), out.begin(), out.begin() + most / 2);
     return some;
 }
 
@@ -114,14 +120,31 @@ std::vector<double> merged(std::vector<double> edges, std::span<const double> mo
 
 }  // namespace
 
-std::optional<Mesh> find_mesh(const Batch& g) {
+Jumps find_jumps(const Batch& g) {
     std::vector<Gap> gaps = gaps_of(g);
     close_in(gaps, g);
-    std::vector<double> a, b;
-    for (const Gap& x : gaps) (x.along_a ? a : b).push_back(0.5 * (x.t0 + x.t1));
-    if (a.size() + b.size() < 4) return {};
-    const int columns = spacing(b);
-    Mesh mesh{rows_of(a), {}};
+    Jumps out;
+    for (const Gap& x : gaps) (x.along_a ? out.a : out.b).push_back(0.5 * (x.t0 + x.t1));
+    return out;
+}
+
+std::vector<double> heights_of(const Jumps& jumps) {
+    constexpr double alike = 1e-9;
+    std::vector<double> a = jumps.a, out;
+    std::sort(a.begin(), a.end());
+    for (std::size_t i = 0, next = 0; i < a.size(); i = next) {
+        while (next < a.size() && a[next] - a[i] < alike) ++next;
+        if (next - i >= parallels - 2) out.push_back(a[i + (next - i) / 2]);
+    }
+    return out;
+}
+
+std::optional<Mesh> find_mesh(const Batch& g) { return mesh_of(find_jumps(g)); }
+
+std::optional<Mesh> mesh_of(const Jumps& jumps) {
+    if (jumps.a.size() + jumps.b.size() < 4) return {};
+    const int columns = spacing(jumps.b);
+    Mesh mesh{rows_of(jumps.a), {}};
     if (columns < 2 || mesh.a.empty()) return {};  // what jumps at heights alone needs no mesh
     for (int k = 0; k <= columns; ++k) mesh.b.push_back(static_cast<double>(k) / columns);
     return mesh;

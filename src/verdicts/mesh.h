@@ -15,6 +15,16 @@ struct Mesh {
     std::size_t cells() const { return (a.size() - 1) * (b.size() - 1); }
 };
 
+/// Where g jumps along a few meridians and parallels: heights a and azimuths b, as often as they were met.
+struct Jumps {
+    std::vector<double> a, b;
+};
+Jumps find_jumps(const Batch& g);
+/// Heights at which it jumps on most of the meridians, ascending.
+std::vector<double> heights_of(const Jumps& jumps);
+/// The mesh that the jumps lie on; none where there is none.
+std::optional<Mesh> mesh_of(const Jumps& jumps);
+
 /// Looks for jumps of g(a, b) along parallels and meridians; none where it has none, or where they lie on no common
 /// lines.
 std::optional<Mesh> find_mesh(const Batch& g);

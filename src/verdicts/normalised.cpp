@@ -24,12 +24,13 @@ Verdict judge(TrialContext& work) {
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
         constexpr double allowed = 1e-4;
-        const auto excess_of =
-            [&](const Integral& m) {  // what is left of the difference by the cubature and by its audit
-                const double off = std::min(std::fabs(m.value + d.nothing - 1), std::fabs(m.second + d.nothing - 1));
-                return std::max(
-                    off - allowed - d.doubts - std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se), 0.0);
-            };
+        const auto granted = [&](const Integral& m) {
+            return allowed + d.doubts + std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se);
+        };
+        const auto excess_of = [&](const Integral& m) {  // what the cubature and its audit leave of the difference
+            const double sum = m.value + d.nothing, looked = m.second + d.nothing;
+            return std::max(std::min(std::fabs(sum - 1), std::fabs(looked - 1)) - granted(m), 0.0);
+        };
         const bool second = is_off(work, t, excess_of(d.mass)) && d.second && excess_of(*d.second) < excess_of(d.mass);
         const Integral& mass = second ? *d.second : d.mass;  // the one closer to a right sampler
         const double sum = mass.value + d.nothing;
@@ -41,6 +42,7 @@ Verdict judge(TrialContext& work) {
         v.evidence["audit" + tag] = mass.second;
         v.evidence["audit_se" + tag] = mass.second_se;
         if (d.second) v.evidence["second_quadrature" + tag] = second ? d.mass.value : d.second->value;
+        v.evidence["unseen" + tag] = granted(mass);
         v.evidence["drawn_nothing" + tag] = d.nothing;
         v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
         v.evidence["drawn_delta" + tag] = d.delta;
@@ -59,7 +61,9 @@ Verdict judge(TrialContext& work) {
         }
         if (mass.sampled && mass.error < 0.02) {
             v.say = told +
-                fmt::format(", known to {:.2g}: p is a table of more cells than were asked for; {} points were.",
+                fmt::format(
+                    ", known to {:.2g}: p is a table of more cells than were asked for; {} points were. --full "
+                    "sums every cell.",
                     mass.error, mass.evaluations);
             continue;
         }

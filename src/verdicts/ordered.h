@@ -85,10 +85,24 @@ struct WarpPoint {
 /// "Most at theta 31.2 deg, phi 250.1 deg: 812 seen, 640.3 due."
 void tell_worst(Verdict& v, const Density& d, const std::vector<double>& observed, const std::vector<double>& expected);
 
+/// What share of the draws may be too many or too few in one bin and not be seen: what takes the chi-square over all
+/// bins to its level, half of the time, in the fullest of them.
+double unseen_share(const std::vector<double>& expected, double degrees, double draws, double level);
+
+/// The block of draws that is least likely for its room; see clumps.cpp.
+struct Clump {
+    double p = 1;                         // that any block were so crowded
+    double draws = 0, due = 0, room = 0;  // due: at most; room in sr
+    Vec3d at{};
+};
+Clump densest_clump(const TrialContext& work, const Density& d, const SampleBatch& b);
+void tell_clump(Verdict& v, const Clump& clump);
+
 /// What the warp's derivatives say; see jacobian.cpp.
 struct WarpFinding {
     std::size_t usable = 0, below = 0;  // points with a trusted |J|, and those with p |J| < 1
     double smallest = 1;                // p |J|
+    double nowhere_above = 1;           // p |J| that three of four points with the best |J| do not exceed
     Numbers at{};
     double one_to_one = 0;                   // share of usable points with p |J| = 1
     std::size_t steps_tried = 0, stuck = 0;  // moves of u by 2^-19 that ought to show, and those that do not

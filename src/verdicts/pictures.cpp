@@ -63,7 +63,7 @@ std::string map_figures(const BinMap& m) {
         "the right. Full scale "
         "is {:.0f} draws. Difference: (observed - expected) / sqrt(expected), red more, blue fewer, full at 4. Framed: "
         "the bin that is "
-        "off most, {:.0f} seen, {:.1f} due.</p><div class=row>",
+        "off most, {:.0f} seen, {:.1f} due.</p><div class='row wide'>",
         m.coordinates, top, m.observed[worst], m.expected[worst]);
     for (const char* title : {"observed", "expected", "standardised difference"})
         out += fmt::format(

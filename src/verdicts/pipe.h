@@ -12,7 +12,7 @@ namespace crescent::inline verdicts {
 
 /// What a program behind a pipe may take.
 struct PipeLimits {
-    double hello_seconds = 10;   // until the first answer
+    double hello_seconds = 60;   // until the first answer: a sky of millions of texels is read first
     double quiet_seconds = 10;   // without a byte while an answer is due
     double total_seconds = 120;  // for everything; beyond it the program is too slow to judge
     std::size_t longest_line = 4096;

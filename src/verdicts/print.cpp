@@ -86,6 +86,7 @@ std::string verdict_table(const Judgement& judgement, bool all) {
     if (details < summary.size()) out += summary.substr(details + 1);
     for (const Verdict& v : judgement.verdicts)
         if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
+    if (const std::string unseen = unseen_told(judgement); !unseen.empty()) out += "\n" + unseen + "\n";
     const std::string asked =
         judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
     out += fmt::format(

@@ -16,19 +16,36 @@ std::optional<double> TrialDisk::distance(Vec3d wi) const {
     return c / v;
 }
 
-const TrialDisk* TrialLight::first_met(Vec3d wi) const {
-    const TrialDisk* first = nullptr;
-    double nearest = 0;
-    for (const TrialDisk& disk : disks)
-        if (const std::optional<double> d = disk.distance(wi); d && (!first || *d < nearest))
-            first = &disk, nearest = *d;
+std::optional<double> TrialLamp::distance(Vec3d wi) const {
+    const Vec3d here{};
+    return std::visit(
+        [&](const auto& light) -> std::optional<double> {
+            const double t = light.shines_on(here) ? light.body().intersect(here, wi).t : never;
+            return t < never ? std::optional(t) : std::nullopt;
+        },
+        form);
+}
+
+double TrialLamp::power() const {
+    return radiance * std::visit([](const auto& light) { return light.disk_area(); }, form);
+}
+
+std::optional<TrialLight::Met> TrialLight::first_met(Vec3d wi) const {
+    std::optional<Met> first;
+    const auto look = [&](const auto& lights) {
+        for (const auto& light : lights)
+            if (const std::optional<double> d = light.distance(wi); d && (!first || *d < first->distance))
+                first = Met{*d, light.radiance};
+    };
+    look(disks);
+    look(lamps);
     return first;
 }
 
 double TrialLight::operator()(Vec3d wi) const {
     if (wi.z <= 0) return 0;
-    const TrialDisk* disk = first_met(wi);
-    return disk ? disk->radiance : fill;
+    const std::optional<Met> met = first_met(wi);
+    return met ? met->radiance : fill;
 }
 
 std::string Trial::text() const {

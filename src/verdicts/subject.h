@@ -12,6 +12,7 @@
 
 #include "arms/info.h"
 #include "base/vec.h"
+#include "scene/lights/all.h"
 
 namespace crescent::inline verdicts {
 
@@ -127,16 +128,32 @@ struct TrialDisk {
     std::optional<double> distance(Vec3d wi) const;
 };
 
+/// A light of another kind, a ball or a rectangle, as scenes have it; the surface point is at 0. m.
+struct TrialLamp {
+    double radiance = 0;
+    LightKinds::Any form;
+    /// How far wi goes until it meets an emitting side.
+    std::optional<double> distance(Vec3d wi) const;
+    /// What it is worth choosing by, as in scenes: radiance times the area that it shows, over pi.
+    double power() const;
+};
+
 /// Rec. 709, linear.
 /// Channel 0, 1 or 2 of a colour.
 inline double channel_of(Vec3d c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
 inline double luminance(Vec3d c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-/// What shines on the surface: an even fill of the upper hemisphere, and disks that hide it and one another.
+/// What shines on the surface: an even fill of the upper hemisphere, and lights that hide it and one another.
 struct TrialLight {
     double fill = 1;  // radiance
     std::vector<TrialDisk> disks;
-    const TrialDisk* first_met(Vec3d wi) const;
+    std::vector<TrialLamp> lamps{};  // that are no disks
+    bool even() const { return disks.empty() && lamps.empty(); }
+    /// The nearest light that wi meets: how far it is and its radiance.
+    struct Met {
+        double distance, radiance;
+    };
+    std::optional<Met> first_met(Vec3d wi) const;
     /// Radiance from wi.
     double operator()(Vec3d wi) const;
 };

@@ -158,4 +158,19 @@ std::string summary_of(const Judgement& j) {
 
 std::string what_is_wrong(const Judgement& judgement) { return summary_of(judgement); }
 
+std::string unseen_told(const Judgement& judgement) {
+    double integral = 0, bin = 0;
+    for (const Verdict& v : judgement.verdicts) {
+        if (v.state != State::right) continue;
+        integral = std::max(integral, v.evidence.value("unseen", 0.0));
+        bin = std::max(bin, v.evidence.value("unseen_in_one_bin", 0.0));
+    }
+    std::string out;
+    if (integral > 0) out = fmt::format("p that integrates to one but for {:.2g}", integral);
+    if (bin > 0)
+        out += fmt::format(
+            "{}{:.2g} % of the draws too many or too few in one bin", out.empty() ? "" : ", and ", 100 * bin);
+    return out.empty() ? "" : "What is right could hide " + out + ".";
+}
+
 }  // namespace crescent::inline verdicts

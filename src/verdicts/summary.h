@@ -29,6 +29,9 @@ std::vector<Finding> findings_of(const Judgement& judgement);
 std::string told(const Finding& finding);
 /// "Left out: all but valid at 3 of 8 cases (w_o 0 deg, ...). Not looked at: ..."; "" where nothing was.
 std::string left_out_told(const Judgement& judgement);
+/// What those that are right could hide, over all cases: "p that is off from one by less than ..."; "" where nothing
+/// was integrated.
+std::string unseen_told(const Judgement& judgement);
 /// The sentence of a verdict, with what it says of times.
 std::string told(const Verdict& verdict);
 /// The first sentence of a text.

@@ -97,7 +97,7 @@ TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& co
 
 std::size_t TrialContext::affordable(std::size_t wanted, std::size_t keep) const {
     if (!subject.serial()) return wanted;
-    constexpr std::size_t small_change = 75000;  // the warp, conditioning and the least of every integral
+    constexpr std::size_t small_change = 80000;  // the warp, conditioning and the least of every integral
     const std::size_t asked =
         static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep + small_change;
     return std::min(wanted, std::max<std::size_t>(rigour.questions > asked ? rigour.questions - asked : 0, 2000));

@@ -186,6 +186,8 @@ private:
     std::vector<Vec3d> guides_, rims_;
     std::size_t drawn_guides_ = 0;  // the first of the guides
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
+    std::optional<Vec3d> banded_;   // the axis about which p jumps at heights alone
+    std::vector<double> heights_;   // these, as 1 - cos
     double grain_ = 0;
     mutable std::array<std::optional<Integral>, 6> incoming_;   // by Where and even
     mutable std::array<std::optional<Unmet>, 2> unmet_;         // by even
@@ -196,7 +198,7 @@ private:
     void find_guides();
     void find_rims(int technique);
     void add_rims(Density& d) const;
-    std::optional<Density> table_density(int technique) const;
+    std::optional<Density> table_density(int technique);
     std::vector<Rect> cells_of(const Density& d) const;
     void refine_table(int technique, Density& d) const;
     SamplesPerBin witnesses_of(int technique, const Density& d) const;

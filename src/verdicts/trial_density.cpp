@@ -13,6 +13,11 @@ namespace {
 
 struct OutOfQuestions {};
 
+void sort_edges(std::vector<double>& rings) {
+    std::sort(rings.begin(), rings.end());
+    rings.erase(std::unique(rings.begin(), rings.end(), [](double x, double y) { return y - x < 1e-12; }), rings.end());
+}
+
 }  // namespace
 
 void TrialContext::measure_density() {
@@ -44,16 +49,20 @@ void TrialContext::measure_density() {
             density_.push_back(std::move(*table));
             continue;
         }
+        const Vec3d axis = banded_.value_or(n);
         Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations)
-                          : density_about(t, n, true, rigour.evaluations);
+                          : density_about(t, axis, axis.z == 1, rigour.evaluations);
         const double enough = thrifty() ? 8e-5 : 5e-5;
         const std::size_t look = thrifty() ? rigour.evaluations / 3 : rigour.evaluations;  // at other coordinates
-        if (d.mass.error > enough && circle_) {
+        const bool nearly = thrifty() && d.mass.error < 3e-4;  // it is finer cells that are missing
+        if (d.mass.error > enough && circle_ && !nearly) {
             Density other = density_about(t, *circle_, false, look);
             if (other.mass.error < d.mass.error) d = std::move(other);
         }
         if (d.mass.error > enough) {
-            Density other = sharp ? density_about(t, n, true, look) : density_about(t, normalize(peak), false, look);
+            Density other = nearly ? d
+                : sharp            ? density_about(t, n, true, look)
+                                   : density_about(t, normalize(peak), false, look);
             if (other.mass.error < d.mass.error) d = std::move(other);
             if (d.mass.error > 1e-4) {
                 // A program answered for most of the cells so far, which cost nothing now.
@@ -67,7 +76,8 @@ void TrialContext::measure_density() {
                 const SamplesPerBin seen = witnesses_of(t, d);
                 try {
                     other.mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
-                        while_affordable, {tolerance(), affordable(6 * rigour.evaluations, for_later()) + known, 1e-4},
+                        while_affordable,
+                        {tolerance(), affordable(6 * rigour.evaluations, for_later()) + known, thrifty() ? 5e-5 : 1e-4},
                         &seen);
                     if (other.mass.error < d.mass.error) d = std::move(other);
                 } catch (const OutOfQuestions&) {}  // what is known so far stays
@@ -78,22 +88,30 @@ void TrialContext::measure_density() {
             }
         }
         share_nothing(t, d);
-        // A failure needs a second quadrature that confirms it.
-        if (std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se)
+        // A failure needs a second quadrature that confirms it; a sum over bands in which p is constant does not.
+        const bool summed = banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6;
+        if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se)
             d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
 }
 
 /// A density that jumps along heights and azimuths about an axis: the normal, or for a sky any axis of the frame. Its
-/// cells are summed, or sampled where a program would be asked too often.
-std::optional<Density> TrialContext::table_density(int t) const {
+/// cells are summed, or sampled where a program would be asked too often. Where it jumps at heights alone, they become
+/// edges of rings.
+std::optional<Density> TrialContext::table_density(int t) {
+    constexpr std::size_t most_heights = 64;
+    banded_.reset();
     std::vector<Vec3d> axes = {{0, 0, 1}};
     if (traits.wo == Traits::Asked::none) axes.insert(axes.end(), {{0, 1, 0}, {1, 0, 0}});
     for (Vec3d axis : axes) {
         Density d = bins_about(axis, axis.z == 1);
         const Batch g = batch_of(t, d.map);
-        const std::optional<Mesh> mesh = find_mesh(g);
+        const Jumps jumps = find_jumps(g);
+        const std::optional<Mesh> mesh = mesh_of(jumps);
+        if (std::vector<double> heights = heights_of(jumps);
+            !mesh && !banded_ && !heights.empty() && heights.size() <= most_heights)
+            banded_ = axis, heights_ = std::move(heights);
         if (!mesh) continue;
         const SamplesPerBin seen = witnesses_of(t, d);
         const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
@@ -224,9 +242,12 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     }
     if (about_n) {
         for (double rim : {0.9, 0.95, 0.99, 1.0}) d.rings.push_back(rim);  // where n.w is small, samplers stop short
-        std::sort(d.rings.begin(), d.rings.end());
-        d.rings.erase(std::unique(d.rings.begin(), d.rings.end(), [](double x, double y) { return y - x < 1e-12; }),
-            d.rings.end());
+        sort_edges(d.rings);
+    }
+    if (banded_ && length(axis - *banded_) < 1e-12) {
+        for (double height : heights_)
+            if (height > 1e-12 && height < 2 - 1e-9) d.rings.push_back(height);
+        sort_edges(d.rings);
     }
     for (double extra : {2 * d.rings.back(), 8 * d.rings.back(), 64 * d.rings.back()})
         if (!about_n && extra < 1.9) d.rings.push_back(extra);

@@ -9,7 +9,7 @@
 namespace crescent::inline verdicts {
 
 const Integral& TrialContext::incoming(Where where, bool even) const {
-    even = even && (!trial.light.disks.empty() || trial.light.fill != 1);  // the light may be even already
+    even = even && (!trial.light.even() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
     if (!kept)
         kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even)
@@ -22,41 +22,69 @@ namespace {
 using OfLight = TrialContext::OfLight;
 constexpr std::size_t for_confirmation = 90000;  // questions: 30,000 fresh draws with p and f at each
 
-/// Another disk stands before y.
-bool hidden(const TrialLight& light, const TrialDisk& own, Vec3d y) {
+/// Another light stands before that one, which lies at y or where wi meets it.
+template <class Light> bool hidden(const TrialLight& light, const Light& own, Vec3d y) {
     const double far = length(y);
     const Vec3d wi = y * (1 / far);
-    for (const TrialDisk& other : light.disks)
-        if (const std::optional<double> d = other.distance(wi); &other != &own && d && *d < far) return true;
-    return false;
+    const double here = own.distance(wi).value_or(far);
+    const auto before = [&](const auto& lights) {
+        return std::ranges::any_of(lights, [&](const auto& other) {
+            const std::optional<double> d = other.distance(wi);
+            return static_cast<const void*>(&other) != &own && d && *d < here;
+        });
+    };
+    return before(light.disks) || before(light.lamps);
 }
 
-/// Adds int f L cos over what a disk shows, above the fill that it hides; of_light: f cos where it counts.
-void add_disk(Integral& total, const TrialLight& light, const TrialDisk& disk, const OfLight& of_light,
-    double tolerance, std::size_t evaluations) {
-    const Frame<double> frame = frame_about(disk.normal);
-    std::vector<Rect> cells;  // a = (r/R)^2, b = turns: dA = pi R^2 da db
+/// The flat figure in whose directions a light is seen, over the unit square: y(a, b), and dA = area da db, m^2.
+struct Sheet {
+    Vec3d normal{};
+    double area = 0;
+    std::function<Vec3d(Vec2d)> at;
+};
+Sheet sheet_of(const shapes::Disk& disk) {
+    const Frame<double> frame = frame_about(disk.normal);  // a = (r/R)^2, b = turns
+    return {disk.normal, pi * sqr(disk.radius), [disk, frame](Vec2d v) {
+                const double r = disk.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
+                return disk.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
+            }};
+}
+Sheet sheet_of(const shapes::Quad& quad) {
+    const Vec3d across = cross(quad.edge_u, quad.edge_v);
+    return {normalize(across), length(across),
+        [quad](Vec2d v) { return quad.corner + quad.edge_u * v.x + quad.edge_v * v.y; }};
+}
+Sheet sheet_of(const TrialDisk& disk) { return sheet_of(shapes::Disk{disk.center, disk.normal, disk.radius}); }
+Sheet sheet_of(const TrialLamp& lamp) {
+    const Figure seen = std::visit([](const auto& light) { return light.seen_from({}); }, lamp.form);
+    return std::visit([](const auto& figure) { return sheet_of(figure); }, seen);
+}
+
+/// Adds int f L cos over what a light shows, above the fill that it hides; of_light: f cos where it counts.
+template <class Light> void add_light(Integral& total, const TrialLight& light, const Light& own,
+    const OfLight& of_light, double tolerance, std::size_t evaluations) {
+    const Sheet sheet = sheet_of(own);
+    std::vector<Rect> cells;
     for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
-    const double strength = pi * sqr(disk.radius) * (disk.radiance - light.fill);
-    const Integral of_disk = integrate(cells, 1,
+    const double strength = sheet.area * (own.radiance - light.fill);
+    const Integral of_own = integrate(cells, 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Vec3d> wi;
             std::vector<double> per_area;
             for (Vec2d v : at) {
-                const double r = disk.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
-                const Vec3d y = disk.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
+                const Vec3d y = sheet.at(v);
                 wi.push_back(normalize(y));
                 per_area.push_back(
-                    hidden(light, disk, y) ? 0 : std::max(-dot(wi.back(), disk.normal), 0.0) / dot(y, y));
+                    hidden(light, own, y) ? 0 : std::max(-dot(wi.back(), sheet.normal), 0.0) / dot(y, y));
             }
             of_light(wi, out);
             for (std::size_t i = 0; i < out.size(); ++i) out[i] *= per_area[i] * strength;
         },
         {tolerance, evaluations});
-    total.value += of_disk.value;
-    total.error += of_disk.error;
-    total.settled = total.settled && of_disk.settled;
+    total.value += of_own.value;
+    total.error += of_own.error;
+    total.settled = total.settled && of_own.settled;
 }
 
 }  // namespace
@@ -95,10 +123,12 @@ Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const
             },
             {tolerance(), affordable(2 * rigour.evaluations, for_confirmation) / 2});
     }
-    for (const TrialDisk& disk : light.disks)
-        if (!even)
-            add_disk(
-                total, light, disk, of_light, tolerance(), affordable(rigour.evaluations / 2, for_confirmation) / 2);
+    const auto add = [&](const auto& own) {
+        add_light(total, light, own, of_light, tolerance(), affordable(rigour.evaluations / 2, for_confirmation) / 2);
+    };
+    if (even) return total;
+    std::ranges::for_each(light.disks, add);
+    std::ranges::for_each(light.lamps, add);
     return total;
 }
 

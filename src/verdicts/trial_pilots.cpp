@@ -15,13 +15,37 @@ namespace {
 constexpr std::size_t fixed_guides = 768;
 
 /// The axis of the circle on which directions lie: the rim of a cone or a ring, whose jump is then a coordinate line.
-std::optional<Vec3d> axis_of_circle(std::span<const Vec3d> rim) {
+std::optional<Vec3d> axis_of_circle(std::span<const Vec3d> rim, double known_to) {
     const Vec3d p = rim[0], normal = cross(rim[rim.size() / 3] - p, rim[2 * rim.size() / 3] - p);
     if (!(dot(normal, normal) > 1e-12)) return {};
     const Vec3d axis = normalize(normal);
     for (Vec3d w : rim)
-        if (std::fabs(dot(w - p, axis)) > 1e-7) return {};
+        if (std::fabs(dot(w - p, axis)) > known_to) return {};
     return axis;
+}
+
+/// The rim where p ends, to the last digit, about an axis that is known to a rounding; none where p ends elsewhere. p
+/// may have a pole there, and a rounding then hides a thousandth of it.
+std::vector<Vec3d> exact_rim(const TrialContext& work, Vec3d axis, double height) {
+    constexpr std::size_t around = 7;
+    const SphereMap map(axis);
+    std::vector<double> low(around, height * (1 - 1e-4)), high(around, height * (1 + 1e-4));
+    const auto at = [&](std::span<const double> a) {
+        std::vector<Vec3d> out;
+        for (std::size_t k = 0; k < around; ++k)
+            out.push_back(map.direction({a[k], (static_cast<double>(k) + 0.37) / around}));
+        return out;
+    };
+    const std::vector<double> inside = work.any_pdf(at(low)), outside = work.any_pdf(at(high));
+    for (std::size_t k = 0; k < around; ++k)
+        if (!(inside[k] > 0) || outside[k] > 0) return {};
+    std::vector<double> mid(around);
+    for (int step = 0; step < 44; ++step) {
+        for (std::size_t k = 0; k < around; ++k) mid[k] = 0.5 * (low[k] + high[k]);
+        const std::vector<double> p = work.any_pdf(at(mid));
+        for (std::size_t k = 0; k < around; ++k) (p[k] > 0 ? low : high)[k] = mid[k];
+    }
+    return at(low);
 }
 
 }  // namespace
@@ -81,7 +105,17 @@ void TrialContext::find_rims(int technique) {
             const Draw& d = drawn[(side / 2) * 2 * along + 2 * i + side % 2];
             if (d.pdf > 0 && is_finite(d.wi)) rim.push_back(d.wi);
         }
-        if (rim.size() == along) circle_ = axis_of_circle(rim);
+        if (rim.size() < along) continue;
+        constexpr double closely = 1e-7;
+        const std::optional<Vec3d> about = axis_of_circle(rim, std::max(closely, 16 * direction_resolution()));
+        if (!about) continue;
+        const double height = SphereMap(*about).coordinates(rim[0]).x;
+        const std::vector<Vec3d> exact = exact_rim(*this, *about, height);
+        circle_ = exact.empty() ? axis_of_circle(rim, closely) : axis_of_circle(exact, 1e-10);
+        if (exact.empty() || !circle_) continue;
+        const SphereMap map(*circle_);
+        std::erase_if(rims_, [&](Vec3d w) { return std::fabs(map.coordinates(w).x / height - 1) < 1e-5; });
+        rims_.insert(rims_.end(), exact.begin(), exact.end());
     }
 }
 

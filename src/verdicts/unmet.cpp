@@ -103,7 +103,7 @@ Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool e
 }
 
 const Unmet& TrialContext::unmet(bool even) const {
-    even = even && (!trial.light.disks.empty() || trial.light.fill != 1);
+    even = even && (!trial.light.even() || trial.light.fill != 1);
     auto& kept = unmet_[even ? 1 : 0];
     if (!kept) kept = look_for_unmet(*this, first_weights(even), even);
     return *kept;

@@ -19,6 +19,17 @@ std::size_t worst_bin(const std::vector<double>& observed, const std::vector<dou
     return worst;
 }
 
+double unseen_share(const std::vector<double>& expected, double degrees, double draws, double level) {
+    if (!(degrees > 0)) return 1;
+    double low = degrees, high = 2 * degrees + 200;
+    for (int i = 0; i < 40; ++i) {
+        const double mid = 0.5 * (low + high);
+        (chi_squared_p(mid, degrees) > level ? low : high) = mid;
+    }
+    const double fullest = std::max(*std::max_element(expected.begin(), expected.end()), 5.0);
+    return std::min(std::sqrt((low - degrees) * fullest) / draws, 1.0);
+}
+
 void tell_worst(
     Verdict& v, const Density& d, const std::vector<double>& observed, const std::vector<double>& expected) {
     const std::size_t worst = worst_bin(observed, expected), sectors = static_cast<std::size_t>(d.sectors),

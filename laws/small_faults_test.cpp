@@ -1,0 +1,201 @@
+// Faults in a small part of what is drawn, and right samplers that look like them: a sun that pdf(w) does not know, a
+// clamped number, a sliver that is never drawn, a sky of bands that falls short; answers that differ in their last
+// bits.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/right/right.h"
+#include "verdicts/builtin.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/mesh.h"
+
+namespace crescent {
+namespace {
+
+Judgement judged(const Trial& trial, std::uint64_t draws = std::uint64_t{1} << 15) {
+    ProgressMonitor watch;
+    TestSettings rigour;
+    rigour.draws = draws;
+    return judge({&trial, 1}, rigour, watch);
+}
+
+const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no such verdict");
+}
+
+Vec3d spherical(double cos, double turns) { return about({0, 0, 1}, cos, turns); }
+
+Recipe light(const char* name) {
+    Recipe r{name, "", {}, {}, {}};
+    r.traits.wo = Traits::Asked::none;
+    r.pdf = [](Vec3d, Vec3d) { return 1 / (4 * pi); };
+    return r;
+}
+
+Recipe cosine() {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
+    r.sample = [](Vec3d, const Numbers& u) {
+        const Vec3d wi = spherical(std::sqrt(1 - u[0]), u[1]);
+        return Draw{wi, wi.z / pi, {}, {}};
+    };
+    return r;
+}
+
+/// One draw in 1500 goes to a disk of 0.27 degrees that p, which integrates to one, knows nothing of.
+TEST(SmallFaults, ASunThatThePdfDoesNotKnowIsFoundByTheDrawsThatCrowdThere) {
+    Recipe r = light("even, with a sun");
+    r.sample = [](Vec3d, const Numbers& u) {
+        constexpr double share = 1.0 / 1500;
+        if (u[0] < share) return Draw{about(tilt(50, 30), 1 - u[0] / share * 1.1e-5, u[1]), 1 / (4 * pi), {}, {}};
+        return Draw{spherical(1 - 2 * (u[0] - share) / (1 - share), u[1]), 1 / (4 * pi), {}, {}};
+    };
+    const Verdict v = named(judged(trial_of_subject(subject_of(r), 0, 0)), "density");
+    EXPECT_EQ(v.state, State::wrong) << v.say;
+    EXPECT_NE(v.say.find("crowd"), std::string::npos) << v.say;
+    const auto& w = v.evidence.at("clump").at("w");
+    EXPECT_GT(dot(tilt(50, 30), Vec3d{w[0], w[1], w[2]}), 0.9999);
+}
+
+TEST(SmallFaults, ANumberClampedAtOneThousandthPutsARingOfDrawsInOnePlace) {
+    Recipe r = cosine();
+    r.sample = [right = r.sample](Vec3d wo, const Numbers& u) { return right(wo, Vec2d{std::min(u[0], 0.999), u[1]}); };
+    const Verdict v = named(judged(trial_of_subject(subject_of(r), 45, 130)), "density");
+    EXPECT_EQ(v.state, State::wrong) << v.say;
+}
+
+TEST(SmallFaults, ASliverThatIsNeverDrawnMakesTheRestTooDense) {
+    Recipe r = cosine();
+    r.sample = [right = r.sample](Vec3d wo, const Numbers& u) { return right(wo, Vec2d{u[0], u[1] * 359.9 / 360}); };
+    const Verdict v = named(judged(trial_of_subject(subject_of(r), 45, 130)), "identity");
+    EXPECT_EQ(v.state, State::wrong) << v.say;
+    EXPECT_NE(v.say.find("nearly everywhere"), std::string::npos) << v.say;
+}
+
+/// Seven bands of cos theta, of which p says `share`.
+Recipe bands(double share) {
+    static const std::vector<double> edge = {-1, -0.6, -0.1, 0, 0.15, 0.4, 0.8, 1}, height = {.5, 1, 2, 5, 3, 4, 2};
+    double all = 0;
+    for (std::size_t k = 0; k < height.size(); ++k) all += height[k] * (edge[k + 1] - edge[k]);
+    const auto p = [all, share](double z) {
+        std::size_t k = 0;
+        while (k + 1 < height.size() && z >= edge[k + 1]) ++k;
+        return share * height[k] / all / (2 * pi);
+    };
+    Recipe r = light("bands");
+    r.pdf = [p](Vec3d, Vec3d wi) { return p(wi.z); };
+    r.sample = [p, all](Vec3d, const Numbers& u) {
+        double left = u[0] * all;
+        std::size_t k = 0;
+        for (; k + 1 < height.size() && left >= height[k] * (edge[k + 1] - edge[k]); ++k)
+            left -= height[k] * (edge[k + 1] - edge[k]);
+        const Vec3d wi = spherical(std::min(edge[k] + left / height[k], edge[k + 1] - 1e-12), u[1]);
+        return Draw{wi, p(wi.z), {}, {}};
+    };
+    return r;
+}
+
+/// As a program behind a pipe: asked by one thread, and no more than it is worth.
+class AsProgram : public JudgedSampler {
+public:
+    explicit AsProgram(Recipe r) : recipe_(std::move(r)) {}
+    std::string name() const override { return recipe_.family; }
+    Traits traits() const override { return recipe_.traits; }
+    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) out[i] = recipe_.sample(wo, u[i]);
+        answers_ += u.size();
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = recipe_.pdf(at[i].wo, at[i].wi);
+        answers_ += at.size();
+    }
+    Spending spending() const override { return {answers_, 0, 0}; }
+    bool serial() const override { return true; }
+
+private:
+    Recipe recipe_;
+    mutable std::uint64_t answers_ = 0;
+};
+
+TEST(SmallFaults, OfSixInTenThousandAreFoundInASkyOfBandsWithinTheQuestionsOfAProgram) {
+    const Judgement right = judged(trial_of_subject(std::make_shared<AsProgram>(bands(1)), 0, 0), 8192);
+    EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
+    EXPECT_LT(named(right, "normalised").evidence["quadrature_error"].get<double>(), 1e-6);
+    const Judgement wrong = judged(trial_of_subject(std::make_shared<AsProgram>(bands(0.9994)), 0, 0), 8192);
+    EXPECT_EQ(named(wrong, "normalised").state, State::wrong) << named(wrong, "normalised").say;
+}
+
+/// What is right says what it could hide.
+TEST(SmallFaults, ThatWouldNotBeSeenAreSaid) {
+    const Judgement j = judged(trial_of_subject(subject_of(cosine()), 45, 130));
+    EXPECT_GE(named(j, "normalised").evidence["unseen"].get<double>(), 1e-4);
+    const double bin = named(j, "density").evidence["unseen_in_one_bin"].get<double>();
+    EXPECT_GT(bin, 1e-3);
+    EXPECT_LT(bin, 1e-2);
+}
+
+/// The last few of a block by other instructions, as NumPy has it.
+TEST(SmallFaults, AnswersThatDifferInTheirLastBitsAreTheSame) {
+    class Packed : public AsProgram {
+    public:
+        using AsProgram::AsProgram;
+        void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+            AsProgram::sample(t, wo, u, out);
+            for (std::size_t i = 0; i < out.size(); ++i)
+                if (i % 8 < 3) out[i].wi.x *= 1 + 0x1p-52, out[i].pdf *= 1 - 0x1p-52;
+        }
+    };
+    const Judgement j = judged(trial_of_subject(std::make_shared<Packed>(cosine()), 45, 130), 4096);
+    EXPECT_EQ(named(j, "identity").state, State::right) << named(j, "identity").say;
+}
+
+/// A ball hides a part of the rectangle behind it: light by solid angle finds what the quadrature over both finds.
+TEST(LightsOfATrial, ThatAreNoDisksAreAimedAtAndIntegrated) {
+    for (const char* lighting : {"ball", "disk + ball + rectangle"}) {
+        const Stage on = stage(LobeKind::none, true, lighting, 32);
+        const Trial trial = trial_on(on, 45, 130, "light-solid-angle",
+            std::make_shared<BuiltIn<LightSolidAngle>>(on.surface, tilt(45, 130), on.light));
+        const Judgement j = judged(trial);
+        for (const char* name : {"valid", "support", "density", "identity", "mean"})
+            EXPECT_EQ(named(j, name).state, State::right) << lighting << ": " << named(j, name).say;
+        EXPECT_GT(named(j, "mean").evidence["quadrature"].get<double>(), 0.1);
+    }
+    int hidden = 0;
+    const TrialLight light = stage(LobeKind::none, true, "ball + rectangle", 32).light;
+    for (double theta = 0; theta < 90; ++theta)
+        for (double azimuth = 90; azimuth < 180; ++azimuth) {
+            const Vec3d wi = tilt(theta, azimuth);
+            const bool both = light.lamps[0].distance(wi) && light.lamps[1].distance(wi);
+            hidden += both;
+            if (both) EXPECT_EQ(light(wi), light.lamps[0].radiance);
+        }
+    EXPECT_GT(hidden, 50);
+}
+
+/// 16 x 32 texels evenly spaced in theta, g sin theta constant in each; and the same from points at random.
+TEST(Meshes, OfTexelsInThetaAndPhiAreSummedOrSampled) {
+    const auto texel = [](double theta, double b) { return 1 + (int(theta / pi * 16) * 7 + int(b * 32) * 5) % 11; };
+    const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
+        for (std::size_t i = 0; i < at.size(); ++i)
+            out[i] = texel(std::acos(1 - at[i].x), at[i].y) / std::sqrt(at[i].x * (2 - at[i].x));
+    };
+    const std::optional<Mesh> mesh = find_mesh(g);
+    ASSERT_TRUE(mesh);
+    double sum = 0;
+    for (int i = 0; i < 16; ++i)
+        for (int k = 0; k < 32; ++k) sum += texel(pi * (i + 0.5) / 16, (k + 0.5) / 32) * pi / 16 / 32;
+    const double rings[] = {0, 0.31, 1.3, 2};
+    const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->value, sum, 1e-9);
+    const Integral by_points = integrate_by_points(graded_cells(2), 1, g, 200000);
+    EXPECT_NEAR(by_points.value, sum, by_points.error);
+    EXPECT_LT(by_points.error, 0.05 * sum);
+    EXPECT_GT(by_points.error, 1e-4 * sum);
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,130 @@
+// Clumps: draws that crowd where p says that next to none are due, in less room than a bin has. Statistically
+// equivalent blocks (Tukey 1947, "Non-parametric estimation II"): n draws that are cut at one of them after the other,
+// by any rule that looks at no draw inside, leave blocks of which each holds Beta(m, n + 1 - m) of what is drawn,
+// whatever the density is, m - 1 being the draws inside. The last cut of a block is at its highest p: what is left of
+// it holds at most its solid angle times that p, which is known with the draws already.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/distributions.h"
+#include "math/functions.h"
+#include "simd/scalar.h"
+#include "verdicts/ordered.h"
+
+namespace crescent::inline verdicts {
+
+namespace {
+
+constexpr std::size_t fewest = 5;  // draws of a block
+
+struct Spot {
+    double a, b, p;
+};
+
+double theta_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))); }
+
+/// In sr, with what the rounding of directions may add on every side.
+double solid_angle(const Rect& r, double rounding) {
+    const double from = std::max(theta_of(r.a0) - rounding, 0.0), to = std::min(theta_of(r.a1) + rounding, pi);
+    const double height = 2 * (sqr(math::sin(to / 2)) - sqr(math::sin(from / 2)));
+    return 2 * pi * (r.b1 - r.b0) * height + 2 * rounding * (to - from);
+}
+
+/// The least likely of the blocks that it is shown.
+class Search {
+public:
+    Search(double draws, double mass, double rounding) : per_sr_(draws / mass), rounding_(rounding) {}
+    void look(const Rect& r, std::span<const Spot> inside) {
+        if (inside.size() < fewest) return;
+        ++tried_;
+        double highest = 0;
+        for (const Spot& s : inside) highest = std::max(highest, s.p);
+        const double m = static_cast<double>(inside.size()), worth = per_sr_ * highest;
+        if (!(worth * 2 * pi * (r.a1 - r.a0) * (r.b1 - r.b0) < 0.5 * m)) return;
+        const double room = solid_angle(r, rounding_), due = worth * room;
+        const double p = due < 0.5 * m ? math::poisson_tail(due, m) : 1;  // P(Beta(m, n + 1 - m) <= due / n), or more
+        if (p >= least_) return;
+        least_ = p;
+        found_ = {1, m, due, room, {}};
+        at_ = {inside[inside.size() / 2].a, inside[inside.size() / 2].b};
+    }
+    Clump found(const SphereMap& map) const {
+        Clump out = found_;
+        out.p = tried_ > 0 ? std::min(least_ * tried_, 1.0) : 1;  // too few draws for a block
+        out.at = map.direction(at_);
+        return out;
+    }
+
+private:
+    double per_sr_, rounding_, least_ = 1, tried_ = 0;
+    Clump found_;
+    Vec2d at_{};
+};
+
+bool lower(const Spot& x, const Spot& y) { return x.a < y.a; }
+bool before(const Spot& x, const Spot& y) { return x.b < y.b; }
+
+/// Halves the block at its middle draw, across its longer side, down to a few draws.
+void look_at_blocks(const Rect& r, std::span<Spot> inside, Search& search) {
+    constexpr std::size_t most = 1024;  // in larger ones p varies too much
+    if (inside.size() <= most) search.look(r, inside);
+    if (inside.size() <= 2 * fewest) return;
+    const double middle = 0.5 * (r.a0 + r.a1), sin = std::sqrt(std::max(middle * (2 - middle), 1e-12));
+    const bool along_a = (r.a1 - r.a0) / sin > 2 * pi * (r.b1 - r.b0) * sin;
+    const std::size_t half = inside.size() / 2;
+    const auto mid = inside.begin() + static_cast<std::ptrdiff_t>(half);
+    Rect low = r, high = r;
+    if (along_a) {
+        std::nth_element(inside.begin(), mid, inside.end(), lower);
+        low.a1 = high.a0 = mid->a;
+    } else {
+        std::nth_element(inside.begin(), mid, inside.end(), before);
+        low.b1 = high.b0 = mid->b;
+    }
+    look_at_blocks(low, inside.first(half), search);
+    look_at_blocks(high, inside.subspan(half + 1), search);
+}
+
+/// Rings, or sectors, of so many draws each between those they are cut at.
+void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
+    std::sort(spots.begin(), spots.end(), rings ? lower : before);
+    const auto place = [&](std::size_t i) { return rings ? spots[i].a : spots[i].b; };
+    for (std::size_t draws : {2 * fewest, 16 * fewest}) {
+        double from = 0;
+        for (std::size_t i = 0; i + draws < spots.size(); i += draws + 1) {
+            const double to = place(i + draws);
+            search.look(rings ? Rect{from, to, 0, 1, 0} : Rect{0, 2, from, to, 0}, std::span(spots).subspan(i, draws));
+            from = to;
+        }
+    }
+}
+
+}  // namespace
+
+Clump densest_clump(const TrialContext& work, const Density& d, const SampleBatch& b) {
+    std::vector<Spot> spots;
+    spots.reserve(b.draws.size());
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        if (is_null_sample(b.draws[i], b.pdf[i])) continue;
+        const Vec2d at = d.map.coordinates(b.draws[i].wi);
+        spots.push_back({at.x, at.y, b.pdf[i] + work.subject.doubt(b.draws[i].wi)});
+    }
+    const double rounding = 4 * std::max(work.direction_resolution(), 0x1p-24);  // u itself is a multiple of 2^-24
+    Search search(static_cast<double>(spots.size()), d.mass.value, rounding);
+    look_at_blocks({0, 2, 0, 1, 0}, spots, search);
+    for (bool rings : {true, false}) look_at_slices(spots, rings, search);
+    return search.found(d.map);
+}
+
+void tell_clump(Verdict& v, const Clump& c) {
+    v.state = State::wrong;
+    v.evidence["clump"] = {{"w", {c.at.x, c.at.y, c.at.z}}, {"sr", c.room}, {"draws", c.draws}, {"due_at_most", c.due}};
+    v.say = fmt::format(
+        "{:.0f} draws crowd within {:.2g} sr about w = ({:.4g}, {:.4g}, {:.4g}), where p lets {:.2g} be due at most, "
+        "and "
+        "draws crowd again on a fresh seed: something is drawn that p leaves out.",
+        c.draws, c.room, c.at.x, c.at.y, c.at.z, c.due);
+}
+
+}  // namespace crescent::inline verdicts
