@@ -58,6 +58,17 @@ TEST(RightSamplers, WithASkyThatIsInterpolatedInSinglePrecisionAreLeftAlone) {
         }
 }
 
+/// Thousands of texels in one number: only small steps stay within one, where the sphere's curve is no rounding.
+TEST(RightSamplers, WithAnAliasTableOfThousandsOfTexelsAreLeftAlone) {
+    ProgressMonitor watch;
+    for (int rows = 30; rows < 64; ++rows) {
+        Dice dice(static_cast<std::uint64_t>(rows));
+        const auto sky = subject_of(recipe_of(sky_with_sun(dice, rows, 2 * rows, 0.5, true)));
+        const Judgement j = judge(trials_of_subject(sky, false), TestSettings::quick(), watch);
+        EXPECT_EQ(j.state, State::right) << rows << " rows: " << what_is_wrong(j);
+    }
+}
+
 /// What explains a fault is named for four of five planted faults that have such a cause, and never where nothing is
 /// wrong.
 TEST(RightSamplers, HaveNothingThatADiagnosisExplains) {
