@@ -1,6 +1,6 @@
 // What scripts/extending.sh asks of something that was added by the steps of docs/extending.md.
 //   extending SAMPLER BRDF    that the sampler, on a ball with that lobe, has the reference's mean, that no verdict on
-//                             it is other than the list expects, and that both say what they are
+//                             it is other than expected, and that both say what they are
 //   extending --scene TOML    that with these tables added to the scene arms have the reference's mean
 //   extending --measured METER PLATE
 //                             that a check can name the meter, that metrics.json and metrics.csv have it, that the

@@ -38,7 +38,7 @@ struct ExpectedBehaviour {
     std::optional<double> tail_k{};  // Pareto index of f L cos / p
     bool bounded = false;            // the weight has a finite maximum
     std::string underflows{};  // why support may come out wrong: p is less than the smallest double where f is not 0
-    std::optional<std::string> wrong{};  // the verdict that the list expects to be wrong
+    std::optional<std::string> wrong{};  // the verdict that is expected to be wrong
     std::string why{};
 };
 

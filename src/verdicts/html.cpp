@@ -84,7 +84,7 @@ std::string names_of(const Judgement& j) {
 }
 
 std::string expected_html(const Verdict& v) {
-    return fmt::format(" <em>{}: {}.</em>", v.waived ? "Waived" : "As the list expects", escape(v.why_expected));
+    return fmt::format(" <em>{}: {}.</em>", v.waived ? "Waived" : "As expected of this arm", escape(v.why_expected));
 }
 
 /// One line a finding, then every case with its verdicts.

@@ -1,4 +1,4 @@
-// What the list's arms are tried on, and which verdicts the list expects of them.
+// What the built-in arms are tried on, and which verdicts are expected of them.
 #pragma once
 
 #include <map>

@@ -47,8 +47,8 @@ std::string expected_ones(const Judgement& judgement) {
     std::map<std::string, int> lines;  // told once each, with how often
     for (const Verdict& v : judgement.verdicts)
         if (v.expected && !v.why_expected.empty() && v.state != State::right && v.state != State::skipped)
-            ++lines[fmt::format("{}: {} {} as {}: {}", v.arm, word(v.state), v.name,
-                v.waived ? "waived" : "the list expects", v.why_expected)];
+            ++lines[fmt::format(
+                "{}: {} {} as {}: {}", v.arm, word(v.state), v.name, v.waived ? "waived" : "expected", v.why_expected)];
     std::string out = lines.empty() && judgement.unmet.empty() ? "" : "\n";
     for (const auto& [line, count] : lines) out += fmt::format("{} ({} cases)\n", line, count);
     for (const std::string& line : judgement.unmet) out += line + "\n";

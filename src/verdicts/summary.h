@@ -14,7 +14,7 @@ namespace crescent::inline verdicts {
 struct Finding {
     std::string arm, name;
     State state = State::wrong;
-    bool expected = false;  // the list expects it, and why stands in `worst`
+    bool expected = false;  // it is expected, and why stands in `worst`
     std::size_t count = 0, of = 0;
     const char* cases = "w_o";       // what is counted
     const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
