@@ -133,7 +133,8 @@ std::string example(const Key& key) {
         case Type::word: return '"' + key.words.front() + '"';
         case Type::flag: return "true";
         case Type::integer: return "1";
-        case Type::number: return fmt::format("{}", x);
+        case Type::number:
+        case Type::gray: return fmt::format("{}", x);
         case Type::point:
         case Type::color: return "[1, 1, 1]";
         case Type::direction: return "[0, 0.6, 0.8]";

@@ -16,16 +16,16 @@ std::string escaped(std::string_view plain) {
     return text.get();
 }
 
-Canvas::Canvas(int width, int height, const Colour& ground, double scale, Theme theme, Medium medium)
+Canvas::Canvas(int width, int height, const Colour& paper, double scale, Theme theme, Medium medium)
     : width_(width),
       height_(height),
       surface_(std::make_unique<Surface>(width, height, scale, theme, medium)),
       theme_(theme) {
-    clear(ground);
+    clear(paper);
 }
 
-void Canvas::clear(const Colour& ground) {
-    surface_->ink(ground);
+void Canvas::clear(const Colour& paper) {
+    surface_->ink(paper);
     cairo_set_line_join(surface_->cr, CAIRO_LINE_JOIN_MITER);  // polylines leave theirs behind
     cairo_paint(surface_->cr);
     settings_.clear();

@@ -6,9 +6,7 @@ namespace crescent::mathml {
 namespace {
 
 M n_dot_omega(std::string_view index = "") { return paren({mi("n"), mo("⋅"), omega(index)}); }
-M omega_dot_R() { return paren({omega(), mo("⋅"), mi("R")}); }
 M plus_s() { return row({mi("s"), mo("+"), mn("1")}); }
-M two_pi() { return row({mn("2"), mi("π")}); }
 M Y(const M& low) { return sub(mi("Y"), low); }
 M f_r(std::string_view index) { return row({sub(mi("f"), mi("r")), paren({omega(index), mo(","), omega("o")})}); }
 M L_i(std::string_view index) { return row({sub(mi("L"), mi("i")), paren({omega(index)})}); }
