@@ -9,7 +9,6 @@ compare_memory.py" and "end of compare_memory.py". Needs NumPy.
 """
 import argparse
 import os
-import re
 import struct
 import subprocess
 import tempfile
@@ -17,6 +16,8 @@ import time
 import zlib
 
 import numpy as np
+
+from measured_part import write_between
 
 WIDTH, HEIGHT, LINES = 3840, 2160, 16
 
@@ -127,16 +128,8 @@ def main():
             write(f"{work}/renders/{'ab'[k % 2]}{k:02}.exr", render(noise, (0.2, 0.1)[k % 2], k + 1), args.zip)
         text = measured(args, f"{work}/renders", f"{work}/out")
     print(text)
-    if not args.write:
-        return
-    with open(args.write, encoding="utf-8") as file:
-        page = file.read()
-    lines = r"(<!-- measured by compare_memory.py -->\n).*?(<!-- end of compare_memory.py -->)"
-    page, found = re.subn(lines, lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
-    if not found:
-        raise SystemExit(f"{args.write}: no lines 'measured by compare_memory.py' and 'end of compare_memory.py'")
-    with open(args.write, "w", encoding="utf-8") as file:
-        file.write(page)
+    if args.write:
+        write_between(args.write, "compare_memory.py", text)
 
 
 if __name__ == "__main__":

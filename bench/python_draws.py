@@ -6,13 +6,13 @@ Processor time is that of the whole process over all its threads, the best of th
 between the lines of the file that say "measured by python_draws.py" and "end of python_draws.py".
 """
 import argparse
-import re
 import time
 
 import numpy as np
 
 import crescent
 from crescent import _check, _crescent
+from measured_part import write_between
 
 BATCHES = 64  # of 32768
 
@@ -90,16 +90,8 @@ def main():
     args = parser.parse_args()
     text = table(args.repeats)
     print(text)
-    if not args.write:
-        return
-    with open(args.write, encoding="utf-8") as file:
-        page = file.read()
-    lines = r"(<!-- measured by python_draws.py -->\n).*?(<!-- end of python_draws.py -->)"
-    page, found = re.subn(lines, lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
-    if not found:
-        raise SystemExit(f"{args.write}: no lines 'measured by python_draws.py' and 'end of python_draws.py'")
-    with open(args.write, "w", encoding="utf-8") as file:
-        file.write(page)
+    if args.write:
+        write_between(args.write, "python_draws.py", text)
 
 
 if __name__ == "__main__":

@@ -122,13 +122,12 @@ def library_wanted(call: Call, *rows: Array) -> str | None:
     loaded that it does not refuse. What it raises with NumPy's arrays is raised where there is none."""
     try:
         name = library_of(call(*rows))
-        candidates = [name] if name else []
     except Exception as refused:
-        for name in dict.fromkeys(KNOWN.values()):
-            if name in sys.modules and _takes(call, name, rows):
-                return name
+        for loaded in dict.fromkeys(KNOWN.values()):
+            if loaded in sys.modules and _takes(call, loaded, rows):
+                return loaded
         raise refused
-    return next((name for name in candidates if _takes(call, name, rows)), None)
+    return name if name and _takes(call, name, rows) else None
 
 
 def _takes(call: Call, name: str, rows: tuple[Array, ...]) -> bool:

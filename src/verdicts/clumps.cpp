@@ -122,8 +122,7 @@ void tell_clump(Verdict& v, const Clump& c) {
     v.evidence["clump"] = {{"w", {c.at.x, c.at.y, c.at.z}}, {"sr", c.room}, {"draws", c.draws}, {"due_at_most", c.due}};
     v.say = fmt::format(
         "{:.0f} draws crowd within {:.2g} sr about w = ({:.4g}, {:.4g}, {:.4g}), where p lets {:.2g} be due at most, "
-        "and "
-        "draws crowd again on a fresh seed: something is drawn that p leaves out.",
+        "and draws crowd again on a fresh seed: something is drawn that p leaves out.",
         c.draws, c.room, c.at.x, c.at.y, c.at.z, c.due);
 }
 

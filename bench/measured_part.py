@@ -1,0 +1,15 @@
+"""A page's part that a program measures: what stands between its two lines."""
+import re
+
+
+def write_between(path, program, text):
+    """Puts `text` between the lines of `path` that say "measured by PROGRAM" and "end of PROGRAM"."""
+    with open(path, encoding="utf-8") as file:
+        page = file.read()
+    name = re.escape(program)
+    lines = rf"(<!-- measured by {name} -->\n).*?(<!-- end of {name} -->)"
+    page, found = re.subn(lines, lambda m: m[1] + text + "\n" + m[2], page, flags=re.S)
+    if not found:
+        raise SystemExit(f"{path}: no lines 'measured by {program}' and 'end of {program}'")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(page)
