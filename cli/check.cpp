@@ -91,7 +91,7 @@ std::string shortest(double v) {
     return text;
 }
 
-TestSettings rigour_of(const CheckFlags& flags) {
+TestSettings test_settings_of(const CheckFlags& flags) {
     TestSettings r = flags.full ? TestSettings::thorough() : TestSettings::quick();
     if (!(flags.alpha > 0 && flags.alpha < 1)) throw InputError({"--alpha", 0, 0}, "is between 0 and 1");
     r.alpha = flags.alpha;
@@ -194,13 +194,13 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
 namespace {
 
 /// How much a program will be asked, before it is asked for an hour.
-void tell_cost(std::span<const Trial> trials, const TestSettings& rigour, ProgressMonitor& watch) {
+void tell_cost(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& watch) {
     std::size_t judged = 0;
     bool program = false;
     for (const Trial& t : trials) judged += !t.baseline, program = program || t.subject->serial();
-    if (!program || !rigour.full) return;
-    watch.say(fmt::format(
-        "--full asks at most {} questions: {} at each of {} w_o", judged * rigour.questions, rigour.questions, judged));
+    if (!program || !settings.full) return;
+    watch.say(fmt::format("--full asks at most {} questions: {} at each of {} w_o", judged * settings.questions,
+        settings.questions, judged));
 }
 
 /// B on the trials of A: a built-in arm by its name, or a program.
@@ -227,7 +227,7 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
 int check_against(
     const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& watch) {
     std::erase_if(a, [](const Trial& t) { return t.baseline; });
-    Judgement j = judge_against(a, others_of(flags, a, watch), rigour_of(flags), same, watch);
+    Judgement j = judge_against(a, others_of(flags, a, watch), test_settings_of(flags), same, watch);
     if (!waivers.empty()) waive(j, waivers);
     watch.clear();
     print(against_text(j));
@@ -253,8 +253,8 @@ int check(const CheckFlags& flags) {
         const std::vector<Trial> trials = trials_for(flags, watch);
         check_waivers(waivers, names_of(trials));
         if (!flags.against.empty()) return check_against(flags, trials, waivers, same, watch);
-        tell_cost(trials, rigour_of(flags), watch);
-        j = judge(trials, rigour_of(flags), watch);
+        tell_cost(trials, test_settings_of(flags), watch);
+        j = judge(trials, test_settings_of(flags), watch);
     } catch (const SubjectFault& fault) { j = complaint(fault, flags); }
     if (!waivers.empty()) waive(j, waivers);
     watch.clear();

@@ -7,7 +7,7 @@
 
 namespace crescent::cli {
 
-TestSettings rigour_of(const CheckFlags& flags);
+TestSettings test_settings_of(const CheckFlags& flags);
 int exit_of(State state);
 /// The same, where the caller may allow what is inconclusive.
 int exit_of(State state, const CheckFlags& flags);

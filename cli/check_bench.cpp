@@ -40,7 +40,7 @@ int check_planted(const CheckFlags& flags, Progress& watch) {
     j.alpha = flags.alpha;
     std::string text;
     for (const PlantedFault& fault : planted_faults(flags.full)) {
-        const std::string caught = catchers(judge(fault.trials, rigour_of(flags), watch));
+        const std::string caught = catchers(judge(fault.trials, test_settings_of(flags), watch));
         j.verdicts.push_back(caught_or_not(fault, caught));
         j.as_expected = j.as_expected && !caught.empty();
         char line[256];
@@ -66,10 +66,10 @@ std::string right_tables(const CheckFlags& flags, ProgressMonitor& watch, bool& 
     std::string out =
         "Samplers of many families, the parameters and w_o of each drawn at random, each judged by a call of its "
         "own.\n";
-    for (TestSettings rigour : {TestSettings::quick(), TestSettings::thorough()}) {
-        rigour.alpha = flags.alpha;
-        rigour.seed = flags.seed;
-        const RightLaw law = measure_right(flags.first, flags.right, rigour, watch);
+    for (TestSettings settings : {TestSettings::quick(), TestSettings::thorough()}) {
+        settings.alpha = flags.alpha;
+        settings.seed = flags.seed;
+        const RightLaw law = measure_right(flags.first, flags.right, settings, watch);
         for (const std::string& text : law.said) watch.say(text);
         out += (law.full ? "\n### Full mode\n\n" : "\n### Quick mode\n\n") + right_law_text(law);
         kept = kept && keeps_promise(law);
@@ -89,9 +89,9 @@ std::string command_of_rates(const CheckFlags& f) {
 }  // namespace
 
 int check_error_rates(const CheckFlags& flags, ProgressMonitor& watch) {
-    TestSettings rigour = rigour_of(flags);
-    rigour.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
-    const FalseAlarms alarms = measure_false_alarms(flags.error_rates, rigour, watch);
+    TestSettings settings = test_settings_of(flags);
+    settings.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
+    const FalseAlarms alarms = measure_false_alarms(flags.error_rates, settings, watch);
     bool kept = rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha;
     const std::string law = right_tables(flags, watch, kept);
     std::vector<Caught> table;
@@ -115,7 +115,7 @@ int check_error_rates(const CheckFlags& flags, ProgressMonitor& watch) {
 }
 
 int check_right(const CheckFlags& flags, ProgressMonitor& watch) {
-    const RightLaw law = measure_right(flags.first, flags.right, rigour_of(flags), watch);
+    const RightLaw law = measure_right(flags.first, flags.right, test_settings_of(flags), watch);
     std::string text;
     for (const std::string& line : law.said) text += line;
     print(text + right_law_text(law));

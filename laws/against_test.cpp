@@ -25,10 +25,10 @@ std::vector<Trial> trials(const std::string& arm, const std::string& brdf, doubl
 Judgement against(std::span<const Trial> a, std::span<const Trial> b, bool expect_same = false, std::uint32_t seed = 1,
     std::uint64_t draws = 8192) {
     ProgressMonitor watch;
-    TestSettings rigour;
-    rigour.draws = draws;
-    rigour.seed = seed;
-    return judge_against(a, b, rigour, expect_same, watch);
+    TestSettings settings;
+    settings.draws = draws;
+    settings.seed = seed;
+    return judge_against(a, b, settings, expect_same, watch);
 }
 
 TEST(Against, ItselfNothingIsToldApart) {

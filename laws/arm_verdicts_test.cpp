@@ -187,10 +187,10 @@ TEST(Verdicts, CallAProgramTooSlowRatherThanWrong) {
     limits.total_seconds = 0.5;
     const std::string slow =
         "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
-    TestSettings rigour;
+    TestSettings settings;
     ProgressMonitor watch;
-    rigour.accept_few = true;  // few, not none
-    const Judgement j = judge(trials_of_subject(start_pipe(slow, limits), false), rigour, watch);
+    settings.accept_few = true;  // few, not none
+    const Judgement j = judge(trials_of_subject(start_pipe(slow, limits), false), settings, watch);
     EXPECT_EQ(j.state, State::inconclusive);
     EXPECT_EQ(j.left_out.size(), 8u);
     for (const Verdict& v : j.verdicts) EXPECT_EQ(v.state, State::inconclusive) << v.name << v.say;

@@ -14,9 +14,10 @@ TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
     const std::vector<PlantedFault> faults = held_out_faults();
     EXPECT_GE(faults.size(), 20u);
     for (const PlantedFault& fault : faults) {
-        TestSettings rigour;
-        rigour.draws = 16384;
-        const Judgement j = judge(std::span(fault.trials).subspan(1, 1), rigour, watch);  // one w_o shows each of them
+        TestSettings settings;
+        settings.draws = 16384;
+        const Judgement j =
+            judge(std::span(fault.trials).subspan(1, 1), settings, watch);  // one w_o shows each of them
         EXPECT_EQ(j.state, State::wrong) << fault.name;
         const Explained e = explained(fault, j);
         with += !e.cause.empty();

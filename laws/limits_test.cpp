@@ -18,9 +18,9 @@ Judgement at_a_few(const std::string& arm, const Settings& settings) {
     std::vector<Trial> trials = trials_of(arm, settings, false);
     std::erase_if(trials, [](const Trial& t) { return t.theta_deg != 45 && t.theta_deg != 89; });
     ProgressMonitor watch;
-    TestSettings rigour = TestSettings::quick();
-    rigour.draws /= 4;
-    return judge(trials, rigour, watch);
+    TestSettings few = TestSettings::quick();
+    few.draws /= 4;
+    return judge(trials, few, watch);
 }
 
 bool reads(const std::string& arm, const Settings& settings) {
@@ -88,10 +88,10 @@ TEST(Limits, AccuseASamplerThatLeavesOutWhatItClaims) {
         if (v.name == "mean" || v.name == "physics") EXPECT_EQ(v.state, State::wrong) << v.name << ": " << v.say;
 }
 
-Judgement judged(std::shared_ptr<const JudgedSampler> subject, TestSettings rigour) {
+Judgement judged(std::shared_ptr<const JudgedSampler> subject, TestSettings settings) {
     ProgressMonitor watch;
     const Trial trial = trial_of_subject(subject, 45, 130);
-    return judge({&trial, 1}, rigour, watch);
+    return judge({&trial, 1}, settings, watch);
 }
 
 /// One verdict after the other is brought to where it cannot tell.

@@ -112,10 +112,10 @@ TEST(OwnSamplers, AreTimedInTurnsWhileNothingElseIsAsked) {
     std::vector<Logged::Call> calls;
     std::vector<Trial> trials;
     for (int i = 0; i < 4; ++i) trials.push_back(trial_of_subject(std::make_shared<Logged>(lock, calls), 15.0 * i, 0));
-    TestSettings rigour;
-    rigour.draws = 4096;
+    TestSettings settings;
+    settings.draws = 4096;
     ProgressMonitor watch;
-    judge(trials, rigour, watch);
+    judge(trials, settings, watch);
     std::sort(calls.begin(), calls.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
     ASSERT_GT(calls.size(), 28u);
     for (std::size_t i = calls.size() - 28; i < calls.size(); ++i) {

@@ -13,10 +13,10 @@ namespace {
 
 Judgement judged(const Recipe& recipe, double theta = 45) {
     ProgressMonitor watch;
-    TestSettings rigour;
-    rigour.draws = 8192;
+    TestSettings settings;
+    settings.draws = 8192;
     const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
-    return judge({&trial, 1}, rigour, watch);
+    return judge({&trial, 1}, settings, watch);
 }
 
 const Verdict& named(const Judgement& j, std::string_view name) {

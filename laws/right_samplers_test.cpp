@@ -25,9 +25,9 @@ TEST(RightSamplers, OfEveryFamilyAreLeftAloneInQuickMode) {
 
 TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
     ProgressMonitor watch;
-    TestSettings rigour = TestSettings::thorough();
-    rigour.draws /= 8;  // as full mode integrates, with fewer draws
-    const RightLaw law = measure_right(1000, 20, rigour, watch);
+    TestSettings settings = TestSettings::thorough();
+    settings.draws /= 8;  // as full mode integrates, with fewer draws
+    const RightLaw law = measure_right(1000, 20, settings, watch);
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
@@ -38,10 +38,10 @@ TEST(RightSamplers, WithAnisotropicVisibleNormalsAreLeftAlone) {
     const Judgement quick = judge(trials_of_subject(subject, false), TestSettings::quick(), watch);
     EXPECT_EQ(quick.state, State::right) << what_is_wrong(quick);
     for (std::uint32_t seed : {2u, 3u}) {
-        TestSettings rigour = TestSettings::thorough();
-        rigour.seed = seed;
+        TestSettings settings = TestSettings::thorough();
+        settings.seed = seed;
         const Trial trial = trial_of_subject(subject, 60, 250);
-        const Judgement full = judge({&trial, 1}, rigour, watch);
+        const Judgement full = judge({&trial, 1}, settings, watch);
         EXPECT_EQ(full.state, State::right) << what_is_wrong(full);
     }
 }
@@ -51,9 +51,9 @@ TEST(RightSamplers, WithASkyThatIsInterpolatedInSinglePrecisionAreLeftAlone) {
     ProgressMonitor watch;
     for (const auto& [cells, sun] : {std::pair{16, 5.0}, {8, 0.5}, {32, 40.0}})
         for (std::uint32_t seed : {1u, 2u}) {
-            TestSettings rigour = TestSettings::quick();
-            rigour.seed = seed;
-            const Judgement j = judge(trials_of_subject(subject_of(smooth_sky(cells, sun)), false), rigour, watch);
+            TestSettings settings = TestSettings::quick();
+            settings.seed = seed;
+            const Judgement j = judge(trials_of_subject(subject_of(smooth_sky(cells, sun)), false), settings, watch);
             EXPECT_EQ(j.state, State::right) << cells << " cells, seed " << seed << ": " << what_is_wrong(j);
         }
 }

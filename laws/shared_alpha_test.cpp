@@ -18,7 +18,7 @@ TEST(SharedAlpha, TheSharesOfAllTestsComeToAlphaAtMost) {
 
 TEST(SharedAlpha, WithoutItAMatcherHasItsAlphaForItself) {
     EXPECT_EQ(shared_alpha(), nullptr);
-    EXPECT_EQ(shared_rigour().alpha, TestSettings::quick().alpha);
+    EXPECT_EQ(shared_settings().alpha, TestSettings::quick().alpha);
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace {
 
 Judgement judged(const Trial& trial, std::uint64_t draws = std::uint64_t{1} << 15) {
     ProgressMonitor watch;
-    TestSettings rigour;
-    rigour.draws = draws;
-    return judge({&trial, 1}, rigour, watch);
+    TestSettings settings;
+    settings.draws = draws;
+    return judge({&trial, 1}, settings, watch);
 }
 
 const Verdict& named(const Judgement& j, std::string_view name) {

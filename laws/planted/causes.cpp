@@ -66,13 +66,13 @@ Explained explained(const PlantedFault& fault, const Judgement& judgement) {
 }
 
 std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uint32_t seed, std::string& told) {
-    TestSettings rigour = TestSettings::quick();
-    rigour.seed = seed;
+    TestSettings settings = TestSettings::quick();
+    settings.seed = seed;
     std::size_t found = 0;
     for (std::size_t i = first; i < first + count; ++i) {
         TestCounts tally;
         const Trial trial = right_trial(i, seed);
-        TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(i));
+        TrialContext work(trial, settings, tally, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (const std::optional<Diagnosis>& what : {diagnose_density(work, 0), diagnose_identity(work, 0)}) {
             if (!what) continue;

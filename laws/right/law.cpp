@@ -25,11 +25,11 @@ RightLaw measure_right(std::uint64_t first, std::uint64_t count, const TestSetti
     watch.begin("right samplers", static_cast<double>(count));
     oneapi::tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
         watch.check();
-        TestSettings rigour = given;
-        rigour.seed = seed_of(given.seed, static_cast<std::uint32_t>(first + i));
+        TestSettings settings = given;
+        settings.seed = seed_of(given.seed, static_cast<std::uint32_t>(first + i));
         const Trial trial = right_trial(first + i, given.seed);
         ProgressMonitor inner;
-        all[i] = judge({&trial, 1}, rigour, inner);
+        all[i] = judge({&trial, 1}, settings, inner);
         watch.advance(1);
     });
     RightLaw law;

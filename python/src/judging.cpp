@@ -60,7 +60,7 @@ struct Judged {
     bool against = false;
 };
 
-TestSettings rigour_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
+TestSettings settings_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
     if (!(alpha > 0 && alpha < 1))
         throw nb::value_error(fmt::format("alpha is {:g}: expected a number between 0 and 1", alpha).c_str());
     TestSettings r = full ? TestSettings::thorough() : TestSettings::quick();
@@ -81,19 +81,19 @@ bool is_serial(const Trials& trials) {
 
 Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
     bool expect_same, int threads, const std::string& command, const nb::object& progress) {
-    const TestSettings rigour = rigour_of(alpha, seed, full, accept_few);
+    const TestSettings settings = settings_of(alpha, seed, full, accept_few);
     PolledMonitor watch;
     Raised raised(watch);
     Judged out{{}, {version(), commit(), command}, other != nullptr};
     const auto work = [&] {
         if (!other) {
-            out.judgement = judge(trials.all, rigour, watch);
+            out.judgement = judge(trials.all, settings, watch);
             return;
         }
         std::vector<Trial> a = trials.all, b = other->all;
         for (std::vector<Trial>* side : {&a, &b}) std::erase_if(*side, [](const Trial& t) { return t.baseline; });
         if (other->subject) b = sampler_against(other->subject, a);
-        out.judgement = judge_against(a, b, rigour, expect_same, watch);
+        out.judgement = judge_against(a, b, settings, expect_same, watch);
     };
     const bool serial = is_serial(trials) || (other && is_serial(*other));
     tell(trials, &raised);

@@ -125,9 +125,9 @@ inline Vec openpbr_get_sum_of_diffuse_specular(const Value& v) {
 namespace {
 
 crescent::TestSettings few() {
-    crescent::TestSettings rigour;
-    rigour.wo = {{30, 0}, {75, 310}};
-    return rigour;
+    crescent::TestSettings settings;
+    settings.wo = {{30, 0}, {75, 310}};
+    return settings;
 }
 
 template <class Sampler> void expect(const Sampler& sampler, crescent::State state) {

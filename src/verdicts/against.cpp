@@ -174,9 +174,9 @@ Verdict variance(const TrialContext& a, const TrialContext& b) {
     return v;
 }
 
-std::vector<Verdict> compare_one(const Trial& ta, const Trial& tb, std::uint32_t index, const TestSettings& rigour,
+std::vector<Verdict> compare_one(const Trial& ta, const Trial& tb, std::uint32_t index, const TestSettings& settings,
     bool expect_same, TestCounts& tally) {
-    TrialContext a(ta, rigour, tally, index), b(tb, rigour, tally, index + other_stream);
+    TrialContext a(ta, settings, tally, index), b(tb, settings, tally, index + other_stream);
     a.measure_density();
     b.measure_density();
     std::vector<Verdict> out = {same_distribution(a, b, expect_same), same_f(a, b), variance(a, b)};
@@ -192,15 +192,15 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
         for (const Trial& t : trials)
             if (!t.subject->traits().has_pdf)
                 throw InputError({t.arm, 0, 0}, "has no pdf(w), which two samplers are held against each other by");
-    TestSettings rigour = given;
-    rigour.share(3 * a.size());
+    TestSettings settings = given;
+    settings.share(3 * a.size());
     TestCounts tally;
     watch.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
     const auto one = [&](std::size_t i) {
         watch.check();
         try {
-            all[i] = compare_one(a[i], b[i], static_cast<std::uint32_t>(i), rigour, expect_same, tally);
+            all[i] = compare_one(a[i], b[i], static_cast<std::uint32_t>(i), settings, expect_same, tally);
         } catch (const SubjectFault& fault) {
             const Cut cut = cut_by(fault);
             for (const char* name : {"same_distribution", "same_f", "variance"}) {
@@ -223,7 +223,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
         for (std::size_t i = 0; i < a.size(); ++i) one(i);
     else parallel_for(std::size_t{0}, a.size(), one);
     Judgement out;
-    out.alpha = rigour.alpha;
+    out.alpha = settings.alpha;
     out.tests = tally.tests;
     out.screened = tally.screened;
     out.confirmed = tally.confirmed;

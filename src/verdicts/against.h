@@ -12,7 +12,7 @@
 namespace crescent::inline verdicts {
 
 /// Trials of A and of B, one for one. expect_same: a difference in distribution is wrong, not only told.
-Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& rigour,
+Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& settings,
     bool expect_same, ProgressMonitor& watch);
 
 /// Built-in arm `name` on the surface, light and w_o of each of these trials; with A's f where A is not built in.

@@ -96,7 +96,7 @@ std::vector<int> choosers_of(
 Branches follow_branches(const TrialContext& work, int technique, std::span<const Numbers> all) {
     Branches out;
     out.share.assign(all.size(), 0.0);
-    const std::span<const Numbers> at = all.first(std::min<std::size_t>(all.size(), work.rigour.full ? 512 : 128));
+    const std::span<const Numbers> at = all.first(std::min<std::size_t>(all.size(), work.settings.full ? 512 : 128));
     std::vector<Draw> there(at.size());
     work.subject.sample(technique, work.trial.wo, at, there);
     const std::vector<int> choosers = choosers_of(work, technique, at, there);

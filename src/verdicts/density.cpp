@@ -175,7 +175,7 @@ Verdict judge(TrialContext& work) {
         v.evidence["pools" + tag] = f.joint.pools;
         v.evidence["empty_bins" + tag] = f.joint.empty;
         v.evidence["drawn_in_empty_bins" + tag] = f.joint.empty_observed;
-        if (work.rigour.pictures && t == 0)
+        if (work.settings.pictures && t == 0)
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d),
                 static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected, d.rings});
         std::optional<Fit> fresh;
@@ -204,7 +204,7 @@ Verdict judge(TrialContext& work) {
             return v;
         }
         v.evidence["unseen_in_one_bin" + tag] =
-            unseen_share(f.expected, f.joint.degrees, static_cast<double>(draws), work.rigour.screen);
+            unseen_share(f.expected, f.joint.degrees, static_cast<double>(draws), work.settings.screen);
         v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).", draws,
             f.joint.statistic, f.joint.degrees, f.joint.p, coordinates(d));
         if (f.joint.pools < 2) {

@@ -60,11 +60,11 @@ std::optional<double> time_once(
 
 }  // namespace
 
-void measure_costs(std::span<const Trial> trials, const TestSettings& rigour, std::span<Efficiency> all,
+void measure_costs(std::span<const Trial> trials, const TestSettings& settings, std::span<Efficiency> all,
     const ProgressMonitor& watch) {
     constexpr std::size_t turns = 7, most = 2048, of_a_program = 512;
     std::vector<Numbers> u(most);
-    for (std::size_t i = 0; i < most; ++i) u[i] = drawn_numbers(seed_of(rigour.seed, 0), 0, i, 0, Numbers::most);
+    for (std::size_t i = 0; i < most; ++i) u[i] = drawn_numbers(seed_of(settings.seed, 0), 0, i, 0, Numbers::most);
     std::vector<std::vector<double>> times(all.size());
     std::vector<Draw> draws(most);
     for (std::size_t turn = 0; turn < turns; ++turn)

@@ -44,17 +44,17 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
     std::vector<Trial> trials;
     for (Trial& t : trials_of("", {}, false))
         if (is_right(t)) trials.push_back(std::move(t));
-    TestSettings rigour = given;
-    rigour.share(count_tests(trials));
+    TestSettings settings = given;
+    settings.share(count_tests(trials));
     TestCounts tally;
     std::vector<std::atomic<int>> alarms(seeds);
     watch.begin("false alarms", static_cast<double>(trials.size() * seeds));
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
-        TrialContext work(trials[i], rigour, tally, static_cast<std::uint32_t>(i));
+        TrialContext work(trials[i], settings, tally, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (std::uint64_t k = 0; k < seeds; ++k) {
             watch.check();
-            work.redraw(seed_of(rigour.seed, static_cast<std::uint32_t>(k)));
+            work.redraw(seed_of(settings.seed, static_cast<std::uint32_t>(k)));
             if (const std::optional<Verdict> v = accusation(work)) {
                 ++alarms[k];
                 watch.say(fmt::format("seed {}: {} [{}] {}: {}", k, v->arm, v->trial, v->name, v->say));
@@ -65,12 +65,12 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
     FalseAlarms out;
     out.seeds = seeds;
     out.trials = trials.size();
-    out.draws = rigour.draws;
+    out.draws = settings.draws;
     out.tests = tally.tests;
     out.screened = tally.screened;
     out.confirmed = tally.confirmed;
-    out.alpha = rigour.alpha;
-    out.screen = rigour.screen;
+    out.alpha = settings.alpha;
+    out.screen = settings.screen;
     for (const auto& a : alarms) out.calls += a > 0;
     return out;
 }

@@ -21,22 +21,22 @@ namespace crescent::inline verdicts {
 
 /// EXPECT_THAT(MySampler{}, crescent::IsARightSampler()): every verdict is right or was skipped.
 MATCHER(IsARightSampler, negation ? "is not a right sampler" : "is a right sampler") {
-    const Judgement j = judge_sampler("sampler", arg, shared_rigour());
+    const Judgement j = judge_sampler("sampler", arg, shared_settings());
     if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);
     return j.state == State::right;
 }
 
 /// The same where inconclusive verdicts pass too.
 MATCHER(IsNotAWrongSampler, negation ? "is a wrong sampler" : "is not a wrong sampler") {
-    const Judgement j = judge_sampler("sampler", arg, shared_rigour());
+    const Judgement j = judge_sampler("sampler", arg, shared_settings());
     if (j.state == State::wrong) *result_listener << "\n" << what_is_wrong(j);
     return j.state != State::wrong;
 }
 
 /// With levels, draws and seed of one's own: EXPECT_THAT(MySampler{},
 /// crescent::IsARightSamplerBy(crescent::TestSettings::thorough())).
-MATCHER_P(IsARightSamplerBy, rigour, negation ? "is not a right sampler" : "is a right sampler") {
-    const Judgement j = judge_sampler("sampler", arg, shared_rigour(rigour));
+MATCHER_P(IsARightSamplerBy, settings, negation ? "is not a right sampler" : "is a right sampler") {
+    const Judgement j = judge_sampler("sampler", arg, shared_settings(settings));
     if (j.state != State::right) *result_listener << "\n" << what_is_wrong(j);
     return j.state == State::right;
 }

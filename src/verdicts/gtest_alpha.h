@@ -60,13 +60,13 @@ inline SharedAlpha& share_alpha(double alpha = 1e-3) {
     testing::AddGlobalTestEnvironment(shared);
     return *(shared_alpha() = shared);
 }
-/// `rigour` with the share of alpha that the running test's next sampler has.
-inline TestSettings shared_rigour(TestSettings rigour = TestSettings::quick()) {
+/// `settings` with the share of alpha that the running test's next sampler has.
+inline TestSettings shared_settings(TestSettings settings = TestSettings::quick()) {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
     if (shared_alpha() && test)
-        rigour.alpha = shared_alpha()->next(std::string(test->test_suite_name()) + "." + test->name(),
+        settings.alpha = shared_alpha()->next(std::string(test->test_suite_name()) + "." + test->name(),
             testing::UnitTest::GetInstance()->test_to_run_count());
-    return rigour;
+    return settings;
 }
 
 }  // namespace crescent::inline verdicts

@@ -56,7 +56,7 @@ Verdict implied_density(TrialContext& work, Verdict v) {
         v.evidence["implied_density"] = {{"columns", {"wix", "wiy", "wiz", "pdf"}}, {"rows", std::move(of_warp)}};
     v.evidence["implied_bins"] = {
         {"columns", {"cos_theta", "phi", "pdf", "standard_error"}}, {"rows", std::move(rows)}};
-    if (work.rigour.pictures)
+    if (work.settings.pictures)
         work.maps.push_back({work.trial.arm, work.trial.text(), "cos theta x phi about n",
             static_cast<int>(d.rings.size()) - 1, d.sectors, seen, seen});
     v.state = State::skipped;

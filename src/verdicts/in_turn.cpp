@@ -29,23 +29,23 @@ std::vector<std::size_t> order_of(std::span<const Trial> trials) {
 }
 
 /// `valid` from a few draws.
-Outcome look(const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally) {
+Outcome look(const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally) {
     Outcome out;
     try {
-        TrialContext work(trial, rigour, tally, static_cast<std::uint32_t>(index));
+        TrialContext work(trial, settings, tally, static_cast<std::uint32_t>(index));
         out.verdicts.push_back(kinds::valid.judge(work));
     } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
 }
 
-Cut left_out(const Trial& trial, const TestSettings& rigour) {
+Cut left_out(const Trial& trial, const TestSettings& settings) {
     const double seconds = trial.subject->spending().allowed;
     const std::string say = fmt::format(
         "Not looked at: {:g} s are too short for this program to be asked everything at every w_o. {} --accept-few "
         "judges by what was looked at.",
         seconds,
-        rigour.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you say;");
-    return {rigour.accept_few ? State::skipped : State::inconclusive, say, say, {}};
+        settings.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you say;");
+    return {settings.accept_few ? State::skipped : State::inconclusive, say, say, {}};
 }
 
 /// The dearest trial so far tells what the next one may cost; the first is tried in any case.
@@ -57,19 +57,19 @@ bool affords(const Spending& now, std::uint64_t dearest) {
 
 /// What one w_o may be asked: what is left, less nine tenths of an even share for each of those still to come. What one
 /// does not need the next may have.
-std::size_t share_of(const TestSettings& rigour, std::size_t count, std::uint64_t asked, std::size_t to_come) {
+std::size_t share_of(const TestSettings& settings, std::size_t count, std::uint64_t asked, std::size_t to_come) {
     constexpr std::size_t enough = 333000;  // of the even share, where more w_o are asked for than the grid has
-    const std::size_t all = std::max(rigour.questions_in_all, count * enough) / 40 * 39, each = all / 10 * 9 / count;
+    const std::size_t all = std::max(settings.questions_in_all, count * enough) / 40 * 39, each = all / 10 * 9 / count;
     const std::size_t kept = asked + to_come * each;
-    return std::min(rigour.questions, std::max(all > kept ? all - kept : 0, each));
+    return std::min(settings.questions, std::max(all > kept ? all - kept : 0, each));
 }
 
 }  // namespace
 
 std::vector<Outcome> judge_in_turn(
-    std::span<const Trial> trials, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
-    TestSettings quick_look = rigour;
-    quick_look.draws = std::min(rigour.draws, few_draws);
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& watch) {
+    TestSettings quick_look = settings;
+    quick_look.draws = std::min(settings.draws, few_draws);
     quick_look.pictures = false;
     std::vector<Outcome> outcomes(trials.size()), looks(trials.size());
     const std::vector<std::size_t> order = order_of(trials);
@@ -84,17 +84,17 @@ std::vector<Outcome> judge_in_turn(
     for (std::size_t i : order) {
         watch.check();
         const Spending before = trials[i].subject->spending();
-        TestSettings here = rigour;
-        if (!trials[i].baseline) here.questions = share_of(rigour, count, before.answers, --to_come);
+        TestSettings here = settings;
+        if (!trials[i].baseline) here.questions = share_of(settings, count, before.answers, --to_come);
         if (looks[i].cut || !affords(before, trials[i].baseline ? 0 : dearest)) {
             outcomes[i] = std::move(looks[i]);
             const bool slow = !outcomes[i].cut || outcomes[i].cut->state == State::inconclusive;
-            if (slow) outcomes[i].cut = left_out(trials[i], rigour);
+            if (slow) outcomes[i].cut = left_out(trials[i], settings);
         } else {
             outcomes[i] = judge_one(trials[i], i, here, tally, watch);
             dearest = std::max(dearest, trials[i].subject->spending().answers - before.answers);
             const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
-            if (cut_short) outcomes[i].cut = left_out(trials[i], rigour);
+            if (cut_short) outcomes[i].cut = left_out(trials[i], settings);
             std::vector<Verdict>& verdicts = outcomes[i].verdicts;
             const bool met =
                 !looks[i].verdicts.empty() && (verdicts.empty() || looks[i].verdicts[0].state == State::wrong);

@@ -201,7 +201,7 @@ WarpFinding studied(const TrialContext& work, int technique) {
     WarpFinding out;
     if (!work.subject.draws_at_will() || work.traits.own_random) return out;
     const bool several = work.traits.numbers > 2;
-    const std::vector<Numbers> u = stencils_of(work, work.first(technique), work.rigour.full ? 8192 : 1024);
+    const std::vector<Numbers> u = stencils_of(work, work.first(technique), work.settings.full ? 8192 : 1024);
     std::vector<Draw> w(u.size());
     work.subject.sample(technique, work.trial.wo, u, w);
     std::vector<Derivative> derivatives;

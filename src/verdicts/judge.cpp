@@ -51,9 +51,9 @@ void expect(const Trial& trial, const VerdictKind& kind, Verdict& v) {
 }
 
 /// Another arm on a program's own BRDF: each draw costs a question, and a variance to 3 % ranks well enough.
-TestSettings settings_of_baseline(const Trial& trial, TestSettings rigour) {
-    if (trial.subject->serial()) rigour.draws = std::min<std::uint64_t>(rigour.draws, 4096);
-    return rigour;
+TestSettings settings_of_baseline(const Trial& trial, TestSettings settings) {
+    if (trial.subject->serial()) settings.draws = std::min<std::uint64_t>(settings.draws, 4096);
+    return settings;
 }
 
 /// f goes on under the surface and was not followed there.
@@ -156,18 +156,18 @@ Cut cut_by(const SubjectFault& fault) {
 }
 
 Outcome judge_one(
-    const Trial& trial, std::size_t index, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
+    const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally, ProgressMonitor& watch) {
     Outcome out;
     Trial kept = trial;
     if (trial.subject->serial()) kept.subject = asked_once(trial.subject);
     try {
         if (trial.baseline) {
             out.efficiency = measure_efficiency(
-                TrialContext(kept, settings_of_baseline(trial, rigour), tally, static_cast<std::uint32_t>(index)),
+                TrialContext(kept, settings_of_baseline(trial, settings), tally, static_cast<std::uint32_t>(index)),
                 index);
             return out;
         }
-        TrialContext work(kept, rigour, tally, static_cast<std::uint32_t>(index));
+        TrialContext work(kept, settings, tally, static_cast<std::uint32_t>(index));
         judge_in_order(work, index, out, watch);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
@@ -197,25 +197,25 @@ std::uint64_t count_tests(std::span<const Trial> trials) {
 namespace {
 
 std::vector<Outcome> judge_all(
-    std::span<const Trial> trials, const TestSettings& rigour, TestCounts& tally, ProgressMonitor& watch) {
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& watch) {
     if (std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); }))
-        return judge_in_turn(trials, rigour, tally, watch);
+        return judge_in_turn(trials, settings, tally, watch);
     std::vector<Outcome> outcomes(trials.size());
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
         watch.check();
-        outcomes[i] = judge_one(trials[i], i, rigour, tally, watch);
+        outcomes[i] = judge_one(trials[i], i, settings, tally, watch);
         watch.advance(1);
     });
     return outcomes;
 }
 
 /// Trials against one another; the call does nothing else while it takes times.
-Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcomes, const TestSettings& rigour,
+Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcomes, const TestSettings& settings,
     const ProgressMonitor& watch) {
     std::vector<Efficiency> efficiencies;
     for (const Outcome& o : outcomes)
         if (o.efficiency) efficiencies.push_back(*o.efficiency);
-    measure_costs(trials, rigour, efficiencies, watch);
+    measure_costs(trials, settings, efficiencies, watch);
     Compared out(verdict_kinds.size());
     for (std::size_t k = 0; k < verdict_kinds.size(); ++k)
         if (verdict_kinds[k]->compare) out[k] = verdict_kinds[k]->compare(trials, efficiencies);
@@ -226,17 +226,17 @@ Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcome
 }  // namespace
 
 Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& watch) {
-    TestSettings rigour = given;
-    rigour.share(count_tests(trials));
+    TestSettings settings = given;
+    settings.share(count_tests(trials));
     TestCounts tally;
     watch.begin("verdicts", static_cast<double>(trials.size()));
-    std::vector<Outcome> outcomes = judge_all(trials, rigour, tally, watch);
+    std::vector<Outcome> outcomes = judge_all(trials, settings, tally, watch);
     Judgement out;
-    out.alpha = rigour.alpha;
+    out.alpha = settings.alpha;
     out.tests = tally.tests;
     out.screened = tally.screened;
     out.confirmed = tally.confirmed;
-    Compared compared = compare(trials, outcomes, rigour, watch);
+    Compared compared = compare(trials, outcomes, settings, watch);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;
         complete(trials[i], outcomes[i], compared, i, out);

@@ -23,7 +23,7 @@ struct SubjectTooSlow : SubjectFault {
 };
 
 /// Throws Interrupted when the watch says stop.
-Judgement judge(std::span<const Trial> trials, const TestSettings& rigour, ProgressMonitor& watch);
+Judgement judge(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& watch);
 /// The state of the whole: everything that the caller does not expect, and expectations that nothing meets.
 void settle(Judgement& judgement);
 /// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
@@ -45,8 +45,8 @@ struct Efficiency {
 /// Variance of one trial's weight and the cost of a sample.
 Efficiency measure_efficiency(const TrialContext& work, std::size_t trial);
 /// The time of one sample of each, asked by one thread, all in turn: a slow moment of the machine falls on all alike.
-void measure_costs(
-    std::span<const Trial> trials, const TestSettings& rigour, std::span<Efficiency> all, const ProgressMonitor& watch);
+void measure_costs(std::span<const Trial> trials, const TestSettings& settings, std::span<Efficiency> all,
+    const ProgressMonitor& watch);
 /// Ranks trials that differ by the arm alone.
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
 

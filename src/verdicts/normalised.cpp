@@ -15,7 +15,7 @@ bool is_off(const TrialContext& work, int technique, double excess) {
     const double n = static_cast<double>(work.first(technique).draws.size());
     const double se =
         work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7) : std::sqrt(d.nothing * (1 - d.nothing) / n);
-    return student_p(excess / se, 15) < work.rigour.screen * work.rigour.confirm;
+    return student_p(excess / se, 15) < work.settings.screen * work.settings.confirm;
 }
 
 Verdict judge(TrialContext& work) {
@@ -72,7 +72,7 @@ Verdict judge(TrialContext& work) {
             v.say = told +
                 fmt::format(", but the quadrature itself is only good to {:.2g} after {} evaluations.", mass.error,
                     mass.evaluations);
-            v.settle = work.rigour.full
+            v.settle = work.settings.full
                 ? "More evaluations (TestSettings::evaluations), or a p that jumps along fewer curves."
                 : "--full, with twelve times as many evaluations.";
         }

@@ -54,8 +54,8 @@ WeightPicture picture(const TrialContext& work, const std::vector<double>& x, co
 std::string more_draws(const TrialContext& work) {
     const std::size_t n = work.first(0).draws.size();
     if (!work.subject.draws_at_will()) return fmt::format("More samples in the file than these {}", n);
-    return work.rigour.full ? fmt::format("More draws than {} (TestSettings::draws)", n)
-                            : fmt::format("--full, with sixteen times as many draws as these {}", n);
+    return work.settings.full ? fmt::format("More draws than {} (TestSettings::draws)", n)
+                              : fmt::format("--full, with sixteen times as many draws as these {}", n);
 }
 
 std::string samples_for(double sd, double mean) {
@@ -73,7 +73,7 @@ Verdict judge(TrialContext& work) {
     const double highest = *std::max_element(x.begin(), x.end());
     const ExpectedBehaviour& theory = work.trial.theory;
     Verdict v = work.verdict("tail", State::right, "");
-    if (work.rigour.pictures) work.pictures.push_back(picture(work, x, tail));
+    if (work.settings.pictures) work.pictures.push_back(picture(work, x, tail));
     v.evidence["relative_sd"] = s.mean > 0 ? s.sd / s.mean : 0;
     v.evidence["largest_over_mean"] = s.mean > 0 ? highest / s.mean : 0;
     if (theory.bounded) v.evidence["theory"] = "bounded";

@@ -76,7 +76,7 @@ Integral from_below(const TrialContext& work, Vec3d b) {
             work.subject.f(pairs, out);
             for (std::size_t i = 0; i < out.size(); ++i) out[i] *= pairs[i].wo.z > 0 ? 2 * pi * pairs[i].wo.z : 0;
         },
-        {work.tolerance(), work.affordable(work.rigour.evaluations / 2)});
+        {work.tolerance(), work.affordable(work.settings.evaluations / 2)});
 }
 
 std::vector<Vec3d> drawn_below(const TrialContext& work) {

@@ -83,7 +83,7 @@ void TestSettings::share(std::uint64_t tests) {
 
 TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& counts, std::uint32_t index)
     : trial(t),
-      rigour(r),
+      settings(r),
       tally(counts),
       subject(*t.subject),
       traits(t.subject->traits()),
@@ -100,13 +100,13 @@ std::size_t TrialContext::affordable(std::size_t wanted, std::size_t keep) const
     constexpr std::size_t small_change = 80000;  // the warp, conditioning and the least of every integral
     const std::size_t asked =
         static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep + small_change;
-    return std::min(wanted, std::max<std::size_t>(rigour.questions > asked ? rigour.questions - asked : 0, 2000));
+    return std::min(wanted, std::max<std::size_t>(settings.questions > asked ? settings.questions - asked : 0, 2000));
 }
 
 std::size_t TrialContext::for_later() const {
     const std::size_t asked = static_cast<std::size_t>(subject.spending().answers - asked_before_);
-    const std::size_t left = rigour.questions > asked ? rigour.questions - asked : 0;
-    return std::min(rigour.questions / (subject.has_f() ? 3 : 8), left / 2);
+    const std::size_t left = settings.questions > asked ? settings.questions - asked : 0;
+    return std::min(settings.questions / (subject.has_f() ? 3 : 8), left / 2);
 }
 
 void TrialContext::redraw(std::uint32_t seed) {
@@ -123,8 +123,8 @@ SampleBatch TrialContext::draw(int technique, int round) const {
         tape->half(round, b.u, b.draws);
     } else {
         const std::uint64_t more =
-            subject.serial() ? affordable(12 * rigour.draws) / 3 : 4 * rigour.draws;  // each is asked three times
-        const std::uint64_t n = round == 0 ? rigour.draws : more;
+            subject.serial() ? affordable(12 * settings.draws) / 3 : 4 * settings.draws;  // each is asked three times
+        const std::uint64_t n = round == 0 ? settings.draws : more;
         const std::uint32_t seed = seed_of(seed_, static_cast<std::uint32_t>(round) * 7919u);
         b.u.resize(n);
         b.draws.resize(n);

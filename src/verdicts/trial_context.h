@@ -94,19 +94,19 @@ struct WarpFinding;
 
 class TrialContext {
 public:
-    TrialContext(const Trial& trial, const TestSettings& rigour, TestCounts& tally, std::uint32_t index);
+    TrialContext(const Trial& trial, const TestSettings& settings, TestCounts& tally, std::uint32_t index);
     /// So many of the wanted questions as a program may still be asked here, `keep` of them left for later; 2000 at
     /// least.
     std::size_t affordable(std::size_t wanted, std::size_t keep = 0) const;
 
     const Trial& trial;
-    const TestSettings& rigour;
+    const TestSettings& settings;
     TestCounts& tally;
     const JudgedSampler& subject;
     const Traits traits;
 
     /// A program is asked no more than its answers are worth: integrals are known to a fifth of what the tests grant.
-    bool thrifty() const { return subject.serial() && !rigour.full; }
+    bool thrifty() const { return subject.serial() && !settings.full; }
     double tolerance() const { return thrifty() ? 2e-5 : 5e-6; }
 
     /// Fresh draws for another seed; bins and integrals stay.
@@ -164,9 +164,9 @@ public:
     /// Both stages of a statistical test: p(round) is its p-value on that round's draws.
     template <class P> bool fails(double p_first, P&& p_of_round) const {
         ++tally.tests;
-        if (!(p_first < rigour.screen)) return false;
+        if (!(p_first < settings.screen)) return false;
         ++tally.screened;
-        if (!(p_of_round(1) < rigour.confirm)) return false;
+        if (!(p_of_round(1) < settings.confirm)) return false;
         ++tally.confirmed;
         return true;
     }

@@ -25,7 +25,7 @@ void TrialContext::measure_density() {
     if (!traits.has_pdf) {  // bins alone
         density_.push_back(bins_about({0, 0, 1}, true));
         density_.back().mass.bins.assign(
-            (density_.back().rings.size() - 1) * static_cast<std::size_t>(rigour.sectors), 0.0);
+            (density_.back().rings.size() - 1) * static_cast<std::size_t>(settings.sectors), 0.0);
         return;
     }
     for (int t = 0; t < subject.techniques(); ++t) {
@@ -50,10 +50,10 @@ void TrialContext::measure_density() {
             continue;
         }
         const Vec3d axis = banded_.value_or(n);
-        Density d = sharp ? density_about(t, normalize(mean), false, rigour.evaluations)
-                          : density_about(t, axis, axis.z == 1, rigour.evaluations);
+        Density d = sharp ? density_about(t, normalize(mean), false, settings.evaluations)
+                          : density_about(t, axis, axis.z == 1, settings.evaluations);
         const double enough = thrifty() ? 8e-5 : 5e-5;
-        const std::size_t look = thrifty() ? rigour.evaluations / 3 : rigour.evaluations;  // at other coordinates
+        const std::size_t look = thrifty() ? settings.evaluations / 3 : settings.evaluations;  // at other coordinates
         const bool nearly = thrifty() && d.mass.error < 3e-4;  // it is finer cells that are missing
         if (d.mass.error > enough && circle_ && !nearly) {
             Density other = density_about(t, *circle_, false, look);
@@ -77,13 +77,14 @@ void TrialContext::measure_density() {
                 try {
                     other.mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
                         while_affordable,
-                        {tolerance(), affordable(6 * rigour.evaluations, for_later()) + known, thrifty() ? 5e-5 : 1e-4},
+                        {tolerance(), affordable(6 * settings.evaluations, for_later()) + known,
+                            thrifty() ? 5e-5 : 1e-4},
                         &seen);
                     if (other.mass.error < d.mass.error) d = std::move(other);
                 } catch (const OutOfQuestions&) {}  // what is known so far stays
             }
             if (d.mass.error > 1e-4 && !thrifty()) {  // built-in arms answer at once: finer along jumps
-                other = density_about(t, d.map.frame.n, d.about_n, 6 * rigour.evaluations, 2e-5);
+                other = density_about(t, d.map.frame.n, d.about_n, 6 * settings.evaluations, 2e-5);
                 if (other.mass.error < d.mass.error) d = std::move(other);
             }
         }
@@ -91,7 +92,8 @@ void TrialContext::measure_density() {
         // A failure needs a second quadrature that confirms it; a sum over bands in which p is constant does not.
         const bool summed = banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6;
         if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se)
-            d.second = density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * rigour.evaluations, 2e-5).mass;
+            d.second =
+                density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
 }
@@ -115,14 +117,14 @@ std::optional<Density> TrialContext::table_density(int t) {
         if (!mesh) continue;
         const SamplesPerBin seen = witnesses_of(t, d);
         const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
-        const std::size_t most = subject.serial() && !rigour.full ? affordable(400000, for_later()) / 2 : 10000000;
+        const std::size_t most = subject.serial() && !settings.full ? affordable(400000, for_later()) / 2 : 10000000;
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
             mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
-                {2.5e-6, affordable(6 * rigour.evaluations, for_later()), 5e-5}, crowd, &seen);
+                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, crowd, &seen);
         else
             mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
-                affordable(4 * rigour.evaluations, for_later()));
+                affordable(4 * settings.evaluations, for_later()));
         if (!mass) continue;
         d.mass = std::move(*mass);
         grant_doubts(t, d);
@@ -223,7 +225,7 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     Density d;
     d.map = SphereMap(axis);
     d.about_n = about_n;
-    d.sectors = rigour.sectors;
+    d.sectors = settings.sectors;
     std::vector<double> a;
     for (Vec3d w : std::span(guides_).first(drawn_guides_)) a.push_back(d.map.coordinates(w).x);
     std::sort(a.begin(), a.end());
@@ -231,7 +233,7 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     if (!a.empty()) {
         const double tails[] = {0.002, 0.01, 0.025};  // finer rings where samplers go wrong: at the axis and at the rim
         std::vector<double> q(std::begin(tails), std::end(tails));
-        for (int i = 1; i < rigour.rings; ++i) q.push_back(static_cast<double>(i) / rigour.rings);
+        for (int i = 1; i < settings.rings; ++i) q.push_back(static_cast<double>(i) / settings.rings);
         for (double v : tails) q.push_back(1 - v);
         q.push_back(1);
         std::sort(q.begin(), q.end());

@@ -121,10 +121,10 @@ Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const
                 of_light(wi, out);
                 for (double& v : out) v *= 2 * pi * fill;
             },
-            {tolerance(), affordable(2 * rigour.evaluations, for_confirmation) / 2});
+            {tolerance(), affordable(2 * settings.evaluations, for_confirmation) / 2});
     }
     const auto add = [&](const auto& own) {
-        add_light(total, light, own, of_light, tolerance(), affordable(rigour.evaluations / 2, for_confirmation) / 2);
+        add_light(total, light, own, of_light, tolerance(), affordable(settings.evaluations / 2, for_confirmation) / 2);
     };
     if (even) return total;
     std::ranges::for_each(light.disks, add);

@@ -134,8 +134,8 @@ void TrialContext::share_nothing(int technique, Density& d) const {
     const auto off = [&] { return std::fabs(d.mass.value + d.nothing - 1) - 5e-5; };
     const bool met = b.nothing > (told ? b.deltas : 0);
     if (!met && !(d.mass.value + d.nothing < 1 - 5e-5)) return;
-    const std::uint64_t most = rigour.full ? 65536 : thrifty() ? 8192 : 32768;
-    for (std::uint64_t points = !met ? most : rigour.full ? 16384 : 2048; points <= most; points *= 4) {
+    const std::uint64_t most = settings.full ? 65536 : thrifty() ? 8192 : 32768;
+    for (std::uint64_t points = !met ? most : settings.full ? 16384 : 2048; points <= most; points *= 4) {
         estimate_null_fraction(technique, d, points, told);
         if (off() < 3 * d.nothing_se || off() > 12 * d.nothing_se) break;  // no doubt of one, or surely not
     }
@@ -166,7 +166,7 @@ void TrialContext::estimate_null_fraction(
     std::vector<Numbers> u(n);
     std::vector<Draw> draws(n);
     for (int k = 0; k < shifts; ++k) {
-        const Numbers shift = drawn_numbers(seed_of(rigour.seed, 0x51f7u), index_, static_cast<std::uint64_t>(k),
+        const Numbers shift = drawn_numbers(seed_of(settings.seed, 0x51f7u), index_, static_cast<std::uint64_t>(k),
             8u + static_cast<std::uint32_t>(technique), traits.numbers);
         for (std::uint64_t i = 0; i < n; ++i) u[i] = even_cover(i, shift, traits.numbers);
         subject.sample(technique, trial.wo, u, draws);

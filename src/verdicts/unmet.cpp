@@ -55,7 +55,7 @@ double chance_of(const TrialContext& work, int technique, double threshold, bool
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
     };
     return integrate(guided(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
-        {1e-7, work.affordable(work.rigour.evaluations)})
+        {1e-7, work.affordable(work.settings.evaluations)})
         .value;
 }
 
@@ -97,8 +97,8 @@ Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool e
     constexpr double allowed = 1e-4;  // as mean_p grants
     const double off = std::max(std::fabs(s.mean - due) - out.error - expected.error - allowed * expected.value, 0.0);
     const bool worth_it = out.mass > allowed * expected.value + out.error;
-    const bool may_be_missed = s.n * out.chance < -math::log(work.rigour.confirm);
-    out.heavy = worth_it && may_be_missed && bernstein_p(off, s.n, out.variance, threshold) >= work.rigour.screen;
+    const bool may_be_missed = s.n * out.chance < -math::log(work.settings.confirm);
+    out.heavy = worth_it && may_be_missed && bernstein_p(off, s.n, out.variance, threshold) >= work.settings.screen;
     return out;
 }
 
@@ -112,7 +112,7 @@ const Unmet& TrialContext::unmet(bool even) const {
 bool has_unmet_tail(const TrialContext& work, bool even) {
     if (!work.traits.has_pdf) return false;  // which weights a direction would have is not known
     const Spread s = spread(work.first_weights(even));
-    return mean_p(s, due_mean(work, even)) < work.rigour.screen && work.unmet(even).heavy;
+    return mean_p(s, due_mean(work, even)) < work.settings.screen && work.unmet(even).heavy;
 }
 
 void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::size_t draws) {

@@ -69,7 +69,7 @@ bool mean_fails(const TrialContext& work, double p, const Integral& expected, bo
         for (int t = 0; t < work.subject.techniques(); ++t) fresh.push_back(work.draw(t, round));
         const std::vector<double> x = work.weights(fresh, even);
         const double p_fresh = mean_p(spread(x), expected);
-        return p_fresh < work.rigour.confirm && look_for_unmet(work, x, even).heavy ? 1.0 : p_fresh;
+        return p_fresh < work.settings.confirm && look_for_unmet(work, x, even).heavy ? 1.0 : p_fresh;
     });
 }
 
