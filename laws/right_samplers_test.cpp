@@ -31,6 +31,16 @@ TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
+/// Slivers of a rim that few points meet, corners where a horizon cuts a cone, and texels that u itself is too coarse
+/// for: with half a million draws each is seen.
+TEST(RightSamplers, WithThinRimsAndFineTablesAreLeftAloneInFullMode) {
+    ProgressMonitor watch;
+    for (const std::uint64_t which : {116u, 306u, 296u}) {
+        const RightLaw law = measure_right(which, 1, TestSettings::thorough(), watch);
+        EXPECT_EQ(law.accused, 0u) << told(law);
+    }
+}
+
 /// p jumps where the half vector crosses the horizon; the first sampler of their own that people bring.
 TEST(RightSamplers, WithAnisotropicVisibleNormalsAreLeftAlone) {
     ProgressMonitor watch;

@@ -20,6 +20,7 @@ constexpr std::size_t fewest = 5;  // draws of a block
 
 struct Spot {
     double a, b, p;
+    std::size_t draw;
 };
 
 double theta_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))); }
@@ -48,7 +49,11 @@ public:
         least_ = p;
         found_ = {1, m, due, room, {}};
         at_ = {inside[inside.size() / 2].a, inside[inside.size() / 2].b};
+        crowd_.clear();
+        for (std::size_t i = 0; i < inside.size() && crowd_.size() < 32; ++i) crowd_.push_back(inside[i].draw);
     }
+    /// Some of the draws in it.
+    std::span<const std::size_t> crowd() const { return crowd_; }
     Clump found(const SphereMap& map) const {
         Clump out = found_;
         out.p = tried_ > 0 ? std::min(least_ * tried_, 1.0) : 1;  // too few draws for a block
@@ -60,6 +65,7 @@ private:
     double per_sr_, rounding_, least_ = 1, tried_ = 0;
     Clump found_;
     Vec2d at_{};
+    std::vector<std::size_t> crowd_;
 };
 
 bool lower(const Spot& x, const Spot& y) { return x.a < y.a; }
@@ -100,21 +106,55 @@ void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
     }
 }
 
+/// How far a direction goes when one of its random numbers goes by 2^-24, in the median over these draws: a warp that
+/// is steep, as a cell of a large table is, draws no finer than that.
+double step_of_numbers(
+    const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws) {
+    const int numbers = work.traits.numbers;
+    if (draws.empty() || b.u.size() != b.draws.size() || !work.subject.draws_at_will()) return 0;
+    std::vector<Numbers> u;
+    for (std::size_t i : draws)
+        for (int k = 0; k < numbers; ++k) {
+            u.push_back(b.u[i]);
+            u.back()[k] += u.back()[k] < 0.5 ? 0x1p-24 : -0x1p-24;
+        }
+    std::vector<Draw> moved(u.size());
+    work.subject.sample(technique, work.trial.wo, u, moved);
+    std::vector<double> steps;
+    for (std::size_t i = 0; i < draws.size(); ++i) {
+        double most = 0;
+        for (std::size_t k = i * static_cast<std::size_t>(numbers); k < (i + 1) * static_cast<std::size_t>(numbers);
+            ++k)
+            if (moved[k].pdf > 0 && is_finite(moved[k].wi))
+                most = std::max(most, length(moved[k].wi - b.draws[draws[i]].wi));
+        steps.push_back(most);
+    }
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle;
+}
+
 }  // namespace
 
-Clump densest_clump(const TrialContext& work, const Density& d, const SampleBatch& b) {
+Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
     std::vector<Spot> spots;
     spots.reserve(b.draws.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
-        spots.push_back({at.x, at.y, b.pdf[i] + work.subject.doubt(b.draws[i].wi)});
+        spots.push_back({at.x, at.y, b.pdf[i] + work.subject.doubt(b.draws[i].wi), i});
     }
-    const double rounding = 4 * std::max(work.direction_resolution(), 0x1p-24);  // u itself is a multiple of 2^-24
-    Search search(static_cast<double>(spots.size()), d.mass.value, rounding);
-    look_at_blocks({0, 2, 0, 1, 0}, spots, search);
-    for (bool rings : {true, false}) look_at_slices(spots, rings, search);
-    return search.found(d.map);
+    double rounding = 4 * std::max(work.direction_resolution(), 0x1p-24);  // u itself is a multiple of 2^-24
+    for (int turn = 0;; ++turn) {
+        Search search(static_cast<double>(spots.size()), d.mass.value, rounding);
+        look_at_blocks({0, 2, 0, 1, 0}, spots, search);
+        for (bool rings : {true, false}) look_at_slices(spots, rings, search);
+        const Clump found = search.found(d.map);
+        if (turn == 2 || !(found.p < work.settings.screen)) return found;
+        const double step = 4 * step_of_numbers(work, technique, b, search.crowd());
+        if (step <= rounding) return found;
+        rounding = step;
+    }
 }
 
 void tell_clump(Verdict& v, const Clump& c) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "math/distributions.h"
 #include "verdicts/delta.h"
@@ -74,9 +75,9 @@ std::vector<double> count(const Density& d, const SampleBatch& b, double& nothin
     return bins;
 }
 
-Fit fit(const TrialContext& work, const Density& d, const SampleBatch& b) {
+Fit fit(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
     Fit out;
-    out.clump = densest_clump(work, d, b);
+    out.clump = densest_clump(work, technique, d, b);
     double nothing = 0;
     out.observed = count(d, b, nothing);
     const double n = static_cast<double>(b.draws.size());
@@ -102,6 +103,18 @@ Fit fit(const TrialContext& work, const Density& d, const SampleBatch& b) {
         due_sector[i % sectors] += due;
     }
     std::vector<double> observed = out.observed, expected = out.expected;
+    // Rings that expect next to nothing: the Poisson law; the error of p is granted, which no bin states so far out.
+    double seen = 0, due = 0;
+    for (std::size_t i = 0; i < rings; ++i) {
+        if (due_ring[i] >= std::max(1.0, 1e-5 * n)) continue;
+        seen += std::exchange(by_ring[i], 0);
+        due += std::exchange(due_ring[i], 0);
+        for (std::size_t k = i * sectors; k < (i + 1) * sectors; ++k) {
+            by_sector[k % sectors] -= std::exchange(observed[k], 0);
+            due_sector[k % sectors] -= std::exchange(expected[k], 0);
+        }
+    }
+    if (seen > 0) out.outside_p = math::poisson_tail(due + n * (1e-4 + d.mass.error + d.doubts), seen);
     if (n * d.nothing >= 5) {  // nothing drawn is one more bin
         observed.insert(observed.begin(), nothing);
         expected.insert(expected.begin(), n * d.nothing);
@@ -110,13 +123,7 @@ Fit fit(const TrialContext& work, const Density& d, const SampleBatch& b) {
     out.joint = pearson(observed, expected, slack);
     out.rings = pearson(by_ring, due_ring, slack_ring);
     out.sectors = pearson(by_sector, due_sector, slack_sector);
-    double seen = 0, due = 0;  // in rings that expect less than one draw: the Poisson law; the error of p is granted
-    for (std::size_t i = 0; i < rings; ++i)
-        if (due_ring[i] < 1) {
-            seen += by_ring[i];
-            due += due_ring[i];
-        }
-    if (seen > 0) out.outside_p = math::poisson_tail(due + n * (1e-4 + d.mass.error + d.doubts), seen);
+    out.joint.empty_observed += seen;
     return out;
 }
 
@@ -162,7 +169,7 @@ Verdict judge(TrialContext& work) {
         if (!(d.mass.value > 0) || !std::isfinite(d.mass.value))
             return work.verdict("density", State::skipped,
                 fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
-        const Fit f = fit(work, d, work.first(t));
+        const Fit f = fit(work, t, d, work.first(t));
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
         v.evidence["coordinates" + tag] = coordinates(d);
         v.evidence["chi2" + tag] = f.joint.statistic;
@@ -181,7 +188,7 @@ Verdict judge(TrialContext& work) {
         std::optional<Fit> fresh;
         const auto of = [&](auto which) {
             return work.fails(which(f), [&](int round) {
-                if (!fresh) fresh = fit(work, d, work.draw(t, round));
+                if (!fresh) fresh = fit(work, t, d, work.draw(t, round));
                 return which(*fresh);
             });
         };

@@ -95,7 +95,7 @@ struct Clump {
     double draws = 0, due = 0, room = 0;  // due: at most; room in sr
     Vec3d at{};
 };
-Clump densest_clump(const TrialContext& work, const Density& d, const SampleBatch& b);
+Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b);
 void tell_clump(Verdict& v, const Clump& clump);
 
 /// What the warp's derivatives say; see jacobian.cpp.

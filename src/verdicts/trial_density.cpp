@@ -157,9 +157,8 @@ SamplesPerBin TrialContext::witnesses_of(int technique, const Density& d) const 
     SamplesPerBin out;
     const SampleBatch& b = first(technique);
     out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
-    const std::size_t n = std::min<std::size_t>(b.draws.size(), 32768);
-    out.total = static_cast<double>(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    out.total = static_cast<double>(b.draws.size());
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
         out.bins[d.bin_of(at)].push_back({at, 2 * pi * b.pdf[i]});
@@ -204,7 +203,8 @@ void TrialContext::refine_table(int technique, Density& d) const {
     }
 }
 
-/// An edge at the nearest and the farthest rim: what lies beyond expects nothing.
+/// An edge at the nearest and the farthest rim, and one farther out, since a rim is known at a few places: what lies
+/// beyond expects nothing.
 void TrialContext::add_rims(Density& d) const {
     if (rims_.empty()) return;
     double least = 2, most = 0;
@@ -213,7 +213,7 @@ void TrialContext::add_rims(Density& d) const {
         least = std::min(least, a);
         most = std::max(most, a);
     }
-    for (double edge : {least, most})
+    for (double edge : {least, most, most + 0.1 * (most - least)})
         if (edge > 1e-12 && edge < 2 - 1e-9) d.rings.push_back(edge);
     std::sort(d.rings.begin(), d.rings.end());
     d.rings.erase(
