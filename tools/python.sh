@@ -9,14 +9,28 @@ find_python() {
     return 1
 }
 
-# later_python: the first CPython from 3.12 on in PATH that has its headers, where there is one.
-later_python() {
+# later_pythons: each CPython from 3.12 on that has its headers, one a version: of PATH, or of pyenv, whose commands in
+# PATH do not start where another version is chosen.
+later_pythons() {
     local minor at
     for minor in $(seq 12 30); do
-        at=$(command -v "python3.$minor") || continue
-        [ -f "$("$at" -c 'import sysconfig; print(sysconfig.get_path("include"))' 2>/dev/null)/Python.h" ] || continue
-        echo "$at"
-        return
+        for at in "$(command -v "python3.$minor")" \
+            "${PYENV_ROOT:-$HOME/.pyenv}/versions/3.$minor."*"/bin/python3.$minor"; do
+            [ -f "$("$at" -c 'import sysconfig; print(sysconfig.get_path("include"))' 2>/dev/null)/Python.h" ] ||
+                continue
+            echo "$at"
+            break
+        done
+    done
+}
+
+# serving ENVIRONMENT WHEEL...: the first of these wheels that can be installed there.
+serving() {
+    local dir=$1 file
+    shift
+    for file in "$@"; do
+        "$dir/bin/python" -m pip -q --disable-pip-version-check install --dry-run --no-deps --no-index "$file" \
+            >/dev/null 2>&1 && { echo "$file"; return; }
     done
 }
 
@@ -39,7 +53,7 @@ make_environment() {
 # and leaves it out where that cannot be had: nothing else stands on it.
 add_python_module() {
     local python
-    python=$(find_python) && (make_environment "$1" "$python" nanobind numpy pytest matplotlib xarray mitsuba) ||
+    python=$(find_python) && (make_environment "$1" "$python" nanobind numpy pytest mypy matplotlib xarray mitsuba) ||
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
         grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return
@@ -67,14 +81,15 @@ make_wheel() {
     say "built ${wheel##*/} in $((SECONDS - start)) s"
 }
 
-# try_wheel ENVIRONMENT WHEEL: installs it there and judges with it; nothing of the repository is on the way.
+# try_wheel ENVIRONMENT WHEEL: installs it there, runs its tests and judges with it; nothing of the repository is on the
+# way.
 try_wheel() {
-    local dir=$1 log="$log_dir/wheel-tried.log"
+    local dir=$1 log="$log_dir/$(basename "$1").log"
     "$dir/bin/python" -m pip -q --disable-pip-version-check install --force-reinstall "$2" >"$log" 2>&1 ||
         fail 3 "$log" "installing ${2##*/} failed"
     (cd / && "$dir/bin/python" -m pytest -q "$root/python/tests" --rootdir="$root/python/tests" -p no:cacheprovider) \
         >>"$log" 2>&1 ||
         fail 1 "$log" "the wheel does not pass its tests"
     (cd / && "$dir/bin/crescent" check cosine) >>"$log" 2>&1 || fail 1 "$log" "crescent check cosine failed"
-    say "$(tail -n 20 "$log" | grep -E '^[0-9]+ passed' | tail -n 1)"
+    say "${2##*/} on $("$dir/bin/python" -V): $(tail -n 20 "$log" | grep -E '^[0-9]+ passed' | tail -n 1)"
 }

@@ -8,10 +8,11 @@
 f in 1/sr without the cosine.
 """
 
-from ._check import Sampler, check
+from ._check import check
 from ._crescent import commit
 from ._crescent import version as __version__
 from ._judgement import Judgement, Verdict
+from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, load, parse, run
 

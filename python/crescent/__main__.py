@@ -58,14 +58,15 @@ def sampler_at(where: str) -> Sampler:
 
 def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
     """The trials, and whether they are of the whole list of arms."""
-    grid = _grid([(float(theta), float(azimuth or 0)) for theta, _, azimuth in (w.partition(",") for w in args.wo)])
+    wo = [(float(theta), float(azimuth or 0)) for theta, _, azimuth in (w.partition(",") for w in args.wo)] or None
+    grid = _grid(wo)
     if args.exec:
         return _crescent.trials_of_program(args.exec, args.patience, args.full, grid), False
     if args.plugin:
         return _crescent.trials_of_plugin(args.plugin, args.full, grid), False
     arm = args.sampler or ""
     if ":" in arm or arm.endswith(".py"):
-        return _trials(sampler_at(arm), args.full, grid), False
+        return _trials(sampler_at(arm), args.full, wo), False
     settings = {key: float(value) for key, _, value in (word.partition("=") for word in args.set)}
     return _crescent.trials_of_arm(arm, settings, args.full, grid), not arm
 

@@ -7,6 +7,7 @@ Any array that speaks DLPack or NumPy's protocol is taken. Directions are ``[n, 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -47,11 +48,19 @@ def _numbers(value: Any, what: str) -> NDArray[Any]:
     if array.dtype.kind in "fiub":
         return array
     if array.dtype.kind == "O":
-        for i, row in enumerate(array):
-            if not isinstance(row, (int, float, np.number)):
-                raise ValueError(f"{what}: row {i} is {type(row).__name__}, expected a number")
-        return array.astype(np.float64)
+        return _unpacked(array, what)
     raise ValueError(f"{what}: dtype {array.dtype}, expected floating-point numbers")
+
+
+def _unpacked(objects: NDArray[Any], what: str) -> Array:
+    """Objects, each a real number."""
+    if objects.ndim == 0:
+        raise ValueError(f"{what} is {type(objects.item()).__name__}, expected an array of numbers")
+    for i in range(len(objects)):
+        odd = next((v for v in objects[i : i + 1].ravel() if not isinstance(v, Real)), 0.0)
+        if not isinstance(odd, Real):
+            raise ValueError(f"{what}: row {i} has {type(odd).__name__}, expected numbers")
+    return objects.astype(np.float64)
 
 
 def _rows(array: NDArray[Any], n: int, what: str) -> None:
@@ -114,8 +123,9 @@ def draws(answer: Any, n: int, name: str) -> Parts:
     told = f"{name}: sample's "
     p = column(pdf, n, told + "pdf")
     if delta is not None:
-        chosen = as_numpy(delta, told + "delta")
-        delta = np.where(chosen, p, 0.0) if chosen.dtype == bool else column(chosen, n, told + "delta")
+        kind = as_numpy(delta, told + "delta").dtype.kind
+        chosen = column(delta, n, told + "delta")
+        delta = np.where(chosen != 0, p, 0.0) if kind in "biu" else chosen
     return (
         directions(wi, n, told + "wi"),
         p,

@@ -2,72 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+import difflib
+import inspect
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields, replace
+from typing import Any, Unpack
 
 import numpy as np
 
 from . import _arrays, _crescent
 from ._judgement import Judgement
 from ._libraries import Library, library_wanted
+from ._sampler import Known, Sampler, whole
 
 Progress = Callable[[str, float, float], None]
-Domain = Literal["sphere", "hemisphere"]
-Asked = Literal["upper", "both", "none"]
 
 
-@dataclass(frozen=True)
-class Sampler:
-    """A sampler's callables with what is known of it.
-
-    Local frame, n = +z; wo is given, wi drawn, both leave the surface; pdf in 1/sr; f in 1/sr without the cosine.
-    """
-
-    sample: Callable[..., Any]  #: sample(wo[n,3], u[n,k]) -> (wi[n,3], pdf[n][, weight[n,c][, delta[n]]])
-    pdf: Callable[..., Any] | None = None  #: pdf(wo[n,3], wi[n,3]) -> [n]
-    f: Callable[..., Any] | None = None  #: f(wo[n,3], wi[n,3]) -> [n] or [n,3]
-    name: str = ""
-    u: int = 2  #: random numbers a sample takes, 1 to 8
-    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 under the surface whatever the callables say there
-    wo: Asked = "upper"  #: the w_o that it answers for; "none": sample(u) and pdf(wi), as of an environment light
-    channels: int | None = None  #: 1 or 3; None: as f and the weights have
-    delta: bool | None = None  #: some draws are of delta parts; None: where sample gives four parts
-    eta: float | Sequence[float] | None = None  #: index of refraction below over above
-    importance: bool = False  #: f is scaled as importance is, not as radiance
-    reciprocal: bool = True  #: False: f is known not to be reciprocal
-    serial: bool = False  #: its callables want one thread, the caller's own
-    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
-    array_module: Any = None
-    device: Any = None  #: where these arrays lie, as that library says it
-
-    def __post_init__(self) -> None:
-        if not callable(self.sample):
-            raise TypeError(f"sample is {type(self.sample).__name__}: expected a callable sample(wo, u)")
-        if not 1 <= self.u <= 8:
-            raise ValueError(f"u is {self.u}: a sample takes 1 to 8 random numbers")
-        if self.channels not in (None, 1, 3):
-            raise ValueError(f"channels is {self.channels}: expected 1 or 3")
-        if self.domain not in ("sphere", "hemisphere"):
-            raise ValueError(f"domain is {self.domain!r}: expected 'sphere' or 'hemisphere'")
-
-    def title(self) -> str:
-        """Its name, or that of the function which draws."""
-        return self.name or getattr(self.sample, "__name__", type(self.sample).__name__)
+def _must_be_known(known: Mapping[str, Any]) -> None:
+    for word in known:
+        if word not in Known.__annotations__:
+            near = difflib.get_close_matches(word, _KEYWORDS, 1)
+            raise TypeError(f"check has no keyword '{word}'" + (f": did you mean '{near[0]}'?" if near else ""))
 
 
-Grid = Iterable[float | tuple[float, float]]
+Grid = float | Iterable[float | tuple[float, float]]
 
 
-def _grid(wo_deg: Grid | None) -> list[tuple[float, float]]:
+def _has_parts(at: Any) -> bool:
+    return isinstance(at, Iterable) and not isinstance(at, str)
+
+
+def _grid(wo_deg: Grid | None, wo: str = "both") -> list[tuple[float, float]]:
     """(theta, azimuth) in degrees; a bare theta is at azimuth 0."""
+    if wo_deg is not None and wo == "none":
+        raise ValueError("wo_deg is given, and the sampler takes no w_o: wo='none'")
     out = []
-    for at in wo_deg or ():
-        theta, azimuth = (float(at), 0.0) if isinstance(at, (int, float)) else (float(at[0]), float(at[1]))
+    for at in () if wo_deg is None else wo_deg if _has_parts(wo_deg) else [wo_deg]:  # type: ignore[union-attr]
+        try:
+            theta, azimuth = map(float, at) if _has_parts(at) else (float(at), 0.0)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
+            raise ValueError(f"wo_deg has {at!r}: expected theta, or (theta, azimuth), in degrees") from None
         if not 0 <= theta <= 180 or theta == 90:
             raise ValueError(f"wo_deg has theta {theta:g}: expected 0 to 180 degrees from the normal, and not 90")
+        if not math.isfinite(azimuth):
+            raise ValueError(f"wo_deg has azimuth {azimuth:g}: expected degrees")
+        if theta > 90 and wo == "upper":
+            raise ValueError(f"wo_deg has theta {theta:g}, under the surface: wo='both' if the sampler answers there")
         out.append((theta, azimuth))
     return out
+
+
+def _numbers(settings: Mapping[str, float]) -> dict[str, float]:
+    for key, value in settings.items():
+        if not isinstance(value, (int, float, np.number)) or not math.isfinite(value):
+            raise ValueError(f"settings: {key} is {value!r}: expected a number")
+    return {key: float(value) for key, value in settings.items()}
 
 
 def _asked(n: int, numbers: int) -> tuple[_arrays.Array, _arrays.Array]:
@@ -110,9 +100,14 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
     return max(counts, default=1), weight is not None, delta is not None
 
 
-def _trials(s: Sampler, full: bool, grid: list[tuple[float, float]]) -> _crescent.Trials:
-    s = _of_library(s)
-    channels, weighs, delta = _look(s)
+def _trials(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.Trials:
+    grid = _grid(wo_deg, s.wo)
+    try:
+        s = _of_library(s)
+        channels, weighs, delta = _look(s)
+    except IndexError as e:
+        e.add_note(f"{s.title()} was given {s.u} random numbers a sample: u=K says that it takes K of them")
+        raise
     count = s.channels or channels
     takes_wo = s.wo != "none"
     eta = None if s.eta is None else [float(v) for v in np.atleast_1d(s.eta)]
@@ -129,6 +124,7 @@ def _trials(s: Sampler, full: bool, grid: list[tuple[float, float]]) -> _crescen
         upper_only=s.domain == "hemisphere",
         serial=s.serial,
         reciprocal=s.reciprocal,
+        own_random=s.own_random,
         eta=eta,
         importance=s.importance,
         full=full,
@@ -149,6 +145,10 @@ def _judge(
     expect_same: bool = False,
     progress: Progress | None = None,
 ) -> Judgement:
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total)")
+    seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
+    threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     judged = _crescent.judge(
         trials,
         other,
@@ -162,6 +162,14 @@ def _judge(
         progress=progress,
     )
     return Judgement(judged)
+
+
+def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
+    if not isinstance(sample, Sampler):
+        return Sampler(sample, pdf, f, **known)
+    if pdf is not None or f is not None:
+        raise TypeError("a Sampler holds its own pdf and f: dataclasses.replace(sampler, pdf=pdf) has another")
+    return replace(sample, **known)
 
 
 def check(
@@ -178,7 +186,7 @@ def check(
     settings: Mapping[str, float] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
-    **known: Any,
+    **known: Unpack[Known],
 ) -> Judgement:
     """Judges a sampler over a grid of w_o.
 
@@ -191,21 +199,25 @@ def check(
     sampler may be called wrong, over everything in the call. `against`: a second sampler, compared with the first.
     `progress(what, done, total)` is called some times a second.
     """
-    grid = _grid(wo_deg)
+    _must_be_known(known)
     if isinstance(sample, str):
         if pdf is not None or f is not None or known:
             raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")
-        trials, title = _crescent.trials_of_arm(sample, dict(settings or {}), full, grid), sample
+        trials, title = _crescent.trials_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
     else:
         if settings:
             raise TypeError("settings are of a built-in arm; a sampler of one's own has its parameters in itself")
-        sampler = replace(sample, **known) if isinstance(sample, Sampler) else Sampler(sample, pdf, f, **known)
-        trials, title = _trials(sampler, full, grid), sampler.title()
+        sampler = _sampler_of(sample, pdf, f, known)
+        trials, title = _trials(sampler, full, wo_deg), sampler.title()
     other = None
     if isinstance(against, str):
         other = _crescent.arm_beside(against, trials)
+    elif isinstance(against, Sampler):
+        other = _trials(against, full, wo_deg)
     elif against is not None:
-        other = _trials(against, full, grid)
+        raise TypeError(
+            f"against is {type(against).__name__}: expected a crescent.Sampler(sample, pdf, f), or the name of an arm"
+        )
     return _judge(
         trials,
         f"crescent.check({title!r})",
@@ -217,3 +229,21 @@ def check(
         expect_same=expect_same,
         progress=progress,
     )
+
+
+def _spelled_out() -> inspect.Signature:
+    """check's parameters with the fields of Sampler one by one, as help() and a notebook show them."""
+    given = inspect.signature(check)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    known = [
+        inspect.Parameter(at.name, keyword, default=at.default, annotation=at.type)
+        for at in fields(Sampler)
+        if at.name in Known.__annotations__
+    ]
+    own = [p for p in given.parameters.values() if p.kind != inspect.Parameter.VAR_KEYWORD]
+    first = [p for p in own if p.kind != keyword]
+    return given.replace(parameters=[*first, *known, *(p for p in own if p.kind == keyword)])
+
+
+check.__signature__ = _spelled_out()  # type: ignore[attr-defined]
+_KEYWORDS = list(inspect.signature(check).parameters)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from . import _crescent
 from ._arrays import Array
-from ._check import Sampler
+from ._sampler import Sampler
 
 
 def arm_names() -> list[str]:

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from . import _arrays
-from ._check import Sampler, _of_library, check
+from ._check import _of_library, check
 from ._judgement import Judgement
+from ._sampler import Sampler
 
 ALPHA = 1e-3  #: of a whole session
 

@@ -84,6 +84,7 @@ void CallableSampler::pdf(int, std::span<const Pair> at, std::span<double> out) 
     ask([&] {
         const Column p = nb::cast<Column>(c_.pdf(directions(at, &Pair::wo), directions(at, &Pair::wi)));
         must_be(p.shape(0), at.size());
+        const nb::gil_scoped_release free;
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = c_.upper_only && at[i].wi.z <= 0 ? 0 : p(i);
     });
 }
@@ -94,6 +95,7 @@ void CallableSampler::f_channels(std::span<const Pair> at, std::span<Vec3d> out)
         const Rows f = nb::cast<Rows>(c_.f(directions(at, &Pair::wo), directions(at, &Pair::wi)));
         must_be(f.shape(0), at.size());
         const bool three = f.shape(1) == 3;
+        const nb::gil_scoped_release free;
         for (std::size_t i = 0; i < at.size(); ++i) {
             out[i] = three ? Vec3d{f(i, 0), f(i, 1), f(i, 2)} : Vec3d{f(i, 0), f(i, 0), f(i, 0)};
             if (c_.upper_only && at[i].wi.z <= 0) out[i] = {};

@@ -34,7 +34,7 @@ Traits::Asked asked_word(const std::string& wo) {
 }
 
 Trials of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers, int channels,
-    const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial, bool reciprocal,
+    const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial, bool reciprocal, bool own_random,
     std::optional<std::vector<double>> eta, bool importance, bool full, const Grid& grid) {
     Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
     c.traits.numbers = numbers;
@@ -43,6 +43,7 @@ Trials of_callables(nb::object sample, nb::object pdf, nb::object f, const std::
     c.traits.has_pdf = !c.pdf.is_none();
     c.traits.delta = delta;
     c.traits.reciprocal = reciprocal;
+    c.traits.own_random = own_random;
     c.traits.importance = importance;
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
     const auto subject = std::make_shared<CallableSampler>(std::move(c));
@@ -110,6 +111,19 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
     }
     quiet();
     return out;
+}
+
+/// The trials of an arm of the list where `a` was judged.
+Trials arm_beside(const std::string& arm, const Trials& a) {
+    if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
+        const std::string near = nearest(arm, names);
+        throw nb::value_error(fmt::format(
+            "against is '{}': no built-in arm{}", arm, near.empty() ? "" : fmt::format("; did you mean '{}'?", near))
+                .c_str());
+    }
+    std::vector<Trial> judged = a.all;
+    std::erase_if(judged, [](const Trial& t) { return t.baseline; });
+    return {arm_against(arm, judged), nullptr};
 }
 
 void draw_batches(const Trials& trials, std::uint32_t batches) {
@@ -191,8 +205,8 @@ void add_judging(nb::module_& m) {
             },
             "Draws that the callables made so far.");
     m.def("trials_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
-        "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "eta"_a.none(),
-        "importance"_a, "full"_a, "grid"_a);
+        "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a, "own_random"_a,
+        "eta"_a.none(), "importance"_a, "full"_a, "grid"_a);
     m.def(
         "trials_of_arm",
         [](const std::string& arm, const Settings& settings, bool full, const Grid& grid) {
@@ -220,14 +234,7 @@ void add_judging(nb::module_& m) {
         "samples"_a, "table"_a, "theta"_a, "azimuth"_a);
     m.def("draw", &draw_batches, "trials"_a, "batches"_a,
         "Draws so many batches of 32768 from the callables, on all cores, and drops them: what the door itself costs.");
-    m.def(
-        "arm_beside",
-        [](const std::string& arm, const Trials& a) {
-            std::vector<Trial> judged = a.all;
-            std::erase_if(judged, [](const Trial& t) { return t.baseline; });
-            return Trials{arm_against(arm, judged), nullptr};
-        },
-        "arm"_a, "trials"_a);
+    m.def("arm_beside", &arm_beside, "arm"_a, "trials"_a);
     m.def("judge", &judged, "trials"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
         "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
     m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes beside the place and renames.");

@@ -1,5 +1,7 @@
 """check: right samplers are right, faults are found, and what does not fit is told with its first bad row."""
 
+import dataclasses
+import inspect
 import json
 import os
 import signal
@@ -78,7 +80,8 @@ def test_domain_hemisphere_needs_no_guard_at_the_horizon():
         (lambda wo, wi: cosine_pdf(wo, wi)[:, None], r"row 0 has shape \(1,\)"),
         (lambda wo, wi: [[1.0], [1.0, 2.0]] * 4, "row 1 has shape"),
         (lambda wo, wi: cosine_pdf(wo, wi) * 1j, "dtype complex128"),
-        (lambda wo, wi: [0.1] * 3 + [None] + [0.1] * 4, "row 3 is NoneType"),
+        (lambda wo, wi: [0.1] * 3 + [None] + [0.1] * 4, "row 3 has NoneType"),
+        (lambda wo, wi: None, "pdf is NoneType"),
     ],
 )
 def test_a_pdf_of_another_shape_is_told_with_its_first_bad_row(pdf, said):
@@ -93,6 +96,10 @@ def test_a_pdf_of_another_shape_is_told_with_its_first_bad_row(pdf, said):
         (lambda wo, u: (cosine(wo, u)[0][:, :2], cosine(wo, u)[1]), r"expected \(8, 3\): row 0 has shape \(2,\)"),
         (lambda wo, u: {"wi": cosine(wo, u)[0], "p": 1}, "keys"),
         (lambda wo, u: (cosine(wo, u)[0], cosine(wo, u)[1][1:]), "row 7"),
+        (lambda wo, u: ([[0, 0, 1]] * 4 + [[0, 0, None]] * 4, 1), "row 4 has NoneType"),
+        (lambda wo, u: (cosine(wo, u)[0], None), "sample's pdf is NoneType"),
+        (lambda wo, u: (*cosine(wo, u), 1, [True] * 7), "sample's delta: 7 rows"),
+        (lambda wo, u: (*cosine(wo, u), 1, np.ones((8, 1), bool)), r"delta: shape \(8, 1\)"),
     ],
 )
 def test_a_sample_of_another_shape_is_told(sample, said):
@@ -166,9 +173,74 @@ def test_built_in_arms_alone_and_against_each_other():
         crescent.check("cosin")
 
 
+def test_flags_of_delta_parts_may_be_whole_numbers():
+    def flagged(wo, u):
+        return *mirror(wo, u)[:3], mirror(wo, u)[3].astype(int)
+
+    j = crescent.check(flagged, lambda wo, wi: 0.75 * cosine_pdf(wo, wi), lambda wo, wi: 0.5 * lambert(wo, wi), u=3)
+    assert j.state == "right", str(j)
+
+
+def test_a_sampler_that_draws_random_numbers_of_its_own_says_so():
+    rng = np.random.default_rng(1)
+
+    def own(wo, u):
+        return cosine(wo, rng.random(u.shape))
+
+    known = {"wo_deg": 30, "serial": True}  # a generator of NumPy's is of one thread
+    assert "identity" in crescent.check(own, cosine_pdf, lambert, **known).broken()
+    assert crescent.check(own, cosine_pdf, lambert, own_random=True, **known).state == "right"
+
+
+def test_w_o_may_be_a_number_or_an_array():
+    one, array = (crescent.check(cosine, cosine_pdf, wo_deg=w) for w in (30, np.array([[30, 0], [60, 250]])))
+    assert {v.case for v in one} == {"w_o 30 deg az 0"}
+    assert {v.case for v in array} == {"w_o 30 deg az 0", "w_o 60 deg az 250"}
+
+
 @pytest.mark.parametrize(
-    "known", [{"u": 9}, {"channels": 2}, {"domain": "disk"}, {"wo": "left"}, {"wo_deg": [90]}, {"alpha": 2}]
+    "known",
+    [
+        *({"u": 9}, {"channels": 2}, {"domain": "disk"}, {"wo": "left"}, {"alpha": 2}, {"seed": -1}, {"threads": -1}),
+        *({"eta": -1}, {"eta": [1.5, 1.6]}, {"eta": float("nan")}, {"against": "cosin"}),
+        *({"wo_deg": at} for at in (90, [(30, float("nan"))], [(30, 2, 3)], ["x"], 120)),
+        {"wo": "none", "wo_deg": 30},
+    ],
 )
 def test_what_is_declared_wrongly_is_a_value_error(known):
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match=next(reversed(known))):
         crescent.check(cosine, cosine_pdf, **known)
+
+
+@pytest.mark.parametrize(
+    "known, said",
+    [
+        ({"u": 2.0}, "u is 2.0"),
+        ({"name": 3}, "name is int"),
+        ({"f": 3}, "f is int"),
+        ({"against": cosine}, "against is function"),
+        ({"progress": 3}, "progress is int"),
+        ({"wo_dg": 30}, "did you mean 'wo_deg'"),
+    ],
+)
+def test_what_is_of_another_kind_is_a_type_error(known, said):
+    with pytest.raises(TypeError, match=said):
+        crescent.check(cosine, cosine_pdf, **known)
+
+
+def test_callables_beside_a_sampler_are_not_dropped_and_numbers_that_are_missing_are_told():
+    with pytest.raises(TypeError, match="holds its own pdf"):
+        crescent.check(crescent.Sampler(cosine, cosine_pdf), cosine_pdf)
+    with pytest.raises(IndexError) as told:
+        crescent.check(mirror, cosine_pdf)
+    assert "u=K" in told.value.__notes__[0]
+    for bad in (float("nan"), "32"):
+        with pytest.raises(ValueError, match="s is"):
+            crescent.check("phong", settings={"s": bad})
+
+
+def test_every_keyword_of_check_is_told_by_its_signature():
+    told = inspect.signature(crescent.check).parameters
+    known = {at.name for at in dataclasses.fields(crescent.Sampler)} - {"sample", "pdf", "f"}
+    assert known | {"wo_deg", "alpha", "seed", "full", "against", "progress"} <= set(told)
+    assert all(p.kind != p.VAR_KEYWORD for p in told.values())

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Array
-from .._check import Sampler
+from .._sampler import Sampler
 
 
 def _library() -> Any:

@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import _arrays
 from .._arrays import Array
-from .._check import Sampler
+from .._sampler import Sampler
 from .._libraries import Library
 
 Call = Callable[..., Any]

@@ -7,8 +7,9 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from .._check import Sampler, check
+from .._check import check
 from .._judgement import Judgement
+from .._sampler import Sampler
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,93 @@
+"""A sampler of somebody's own: its callables with what is known of it, looked over as it is made."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+
+Domain = Literal["sphere", "hemisphere"]
+Asked = Literal["upper", "both", "none"]
+
+
+_DOMAINS = ("sphere", "hemisphere")
+_SIDES = ("upper", "both", "none")
+
+
+def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
+    """A whole number of a range; TypeError or ValueError."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} is {value!r}: {expected}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{what} is {number}: {expected}")
+    return number
+
+
+@dataclass(frozen=True)
+class Sampler:
+    """A sampler's callables with what is known of it.
+
+    Local frame, n = +z; wo is given, wi drawn, both leave the surface; pdf in 1/sr; f in 1/sr without the cosine.
+    """
+
+    sample: Callable[..., Any]  #: sample(wo[n,3], u[n,k]) -> (wi[n,3], pdf[n][, weight[n,c][, delta[n]]])
+    pdf: Callable[..., Any] | None = None  #: pdf(wo[n,3], wi[n,3]) -> [n]
+    f: Callable[..., Any] | None = None  #: f(wo[n,3], wi[n,3]) -> [n] or [n,3]
+    name: str = ""
+    u: int = 2  #: random numbers a sample takes, 1 to 8
+    domain: Domain = "sphere"  #: "hemisphere": pdf and f are 0 under the surface whatever the callables say there
+    wo: Asked = "upper"  #: the w_o that it answers for; "none": sample(u) and pdf(wi), as of an environment light
+    channels: int | None = None  #: 1 or 3; None: as f and the weights have
+    delta: bool | None = None  #: some draws are of delta parts; None: where sample gives four parts
+    eta: float | Sequence[float] | None = None  #: index of refraction below over above
+    importance: bool = False  #: f is scaled as importance is, not as radiance
+    reciprocal: bool = True  #: False: f is known not to be reciprocal
+    own_random: bool = False  #: it draws random numbers of its own: the same u may give another answer
+    serial: bool = False  #: its callables want one thread, the caller's own
+    #: whose arrays the callables take: "torch", "jax" or a module with asarray; None: those that they answer with
+    array_module: Any = None
+    device: Any = None  #: where these arrays lie, as that library says it
+
+    def __post_init__(self) -> None:
+        for what, taken in (("sample", "wo, u"), ("pdf", "wo, wi"), ("f", "wo, wi")):
+            call = getattr(self, what)
+            if not callable(call) and (call is not None or what == "sample"):
+                raise TypeError(f"{what} is {type(call).__name__}: expected a callable {what}({taken})")
+        if not isinstance(self.name, str):
+            raise TypeError(f"name is {type(self.name).__name__}: expected a text")
+        object.__setattr__(self, "u", whole("u", self.u, 1, 8, "a sample takes 1 to 8 random numbers"))
+        for what, words in (("channels", (None, 1, 3)), ("domain", _DOMAINS), ("wo", _SIDES)):
+            if getattr(self, what) not in words:
+                expected = " or ".join(repr(w) for w in words if w is not None)
+                raise ValueError(f"{what} is {getattr(self, what)!r}: expected {expected}")
+        if self.eta is not None:
+            eta = np.atleast_1d(np.asarray(self.eta, np.float64))
+            if eta.shape not in ((1,), (3,)) or not (np.isfinite(eta) & (eta > 0)).all():
+                raise ValueError(f"eta is {self.eta!r}: expected a number above 0, or three of them")
+
+    def title(self) -> str:
+        """Its name, or that of the function which draws."""
+        return self.name or getattr(self.sample, "__name__", type(self.sample).__name__)
+
+
+class Known(TypedDict, total=False):
+    """What check takes as keywords of a sampler of callables: the fields of Sampler."""
+
+    name: str
+    u: int
+    domain: Domain
+    wo: Asked
+    channels: int | None
+    delta: bool | None
+    eta: float | Sequence[float] | None
+    importance: bool
+    reciprocal: bool
+    own_random: bool
+    serial: bool
+    array_module: Any
+    device: Any
