@@ -52,8 +52,8 @@ make_environment() {
 # add_python_module DIR: brings the Python module into the release build, with an environment of its own in DIR. Says so
 # and leaves it out where that cannot be had: nothing else stands on it.
 add_python_module() {
-    local python
-    python=$(find_python) && (make_environment "$1" "$python" nanobind numpy pytest mypy matplotlib xarray mitsuba) ||
+    local python packages=(nanobind numpy pytest mypy matplotlib xarray mitsuba jax)
+    python=$(find_python) && (make_environment "$1" "$python" "${packages[@]}") ||
         { say "going on without the Python package: its environment could not be made"; return; }
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
         grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return

@@ -6,6 +6,7 @@ Any array that speaks DLPack or NumPy's protocol is taken. Directions are ``[n, 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Real
 from typing import Any
@@ -22,6 +23,8 @@ def as_numpy(value: Any, what: str) -> NDArray[Any]:
         return value
     if hasattr(value, "detach"):  # a tensor that autograd follows, or that lies on a device
         value = value.detach().cpu()
+    if is_drjit(value):
+        return of_drjit(value)
     if hasattr(value, "__dlpack__"):
         try:
             return np.from_dlpack(value)
@@ -31,6 +34,19 @@ def as_numpy(value: Any, what: str) -> NDArray[Any]:
         return np.asarray(value)
     except ValueError:
         raise ValueError(f"{what}: {_first_ragged(value)}") from None
+
+
+def is_drjit(value: Any) -> bool:
+    """Whether it is an array of Dr.Jit, as Mitsuba's are."""
+    return type(value).__module__.partition(".")[0] in ("drjit", "mitsuba") and hasattr(value, "numpy")
+
+
+def of_drjit(value: Any) -> NDArray[Any]:
+    """Its rows: Dr.Jit's vectors have a component a row. An array of a single entry is a number."""
+    array = np.asarray(value.numpy())
+    if sys.modules["drjit"].is_tensor_v(value):
+        return array
+    return array.T if array.ndim > 1 else array[0] if len(array) == 1 else array
 
 
 def _first_ragged(rows: Sequence[Any]) -> str:

@@ -13,8 +13,8 @@ import numpy as np
 
 from . import _arrays, _crescent
 from ._judgement import Judgement
-from ._libraries import Library, library_wanted
-from ._sampler import Known, Sampler, whole
+from ._libraries import library_named, library_wanted
+from ._sampler import Known, Sampler, rows_to_look_with, whole
 
 Progress = Callable[[str, float, float], None]
 
@@ -60,28 +60,24 @@ def _numbers(settings: Mapping[str, float]) -> dict[str, float]:
     return {key: float(value) for key, value in settings.items()}
 
 
-def _asked(n: int, numbers: int) -> tuple[_arrays.Array, _arrays.Array]:
-    """A few rows to look at a sampler with: w_o and u."""
-    wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
-    return wo, (np.arange(n)[:, None] + 0.5) / n * np.ones((1, numbers)) * np.linspace(1, 0.6, numbers)
-
-
 def _of_library(s: Sampler) -> Sampler:
     """The sampler with callables that take NumPy's arrays, whatever its own take."""
-    wanted = s.array_module
-    if wanted is None:
-        rows = _asked(8, s.u)
-        wanted = library_wanted(s.sample, *(rows if s.wo != "none" else rows[1:]))
-    if wanted is None or wanted is np or wanted == "numpy":
+    if s.array_module is np or s.array_module == "numpy":
         return s
-    library = Library(wanted, s.device)
+    rows = rows_to_look_with(8, s.u) if s.wo != "none" else rows_to_look_with(8, s.u)[1:]
+    if s.array_module is None:
+        library = library_wanted(s.sample, *rows)
+    else:
+        library = library_named(s.array_module, s.device, s.sample, rows)
+    if library is None:
+        return s
     return replace(
         s,
         sample=library.samples(s.sample, s.title()),
         pdf=s.pdf and library.asks(s.pdf),
         f=s.f and library.asks(s.f),
         name=s.title(),
-        serial=s.serial or library.name == "torch",  # it has threads of its own
+        serial=s.serial or library.name in ("torch", "drjit"),  # which have threads of their own
         array_module=np,
     )
 
@@ -89,7 +85,7 @@ def _of_library(s: Sampler) -> Sampler:
 def _look(s: Sampler) -> tuple[int, bool, bool]:
     """Channels, whether it gives weights, whether it gives delta parts: seen from a few answers."""
     n, takes_wo = 8, s.wo != "none"
-    wo, u = _asked(n, s.u)
+    wo, u = rows_to_look_with(n, s.u)
     wi, _, weight, delta = _arrays.asks_sample(s.sample, s.title(), takes_wo)(wo, u)
     up = np.where(np.all(np.isfinite(wi), axis=1, keepdims=True), wi, [[0.0, 0.0, 1.0]])
     if s.pdf is not None:

@@ -21,7 +21,7 @@ from ._arrays import Array
 Call = Callable[..., Any]
 
 #: The module of an array's type, and the library that its callables take; these tell by their errors that they want it.
-KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy"}
+KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy", "drjit": "drjit", "mitsuba": "drjit"}
 _KEPT = 4  # arrays a thread: w_o, the numbers, directions that were drawn, directions that were asked for
 
 
@@ -117,22 +117,33 @@ def library_of(answer: Any) -> str | None:
     return KNOWN.get(type(part).__module__.partition(".")[0])
 
 
-def library_wanted(call: Call, *rows: Array) -> str | None:
+def library_wanted(call: Call, *rows: Array) -> Library | None:
     """The library whose arrays `call` takes: that of its answer to NumPy's arrays; where it refuses those, one of those
     loaded that it does not refuse. What it raises with NumPy's arrays is raised where there is none."""
     try:
         name = library_of(call(*rows))
     except Exception as refused:
         for loaded in dict.fromkeys(KNOWN.values()):
-            if loaded in sys.modules and _takes(call, loaded, rows):
-                return loaded
+            if loaded in sys.modules and (library := _taken(call, loaded, rows)):
+                return library
         raise refused
-    return name if name and _takes(call, name, rows) else None
+    return _taken(call, name, rows) if name else None
 
 
-def _takes(call: Call, name: str, rows: tuple[Array, ...]) -> bool:
+def _taken(call: Call, name: str, rows: tuple[Array, ...]) -> Library | None:
+    library = library_named(name, None, call, rows)
     try:
-        Library(name).asks(call)(*rows)
+        library.asks(call)(*rows)
     except Exception:
-        return False
-    return True
+        return None
+    return library
+
+
+def library_named(module: Any, device: Any, call: Call, rows: tuple[Array, ...]) -> Library:
+    """The library of that name, or of that module; of Dr.Jit in the form that `call` takes."""
+    from ._drjit import drjit_for  # which stands on this file
+
+    name = module if isinstance(module, str) else module.__name__
+    if KNOWN.get(name.partition(".")[0]) == "drjit":
+        return drjit_for(module, call, rows)
+    return Library(module, device)

@@ -9,6 +9,8 @@ from typing import Any, Literal, TypedDict
 
 import numpy as np
 
+from ._arrays import Array
+
 Domain = Literal["sphere", "hemisphere"]
 Asked = Literal["upper", "both", "none"]
 
@@ -91,3 +93,9 @@ class Known(TypedDict, total=False):
     serial: bool
     array_module: Any
     device: Any
+
+
+def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:
+    """A few rows to look at a sampler with: w_o and u."""
+    wo = np.tile([[0.5, 0.0, np.sqrt(0.75)]], (n, 1))
+    return wo, (np.arange(n)[:, None] + 0.5) / n * np.ones((1, numbers)) * np.linspace(1, 0.6, numbers)

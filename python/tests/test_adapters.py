@@ -50,10 +50,10 @@ def test_a_triple_in_jax_is_compiled_for_few_shapes():
         shapes.add(wi.shape)
         return pdf(wo, wi)
 
-    mine = adapters.jax(jax.jit(sample), jax.jit(eval), jax.jit(noted))
-    assert crescent.check(mine, wo_deg=WO).state == "right"
+    jitted = [jax.jit(call) for call in (sample, eval, noted)]
+    assert crescent.check(adapters.jax(*jitted), wo_deg=WO).state == "right"
     assert shapes and all(n & (n - 1) == 0 for n, _ in shapes)
-    off = adapters.jax(sample, eval, lambda wo, wi: 1.02 * pdf(wo, wi))
+    off = adapters.jax(*jitted[:2], lambda wo, wi: 1.02 * jitted[2](wo, wi))
     assert "normalised" in crescent.check(off, wo_deg=WO).broken()
 
 
@@ -73,6 +73,8 @@ def plain(xp, pi=np.pi):
 def test_the_library_of_callables_is_seen_and_what_lies_there_stays(name, module):
     xp = pytest.importorskip(module)
     sample, pdf, f = plain(xp)
+    if name == "jax":
+        sample, pdf, f = map(pytest.importorskip("jax").jit, (sample, pdf, f))
     gave, handed = [], []
 
     def drawn(wo, u):
@@ -87,6 +89,82 @@ def test_the_library_of_callables_is_seen_and_what_lies_there_stays(name, module
     for known in ({}, {"array_module": name}, {"array_module": xp}):
         assert crescent.check(drawn, counted, f, wo_deg=[30], **known).state == "right"
     assert sum(handed) >= 9 and not all(handed)
+
+
+@pytest.fixture(scope="module")
+def dr():
+    library = pytest.importorskip("drjit")
+    try:
+        library.auto.ad.Float(1) + 1
+    except Exception as e:
+        pytest.skip(f"Dr.Jit has no backend: {e}")
+    return library
+
+
+def of_drjit(dr, form):
+    """Lambert of 0.5 in Dr.Jit, as one writes it for vectors, for their indices, or for tensors."""
+    vector = dr.auto.ad.Array3f
+    parts = {
+        "vectors": lambda v: [getattr(v, c) for c in "xyz"[: len(v)]],
+        "indices": lambda v: [v[k] for k in range(len(v))],
+        "tensors": lambda v: [v[:, k].array for k in range(v.shape[1])],
+    }[form]
+
+    def sample(wo, u):
+        u1, u2 = parts(u)
+        s, c = dr.sincos(2 * dr.pi * u2)
+        r, z = dr.sqrt(u1), dr.sqrt(1 - u1)
+        return vector(r * c, r * s, z), z / dr.pi
+
+    def pdf(wo, wi):
+        return dr.maximum(parts(wi)[2], 0) / dr.pi
+
+    return sample, pdf, lambda wo, wi: dr.select(parts(wi)[2] > 0, 0.5 / dr.pi, 0)
+
+
+@pytest.mark.parametrize("form", ["vectors", "indices", "tensors"])
+def test_callables_of_drjit_are_handed_its_arrays(dr, form):
+    sample, pdf, f = of_drjit(dr, form)
+    handed = []
+
+    def noted(wo, wi):
+        handed.append(type(wi))
+        return pdf(wo, wi)
+
+    assert crescent.check(sample, noted, f, wo_deg=[30]).state == "right"
+    assert {issubclass(kind, dr.ArrayBase) for kind in handed[1:]} == {True}
+    assert {dr.is_tensor_v(kind) for kind in handed[1:]} == {form == "tensors"}
+    off = crescent.check(sample, lambda wo, wi: 1.02 * pdf(wo, wi), f, wo_deg=[30], array_module="drjit")
+    assert {"normalised", "identity"} <= set(off.broken())
+
+
+def test_directions_that_drjit_drew_stay_its_own(dr):
+    sample, pdf, f = of_drjit(dr, "vectors")
+    gave, again = set(), []
+
+    def drawn(wo, u):
+        wi, p = sample(wo, u)
+        dr.eval(wi)
+        gave.add(wi.x.index)
+        return wi, p
+
+    def writes(wo, wi):
+        again.append(wi.x.index in gave)
+        out = pdf(wo, wi)
+        wi *= 0.5  # into a copy
+        return out
+
+    assert crescent.check(drawn, writes, f, wo_deg=[30]).state == "right"
+    assert sum(again) >= 3
+
+
+def test_a_triple_in_drjit_and_one_entry_for_all_rows(dr):
+    sample, pdf, f = of_drjit(dr, "vectors")
+    mine = adapters.drjit(sample, lambda wo, wi: 0.5 * pdf(wo, wi), pdf)
+    assert crescent.check(mine, wo_deg=[30]).state == "right"
+    colour = dr.auto.ad.Array3f(0.2, 0.5, 0.8) / dr.pi
+    j = crescent.check(sample, pdf, lambda wo, wi: colour, wo_deg=[30], domain="hemisphere")
+    assert j.state == "right", str(j)
 
 
 def test_what_a_callable_writes_into_its_tensors_is_not_handed_again():

@@ -2,10 +2,10 @@
 
 mitsuba(bsdf)                             any mi.BSDF, or a dictionary or XML that mi.load_dict or load_string takes
 mitsuba_emitter(emitter)                  directions towards an emitter, as they are sampled from a point
-numpy, torch, jax (sample, eval, pdf)     callables in the form that renderers have: eval holds the cosine
+numpy, torch, jax, drjit (sample, eval, pdf)   callables in the form that renderers have: eval holds the cosine
 """
 
 from ._mitsuba import mitsuba, mitsuba_emitter
-from ._triples import jax, numpy, torch
+from ._triples import drjit, jax, numpy, torch
 
-__all__ = ["jax", "mitsuba", "mitsuba_emitter", "numpy", "torch"]
+__all__ = ["drjit", "jax", "mitsuba", "mitsuba_emitter", "numpy", "torch"]

@@ -13,8 +13,8 @@ import numpy as np
 
 from .. import _arrays
 from .._arrays import Array
-from .._sampler import Sampler
-from .._libraries import Library
+from .._sampler import Sampler, rows_to_look_with
+from .._libraries import Library, library_named
 
 Call = Callable[..., Any]
 
@@ -70,3 +70,11 @@ def jax(
 ) -> Sampler:
     """JAX callables, jitted or not: rows are filled up to a power of two, so that few shapes are compiled."""
     return _sampler(Library("jax", device, dtype), sample, eval, pdf, known)
+
+
+def drjit(sample: Call, eval: Call | None = None, pdf: Call | None = None, *, u: int = 2, **known: Any) -> Sampler:
+    """Dr.Jit callables, of tensors [n, 3] or of vectors with x, y, z; arrays of Mitsuba's variant where one is set."""
+    known.setdefault("serial", True)
+    rows = rows_to_look_with(8, u)
+    library = library_named("drjit", None, sample, rows if known.get("wo") != "none" else rows[1:])
+    return _sampler(library, sample, eval, pdf, {"u": u, **known})

@@ -1,0 +1,95 @@
+"""Arrays of Dr.Jit, in either form that its callables are written in; those of Mitsuba's variant where one is set.
+
+tensors: [n, 3] as NumPy's, ``wo[:, 2]``; vectors: one array a component, ``wo.z``, ``u.x``. Answers may be of either form.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _arrays
+from ._arrays import Array
+from ._libraries import Library
+
+
+def rows_of(value: Any, n: int) -> Any:
+    """NumPy's rows of an array of Dr.Jit; a vector of a single entry stands for all `n`."""
+    if not _arrays.is_drjit(value):
+        return value
+    rows = _arrays.of_drjit(value)
+    return np.broadcast_to(rows, (n, rows.shape[1])) if rows.ndim == 2 and len(rows) == 1 else rows
+
+
+def _types(module: Any) -> Any:
+    """Whose Float, TensorXf and vectors: Mitsuba's variant, the module that is given, or what Dr.Jit finds."""
+    mi = sys.modules.get("mitsuba")
+    if getattr(module, "__name__", module) in ("drjit", "mitsuba"):
+        if mi is not None and mi.variant() and not str(mi.variant()).startswith("scalar"):
+            return mi
+        return importlib.import_module("drjit.auto.ad")
+    return module
+
+
+class DrJit(Library):
+    """Rows of doubles in, Dr.Jit's arrays of single precision out, or of double in a variant of Mitsuba's; and back."""
+
+    def __init__(self, module: Any = "drjit", tensors: bool = False) -> None:
+        super().__init__(np)
+        self.name, self._keeps, self._tensors = "drjit", True, tensors
+        self._types = _types(module)
+
+    def _vector(self, k: int) -> Any:
+        """The type of k components: Mitsuba's own for points and directions."""
+        of = self._types
+        if mine := getattr(of, {2: "Point2f", 3: "Vector3f"}.get(k, ""), None):
+            return mine
+        base = importlib.import_module(of.Float.__module__)
+        return getattr(base, (f"Array{k}f" if k < 5 else "ArrayXf") + ("64" if of.Float is not base.Float else ""))
+
+    def _made(self, rows: Array) -> Any:
+        of = self._types
+        if self._tensors:
+            return of.TensorXf(np.ascontiguousarray(rows))
+        columns = [of.Float(np.ascontiguousarray(rows[:, i])) for i in range(rows.shape[1])]
+        vector = self._vector(len(columns))
+        return vector(*columns) if len(columns) < 5 else vector(columns)
+
+    def _keep(self, rows: Array, own: Any) -> None:
+        dr = importlib.import_module("drjit")
+        if dr.width(own) not in (len(rows), rows.size):
+            return
+        if self._tensors:
+            own = own if dr.is_tensor_v(own) else self._types.TensorXf(dr.ravel(own), rows.shape)
+        elif not isinstance(own, vector := self._vector(rows.shape[1])):
+            own = vector(own)
+        super()._keep(rows, own)
+
+    def into(self, rows: Array) -> Any:
+        own = super().into(rows)
+        return type(own)(own)  # shares the memory; what a callable writes into is a copy
+
+    def _cut(self, answer: Any, n: int) -> Any:
+        if isinstance(answer, Mapping):
+            return {key: rows_of(part, n) for key, part in answer.items()}
+        if isinstance(answer, (tuple, list)):
+            return tuple(rows_of(part, n) for part in answer)
+        return rows_of(answer, n)
+
+    def fits(self, sample: Callable[..., Any], rows: tuple[Array, ...]) -> bool:
+        """Whether `sample` answers arrays of this form with one draw a row."""
+        try:
+            wi = _arrays.draws(self.asks(sample)(*rows), len(rows[-1]), "")[0]
+        except Exception:
+            return False
+        return len(np.unique(wi, axis=0)) > 1
+
+
+def drjit_for(module: Any, sample: Callable[..., Any], rows: tuple[Array, ...]) -> DrJit:
+    """The form that `sample` takes; tensors first: what is written for vectors takes rows of theirs, which are too few."""
+    tensors = DrJit(module, tensors=True)
+    return tensors if tensors.fits(sample, rows) else DrJit(module)
