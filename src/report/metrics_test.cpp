@@ -84,6 +84,11 @@ TEST(MetricsJson, LeavesSamplesThatItsSchemaRefuses) {
     auto unknown = parsed(Sample());
     unknown["assertions"][0]["verdict"] = true;
     keep("unknown", unknown, false);
+    auto added = parsed(Sample());
+    added["runs"][0]["mae"] = 0.5;
+    keep("added-meter", added, true);
+    added["runs"][0]["mae"] = "half";
+    keep("text-for-a-meter", added, false);
 }
 
 TEST(MetricsJson, HeavyTailStandsInPlaceOfTheInterval) {
