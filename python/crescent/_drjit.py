@@ -1,6 +1,6 @@
 """Arrays of Dr.Jit, in either form that its callables are written in; those of Mitsuba's variant where one is set.
 
-tensors: [n, 3] as those of NumPy, ``wo[:, 2]``; vectors: an array a component, ``wo.z``, ``u.x``. Answers are of either.
+tensors: [n, 3] as those of NumPy, ``wo[:, 2]``; vectors: an array a component, ``wo.z``, ``u.x``. Answers are either.
 """
 
 from __future__ import annotations
@@ -90,6 +90,6 @@ class DrJit(Library):
 
 
 def drjit_for(module: Any, sample: Callable[..., Any], rows: tuple[Array, ...]) -> DrJit:
-    """The form that `sample` takes; tensors first: what is written for vectors takes rows of these, which are too few."""
+    """The form that `sample` takes; tensors first: what is written for vectors takes rows of these, so too few."""
     tensors = DrJit(module, tensors=True)
     return tensors if tensors.fits(sample, rows) else DrJit(module)
