@@ -58,7 +58,7 @@ def _first_ragged(rows: Sequence[Any]) -> str:
     return "its rows are no numbers"
 
 
-def _numbers(value: Any, what: str) -> NDArray[Any]:
+def numbers(value: Any, what: str) -> NDArray[Any]:
     """An array of real numbers."""
     array = as_numpy(value, what)
     if array.dtype.kind in "fiub":
@@ -90,7 +90,7 @@ def _rows(array: NDArray[Any], n: int, what: str) -> None:
 
 def column(value: Any, n: int, what: str) -> Array:
     """``[n]``."""
-    array = _numbers(value, what)
+    array = numbers(value, what)
     if array.ndim == 0:
         return np.full(n, array, np.float64)
     if array.ndim != 1:
@@ -101,7 +101,7 @@ def column(value: Any, n: int, what: str) -> Array:
 
 def directions(value: Any, n: int, what: str) -> Array:
     """``[n, 3]``."""
-    array = _numbers(value, what)
+    array = numbers(value, what)
     if array.ndim != 2 or array.shape[1] != 3:
         row = f": row 0 has shape {array.shape[1:]}" if array.ndim > 0 and len(array) else ""
         raise ValueError(f"{what}: shape {array.shape}, expected ({n}, 3){row}")
@@ -111,7 +111,7 @@ def directions(value: Any, n: int, what: str) -> Array:
 
 def channels(value: Any, n: int, what: str) -> Array:
     """``[n, 1]`` or ``[n, 3]``, from ``[n]``, ``[n, 1]`` or ``[n, 3]``."""
-    array = _numbers(value, what)
+    array = numbers(value, what)
     if array.ndim < 2:
         return column(array, n, what)[:, None]
     if array.ndim != 2 or array.shape[1] not in (1, 3):

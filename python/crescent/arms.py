@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _crescent
+from . import _arrays, _crescent
 from ._arrays import Array
 from ._sampler import Sampler
 
@@ -36,22 +36,46 @@ def arm(
 
     Draws and densities are of single precision, as they render. Arms that aim at lamps are none of these.
     """
+    for what, value, least, most in (
+        ("s", s, 0, 1e6),
+        ("alpha", alpha, 0, 1),
+        ("rho_d", rho_d, 0, 1),
+        ("rho_s", rho_s, 0, 1),
+    ):
+        if not least <= value <= most or (value == 0 and what in ("s", "alpha")):
+            raise ValueError(
+                f"{what} is {value:g}: expected a number {'above' if what[0] != 'r' else 'from'} 0, up to {most:g}"
+            )
     core = _crescent.ListedArm(name, brdf, s, alpha, rho_d, rho_s if brdf else 0.0)
     return Sampler(
-        lambda wo, u: core.sample(*_rows(wo, u)),
-        lambda wo, wi: core.pdf(*_rows(wo, wi)),
-        lambda wo, wi: core.f(*_rows(wo, wi)),
+        lambda wo, u: core.sample(*_rows(wo, u, "u", 2)),
+        lambda wo, wi: core.pdf(*_rows(wo, wi, "wi", 3)),
+        lambda wo, wi: core.f(*_rows(wo, wi, "wi", 3)),
         name=name,
     )
 
 
-def _rows(a: ArrayLike, b: ArrayLike) -> tuple[Array, Array]:
+def _finite(a: ArrayLike, what: str, columns: int) -> Array:
+    """As rows of so many numbers; ValueError names the first that is none."""
+    rows = np.atleast_2d(_arrays.numbers(a, what)).astype(np.float64)
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        raise ValueError(f"{what}: shape {np.shape(a)}, expected (n, {columns}) or ({columns},)")
+    if not np.isfinite(rows).all():
+        bad = int(np.argmin(np.isfinite(rows).all(axis=1)))
+        raise ValueError(f"{what}: row {bad} is {rows[bad]}, which is not finite")
+    return rows
+
+
+def _rows(wo: ArrayLike, beside: ArrayLike, what: str, columns: int) -> tuple[Array, Array]:
     """Both as rows, as many of one as of the other."""
-    x, y = np.atleast_2d(np.asarray(a, np.float64)), np.atleast_2d(np.asarray(b, np.float64))
-    n = max(len(x), len(y))
+    x, y = _finite(wo, "wo", 3), _finite(beside, what, columns)
+    n = max(len(x), len(y)) if len(x) and len(y) else 0
     if not {len(x), len(y)} <= {1, n}:
         raise ValueError(f"{len(x)} rows beside {len(y)}: expected as many, or one")
-    return np.broadcast_to(x, (n, x.shape[1])), np.broadcast_to(y, (n, y.shape[1]))
+    if what == "u" and not ((y >= 0) & (y <= 1)).all():
+        bad = int(np.argmin(((y >= 0) & (y <= 1)).all(axis=1)))
+        raise ValueError(f"u: row {bad} is {y[bad]}: expected numbers from 0 to 1")
+    return np.broadcast_to(x, (n, 3)), np.broadcast_to(y, (n, columns))
 
 
 @dataclass(frozen=True)
@@ -76,18 +100,35 @@ def tail(weights: ArrayLike) -> Tail | None:
     return Tail(*found) if found else None
 
 
-def pdf_of(sample: Callable[..., Any], *, step: float = 1e-4) -> Callable[[Array, Array], tuple[Array, Array]]:
+def pdf_of(
+    sample: Callable[..., Any] | Sampler, *, step: float = 1e-4
+) -> Callable[[Array | None, Array], tuple[Array, Array]]:
     """The density that a warp of two numbers has, by differences: density(wo, u) -> (wi, 1 / |dw/du1 x dw/du2|).
 
     True where `sample` is smooth and one-to-one about u: what to hold a formula for the pdf against. Its error is of
-    order step^2 beside that of the rounding over step.
+    order step^2 beside that of the rounding over step, and of order step within a step of 0 and 1. A :class:`Sampler`
+    without w_o is asked without it: density(None, u).
     """
+    warp = sample.sample if isinstance(sample, Sampler) else sample
+    if not callable(warp):
+        raise TypeError(f"sample is {type(sample).__name__}: expected a callable sample(wo, u)")
+    takes_wo = not (isinstance(sample, Sampler) and sample.wo == "none")
 
-    def density(wo: Array, u: Array) -> tuple[Array, Array]:
-        def drawn(shift: ArrayLike) -> Array:
-            return np.asarray(sample(wo, u + np.asarray(shift))[0], np.float64)
+    def drawn(wo: Array | None, u: Array) -> Array:
+        return np.asarray((warp(wo, u) if takes_wo else warp(u))[0], np.float64)
 
-        along = [(drawn(h) - drawn(-np.asarray(h))) / (2 * step) for h in ([step, 0.0], [0.0, step])]
-        return np.asarray(sample(wo, u)[0], np.float64), 1 / np.linalg.norm(np.cross(along[0], along[1]), axis=1)
+    def density(wo: Array | None, u: Array) -> tuple[Array, Array]:
+        at = _finite(u, "u", 2)
+
+        def along(column: int) -> Array:
+            ends = [at.copy(), at.copy()]
+            ends[0][:, column] = np.maximum(at[:, column] - step, 0)
+            ends[1][:, column] = np.minimum(at[:, column] + step, 1)
+            below, above = (drawn(wo, end) for end in ends)
+            return (above - below) / (ends[1] - ends[0])[:, column, None]
+
+        with np.errstate(divide="ignore"):  # at a pole the warp is not one-to-one
+            p = 1 / np.linalg.norm(np.cross(along(0), along(1)), axis=1)
+        return drawn(wo, at), p
 
     return density

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crescent
+from ._sampler import whole
 
 Progress = Callable[[str, float, float], None]
 
@@ -40,8 +41,31 @@ def _toml(value: Any) -> str:
     )
 
 
+def _overrides(changes: Mapping[str, Any]) -> list[str]:
+    """KEY=VALUE of each; a table gives one for each of its keys."""
+    out: list[str] = []
+    for path, value in changes.items():
+        if isinstance(value, Mapping) and value:
+            out += _overrides({f"{path}.{key}": v for key, v in value.items()})
+        else:
+            out.append(f"{path}={_toml(value)}")
+    return out
+
+
+def _lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
+    """A table as the lines of a file."""
+    inside = {key: value for key, value in table.items() if isinstance(value, Mapping)}
+    yield from (f"{json.dumps(key)} = {_toml(value)}" for key, value in table.items() if key not in inside)
+    for key, value in inside.items():
+        at = f"{path}.{json.dumps(key)}" if path else json.dumps(key)
+        yield from (f"[{at}]", *_lines(value, at))
+
+
 class Experiment:
-    """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. A change is checked as a whole."""
+    """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. A change is checked as a whole.
+
+    A table is set by a dictionary, ``e["arms.phong"] = {"n": [4]}``, and taken out by ``del e["arms.phong"]``.
+    """
 
     def __init__(self, core: _crescent.Experiment) -> None:
         self._core = core
@@ -57,12 +81,32 @@ class Experiment:
         return at
 
     def __setitem__(self, path: str, value: Any) -> None:
-        self._core = _crescent.parse(self._core.text, self._core.file, [f"{path}={_toml(value)}"])
+        self._core = _crescent.parse(self._core.text, self._core.file, _overrides({path: value}))
+
+    def __delitem__(self, path: str) -> None:
+        _ = self[path]  # KeyError where it is not there
+        whole = tomllib.loads(self._core.text)
+        above, _, word = path.rpartition(".")
+        at: Any = whole
+        for step in above.split(".") if above else ():
+            at = at[step]
+        del at[word]
+        self._core = _crescent.parse("\n".join(_lines(whole)), self._core.file, [])
+
+    def __contains__(self, path: object) -> bool:
+        try:
+            self[str(path)]
+        except KeyError:
+            return False
+        return True
+
+    def __iter__(self) -> Iterator[str]:
+        """The keys and tables of the file."""
+        return iter(tomllib.loads(self._core.text))
 
     def with_(self, changes: Mapping[str, Any]) -> Experiment:
         """Another experiment, with these keys changed all at once."""
-        overrides = [f"{path}={_toml(value)}" for path, value in changes.items()]
-        return Experiment(_crescent.parse(self._core.text, self._core.file, overrides))
+        return Experiment(_crescent.parse(self._core.text, self._core.file, _overrides(changes)))
 
     @property
     def text(self) -> str:
@@ -83,7 +127,7 @@ class Experiment:
 
 def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Experiment:
     """An experiment file; ValueError names every mistake with line and column."""
-    return Experiment(_crescent.load(fspath(path), [f"{k}={_toml(v)}" for k, v in (changes or {}).items()]))
+    return Experiment(_crescent.load(fspath(path), _overrides(changes or {})))
 
 
 def parse(text: str, name: str = "text.toml") -> Experiment:
@@ -91,7 +135,7 @@ def parse(text: str, name: str = "text.toml") -> Experiment:
     return Experiment(_crescent.parse(text, name, []))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Film:
     """Per pixel what n samples of one arm came to. Rows run bottom-up; radiance in W/(sr m^2), linear Rec. 709."""
 
@@ -105,6 +149,10 @@ class Film:
         if name in ("r", "g", "b", "y", "y2", "var", "largest", "horizon", "hits", "error"):
             return self.planes[name]
         raise AttributeError(name)
+
+    def __repr__(self) -> str:
+        height, width = self.planes["y"].shape
+        return f"<Film {self.arm} n={self.n} s={self.s:g} seed={self.seed}: {width} x {height}>"
 
     @property
     def rgb(self) -> NDArray[np.float32]:
@@ -120,12 +168,11 @@ class Films(Mapping[tuple[str, int], Film]):
         self._s = s
 
     def __getitem__(self, key: tuple[Any, ...]) -> Film:
-        arm, n, s = (*key, self._s)[:3]
-        if (arm, n, s) not in self._films:
-            raise KeyError(
-                f"no film {arm} n={n} s={s:g}: there are {', '.join(f'{a} n={m} s={t:g}' for a, m, t in self._films)}"
-            )
-        return self._films[arm, n, s]
+        at: Any = (*key, self._s)[:3] if isinstance(key, tuple) else key
+        if at not in self._films:
+            told = ", ".join(f"{a} n={m} s={t:g}" for a, m, t in self._films)
+            raise KeyError(f"no film {key!r}, expected (arm, n) or (arm, n, s): there are {told}")
+        return self._films[at]
 
     def __iter__(self) -> Iterator[Any]:
         return iter(self._films)
@@ -205,6 +252,9 @@ def run(
     `out`: a folder for metrics and films. Films are the same bits whatever `threads` and `isa` say.
     """
     e = experiment if isinstance(experiment, Experiment) else load(experiment)
+    if len(np.shape(seeds)) != 1 or len(seeds) != 2:
+        raise ValueError(f"seeds is {seeds!r}: expected the first and the last of the series, (1, 0) for all")
+    threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     core = _crescent.run(e._core, seeds[0], seeds[1], threads=threads, isa=isa, studies=studies, progress=progress)
     measured = Measured(core, e._core.s())
     if out is not None:

@@ -5,7 +5,7 @@ import signal
 
 import numpy as np
 import pytest
-from samplers import cosine, cosine_pdf
+from samplers import cosine, cosine_pdf, sphere, sphere_pdf
 
 import crescent
 
@@ -69,6 +69,29 @@ def test_an_experiment_is_read_and_changed_with_the_files_own_checks(tmp_path):
         crescent.parse("x = ", "t.toml")
 
 
+def test_tables_are_set_and_taken_out():
+    e = crescent.parse(TINY)
+    assert "arms.phong" in e and "arms.uniform" not in e and "image" in list(e)
+    before = e.hash
+    e["arms.uniform"] = {"n": [4, 8]}
+    assert e["arms.uniform.n"] == [4, 8] and e.hash != before
+    del e["arms.uniform"]
+    assert "arms.uniform" not in e and e.hash == before
+    with pytest.raises(ValueError, match="no arm 'phong'"):
+        del e["arms.phong"]  # which an assertion names
+    assert "arms.phong" in e
+    with pytest.raises(KeyError, match="arms has cosine, phong"):
+        del e["arms.uniform"]
+
+
+@pytest.mark.parametrize(
+    "known, said", [({"seeds": 3}, "seeds is 3"), ({"seeds": (1,)}, "first and the last"), ({"threads": -1}, "threads")]
+)
+def test_what_run_cannot_do_is_a_value_error(known, said):
+    with pytest.raises(ValueError, match=said):
+        crescent.run(crescent.parse(TINY), **known)
+
+
 def test_films_are_the_memory_of_the_run(measured):
     film = measured.films["cosine", 16]
     assert film.y.shape == (32, 48) and film.y.dtype == np.float32 and film.rgb.shape == (32, 48, 3)
@@ -80,8 +103,10 @@ def test_films_are_the_memory_of_the_run(measured):
     rmse = float(np.sqrt(np.mean((film.y[box].astype(float) - reference[box]) ** 2)))
     told = [r for r in measured.records() if (r["arm"], r["n"], r["seed"], r["meter"]) == ("cosine", 16, 7, "rmse")]
     assert told[0]["region"] == "ball" and told[0]["value"] == pytest.approx(rmse, rel=1e-5)
-    with pytest.raises(KeyError, match="there are cosine n=4"):
-        measured.films["phong", 5]
+    for key in (("phong", 5), "phong"):
+        with pytest.raises(KeyError, match="there are cosine n=4"):
+            measured.films[key]
+    assert repr(film) == "<Film cosine n=16 s=32 seed=7: 48 x 32>"
 
 
 def test_films_outlive_their_run_and_threads_change_no_bit(measured):
@@ -135,9 +160,25 @@ def test_arms_are_vectorised_functions():
     assert np.allclose(crescent.arm("cosine").f(wo, wi)[up], 0.5 / np.pi)
     assert crescent.check(phong, wo_deg=[30]).of("density")[0].state == "right"
     assert "phong" in crescent.arm_names() and "ggx" in crescent.brdf_names()
-    for bad in (dict(name="phon"), dict(name="light-area"), dict(name="phong", brdf="gxg")):
+    for bad in (
+        *(dict(name="phon"), dict(name="light-area"), dict(name="phong", brdf="gxg")),
+        *(
+            dict(name="phong", s=-1),
+            dict(name="phong", s=np.nan),
+            dict(name="ggx-d", alpha=2),
+            dict(name="cosine", rho_d=3),
+        ),
+    ):
         with pytest.raises(ValueError):
             crescent.arm(**bad)
+    for wo_, u_, said in (
+        ([0, 0], [0.5, 0.5], "wo: shape"),
+        ([0, 0, 1], [0.5, 0.5, 0.5], "u: shape"),
+        ([[0, 0, 1], [0, np.nan, 1]], [0.5, 0.5], "wo: row 1"),
+        ([0, 0, 1], [[0.5, 0.5]] * 3 + [[0.5, 1.5]], "u: row 3"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            phong.sample(wo_, u_)
     with pytest.raises(ValueError, match="3 rows beside 2"):
         phong.pdf(np.ones((3, 3)), np.ones((2, 3)))
 
@@ -155,3 +196,9 @@ def test_the_density_of_a_warp_by_differences():
     u = np.random.default_rng(2).uniform(0.05, 0.95, (1000, 2))
     wi, p = crescent.pdf_of(cosine)(np.tile([0, 0, 1.0], (1000, 1)), u)
     assert np.allclose(p, cosine_pdf(None, wi), rtol=1e-4)
+    edge = np.array([[0.5, 0.0], [0.5, 1.0], [0.0, 0.5]])
+    assert np.allclose(crescent.pdf_of(cosine)(None, edge)[1][:2], np.sqrt(0.5) / np.pi, rtol=1e-3)
+    sky = crescent.Sampler(sphere, sphere_pdf, wo="none")
+    assert np.allclose(crescent.pdf_of(sky)(None, u)[1], 1 / (4 * np.pi), rtol=1e-4)
+    with pytest.raises(ValueError, match="u: shape"):
+        crescent.pdf_of(cosine)(None, np.full((4, 3), 0.5))
