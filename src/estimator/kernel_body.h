@@ -5,6 +5,8 @@
 // multiples of 16 whatever the rungs, so a rung is the same prefix whichever other rungs are asked for.
 #pragma once
 
+#include <concepts>
+
 #include "arms/all.h"
 #include "estimator/kernel_lights.h"
 #include "lobes/all.h"
@@ -15,8 +17,20 @@ namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
 
+/// What a kernel asks of a scene's emitters beside the fill: room in its memory, the emitters as one pack of pixels
+/// sees them, what a sample gathers from them on top of the fill, and totals in double of what was gathered.
+template <class E, class F>
+concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t, typename E::Room&> &&
+    std::constructible_from<typename E::Totals, typename E::Room&> &&
+    requires(E emitters, const E& seen, ShadingPoint<F>& site, typename E::Totals totals, Moments& out) {
+        { seen.first() } -> std::same_as<typename E::First>;
+        seen.show(site);
+        totals.take(emitters);
+        totals.write(seen, out);
+    };
+
 /// What one pack of pixels has gathered: sums of the current block, and what runs through all samples. Apart from what
-/// only samples that meet a disk touch, so that it can live in registers.
+/// only samples that meet an emitter touch, so that it can live in registers.
 template <class F> struct RunningSums {
     F g = number<F>(0), g_lobe = number<F>(0);
     F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
@@ -26,36 +40,36 @@ template <class F> struct RunningSums {
     UintOf<F> horizon{0u}, bad{0u};
 };
 
-/// A pack's constants that every sample reads. By value, so that they stay in registers: what `meet` can reach must be
-/// loaded again after each call.
-template <class F> struct Constants {
+/// A pack's constants that every sample reads. By value, so that they stay in registers: what `gather` can reach must
+/// be loaded again after each call.
+template <class E, class F> struct Constants {
     Vec3<F> wo;
     F fill_d, fill_s;
     UintOf<F> pixel;
-    DiskCone<F> first;  // round the first light; most scenes have but one
+    typename E::First first;
 };
 
-/// One pack of pixels: its lights and the step that takes one sample.
-template <class A, class L, class F> struct Lane : Lights<F> {
+/// One pack of pixels: its emitters and the step that takes one sample.
+template <class A, class L, class E, class F> struct Lane : E {
+    static_assert(Emitters<E, F>);
     using U = UintOf<F>;
-    using Lights<F>::sites, Lights<F>::at, Lights<F>::disk_count, Lights<F>::light_count, Lights<F>::disks,
-        Lights<F>::others, Lights<F>::cones, Lights<F>::meet;
+    using E::sites, E::at;
     ShadingPoint<F> site;
 
-    Lane(const ShadingPoints& all, std::size_t first, LightRoom<F>& room) : Lights<F>(all, first, room) {
+    Lane(const ShadingPoints& all, std::size_t first, typename E::Room& room) : E(all, first, room) {
         site = {load_lanes<F>(sites.wox, sites.woy, sites.woz, at), load_lanes<F>(sites.s, at),
-            load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at), disks,
-            static_cast<int>(disk_count), others, static_cast<int>(light_count - disk_count)};
+            load_lanes<F>(sites.alpha, at), load_lanes<F>(sites.diffuse, at), load_lanes<F>(sites.rho_s, at)};
+        this->show(site);
     }
 
-    Constants<F> constants() const {
+    Constants<E, F> constants() const {
         return {site.wo, load_lanes<F>(sites.fill_d, at), load_lanes<F>(sites.fill_s, at),
-            load_lanes<F>(sites.pixel, at), light_count > 0 ? cones[0] : DiskCone<F>{}};
+            load_lanes<F>(sites.pixel, at), this->first()};
     }
 
     /// X of one drawn direction, adding what it carries to the sums.
     template <class D> [[gnu::always_inline]] F accumulate(
-        RunningSums<F>& to, const Constants<F>& c, const L& brdf, const D& drawn, F weight) {
+        RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& drawn, F weight) {
         const F zero = number<F>(0);
         const F cos = drawn.wi.z;
         const auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
@@ -69,19 +83,10 @@ template <class A, class L, class F> struct Lane : Lights<F> {
             to.g_lobe = to.g_lobe + g * lobe;
             x = g * (c.fill_d + lobe * c.fill_s);
         }
-        if (light_count == 0) return x;
-        if constexpr (requires { drawn.met; }) {
-            if (any(up)) x = meet(drawn, g, lobe, x, up);
-        } else {
-            auto near = c.first.holds(drawn.wi);
-            for (std::size_t k = 1; k < light_count; ++k) near = near | cones[k].holds(drawn.wi);
-            if (any(near & up)) [[unlikely]]
-                x = meet(drawn, g, lobe, x, up);
-        }
-        return x;
+        return this->gather(c.first, drawn, g, lobe, x, up);
     }
 
-    [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<F>& c, const A& arm, const L& brdf,
+    [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<E, F>& c, const A& arm, const L& brdf,
         const Vec4u<U>& h, bool odd, std::uint64_t j, const KernelCall& call) {
         const Vec2<F> u =
             odd ? Vec2<F>{unit_float<F>(h.z), unit_float<F>(h.w)} : Vec2<F>{unit_float<F>(h.x), unit_float<F>(h.y)};
@@ -114,41 +119,18 @@ template <class A, class L, class F> struct Lane : Lights<F> {
     }
 };
 
-/// sum[lane] += partial[lane].
-template <class F> CRESCENT_INLINE void add_lanes(F partial, double* sum) {
-    float lanes[Lanes<F>::count];
-    store(partial, lanes);
-    for (std::size_t l = 0; l < Lanes<F>::count; ++l) sum[l] += static_cast<double>(lanes[l]);
-}
-/// to[lane] = from[lane] + partial[lane].
-template <class F> CRESCENT_INLINE void add_lanes(F partial, const double* __restrict from, double* __restrict to) {
-    float lanes[Lanes<F>::count];
-    store(partial, lanes);
-    for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
-}
-
 /// Double totals of one pack.
 template <class F> struct Totals {
     static constexpr std::size_t count = Lanes<F>::count;
     double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
-    double *light_g, *light_g_lobe;  // lane l of light k at k * count + l
 
-    explicit Totals(LightRoom<F>& room) : light_g(room.total_g), light_g_lobe(room.total_g_lobe) {
-        for (std::size_t at = 0; at < room.count * count; ++at) light_g[at] = light_g_lobe[at] = 0;
-    }
     /// Takes the block's sums over and clears them.
-    void take(RunningSums<F>& p, LightHitSums<F>& met, std::size_t lights) {
+    void take(RunningSums<F>& p) {
         add_lanes(p.g, g);
         add_lanes(p.g_lobe, g_lobe);
         add_lanes(p.off, off);
         add_lanes(p.square, square);
         p.g = p.g_lobe = p.off = p.square = number<F>(0);
-        for (std::size_t k = 0; met.any && k < lights; ++k) {
-            add_lanes(met.light_g[k], light_g + k * count);
-            add_lanes(met.light_g_lobe[k], light_g_lobe + k * count);
-            met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
-        }
-        met.any = false;
     }
     /// Takes the second moment about the mean of the n samples so far from here on, where the block's sums are clear.
     [[gnu::noinline]] F turn(F about, double n) {
@@ -176,33 +158,29 @@ template <class F> struct Totals {
     }
 };
 
-template <class F> [[gnu::noinline]] void write_rung(
-    const Lights<F>& lane, const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
-    const std::size_t at = lane.at;
+template <class E, class F> [[gnu::noinline]] void write_rung(const E& emitters, const typename E::Totals& emitted,
+    const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n, Moments& out) {
+    const std::size_t at = emitters.at;
     add_lanes(p.g, totals.g, out.g.data() + at);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
     totals.spread(p, static_cast<double>(n), out.spread.data() + at);
-    for (std::size_t k = 0; k < lane.light_count; ++k) {
-        const std::size_t first = k * Lanes<F>::count;
-        add_lanes(lane.met.light_g[k], totals.light_g + first, out.disk_g[k].data() + at);
-        add_lanes(lane.met.light_g_lobe[k], totals.light_g_lobe + first, out.disk_g_lobe[k].data() + at);
-    }
+    emitted.write(emitters, out);
     store(p.largest, out.largest.data() + at);
     store(p.horizon, out.horizon.data() + at);
-    store(lane.met.hits, out.hits.data() + at);
     store(p.bad, out.bad.data() + at);
 }
 
 /// One pack of pixels through all its samples; make(site) gives the arm.
-template <class A, class L, class F, class Make>
-void estimate_pack(const KernelCall& call, std::size_t at, LightRoom<F>& room, const Make& make) {
+template <class A, class L, class E, class F, class Make>
+void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
     using U = UintOf<F>;
-    Lane<A, L, F> lane(*call.sites, at, room);
+    Lane<A, L, E, F> lane(*call.sites, at, room);
     RunningSums<F> gathered;
-    Totals<F> totals(room);
+    Totals<F> totals;
+    typename E::Totals emitted(room);
     const A arm = make(lane.site);
     const L brdf(lane.site.s, lane.site.alpha);
-    const Constants<F> c = lane.constants();
+    const Constants<E, F> c = lane.constants();
     const std::uint64_t n = call.rungs.back();
     std::size_t rung = 0;
     for (std::uint64_t j = 0; j < n;) {
@@ -227,25 +205,26 @@ void estimate_pack(const KernelCall& call, std::size_t at, LightRoom<F>& room, c
             ++j;
         }
         if (j == block_end) {
-            totals.take(gathered, lane.met, lane.light_count);
+            totals.take(gathered);
+            emitted.take(lane);
             if (j < n && (j & (j - 1)) == 0 && (j & 0x5555555555555555u))
                 gathered.pivot = totals.turn(gathered.pivot, static_cast<double>(j));
             if (j % 4096 == 0 && call.stop && call.stop->load(std::memory_order_relaxed)) return;
         }
-        if (j == call.rungs[rung]) write_rung(lane, gathered, totals, j, call.out[rung++]);
+        if (j == call.rungs[rung]) write_rung<E>(lane, emitted, gathered, totals, j, call.out[rung++]);
     }
 }
 
-template <class A, class L, class F> void estimate(const KernelCall& call) {
-    LightRoom<F> room(*call.sites, call.memory);
+template <class A, class L, class E, class F> void estimate(const KernelCall& call) {
+    typename E::Room room(*call.sites, call.memory);
     for (std::size_t at = 0; at < call.sites->count; at += Lanes<F>::count)
-        estimate_pack<A, L, F>(call, at, room, [](const ShadingPoint<F>& site) { return A(site); });
+        estimate_pack<A, L, E, F>(call, at, room, [](const ShadingPoint<F>& site) { return A(site); });
 }
 
 /// One arm's kernels, [lobe + 1].
 template <class F, template <class> class A, template <class> class... L>
 constexpr std::array<Kernel, sizeof...(L) + 1> kernels_on(LobeList<L...>) {
-    return {estimate<A<F>, NoLobe<F>, F>, estimate<A<F>, L<F>, F>...};
+    return {estimate<A<F>, NoLobe<F>, Lights<F>, F>, estimate<A<F>, L<F>, Lights<F>, F>...};
 }
 template <class F, template <class> class... A> constexpr KernelTable kernels_of(std::string_view isa, ArmList<A...>) {
     return {isa, {{kernels_on<F, A>(Lobes{})...}}};

@@ -1,5 +1,6 @@
-// One pack of pixels before the lights: what a sample that may meet one finds, and what is gathered from those
-// that do. Included by kernel_body.h alone.
+// Emitters that can be counted: one pack of pixels before the lights, what a sample that may meet one finds, and what
+// is gathered from those that do. The kernel takes its emitters as a policy (Emitters in kernel_body.h); this is the
+// one for lights of constant radiance, whose sums are kept by light. Included by kernel_body.h alone.
 #pragma once
 
 #include <new>
@@ -65,9 +66,55 @@ private:
     }
 };
 
+template <class F> struct Lights;
+
+/// lane l of `to`: from[l] + partial[l], in double.
+template <class F> CRESCENT_INLINE void add_lanes(F partial, const double* __restrict from, double* __restrict to) {
+    float lanes[Lanes<F>::count];
+    store(partial, lanes);
+    for (std::size_t l = 0; l < Lanes<F>::count; ++l) to[l] = from[l] + static_cast<double>(lanes[l]);
+}
+/// sum[lane] += partial[lane].
+template <class F> CRESCENT_INLINE void add_lanes(F partial, double* sum) {
+    float lanes[Lanes<F>::count];
+    store(partial, lanes);
+    for (std::size_t l = 0; l < Lanes<F>::count; ++l) sum[l] += static_cast<double>(lanes[l]);
+}
+
+/// Double totals of what met each light.
+template <class F> struct LightTotals {
+    static constexpr std::size_t count = Lanes<F>::count;
+    double *g, *g_lobe;  // lane l of light k at k * count + l
+
+    explicit LightTotals(LightRoom<F>& room) : g(room.total_g), g_lobe(room.total_g_lobe) {
+        for (std::size_t at = 0; at < room.count * count; ++at) g[at] = g_lobe[at] = 0;
+    }
+    /// Takes the block's sums over and clears them.
+    void take(Lights<F>& lights) {
+        LightHitSums<F>& met = lights.met;
+        for (std::size_t k = 0; met.any && k < lights.light_count; ++k) {
+            add_lanes(met.light_g[k], g + k * count);
+            add_lanes(met.light_g_lobe[k], g_lobe + k * count);
+            met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
+        }
+        met.any = false;
+    }
+    /// What met them so far, with the block that is not full.
+    void write(const Lights<F>& lights, Moments& out) const {
+        for (std::size_t k = 0; k < lights.light_count; ++k) {
+            add_lanes(lights.met.light_g[k], g + k * count, out.disk_g[k].data() + lights.at);
+            add_lanes(lights.met.light_g_lobe[k], g_lobe + k * count, out.disk_g_lobe[k].data() + lights.at);
+        }
+        store(lights.met.hits, out.hits.data() + lights.at);
+    }
+};
+
 /// The lights as one pack of pixels sees them: disks first.
 template <class F> struct Lights {
     using U = UintOf<F>;
+    using Room = LightRoom<F>;
+    using Totals = LightTotals<F>;
+    using First = DiskCone<F>;  // round the first light; most scenes have but one
     const ShadingPoints& sites;
     std::size_t at;
     std::size_t disk_count, light_count;
@@ -101,6 +148,28 @@ template <class F> struct Lights {
                 [&]<class Kind>() { cones[k] = DiskCone<F>(light.a, Kind::radius2(light), Kind::shines(light)); });
         }
         for (std::size_t k = 0; k < light_count; ++k) met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
+    }
+
+    First first() const { return light_count > 0 ? cones[0] : DiskCone<F>{}; }
+    /// What arms that aim at lights see of them.
+    void show(ShadingPoint<F>& site) const {
+        site.disks = disks, site.disk_count = static_cast<int>(disk_count);
+        site.others = others, site.other_count = static_cast<int>(light_count - disk_count);
+    }
+
+    /// X of a sample whose g and lobe are known, x being what the fill gives.
+    template <class D>
+    [[gnu::always_inline]] F gather(const First& around, const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+        if (light_count == 0) return x;
+        if constexpr (requires { drawn.met; }) {
+            if (any(up)) x = meet(drawn, g, lobe, x, up);
+        } else {
+            auto near = around.holds(drawn.wi);
+            for (std::size_t k = 1; k < light_count; ++k) near = near | cones[k].holds(drawn.wi);
+            if (any(near & up)) [[unlikely]]
+                x = meet(drawn, g, lobe, x, up);
+        }
+        return x;
     }
 
     LocalLight<F> light_at(const LightArrays& from) const {

@@ -48,7 +48,7 @@ using SiteKernel = void (*)(const KernelCall&, std::size_t at, const Drawn<float
 
 template <class L> void estimate_site(const KernelCall& call, std::size_t at, const Drawn<float>* drawn) {
     scalar::LightRoom<float> room(*call.sites, call.memory);
-    scalar::estimate_pack<Prefetched<float>, L, float>(
+    scalar::estimate_pack<Prefetched<float>, L, scalar::Lights<float>, float>(
         call, at, room, [&](const ShadingPoint<float>&) { return Prefetched<float>(drawn); });
 }
 
