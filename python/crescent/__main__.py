@@ -56,19 +56,50 @@ def sampler_at(where: str) -> Sampler:
     return Sampler(found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=title)
 
 
+def _number(flag: str, word: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise ValueError(f"{flag}: expected a number, not '{word}'") from None
+
+
+def _settings(words: list[str]) -> dict[str, float]:
+    """KEY=VALUE of --set."""
+    out = {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals:
+            raise ValueError(f"--set {word}: expected KEY=VALUE")
+        out[key] = _number(f"--set {word}", value)
+    return out
+
+
+def _one_subject(args: argparse.Namespace, own: bool) -> None:
+    """ValueError where two samplers are given, or settings of an arm beside one that is none."""
+    given = [
+        word for word, there in (("SAMPLER", args.sampler), ("--exec", args.exec), ("--plugin", args.plugin)) if there
+    ]
+    if len(given) > 1:
+        raise ValueError(f"{given[0]} excludes {given[1]}")
+    if args.set and own:
+        raise ValueError(f"--set is of a built-in arm: {given[0]} has its parameters in itself")
+
+
 def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
     """The trials, and whether they are of the whole list of arms."""
-    wo = [(float(theta), float(azimuth or 0)) for theta, _, azimuth in (w.partition(",") for w in args.wo)] or None
+    at = [(word, *word.partition(",")[::2]) for word in args.wo]
+    wo = [(_number(f"--wo {w}", theta), _number(f"--wo {w}", azimuth or "0")) for w, theta, azimuth in at] or None
     grid = _grid(wo)
+    arm = args.sampler or ""
+    of_python = ":" in arm or arm.endswith(".py")
+    _one_subject(args, bool(of_python or args.exec or args.plugin))
     if args.exec:
         return _crescent.trials_of_program(args.exec, args.patience, args.full, grid), False
     if args.plugin:
         return _crescent.trials_of_plugin(args.plugin, args.full, grid), False
-    arm = args.sampler or ""
-    if ":" in arm or arm.endswith(".py"):
+    if of_python:
         return _trials(sampler_at(arm), args.full, wo), False
-    settings = {key: float(value) for key, _, value in (word.partition("=") for word in args.set)}
-    return _crescent.trials_of_arm(arm, settings, args.full, grid), not arm
+    return _crescent.trials_of_arm(arm, _settings(args.set), args.full, grid), not arm
 
 
 def _parser() -> argparse.ArgumentParser:

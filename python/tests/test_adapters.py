@@ -245,3 +245,18 @@ def test_a_plugin_of_ones_own_with_a_fault_is_found(mi):
 def test_an_emitter_of_mitsuba_is_right(mi):
     light = {"type": "sphere", "center": [0.0, 1.0, 2.0], "radius": 0.5, "emitter": {"type": "area"}}
     assert crescent.check(adapters.mitsuba_emitter(light)).state == "right"
+    assert crescent.check(adapters.mitsuba_emitter(mi.load_dict(light))).state == "right"
+
+
+def test_what_is_no_plugin_of_that_kind_is_told(mi):
+    with pytest.raises(TypeError, match="int is no BSDF"):
+        adapters.mitsuba(3)
+    with pytest.raises(TypeError, match="is no BSDF"):
+        adapters.mitsuba({"type": "constant"})
+    with pytest.raises(TypeError, match="is no emitter"):
+        adapters.mitsuba_emitter({"type": "diffuse"})
+    with pytest.raises(ValueError, match="no emitter in it"):
+        adapters.mitsuba_emitter({"type": "sphere"})
+    for light in ({"type": "point", "position": [0, 0, 1]}, {"type": "directional", "direction": [0, 0, 1]}):
+        with pytest.raises(ValueError, match="no density to judge"):
+            adapters.mitsuba_emitter(light)

@@ -164,6 +164,25 @@ def test_a_serial_sampler_is_called_by_the_callers_thread_alone():
     assert threads == {threading.get_ident()}
 
 
+def test_other_threads_run_while_the_bench_works():
+    over, turns = threading.Event(), []
+
+    def turning():
+        while not over.wait(0.001):
+            turns.append(threading.get_ident())
+
+    beside = threading.Thread(target=turning)
+    beside.start()
+    try:
+        crescent.check("ggx-vndf")  # without a callable: the interpreter's lock is free all the while
+        alone = len(turns)
+        crescent.check(cosine, cosine_pdf, lambert)
+    finally:
+        over.set()
+        beside.join()
+    assert alone > 20 and len(turns) - alone > 20
+
+
 def test_built_in_arms_alone_and_against_each_other():
     assert crescent.check("cosine").as_expected
     assert crescent.check(cosine, cosine_pdf, lambert, against="cosine", expect_same=True, wo_deg=[30]).state == "right"

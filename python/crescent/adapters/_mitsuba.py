@@ -43,10 +43,12 @@ def _column(v: Any, n: int) -> Array:
     return np.broadcast_to(np.asarray(v, np.float64).ravel(), n)
 
 
-def _loaded(mi: Any, what: Any) -> Any:
-    if isinstance(what, dict):
-        return mi.load_dict(what)
-    return mi.load_string(what) if isinstance(what, str) else what
+def _loaded(mi: Any, what: Any, kind: str, wanted: tuple[str, ...]) -> Any:
+    """The object that a dictionary or an XML text describes, which is of one of mi's classes `wanted`."""
+    it = mi.load_dict(what) if isinstance(what, dict) else mi.load_string(what) if isinstance(what, str) else what
+    if not isinstance(it, tuple(getattr(mi, name) for name in wanted)):
+        raise TypeError(f"{type(it).__name__} is no {kind}: expected {', '.join('mi.' + name for name in wanted)}, ...")
+    return it
 
 
 class _Bsdf:
@@ -108,7 +110,7 @@ def mitsuba(bsdf: Any, *, uv: tuple[float, float] = (0.5, 0.5), context: Any = N
     one component alone or for importance.
     """
     mi = _library()
-    plugin = _loaded(mi, bsdf)
+    plugin = _loaded(mi, bsdf, "BSDF", ("BSDF",))
     own = _Bsdf(mi, plugin, uv, context or mi.BSDFContext())
     flags = int(plugin.flags())
     known.setdefault("name", bsdf["type"] if isinstance(bsdf, dict) else type(plugin).__name__)
@@ -135,28 +137,42 @@ class _Emitter:
 
     def sample(self, u: Array) -> tuple[Array, Array]:
         numbers = [self.mi.Float(np.ascontiguousarray(u[:, k], np.float32)) for k in range(2)]
-        ds, weight = self.scene.sample_emitter_direction(self.at(len(u)), self.mi.Point2f(*numbers), True, True)
+        with self.one_by_one():
+            ds, weight = self.scene.sample_emitter_direction(self.at(len(u)), self.mi.Point2f(*numbers), True, True)
         lit = (_rows(weight, len(u)) != 0).any(axis=1)  # else hidden, or on a side that does not shine: nothing drawn
         return _rows(ds.d, len(u)), np.where(lit, _column(ds.pdf, len(u)), 0)
 
     def pdf(self, wi: Array) -> Array:
         it = self.at(len(wi))
         ray = it.spawn_ray(_vector(self.mi, wi))
-        met = self.scene.ray_intersect(ray)
-        ds = self.mi.DirectionSample3f(self.scene, met, it)
-        ds.d = ray.d
-        lit = met.emitter(self.scene) != None  # noqa: E711 - an array of pointers, compared one by one
-        return _column(self.scene.pdf_emitter_direction(it, ds, lit), len(wi))
+        with self.one_by_one():
+            met = self.scene.ray_intersect(ray)
+            ds = self.mi.DirectionSample3f(self.scene, met, it)
+            ds.d = ray.d
+            lit = met.emitter(self.scene) != None  # noqa: E711 - an array of pointers, compared one by one
+            return _column(self.scene.pdf_emitter_direction(it, ds, lit), len(wi))
+
+    @staticmethod
+    def one_by_one() -> Any:
+        """Emitters are called with arrays that are known: some, as timed_sunsky, look into theirs."""
+        import drjit
+
+        return drjit.scoped_set_flag(drjit.JitFlag.SymbolicCalls, False)
 
 
 def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0.0, 0.0), **known: Any) -> Sampler:
-    """Directions towards an emitter as a renderer samples them from `point`: a mi.Scene, or a dictionary of an emitter
-    or of a shape that holds one."""
+    """Directions towards an emitter as a renderer samples them from `point`: a mi.Scene, a mi.Emitter, a mi.Shape that
+    holds one, or a dictionary or an XML text of these. Points and single directions of light have no density."""
     mi = _library()
-    scene = emitter
+    it = _loaded(mi, emitter, "emitter", ("Scene", "Emitter", "Shape"))
     if isinstance(emitter, dict):
         known.setdefault("name", emitter["type"])
-        scene = mi.load_dict({"type": "scene", "it": emitter})
+    scene = it if isinstance(it, mi.Scene) else mi.load_dict({"type": "scene", "it": it})
+    if not scene.emitters():
+        raise ValueError(f"{known.get('name', type(it).__name__)}: there is no emitter in it")
+    for light in scene.emitters():
+        if light.flags() & (int(mi.EmitterFlags.DeltaPosition) | int(mi.EmitterFlags.DeltaDirection)):
+            raise ValueError(f"{type(light).__name__} shines from one direction: there is no density to judge")
     own = _Emitter(mi, scene, point)
     known.setdefault("name", "emitter")
     return Sampler(own.sample, own.pdf, wo="none", serial=True, **known)

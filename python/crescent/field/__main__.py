@@ -42,8 +42,8 @@ class Finding:
 def judged(it: Shipped) -> crescent.Judgement:
     """One plugin over the field's w_o."""
     if it.kind == "emitter":
-        return crescent.check(mitsuba_emitter(it.plugin, **it.known))
-    sampler = mitsuba(it.plugin, **it.known)
+        return crescent.check(mitsuba_emitter(it.built(), **it.known))
+    sampler = mitsuba(it.built(), **it.known)
     return crescent.check(sampler, wo_deg=ABOVE + (BELOW if sampler.wo == "both" else []))
 
 

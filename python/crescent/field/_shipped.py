@@ -13,6 +13,19 @@ BELOW = [(150.0, 0.0), (120.0, 250.0), (95.0, 75.0)]
 
 
 @dataclass(frozen=True)
+class Made:
+    """A parameter that is made by a line of Python, over mi and np."""
+
+    code: str
+
+    def made(self) -> Any:
+        """What the line makes."""
+        import mitsuba as mi
+
+        return eval(self.code, {"mi": mi, "np": np})
+
+
+@dataclass(frozen=True)
 class Shipped:
     """A plugin with its parameters."""
 
@@ -28,12 +41,24 @@ class Shipped:
         told = [f"{k} = {_told(v)}" for k, v in self.plugin.items() if k != "type"]
         return str(self.plugin["type"]) + (": " + ", ".join(told) if told else "")
 
+    def built(self) -> dict[str, Any]:
+        """The dictionary as mi.load_dict takes it."""
+        return {k: _built(v) for k, v in self.plugin.items()}
+
     def code(self) -> str:
         """The dictionary as Python."""
         return "{" + ", ".join(f'"{k}": {_code(v)}' for k, v in self.plugin.items()) + "}"
 
 
+def _built(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {k: _built(v) for k, v in value.items()}
+    return value.made() if isinstance(value, Made) else value
+
+
 def _told(value: Any) -> str:
+    if isinstance(value, list):
+        return "(" + ", ".join(map(_told, value)) + ")"
     if isinstance(value, dict):
         return str(value["type"])
     return f"{value:g}" if isinstance(value, float) else str(value)
@@ -42,7 +67,13 @@ def _told(value: Any) -> str:
 def _code(value: Any) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f'"{k}": {_code(v)}' for k, v in value.items()) + "}"
+    if isinstance(value, Made):
+        return value.code
     return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+#: A height that rises along x and y.
+_RAMP = "mi.Bitmap(np.float32(np.indices((4, 4)).sum(axis=0)[..., None] / 8))"
 
 
 def bsdfs() -> list[Shipped]:
@@ -87,6 +118,19 @@ def bsdfs() -> list[Shipped]:
         {"type": "mask", "opacity": 0.4, "nested": gloss},
         {"type": "twosided", "nested": gloss},
         {"type": "hair"},
+        {"type": "pplastic", "diffuse_reflectance": rgb, "alpha": 0.1},
+        {"type": "pplastic", "diffuse_reflectance": rgb, "alpha": 0.3},
+        {"type": "normalmap", "normalmap": {"type": "rgb", "value": [0.6, 0.5, 0.95]}, "bsdf": diffuse},
+        {
+            "type": "bumpmap",
+            "texture": {"type": "bitmap", "raw": True, "bitmap": Made(_RAMP)},
+            "scale": 0.2,
+            "bsdf": diffuse,
+        },
+        {"type": "null"},
+        {"type": "polarizer"},
+        {"type": "retarder"},
+        {"type": "circular"},
     ]
     return [Shipped("bsdf", p, {"reciprocal": False} if p["type"] == "hair" else {}) for p in all_of]
 
@@ -122,15 +166,19 @@ def emitters() -> list[Shipped]:
         },
         "area on a cube": {"type": "cube", "to_world": at().translate([0, 0, 3]), "emitter": light},
     }
-    return [Shipped("emitter", plugin, label=label) for label, plugin in shapes.items()]
+    skies: list[dict[str, Any]] = [
+        {"type": "sunsky"},
+        {"type": "sunsky", "turbidity": 6.0, "sun_direction": [0.0, 0.6, 0.8]},
+        {"type": "sunsky", "sun_aperture": 5.0},
+        {"type": "sunsky", "sun_scale": 0.0},
+        {"type": "timed_sunsky"},
+    ]
+    shining = [Shipped("emitter", plugin, label=label) for label, plugin in shapes.items()]
+    return shining + [Shipped("emitter", plugin) for plugin in skies]
 
 
 #: Plugins that are not judged here, and why.
 LEFT_OUT = {
     "measured, measured_polarized": "need a file of measurements, which the package does not bring",
-    "pplastic, polarizer, retarder, circular": "are of polarized variants, whose values are matrices",
-    "bumpmap, normalmap": "turn the frame of another BSDF: what they are is that BSDF off its own normal",
-    "null": "passes every ray on: one delta part, judged within blendbsdf and mask",
     "point, spot, directional, directionalarea, projector": "shine from one direction: there is no density to judge",
-    "sunsky, timed_sunsky": "are not judged yet",
 }
