@@ -196,11 +196,15 @@ namespace {
 /// How much a program will be asked, before it is asked for an hour.
 void tell_cost(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& watch) {
     std::size_t judged = 0;
-    bool program = false;
-    for (const Trial& t : trials) judged += !t.baseline, program = program || t.subject->serial();
+    bool program = false, light = false;
+    for (const Trial& t : trials) {
+        judged += !t.baseline, program = program || t.subject->serial();
+        light = light || t.subject->traits().wo == Traits::Asked::none;
+    }
     if (!program || !settings.full) return;
-    watch.say(fmt::format("--full asks at most {} questions: {} at each of {} w_o", judged * settings.questions,
-        settings.questions, judged));
+    const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
+    watch.say(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
+        settings.questions, judged, more));
 }
 
 /// B on the trials of A: a built-in arm by its name, or a program.
@@ -210,6 +214,11 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
     const std::string near = nearest(flags.against, names);
     if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
         throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm; did you mean '" + near + "'?");
+    for (const char* end : {".csv", ".npy"})
+        if (flags.against.ends_with(end) && flags.against.find(' ') == std::string::npos)
+            throw InputError({"--against " + flags.against, 0, 0},
+                "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
+                "or a program");
     PipeLimits limits;
     limits.stop = &watch.stop;
     if (flags.patience > 0) limits.total_seconds = flags.patience;

@@ -1,10 +1,13 @@
 // Two samplers held against each other: what is alike is not told apart, what differs is, and the ratio of variances
 // has its interval.
 #include <cmath>
+#include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
 
 #include "laws/right/right.h"
 #include "verdicts/against.h"
+#include "verdicts/samples.h"
 
 namespace crescent {
 namespace {
@@ -70,6 +73,65 @@ TEST(Against, ABetterOneIsSaidToBeSoWithItsInterval) {
     const Verdict& back = named(reverse, "variance");
     EXPECT_NE(back.say.find("A is better here"), std::string::npos) << back.say;
     EXPECT_LT(back.evidence["ratio"].get<double>() * v.evidence["ratio"].get<double>(), 1.3);
+}
+
+/// 20,000 draws of cosine, w_o 45 deg, f = `albedo` / pi; p as 128 x 8 points.
+std::shared_ptr<const JudgedSampler> written_samples(double albedo, bool with_f) {
+    const std::string samples = testing::TempDir() + "against_samples.csv",
+                      table = testing::TempDir() + "against_p.csv";
+    Dice dice(5);
+    std::ofstream s(samples), t(table);
+    s << "u1,u2,wix,wiy,wiz,pdf" << (with_f ? ",f\n" : "\n");
+    for (int i = 0; i < 20000; ++i) {
+        const double u = dice.uniform(0, 1), v = dice.uniform(0, 1), z = std::sqrt(1 - u), r = std::sqrt(u);
+        s << fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", u, v, r * std::cos(2 * pi * v),
+            r * std::sin(2 * pi * v), z, z / pi);
+        s << (with_f ? fmt::format(",{:.9g}\n", albedo / pi * (0.2 + 0.8 * z)) : "\n");
+    }
+    t << "cos_theta,phi,pdf\n";
+    for (int i = 0; i < 128; ++i)
+        for (int k = 0; k < 8; ++k)
+            t << fmt::format("{:.9g},{:.9g},{:.9g}\n", i / 127.0, 2 * pi * k / 8, i / 127.0 / pi);
+    s.close(), t.close();
+    return std::make_shared<SampleFile>(samples, table);
+}
+
+/// f = `albedo` / pi (0.2 + 0.8 cos), drawn evenly over the upper half.
+std::shared_ptr<const JudgedSampler> even_with(double albedo) {
+    Recipe r{"even", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d wi) { return wi.z > 0 ? 1 / (2 * pi) : 0.0; };
+    r.f = [albedo](Vec3d, Vec3d wi) { return wi.z > 0 ? albedo / pi * (0.2 + 0.8 * wi.z) : 0.0; };
+    r.sample = [](Vec3d, Vec2d u) { return Draw{about({0, 0, 1}, u.x, u.y), 1 / (2 * pi), {}, {}}; };
+    return subject_of(r);
+}
+
+TEST(Against, AFileOfSamplesWithFIsComparedAtItsDraws) {
+    const std::vector<Trial> a = {trial_of_subject(written_samples(0.5, true), 45, 0)};
+    const Judgement right = against(a, sampler_against(even_with(0.5), a)),
+                    other = against(a, sampler_against(even_with(0.55), a)),
+                    arm = against(a, arm_against("uniform", a));
+    EXPECT_EQ(named(right, "same_f").state, State::right) << against_text(right);
+    EXPECT_EQ(named(other, "same_f").state, State::wrong) << against_text(other);
+    // X_A = 0.5 (0.2 + 0.8 z) and X_B = z X_A; z^2 is even under A, z under B.
+    const double var_a = 0.16 * (0.5 - 4.0 / 9), mean = 0.1 + 0.8 / 3,
+                 square = 4 * 0.25 * (0.04 / 3 + 0.32 / 4 + 0.64 / 5), ratio = var_a / (square - mean * mean);
+    for (const Judgement* j : {&right, &arm}) {
+        const Verdict& v = named(*j, "variance");
+        ASSERT_EQ(v.state, State::right) << against_text(*j);
+        EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.say;
+        EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.say;
+        EXPECT_NE(v.say.find("A is better here"), std::string::npos) << v.say;
+    }
+    EXPECT_EQ(named(arm, "same_f").state, State::skipped);
+}
+
+TEST(Against, AFileOfSamplesWithoutFSaysSo) {
+    const std::vector<Trial> a = {trial_of_subject(written_samples(0.5, false), 45, 0)};
+    const Judgement j = against(a, sampler_against(even_with(0.5), a));
+    for (const char* name : {"same_f", "variance"}) {
+        EXPECT_EQ(named(j, name).state, State::skipped);
+        EXPECT_NE(named(j, name).say.find("column f"), std::string::npos) << named(j, name).say;
+    }
 }
 
 TEST(Against, AnotherFIsWrongAndAHeavyTailIsInconclusive) {

@@ -45,6 +45,23 @@ Recipe cosine() {
     return r;
 }
 
+/// f, and with it every weight, is 10 % more than is reflected: the spread of the weights is rounding, and no measure.
+TEST(SmallFaults, OfWeightsThatAreAllAlikeAreToldInPerCent) {
+    for (double rounding : {0.0, 1e-15, 1e-9}) {
+        Recipe r = cosine();
+        r.f = [](Vec3d, Vec3d wi) { return wi.z > 0 ? 0.5 / pi : 0.0; };
+        r.sample = [right = r.sample, rounding](Vec3d wo, const Numbers& u) {
+            Draw d = right(wo, u);
+            d.weight = 0.55 * (u[0] < 3e-4 ? 1 + rounding : 1);
+            return d;
+        };
+        const Verdict v = named(judged(trial_of_subject(subject_of(r), 45, 130)), "mean");
+        EXPECT_EQ(v.state, State::wrong);
+        EXPECT_NE(v.say.find("+10 %"), std::string::npos) << v.say;
+        EXPECT_EQ(v.say.find("z ="), std::string::npos) << v.say;
+    }
+}
+
 /// One draw in 1500 goes to a disk of 0.27 degrees that p, which integrates to one, knows nothing of.
 TEST(SmallFaults, ASunThatThePdfDoesNotKnowIsFoundByTheDrawsThatCrowdThere) {
     Recipe r = light("even, with a sun");

@@ -84,6 +84,7 @@ public:
     bool draws_at_will() const override { return inner_->draws_at_will(); }
     Spending spending() const override { return inner_->spending(); }
     bool serial() const override { return inner_->serial(); }
+    const JudgedSampler& inner() const { return *inner_; }
 
 private:
     std::shared_ptr<const JudgedSampler> inner_;
@@ -96,6 +97,11 @@ private:
 
 std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSampler> sampler) {
     return std::make_shared<AskedOnce>(std::move(sampler));
+}
+
+const JudgedSampler& afresh(const JudgedSampler& sampler) {
+    const auto* kept = dynamic_cast<const AskedOnce*>(&sampler);
+    return kept ? kept->inner() : sampler;
 }
 
 }  // namespace crescent::inline verdicts

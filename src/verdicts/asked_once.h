@@ -10,5 +10,7 @@ namespace crescent::inline verdicts {
 
 /// `sampler`, with its answers for quadrature and for f kept; for one thread.
 std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSampler> sampler);
+/// What answers anew, whatever was kept.
+const JudgedSampler& afresh(const JudgedSampler& sampler);
 
 }  // namespace crescent::inline verdicts

@@ -77,7 +77,8 @@ std::vector<double> count(const Density& d, const SampleBatch& b, double& nothin
 
 Fit fit(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
     Fit out;
-    out.clump = densest_clump(work, technique, d, b);
+    const bool estimates = work.scatter().pdf();
+    if (!estimates) out.clump = densest_clump(work, technique, d, b);  // which needs p itself at the draws
     double nothing = 0;
     out.observed = count(d, b, nothing);
     const double n = static_cast<double>(b.draws.size());
@@ -89,11 +90,15 @@ Fit fit(const TrialContext& work, int technique, const Density& d, const SampleB
     std::vector<double> by_ring(rings), by_sector(sectors), due_ring(rings), due_sector(sectors),
         slack(d.mass.bins.size()), slack_ring(rings), slack_sector(sectors);
     for (std::size_t i = 0; i < slack.size(); ++i) {
-        slack[i] =
-            scale * ((d.doubt.empty() ? 0 : d.doubt[i]) + 3 * d.mass.bin_errors[i] + 2 * d.nothing_se * d.mass.bins[i]);
-        slack_ring[i / sectors] += slack[i];
-        slack_sector[i % sectors] += slack[i];
+        slack[i] = scale *
+            ((d.doubt.empty() ? 0 : d.doubt[i]) + (estimates ? 1 : 3) * d.mass.bin_errors[i] +
+                2 * d.nothing_se * d.mass.bins[i]);
+        slack_ring[i / sectors] += estimates ? sqr(slack[i]) : slack[i];
+        slack_sector[i % sectors] += estimates ? sqr(slack[i]) : slack[i];
     }
+    if (estimates)  // three standard errors each, of points of their own
+        for (std::vector<double>* sums : {&slack_ring, &slack_sector})
+            for (double& v : *sums) v = std::sqrt(v);
     for (std::size_t i = 0; i < d.mass.bins.size(); ++i) {
         const double due = scale * d.mass.bins[i];
         out.expected.push_back(due);

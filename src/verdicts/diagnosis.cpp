@@ -248,6 +248,7 @@ void tell(Verdict& v, const std::optional<Diagnosis>& found) {
 }  // namespace
 
 void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
+    if (work.scatter().any()) return;  // ratios of single answers say nothing
     std::string first;
     std::optional<Diagnosis> density, identity;
     for (Verdict& v : verdicts) {

@@ -176,10 +176,50 @@ bool warp_is_wrong(const TrialContext& work, const WarpFinding& warp, const std:
     return false;
 }
 
+/// The pdf, the weights and f beside one another, draw by draw; of what is a random estimate in the mean. True where
+/// something is wrong, which `v` then tells.
+bool answers_are_wrong(const TrialContext& work, int t, Verdict& v) {
+    const SampleBatch& b = work.first(t);
+    const auto tell = [&](const Mismatch& m, std::string_view one, std::string_view other) {
+        if (m.matters()) v = wrong(work, v, m, one, other);
+        return m.matters();
+    };
+    const Scatter& scatter = work.scatter();
+    if (work.traits.has_pdf && !scatter.pdf() && tell(pdf_twice(work, t), "The pdf that came with the draw", "pdf(w)"))
+        return true;
+    if (!work.subject.has_f()) return false;
+    if (scatter.any()) return weights_are_off(work, t, v);
+    Verdict before = v;
+    for (int c = 0; c < 3 && work.traits.channels == 3 && work.traits.has_pdf; ++c)
+        if (tell(channel_twice(work, b, c), fmt::format("The weight of channel {}", c + 1), "f cos / p of it")) break;
+    if (work.traits.has_pdf && work.traits.channels == 1) tell(weight_twice(work, b, false), "The weight", "f cos / p");
+    if (v.state == State::wrong && work.traits.own_random) {  // its weights may be estimates
+        v = std::move(before);
+        v.evidence["weights_are_estimates"] = true;
+        return weights_are_off(work, t, v);
+    }
+    return v.state == State::wrong ||
+        (work.subject.has_true_f() && tell(weight_twice(work, b, true), "f", "the BRDF it claims to be"));
+}
+
+std::string told_of(const TrialContext& work, bool estimated_weights) {
+    const Scatter& scatter = work.scatter();
+    const char* in_every = work.traits.channels == 3 ? " in every channel" : "";
+    if (!work.traits.has_pdf) return "The same u gives the same answer";
+    std::string out = scatter.pdf()
+        ? "pdf(w) is a random estimate, so that neither the pdf with a draw nor the warp was "
+          "held against it; `normalised` and `density` tell of its mean"
+        : "The pdf with a draw equals pdf(w)";
+    if (!work.subject.has_f()) return out;
+    if (scatter.pdf()) return out + (work.traits.channels == 3 ? "; the mean weight is the integral of f |cos|" : "");
+    return out + ", the weight f cos / p" + in_every + (scatter.f() || estimated_weights ? " in the mean" : "");
+}
+
 Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("identity", State::right, "");
     double one_to_one = 1;
     int choosers = 0;
+    const bool loose = work.traits.own_random || work.scatter().any();
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const SampleBatch& b = work.first(t);
         const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
@@ -207,25 +247,13 @@ Verdict judge(TrialContext& work) {
                 repeats, b.draws.size());
             return v;
         }
-        if (const Mismatch m = work.traits.has_pdf ? pdf_twice(work, t) : Mismatch{}; m.matters())
-            return wrong(work, v, m, "The pdf that came with the draw", "pdf(w)");
-        if (const std::size_t uneven = uneven_deltas(work, b); uneven > 0) {
+        if (answers_are_wrong(work, t, v)) return v;
+        if (const std::size_t uneven = loose ? 0 : uneven_deltas(work, b); uneven > 0) {
             v.state = State::wrong;
             v.evidence["uneven_deltas"] = uneven;
             v.say =
                 fmt::format("{} draws of a delta part come with another weight than the first of that part.", uneven);
             return v;
-        }
-        if (work.subject.has_f()) {
-            for (int c = 0; c < 3 && work.traits.channels == 3 && work.traits.has_pdf; ++c)
-                if (const Mismatch m = channel_twice(work, b, c); m.matters())
-                    return wrong(work, v, m, fmt::format("The weight of channel {}", c + 1), "f cos / p of it");
-            if (const Mismatch m =
-                    work.traits.has_pdf && work.traits.channels == 1 ? weight_twice(work, b, false) : Mismatch{};
-                m.matters())
-                return wrong(work, v, m, "The weight", "f cos / p");
-            if (const Mismatch m = work.subject.has_true_f() ? weight_twice(work, b, true) : Mismatch{}; m.matters())
-                return wrong(work, v, m, "f", "the BRDF it claims to be");
         }
         if (work.subject.techniques() > 1)
             if (const Mismatch m = mis_sum(work, b); m.matters())
@@ -237,11 +265,10 @@ Verdict judge(TrialContext& work) {
         choosers = std::max(choosers, warp.choosers);
         if (warp_is_wrong(work, warp, tag, v)) return v;
     }
-    v.say = work.traits.has_pdf ? "The pdf with a draw equals pdf(w)" : "The same u gives the same answer";
-    if (work.subject.has_f() && work.traits.has_pdf)
-        v.say += work.traits.channels == 3 ? ", the weight f cos / p in every channel" : ", the weight f cos / p";
+    v.say = told_of(work, v.evidence.contains("weights_are_estimates"));
     if (work.subject.techniques() > 1) v.say += ", the MIS weights sum to 1";
     if (!work.traits.has_pdf) v.say += "; there is no pdf to hold the warp against";
+    else if (work.scatter().pdf()) v.say += "";  // said already
     else if (!work.subject.draws_at_will()) v.say += "; the warp itself is not at hand";
     else if (work.traits.own_random)
         v.say += "; the sampler draws random numbers of its own, so that the warp was not looked at";
@@ -254,9 +281,12 @@ Verdict judge(TrialContext& work) {
     return v;
 }
 
+/// Weights that are estimates, in the mean.
+std::uint64_t tests(const Trial& t) { return t.subject->has_f() && t.subject->traits().own_random ? 1 : 0; }
+
 }  // namespace
 
 constinit const VerdictKind kinds::identity = {
-    .question = "does the sampler agree with itself?", .judge = judge, .asked_of_other_seeds = true};
+    .question = "does the sampler agree with itself?", .judge = judge, .tests = tests, .asked_of_other_seeds = true};
 
 }  // namespace crescent::inline verdicts

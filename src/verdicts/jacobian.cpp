@@ -199,7 +199,7 @@ namespace {
 
 WarpFinding studied(const TrialContext& work, int technique) {
     WarpFinding out;
-    if (!work.subject.draws_at_will() || work.traits.own_random) return out;
+    if (!work.subject.draws_at_will() || work.traits.own_random || work.scatter().any()) return out;
     const bool several = work.traits.numbers > 2;
     const std::vector<Numbers> u = stencils_of(work, work.first(technique), work.settings.full ? 8192 : 1024);
     std::vector<Draw> w(u.size());

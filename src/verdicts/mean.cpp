@@ -34,8 +34,9 @@ Verdict judge(TrialContext& work) {
             x.size(), s.mean, expected.value);
         return v;
     }
-    const double z = johnson_t(s, expected.value), p = mean_p(s, expected);
-    v.evidence["z"] = z;
+    const double p = mean_p(s, expected);
+    const std::optional<double> z = told_z(s, expected);
+    if (z) v.evidence["z"] = *z;
     v.evidence["p"] = p;
     if (has_unmet_tail(work, false)) {
         v.say = fmt::format("{} samples read {:.6g} where quadrature says {:.6g}. ", x.size(), s.mean, expected.value);
@@ -44,12 +45,17 @@ Verdict judge(TrialContext& work) {
     }
     const bool wrong = mean_fails(work, p, expected, false);
     v.state = wrong ? State::wrong : State::right;
-    v.say = wrong ? fmt::format(
-                        "The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, and again on a fresh "
-                        "seed. The estimator is biased.",
-                        s.mean, expected.value, z)
-                  : fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: z = {:.2f}, p = {:.3g}.",
-                        s.mean, expected.value, z, p);
+    v.say = fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: ", s.mean, expected.value);
+    const std::string off = expected.value > 0 ? fmt::format("{:+.3g} %", 100 * (s.mean / expected.value - 1))
+                                               : fmt::format("off by {:.3g}", s.mean - expected.value);
+    if (wrong)
+        v.say += off +
+            (z ? fmt::format(", z = {:.4g}, and again on a fresh seed.", *z)
+               : std::string(" where every weight is alike, and again on a fresh seed.")) +
+            " The estimator is biased.";
+    else if (z) v.say += fmt::format("z = {:.2f}, p = {:.3g}.", *z, p);
+    else v.say += fmt::format("{} where every weight is alike.", off);
+    if (wrong && weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
     return v;
 }
 

@@ -37,7 +37,9 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
     const Effort& effort, const Prepare& prepare = {}, const SamplesPerBin* witnesses = nullptr);
 
 /// The integral of what has too many cells to sum: points at random, spread over `cells` first and then where g varies
-/// most. Its error is three standard errors, of the whole and of each bin.
-Integral integrate_by_points(std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations);
+/// most. Its error is three standard errors, of the whole and of each bin. estimates: g is a random estimate, whose
+/// variance a cell with few points may not have met; the mean one of all cells is then granted to each bin.
+Integral integrate_by_points(
+    std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations, bool estimates = false);
 
 }  // namespace crescent::inline verdicts

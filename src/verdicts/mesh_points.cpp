@@ -52,7 +52,8 @@ std::vector<Stratum> look(
 
 }  // namespace
 
-Integral integrate_by_points(std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations) {
+Integral integrate_by_points(
+    std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations, bool estimates) {
     const auto area = [&](std::size_t i) { return (cells[i].a1 - cells[i].a0) * (cells[i].b1 - cells[i].b0); };
     const std::size_t few = std::clamp<std::size_t>(evaluations / (4 * cells.size()), 4, 64);
     const std::vector<Stratum> first = look(cells, std::vector<std::size_t>(cells.size(), few), 1, g);
@@ -67,9 +68,13 @@ Integral integrate_by_points(std::vector<Rect> cells, int bins, const Batch& g, 
     Integral out;
     out.bins.assign(static_cast<std::size_t>(bins), 0.0);
     std::vector<double> squares(out.bins.size());
-    double square = 0;
+    double square = 0, spread = 0, size = 0;
+    for (std::size_t i = 0; estimates && i < cells.size(); ++i)
+        spread += area(i) * second[i].variance, size += area(i) * sqr(second[i].mean);
+    const double common = size > 0 ? spread / size : 0;  // variance over the mean's square
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        const double variance = std::max(first[i].variance, second[i].variance) / static_cast<double>(counts[i]);
+        const double variance = std::max({first[i].variance, second[i].variance, common * sqr(second[i].mean)}) /
+            static_cast<double>(counts[i]);
         out.bins[static_cast<std::size_t>(cells[i].bin)] += area(i) * second[i].mean;
         squares[static_cast<std::size_t>(cells[i].bin)] += sqr(area(i)) * variance;
         square += sqr(area(i)) * variance;

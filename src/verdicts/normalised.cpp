@@ -61,10 +61,12 @@ Verdict judge(TrialContext& work) {
         }
         if (mass.sampled && mass.error < 0.02) {
             v.say = told +
-                fmt::format(
-                    ", known to {:.2g}: p is a table of more cells than were asked for; {} points were. --full "
-                    "sums every cell.",
-                    mass.error, mass.evaluations);
+                fmt::format(", known to {:.2g}: {}", mass.error,
+                    work.scatter().pdf()
+                        ? fmt::format("the mean of p over {} points; each is a random estimate.", mass.evaluations)
+                        : fmt::format("p is a table of more cells than were asked for; {} points were. --full sums "
+                                      "every cell.",
+                              mass.evaluations));
             continue;
         }
         if (!mass.settled && mass.error > allowed && v.state == State::right) {

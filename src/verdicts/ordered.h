@@ -2,6 +2,8 @@
 // own.
 #pragma once
 
+#include <algorithm>
+
 #include "stats/tail.h"
 #include "verdicts/trial_context.h"
 
@@ -21,6 +23,16 @@ CornerFaults corner_faults(const TrialContext& work, int technique);
 inline constexpr const char* no_weights =
     "There is neither a pdf nor a weight with the draws, hence nothing to weigh them by.";
 
+/// The pdf with a draw may be a random estimate too: the mean of one over it is not one over the mean.
+inline bool weighs_by_estimates(const TrialContext& work) {
+    const auto& draws = work.first(0).draws;
+    return work.scatter().pdf() &&
+        std::none_of(draws.begin(), draws.end(), [](const Draw& d) { return d.weight.has_value(); });
+}
+inline constexpr const char* weight_of_estimates =
+    "A weight, f |cos| / p, with each draw: where pdf is a random estimate, f over it is biased and tells nothing of "
+    "the draws.";
+
 struct Spread {
     double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
 };
@@ -29,6 +41,9 @@ Spread spread(std::span<const double> x);
 /// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken
 /// out.
 double johnson_t(const Spread& s, double expected);
+/// What a reader is told of that: Johnson's t, or the plain one where it is far out, for which Johnson's correction is
+/// not made. None where the weights are alike to what p itself is granted: their spread is no measure of chance.
+std::optional<double> told_z(const Spread& s, const Integral& expected);
 /// Of the largest of these weights.
 std::optional<Tail> tail_of(std::span<const double> x);
 /// A tail with k >= 1/2 has a largest weight of the order of sqrt(n) means; one of a few means among thousands is
@@ -59,6 +74,13 @@ struct Repeated {
     Numbers u{};
     Vec3d first{}, again{};
 };
+
+/// Which of two samplers of one f has the smaller variance; see against_variance.cpp.
+Verdict ratio_of_variances(const TrialContext& a, const TrialContext& b);
+
+/// Whether weights that are estimates, or are told beside estimates, are off in the mean; says so. See
+/// weights_in_the_mean.cpp.
+bool weights_are_off(const TrialContext& work, int technique, Verdict& v);
 
 Repeated ask_again(const TrialContext& work, int technique);
 std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b);

@@ -70,7 +70,7 @@ std::vector<Vec3d> f_of(const TrialContext& work, const std::vector<Pair>& pairs
 
 Reciprocity reciprocity(const TrialContext& work) {
     Reciprocity out;
-    if (!work.traits.reciprocal) return out;
+    if (!work.traits.reciprocal || work.scatter().f()) return out;
     std::vector<Pair> pairs = pairs_of(work), swapped;
     for (const Pair& p : pairs) swapped.push_back({p.wi, p.wo});
     const std::vector<Vec3d> one = f_of(work, pairs), two = f_of(work, swapped);
@@ -161,8 +161,9 @@ Verdict judge(TrialContext& work) {
     const Spread s = spread(x);
     v.evidence["furnace_mean"] = s.mean;
     v.evidence["furnace_standard_error"] = s.sd / std::sqrt(s.n);
-    v.say = work.traits.reciprocal ? fmt::format("f is reciprocal over {} pairs", r.tried)
-                                   : "f is said not to be reciprocal, which was not looked at";
+    v.say = work.scatter().f()   ? "f is a random estimate, whose reciprocity was not looked at,"
+        : work.traits.reciprocal ? fmt::format("f is reciprocal over {} pairs", r.tried)
+                                 : "f is said not to be reciprocal, which was not looked at";
     const Vec3d mirrored = delta_parts(work, work.first(0)).energy(work.trial.wo.z > 0 ? 1 : -1);
     if (!work.whole()) {
         v.say += fmt::format(" and reflects {:.6f} of an even light", albedo.value + luminance(mirrored));
@@ -201,6 +202,7 @@ Verdict judge(TrialContext& work) {
         v.state = State::wrong;
         v.say = fmt::format("The white furnace reads {:.6g}, quadrature says {:.6g}, and again on a fresh seed.",
             s.mean, reached.value);
+        if (weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
     }
     return v;
 }

@@ -40,6 +40,15 @@ Verdict judge(TrialContext& work) {
     if (wrong && theory.lost)
         say += fmt::format(" Theory: {:.4g} % of the diffuse part, (1 - cos theta_R)/2; measured: {:.4g} %.",
             100 * *theory.lost, 100 * lost.value / theory.lost_of);
+    if (wrong && work.scatter().pdf()) {
+        Verdict v = work.verdict("support", State::inconclusive,
+            fmt::format("pdf(w) is a random estimate, and came out as 0 seventeen times over directions that carry "
+                        "{:.4g} % of f L cos: it may be 0 there, or may seldom be anything else.",
+                100 * fraction));
+        v.settle = "A pdf(w) that is not 0 wherever it may be positive.";
+        v.evidence["lost_fraction"] = fraction;
+        return v;
+    }
     Verdict v = work.verdict("support", wrong ? State::wrong : State::right, say);
     v.evidence["lost_fraction"] = fraction;
     v.evidence["quadrature_error"] = (lost.error + all.error * fraction) / all.value;

@@ -69,14 +69,15 @@ Integral from_below(const TrialContext& work, Vec3d b) {
         const double turns = 0.618033988749895 * i;
         pilot_directions.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
     }
-    return integrate(guided(graded_cells(1), map, pilot_directions), 1,
+    return work.integral_of(
+        guided(graded_cells(1), map, pilot_directions), 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Pair> pairs;
             for (Vec2d v : at) pairs.push_back({map.direction(v), b});
             work.subject.f(pairs, out);
             for (std::size_t i = 0; i < out.size(); ++i) out[i] *= pairs[i].wo.z > 0 ? 2 * pi * pairs[i].wo.z : 0;
         },
-        {work.tolerance(), work.affordable(work.settings.evaluations / 2)});
+        {work.tolerance(), work.affordable(work.settings.evaluations / 2)}, work.scatter().f());
 }
 
 std::vector<Vec3d> drawn_below(const TrialContext& work) {

@@ -92,6 +92,8 @@ TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& co
     asked_before_ = subject.spending().answers;
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
     grain_ = grain_of(first_[0].draws, traits.bits);
+    scatter_ = look_for_scatter(*this);
+    for (SampleBatch& b : first_) count_nothing(b);
     look_below();
 }
 
@@ -112,12 +114,16 @@ std::size_t TrialContext::for_later() const {
 void TrialContext::redraw(std::uint32_t seed) {
     seed_ = seed;
     unmet_ = {};
+    confirming_ = {};
     first_weights_ = {};
     warps = {};
     for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }
 
 SampleBatch TrialContext::draw(int technique, int round) const {
+    std::optional<SampleBatch>* kept =
+        subject.serial() && round == 1 && technique < 2 ? &confirming_[static_cast<std::size_t>(technique)] : nullptr;
+    if (kept && *kept) return **kept;  // a program is asked for it once
     SampleBatch b;
     if (const auto* tape = dynamic_cast<const RecordedSubject*>(&subject)) {
         tape->half(round, b.u, b.draws);
@@ -134,9 +140,16 @@ SampleBatch TrialContext::draw(int technique, int round) const {
     }
     drop_unusable(b);
     b.pdf = pdf_of_drawn(technique, b.draws);
+    count_nothing(b);
+    if (kept) *kept = b;
+    return b;
+}
+
+void TrialContext::count_nothing(SampleBatch& b) const {
+    if (scatter_.pdf()) settle_zeros(b);
+    b.nothing = b.deltas = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i)
         if (is_null_sample(b.draws[i], b.pdf[i])) ++b.nothing, b.deltas += b.draws[i].delta > 0;
-    return b;
 }
 
 const std::vector<double>& TrialContext::f_of_drawn(const SampleBatch& b) const {

@@ -13,6 +13,7 @@
 
 #include "base/progress_monitor.h"
 #include "verdicts/cubature.h"
+#include "verdicts/scatter.h"
 #include "verdicts/subject.h"
 #include "verdicts/verdict.h"
 
@@ -117,6 +118,11 @@ public:
     /// Rounding of the directions that come back: 2^-24 for floats, 2^-52 for doubles, or that of short decimals.
     double direction_resolution() const { return grain_; }
     std::span<const Vec3d> pilot_directions() const { return guides_; }
+    /// Whether pdf and f are random estimates, right in the mean alone.
+    const Scatter& scatter() const { return scatter_; }
+    /// By cubature, or by points at random where the integrand is made of estimates.
+    Integral integral_of(std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, bool estimates,
+        const SamplesPerBin* witnesses = nullptr) const;
 
     /// Under the surface: whether f is not 0 there, most at `at` of those tried, and whether the sampler reaches it.
     struct Below {
@@ -140,6 +146,8 @@ public:
     std::vector<double> pdf(int technique, std::span<const Vec3d> wi, bool exact = false) const;
     /// Sum over techniques.
     std::vector<double> any_pdf(std::span<const Vec3d> wi) const;
+    /// The mean of several answers beside each direction, where p is a random estimate.
+    std::vector<double> mean_pdf(std::span<const Vec3d> wi, int answers) const;
     std::vector<double> f(std::span<const Vec3d> wi, bool truth = false) const;
     std::vector<Vec3d> f_channels(std::span<const Vec3d> wi) const;
     std::vector<double> f_of_channel(std::span<const Vec3d> wi, int channel) const;
@@ -180,6 +188,7 @@ private:
     std::uint32_t index_, seed_;
     std::uint64_t asked_before_ = 0;  // of a program, when this trial began
     std::vector<SampleBatch> first_;
+    mutable std::array<std::optional<SampleBatch>, 2> confirming_;  // of a program, by technique
     std::vector<Density> density_;
     /// Questions for the verdicts after the density and its confirmation.
     std::size_t for_later() const;
@@ -189,6 +198,10 @@ private:
     std::optional<Vec3d> banded_;   // the axis about which p jumps at heights alone
     std::vector<double> heights_;   // these, as 1 - cos
     double grain_ = 0;
+    Scatter scatter_;
+    void count_nothing(SampleBatch& b) const;
+    void settle_zeros(SampleBatch& b) const;
+    void ask_again_at_zeros(std::span<const Vec3d> wi, std::span<const double> value, std::span<double> p) const;
     mutable std::array<std::optional<Integral>, 6> incoming_;   // by Where and even
     mutable std::array<std::optional<Unmet>, 2> unmet_;         // by even
     mutable std::array<std::vector<double>, 2> first_weights_;  // by even
@@ -199,6 +212,7 @@ private:
     void find_rims(int technique);
     void add_rims(Density& d) const;
     std::optional<Density> table_density(int technique);
+    Density density_of_estimates(int technique, Vec3d axis);
     std::vector<Rect> cells_of(const Density& d) const;
     void refine_table(int technique, Density& d) const;
     SamplesPerBin witnesses_of(int technique, const Density& d) const;

@@ -45,6 +45,10 @@ void TrialContext::measure_density() {
         }
         const bool sharp = count > 0 && length(mean) / count > 0.9;
         const Vec3d n{0, 0, 1};
+        if (scatter_.pdf()) {
+            density_.push_back(density_of_estimates(t, sharp ? normalize(mean) : n));
+            continue;
+        }
         if (std::optional<Density> table = table_density(t)) {
             density_.push_back(std::move(*table));
             continue;
@@ -96,6 +100,19 @@ void TrialContext::measure_density() {
                 density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
+}
+
+/// p that is a random estimate, by points at random; a second time about other coordinates where it does not come to
+/// one.
+Density TrialContext::density_of_estimates(int t, Vec3d axis) {
+    const auto about = [&](Vec3d to) {
+        return density_about(t, to, to.z == 1, (thrifty() ? 2 : 4) * settings.evaluations);
+    };
+    Density d = about(axis);
+    share_nothing(t, d);
+    if (std::fabs(d.mass.value + d.nothing - 1) > d.mass.error + 2 * d.nothing_se)
+        d.second = about(axis.z == 1 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}).mass;
+    return d;
 }
 
 /// A density that jumps along heights and azimuths about an axis: the normal, or for a sky any axis of the frame. Its
@@ -274,8 +291,8 @@ Density TrialContext::density_about(
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
     const SamplesPerBin witnesses = witnesses_of(technique, d);
-    d.mass = integrate(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
-        {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, &witnesses);
+    d.mass = integral_of(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
+        {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter_.pdf(), &witnesses);
     grant_doubts(technique, d);
     return d;
 }

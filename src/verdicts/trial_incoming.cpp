@@ -12,8 +12,9 @@ const Integral& TrialContext::incoming(Where where, bool even) const {
     even = even && (!trial.light.even() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
     if (!kept)
-        kept = where == Where::reached && incoming(Where::lost, even).value == 0 ? incoming(Where::everywhere, even)
-                                                                                 : integrate_incoming(where, even);
+        kept = where == Where::reached && (scatter_.pdf() || incoming(Where::lost, even).value == 0)
+            ? incoming(Where::everywhere, even)
+            : integrate_incoming(where, even);
     return *kept;
 }
 
@@ -61,14 +62,16 @@ Sheet sheet_of(const TrialLamp& lamp) {
 }
 
 /// Adds int f L cos over what a light shows, above the fill that it hides; of_light: f cos where it counts.
-template <class Light> void add_light(Integral& total, const TrialLight& light, const Light& own,
+template <class Light> void add_light(Integral& total, const TrialContext& work, const Light& own,
     const OfLight& of_light, double tolerance, std::size_t evaluations) {
+    const TrialLight& light = work.trial.light;
     const Sheet sheet = sheet_of(own);
     std::vector<Rect> cells;
     for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
     const double strength = sheet.area * (own.radiance - light.fill);
-    const Integral of_own = integrate(cells, 1,
+    const Integral of_own = work.integral_of(
+        cells, 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Vec3d> wi;
             std::vector<double> per_area;
@@ -81,7 +84,7 @@ template <class Light> void add_light(Integral& total, const TrialLight& light, 
             of_light(wi, out);
             for (std::size_t i = 0; i < out.size(); ++i) out[i] *= per_area[i] * strength;
         },
-        {tolerance, evaluations});
+        {tolerance, evaluations}, work.scatter().any());
     total.value += of_own.value;
     total.error += of_own.error;
     total.settled = total.settled && of_own.settled;
@@ -95,8 +98,8 @@ Integral TrialContext::integrate_incoming(Where where, bool even, int channel) c
     return integrate_light(
         [&](std::span<const Vec3d> wi, std::span<double> out) {
             const std::vector<double> value = channel < 0 ? f(wi, true) : f_of_channel(wi, channel);
-            const std::vector<double> p =
-                where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
+            std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
+            if (scatter_.pdf()) ask_again_at_zeros(wi, value, p);
             for (std::size_t i = 0; i < out.size(); ++i) {
                 const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
                 out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
@@ -114,17 +117,18 @@ Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const
         std::vector<Rect> cells = graded_cells(1);
         for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i)
             cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
-        total = integrate(guided(std::move(cells), map, guides_), whole() ? 2 : 1,
+        total = integral_of(
+            guided(std::move(cells), map, guides_), whole() ? 2 : 1,
             [&](std::span<const Vec2d> at, std::span<double> out) {
                 std::vector<Vec3d> wi;
                 for (Vec2d v : at) wi.push_back(map.direction(v));
                 of_light(wi, out);
                 for (double& v : out) v *= 2 * pi * fill;
             },
-            {tolerance(), affordable(2 * settings.evaluations, for_confirmation) / 2});
+            {tolerance(), affordable(2 * settings.evaluations, for_confirmation) / 2}, scatter_.any());
     }
     const auto add = [&](const auto& own) {
-        add_light(total, light, own, of_light, tolerance(), affordable(settings.evaluations / 2, for_confirmation) / 2);
+        add_light(total, *this, own, of_light, tolerance(), affordable(settings.evaluations / 2, for_confirmation) / 2);
     };
     if (even) return total;
     std::ranges::for_each(light.disks, add);

@@ -156,7 +156,7 @@ void TrialContext::estimate_null_fraction(
     int technique, Density& d, std::uint64_t wanted, std::optional<double> told) const {
     constexpr int shifts = 16;
     const SampleBatch& b = first(technique);
-    const bool alike = all_alike_below(technique);
+    const bool alike = scatter_.pdf() || all_alike_below(technique);
     bool reaches = false;
     for (std::size_t i = 0; i < b.draws.size(); ++i) reaches = reaches || (b.draws[i].wi.z <= 0 && b.pdf[i] > 0);
     const int each = alike ? 1 : 2;  // a draw, and p at it

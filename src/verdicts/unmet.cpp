@@ -13,6 +13,7 @@
 
 #include "math/functions.h"
 #include "verdicts/delta.h"
+#include "verdicts/mesh.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
@@ -54,8 +55,9 @@ double chance_of(const TrialContext& work, int technique, double threshold, bool
         const std::vector<Part> parts = parts_of(work, technique, wi, even);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
     };
-    return integrate(guided(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
-        {1e-7, work.affordable(work.settings.evaluations)})
+    return work
+        .integral_of(guided(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
+            {1e-7, work.affordable(work.settings.evaluations)}, work.scatter().any())
         .value;
 }
 
@@ -66,7 +68,50 @@ double bernstein_p(double off, double n, double variance, double range) {
 
 }  // namespace
 
+namespace {
+
+/// Where p is an estimate, its mean of eight answers tells where weights would be larger than any that was drawn; in an
+/// even light alone.
+Unmet unmet_of_estimates(const TrialContext& work, std::span<const double> x, bool even) {
+    constexpr std::size_t points = 6000;
+    constexpr int answers = 8;
+    const Spread s = spread(x);
+    const Integral expected = due_mean(work, even);
+    const double fill = even ? 1 : work.trial.light.fill;
+    const SphereMap map(Vec3d{0, 0, 1});
+    Unmet out;
+    out.largest = s.largest;
+    out.variance = sqr(s.sd);
+    if (work.affordable(points * (answers + 1)) < points * (answers + 1)) return out;
+    const auto over = [&](bool of_p) {
+        return integrate_by_points(
+            graded_cells(work.whole() ? 2 : 1), 1,
+            [&](std::span<const Vec2d> at, std::span<double> to) {
+                std::vector<Vec3d> wi;
+                for (Vec2d v : at) wi.push_back(map.direction(v));
+                const std::vector<double> f = work.f(wi, true), p = work.mean_pdf(wi, answers);
+                for (std::size_t i = 0; i < to.size(); ++i) {
+                    const double light = work.counts(wi[i]) ? f[i] * std::fabs(wi[i].z) * fill : 0;
+                    to[i] = light > p[i] * s.largest * (1 + alike) ? 2 * pi * (of_p ? p[i] : light) : 0;
+                }
+            },
+            points, true);
+    };
+    const Integral mass = over(false);
+    out.mass = mass.value;
+    out.error = mass.error;
+    if (!(out.mass > 1e-4 * expected.value + out.error)) return out;
+    out.chance = over(true).value;
+    const double off = std::max(std::fabs(s.mean - expected.value + out.mass) - out.error - expected.error, 0.0);
+    out.heavy = s.n * out.chance < -math::log(work.settings.confirm) &&
+        bernstein_p(off, s.n, out.variance, s.largest) >= work.settings.screen;
+    return out;
+}
+
+}  // namespace
+
 Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool even) {
+    if (work.scatter().pdf()) return unmet_of_estimates(work, x, even);
     const Spread s = spread(x);
     const Integral expected = due_mean(work, even);
     Unmet out;

@@ -142,6 +142,10 @@ Verdict judge(TrialContext& work) {
         fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of "
                     "u, over {} draws and all over the sphere.",
             draws));
+    if (const Scatter& s = work.scatter(); s.any()) {
+        v.say += " " + told(s);
+        v.evidence["random_estimates"] = {{"pdf", s.of_pdf}, {"f", s.of_f}, {"by_direction", s.hashed}};
+    }
     v.evidence["draws"] = draws;
     v.evidence["direction_grain"] = work.direction_resolution();
     return v;
