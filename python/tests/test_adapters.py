@@ -7,7 +7,6 @@ import pytest
 
 import crescent
 from crescent import adapters
-from crescent._libraries import Library
 from crescent.testing import mutants
 
 WO = [(30.0, 0.0), (75.0, 310.0)]

@@ -23,3 +23,22 @@ def test_a_fault_is_caught_and_mended_it_is_right(fault):
     broken = fault.judged().broken()
     assert set(fault.caught_by) <= set(broken), broken
     assert fault.judged(mended=True).state == "right", str(fault.judged(mended=True))
+
+
+def test_every_bsdf_and_emitter_that_ships_is_judged_or_left_out_with_a_reason():
+    mi = pytest.importorskip("mitsuba")
+    from crescent.field._shipped import LEFT_OUT, bsdfs, emitters
+
+    page = FOLDER.parents[1] / "docs" / "field.md"
+    if not page.is_file() or f"## What ships in Mitsuba {mi.__version__}\n" not in page.read_text():
+        pytest.skip(f"docs/field.md was not written with Mitsuba {mi.__version__}")
+    mi.set_variant("llvm_ad_rgb")
+    manager = mi.PluginManager.instance()
+    names = sorted(p.name.partition(".")[0] for p in (Path(mi.__file__).parent / "plugins").glob("*.so"))
+    shipped = {n for n in names if manager.plugin_type(n) in (mi.ObjectType.BSDF, mi.ObjectType.Emitter)}
+    judged = {
+        part["type"] for it in bsdfs() + emitters() for part in (it.plugin, *it.plugin.values()) if type(part) is dict
+    }
+    left_out = {name for names in LEFT_OUT for name in names.split(", ")}
+    assert len(shipped) > 30 and shipped <= judged | left_out, shipped - judged - left_out
+    assert not left_out & judged

@@ -36,23 +36,19 @@ for kappa in (11.8, 20.0, 47.0):
     print(kappa, np.mean(pdf(w, wi, tangent, kappa)) * 4 * np.pi)"""
 
 _TURNED = """import mitsuba as mi; mi.set_variant("llvm_ad_rgb")
-normals = {"type": "rgb", "value": [0.6, 0.5, 0.95]}
+normals, c, si = {"type": "rgb", "value": [0.6, 0.5, 0.95]}, mi.BSDFContext(), mi.SurfaceInteraction3f()
 b = mi.load_dict({"type": "normalmap", "normalmap": normals, "bsdf": {"type": "diffuse"}})
-c, si, w = mi.BSDFContext(), mi.SurfaceInteraction3f(), [mi.Vector3f(0.6, 0, 0.8), mi.Vector3f(-0.6, 0, 0.8)]
-si.sh_frame = mi.Frame3f(mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0), mi.Vector3f(0, 0, 1))
-si.dp_du, si.dp_dv = si.sh_frame.s, si.sh_frame.t
-for o, i in ((0, 1), (1, 0)):
-    si.wi = w[o]; print("f", b.eval(c, si, w[i]) / w[i].z)"""
+w, x, y = [mi.Vector3f(0.6, 0, 0.8), mi.Vector3f(-0.6, 0, 0.8)], mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0)
+si.dp_du, si.dp_dv, si.sh_frame = x, y, mi.Frame3f(x, y, mi.Vector3f(0, 0, 1))
+for o, i in ((0, 1), (1, 0)): si.wi = w[o]; print("f", b.eval(c, si, w[i]) / w[i].z)"""
 
 _SUN = """import drjit as dr, mitsuba as mi, numpy as np; mi.set_variant("llvm_ad_rgb")
-e, it, n, rng = mi.load_dict({"type": "sunsky"}), dr.zeros(mi.SurfaceInteraction3f), 1 << 22, np.random.default_rng(1)
-ds, _ = e.sample_direction(it, mi.Point2f(np.float32(rng.random((2, n))))); drawn = np.array(ds.pdf) > 1000
-sun = np.float64(np.array(ds.d)[:, drawn]).mean(axis=1); sun /= np.linalg.norm(sun)
-x, y = np.linalg.svd(sun[None])[2][1:]
-r, a = 0.006 * np.sqrt(rng.random(n)), 2 * np.pi * rng.random(n)  # evenly over 1.3 times the radius of the disc
-d = np.outer(sun, np.sqrt(1 - r * r)) + np.outer(x, r * np.cos(a)) + np.outer(y, r * np.sin(a))
-ds.d = mi.Vector3f(np.float32(d)); p = np.mean(e.pdf_direction(it, ds)) * np.pi * 0.006**2
-print("drawn in the sun", drawn.mean(), "p integrates there to", p)"""
+u, e = mi.Point2f(np.float32(np.random.default_rng(1).random((2, 1 << 22)))), mi.load_dict({"type": "sunsky"})
+ds, _ = e.sample_direction(dr.zeros(mi.SurfaceInteraction3f), u); d = np.array(ds.d)[:, np.array(ds.pdf) > 1000]
+sun, q = mi.Vector3f(d.mean(axis=1, dtype=float).tolist()), 0.006 * mi.warp.square_to_uniform_disk_concentric(u)
+ds.d = dr.normalize(mi.Frame3f(dr.normalize(sun)).to_world(mi.Vector3f(q.x, q.y, 1)))
+p = e.pdf_direction(dr.zeros(mi.SurfaceInteraction3f), ds)
+print("drawn in the sun", d.shape[1] / (1 << 22), "p integrates there to", np.mean(p) * np.pi * 0.006**2)"""
 
 NOTES = [
     Note(
