@@ -2,7 +2,9 @@
 // Nothing is looked up, and nothing is computed here.
 import { Opening } from "./jobs";
 import { Answer, Lesson, Measured } from "./lessons";
+import { Box } from "./door";
 import { Model, Region } from "./model";
+import { quoted, Source } from "./state";
 
 /** `kind` names what was found: the lesson has a sentence for it. */
 export interface Found { answer: string; kind: string; lines: string[] }
@@ -12,41 +14,78 @@ const builtIn = ["uniform", "cosine", "phong"]; // arms that the experiment of t
 /** Asks the core on the experiment of the lessons, whatever the bench shows. */
 export class Asker {
   private readonly found = new Map<string, Promise<Found>>();
-  constructor(private readonly model: Model, private readonly opening: Opening, private readonly regions: Region[]) {}
+  readonly regions: Region[];
+  readonly size: readonly [number, number];
+
+  constructor(private readonly model: Model, private readonly opening: Opening, source: Source) {
+    this.regions = source.regions;
+    this.size = source.size;
+  }
+
+  /** The reference's picture, box by box as it comes. */
+  photograph(put: (box: Box, bytes: ArrayBuffer) => void): void { this.model.photograph(this.opening, this.size, put); }
 
   private opened(set: readonly string[], arms: readonly string[]): Opening {
-    const extra = arms.filter((arm) => !builtIn.includes(arm)).map((arm) => `arms.${arm}.n=[16, 64]`);
+    const extra = [...new Set(arms)].filter((arm) => !builtIn.includes(arm)).map((arm) => `arms.${arm}.n=[16, 64]`);
     return { ...this.opening, set: [...set, ...extra] };
   }
-  private box(name: string): readonly number[] { return this.regions.find((r) => r.name === name)!.box; }
+  private region(name: string): Region { return this.regions.find((r) => r.name === name)!; }
 
-  private measured(m: Measured): Promise<unknown> {
+  private measured(m: Measured, { name, box }: Region = this.region(m.region)): Promise<unknown> {
     const { set = [], ...request } = m;
-    return this.model.ask("measure", { ...request, box: this.box(m.region) }, this.opened(set, [m.arm]));
+    return this.model.ask("measure", { ...request, region: name, box }, this.opened(set, [m.arm]));
   }
 
   /** The verdicts of a sampler at one w_o. */
   judged<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("judged", { sampler, theta }, this.opened([], [])); }
 
   private concluded(answer: Answer, lesson: Lesson, of: unknown[]): Promise<Found> {
-    const options = lesson.ask.kind === "choice" ? lesson.ask.options.map((option) => option.value) : [];
+    const options = lesson.ask.kind === "choice" ? lesson.ask.options.map((option) => option.value) : "of" in answer ? answer.of.map(({ arm }) => arm) : [];
     const surface = "surface" in answer ? answer.surface : "";
     return this.model.ask<Found>("concluded", { by: answer.by, options, surface, of }, this.opened([], []));
   }
 
-  /** Measured once a page: the sheet shows what the lessons found. */
-  find(lesson: Lesson): Promise<Found> {
-    const known = this.found.get(lesson.id) ?? this.measure(lesson);
-    this.found.set(lesson.id, known);
-    known.catch(() => this.found.delete(lesson.id));
+  /** Measured once a page: the sheet shows what the lessons found. `guess` matters where a box is the answer; without
+      one, the experiment's own regions are measured. */
+  find(lesson: Lesson, guess = ""): Promise<Found> {
+    const drawn = lesson.ask.kind === "region", key = drawn ? `${lesson.id} ${guess}` : lesson.id;
+    const known = this.found.get(key) ?? (drawn ? this.measureBoxes(lesson, guess) : this.measure(lesson));
+    this.found.set(key, known);
+    known.catch(() => this.found.delete(key));
     return known;
+  }
+
+  /** Over the box that was drawn; without one, over the region of the lesson, and the others beside it. */
+  private async measureBoxes(lesson: Lesson, guess: string): Promise<Found> {
+    const { of } = lesson.answer as { of: readonly Measured[] }, own = this.region(of[0]!.region);
+    const box = guess.split(",").map(Number) as Region["box"];
+    const boxes = guess ? [{ name: "your box", box }] : [own, ...this.regions.filter((r) => r !== own)];
+    const found = await Promise.all(boxes.map(async (region) => this.concluded(lesson.answer, lesson, await Promise.all(of.map((m) => this.measured(m, region))))));
+    return { ...found[0]!, lines: found.flatMap(({ lines }) => lines) };
+  }
+
+  /** Commands of the program that make the numbers of the answer. */
+  commands({ answer, ask }: Lesson, guess: string): string[] {
+    const { file } = this.opening;
+    switch (answer.by) {
+      case "firefly": return [];
+      case "furnace": return [`./run ${file}`];
+      case "support": case "t-test": return answer.samplers.map((name) => `crescent check ${name} --wo ${answer.theta}`);
+      case "chi-square": case "which": return ["crescent check --planted"];
+      default: {
+        const box = ask.kind === "region" && guess ? [`regions.mine.box=[${guess.replaceAll(",", ", ")}]`] : [];
+        const lines = answer.of.map((m) => ["./run", file, "--seeds", String(m.seeds),
+          ...[...this.opened(m.set ?? [], answer.of.map(({ arm }) => arm)).set, ...box].flatMap((word) => ["--set", quoted(word)])].join(" "));
+        return [...new Set(lines)];
+      }
+    }
   }
 
   private async measure(lesson: Lesson): Promise<Found> {
     const { answer } = lesson;
     switch (answer.by) {
       case "firefly":
-        return this.model.ask<Found>("firefly", { ...answer, box: this.box(answer.region) }, this.opened([], [answer.arm]));
+        return this.model.ask<Found>("firefly", { ...answer, box: this.region(answer.region).box }, this.opened([], [answer.arm]));
       case "furnace":
         return this.model.ask<Found>("furnaces_of", answer, this.opened([], []));
       case "support":

@@ -82,8 +82,9 @@ const ordered_json& verdict_of(const ordered_json& one, const std::string& name)
     throw InputError({"lesson", 0, 0}, "no verdict '" + name + "' in " + one.dump());
 }
 std::string told_of(const ordered_json& v) {
-    return fmt::format("{}: {}. {}", v.at("name").get<std::string>(), v.at("state").get<std::string>(),
-        v.at("say").get<std::string>());
+    const auto name = v.at("name").get<std::string>(), state = v.at("state").get<std::string>(),
+               say = v.at("say").get<std::string>();
+    return say.starts_with(state) ? fmt::format("{}: {}", name, say) : fmt::format("{}: {}. {}", name, state, say);
 }
 std::string state_of(const ordered_json& v) { return v.at("state").get<std::string>(); }
 

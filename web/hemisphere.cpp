@@ -34,7 +34,7 @@ std::string mean_chart(const std::vector<double>& mean, double reference, const 
         values.push_back(mean[k]);
     }
     values.push_back(0);
-    Chart chart(420, 220, log_axis("N, samples of this pixel", {1, double(std::max<std::size_t>(mean.size(), 2))}),
+    Chart chart(320, 260, log_axis("N, samples of this pixel", {1, double(std::max<std::size_t>(mean.size(), 2))}),
         linear_axis("running mean of X", values), "Running mean of this pixel against N");
     chart.rule(reference, "strong", "reference");
     chart.line(points, css);

@@ -7,6 +7,7 @@ export type Job =
   | { kind: "open"; opening: Opening }
   | { kind: "tile"; arms: number[]; n: number; box: Box } // a film's planes for each arm
   | { kind: "reference"; box: Box }
+  | { kind: "photograph"; box: Box; opening: Opening } // of the reference
   | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: asked of another experiment
 
 export type Answer = { bytes?: ArrayBuffer[]; said?: unknown };
@@ -14,11 +15,8 @@ export type Reply = { id: number; answer?: Answer; error?: { kind: string; text:
 
 const filmPlanes = 9, referencePlanes = 5;
 
-/** Answers one job; `door` is replaced by a fresh one after a failure. */
-export function perform(door: Door, job: Job): Answer {
+function perform(door: Door, job: Exclude<Job, { kind: "open" }>): Answer {
   switch (job.kind) {
-    case "open":
-      return { said: door.ask("open", job.opening) };
     case "tile": {
       const { x0, y0, x1, y1 } = job.box, pixels = pixelsOf(job.box);
       return { bytes: job.arms.map((arm) => door.bytes("tile", 4 * ((filmPlanes + 1) * pixels + 1), arm, job.n, x0, y0, x1, y1)) };
@@ -27,15 +25,21 @@ export function perform(door: Door, job: Job): Answer {
       const { x0, y0, x1, y1 } = job.box;
       return { bytes: [door.bytes("reference_tile", 4 * referencePlanes * pixelsOf(job.box), x0, y0, x1, y1)] };
     }
+    case "photograph": {
+      const { x0, y0, x1, y1 } = job.box;
+      door.number("reference_tile", x0, y0, x1, y1);
+      return { bytes: [door.bytes("paint", 4 * pixelsOf(job.box), 0, -1, 0, 1, x0, y0, x1, y1)] };
+    }
     case "ask":
       return { said: door.ask(job.call, job.request) };
   }
 }
 
-/** An instance that opens its experiment again after it broke. */
+/** An instance that opens what a job is about, and its experiment again after it broke. */
 export class Answering {
   private door: Door;
-  private last: Opening | undefined;
+  private last: Opening | undefined; // that of the page
+  private here: Opening | undefined; // that of the door
 
   constructor(private readonly module: WebAssembly.Module) {
     this.door = new Door(module);
@@ -43,15 +47,17 @@ export class Answering {
 
   answer(job: Job): Answer {
     if (job.kind === "open") this.last = job.opening;
+    const about = ("opening" in job ? job.opening : undefined) ?? this.last;
     try {
-      if (job.kind !== "ask" || !job.opening) return perform(this.door, job);
-      this.door.ask("open", job.opening);
-      const answer = perform(this.door, job);
-      if (this.last) this.door.ask("open", this.last);
-      return answer;
+      if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) {
+        this.here = undefined;
+        this.door.ask("open", about);
+        this.here = about;
+      }
+      return job.kind === "open" ? {} : perform(this.door, job);
     } catch (error) {
       this.door = new Door(this.module);
-      if (this.last && job.kind !== "open") this.door.ask("open", this.last);
+      this.here = undefined;
       throw error;
     }
   }

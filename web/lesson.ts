@@ -1,6 +1,7 @@
 // A lesson on the page: it asks, measures, shows the guess beside what was measured, and lets play. The sheet for
 // teachers is made of the same data and of numbers that are measured when it is opened.
 import { Asker, Found } from "./answers";
+import { boxQuestion } from "./box";
 import { checkPanel, samplerPictures } from "./check";
 import { el, made } from "./dom";
 import { Lesson, lessons } from "./lessons";
@@ -24,10 +25,11 @@ export function lessonList(to: Lessons, answers: Record<string, string>): void {
     el("ol", { class: "lesson-list" }, ...items));
 }
 
-function question(lesson: Lesson, given: string | undefined, take: (answer: string) => void): HTMLElement {
+function question(lesson: Lesson, asker: Asker, given: string | undefined, take: (answer: string) => void): HTMLElement {
   const ask = lesson.ask;
   let inside: HTMLElement[], read: () => string;
-  if (ask.kind === "choice") {
+  if (ask.kind === "region") ({ inside, read } = boxQuestion(asker, given));
+  else if (ask.kind === "choice") {
     const inputs = ask.options.map(({ value }) => el("input", { type: "radio", name: "answer", id: `answer-${value}`, value, checked: value === given }));
     inside = ask.options.map(({ words }, k) => el("div", { class: "option" }, inputs[k], el("label", { for: inputs[k]!.id }, words)));
     read = (): string => inputs.find((input) => input.checked)?.value ?? "";
@@ -46,7 +48,7 @@ function question(lesson: Lesson, given: string | undefined, take: (answer: stri
     event.preventDefault();
     const answer = read();
     if (answer) take(answer);
-    else hint.textContent = "Choose one first.";
+    else hint.textContent = ask.kind === "region" ? "Draw a box of this picture first, or type its corners." : "Choose one first.";
   };
   return el("form", { onsubmit: submit }, el("fieldset", {}, el("legend", {}, lesson.question), ...inside),
     hint, el("button", { type: "submit", class: "main", id: "measure" }, "Measure"));
@@ -56,13 +58,18 @@ function question(lesson: Lesson, given: string | undefined, take: (answer: stri
 const set = (model: Model, words: string): DocumentFragment => made(model.door.say("html", words));
 
 /** An answer as the question words it. */
-const worded = ({ ask }: Lesson, value: string): string =>
-  ask.kind === "choice" ? ask.options.find((o) => o.value === value)?.words ?? value : `${value} ${ask.unit}`;
+function worded({ ask }: Lesson, value: string): string {
+  if (ask.kind === "slider") return `${value} ${ask.unit}`;
+  if (ask.kind === "choice") return ask.options.find((o) => o.value === value)?.words ?? value;
+  const [x0, y0, x1, y1] = value.split(",");
+  return y1 ? `the box from (${x0}, ${y0}) to (${x1}, ${y1})` : value === "overlap" ? "none is the noisiest: the intervals of the seeds overlap" : `${value} is the noisiest`;
+}
 
-function revealed(model: Model, lesson: Lesson, answer: string, found: Found): HTMLElement {
+function revealed(model: Model, lesson: Lesson, answer: string, found: Found, commands: string[]): HTMLElement {
+  const again = commands.length > 0 ? [el("p", { class: "again" }, "The same numbers from the program: ", ...commands.flatMap((words, k) => [k > 0 ? ", " : "", el("code", {}, words)]))] : [];
   return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
     el("p", {}, "You said ", el("b", {}, worded(lesson, answer)), "; measured here: ", el("b", {}, worded(lesson, found.answer)), "."),
-    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? "")));
+    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? "")), ...again);
 }
 
 export function showLesson(to: Lessons, lesson: Lesson, given: string | undefined): void {
@@ -72,13 +79,13 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
     to.answered(lesson, answer);
     result.replaceChildren(el("p", {}, "Measuring …"));
     try {
-      const found = await to.asker().find(lesson);
-      const shown = revealed(to.model, lesson, answer, found);
+      const found = await to.asker().find(lesson, answer);
+      const shown = revealed(to.model, lesson, answer, found, to.asker().commands(lesson, answer));
       const play = lesson.check ? checkPanel(to.asker(), lesson) : el("p", {}, "Now play: the pictures and settings below are this lesson's.");
       result.replaceChildren(shown, play, el("p", {},
         el("button", { type: "button", id: "next", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
       shown.focus();
-      to.say(`Measured: ${found.answer}`);
+      to.say(`Measured: ${worded(lesson, found.answer)}`);
     } catch (error) {
       result.replaceChildren(el("p", { class: "bad" }, `This could not be measured: ${error instanceof Error ? error.message : error}.`));
     }
@@ -86,7 +93,7 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
   to.root.replaceChildren(
     el("p", {}, el("a", { href: "#", onclick: (e) => { e.preventDefault(); to.go(""); } }, "All lessons")),
     el("h2", {}, lesson.title), el("div", { class: "asking" }, el("p", {}, set(to.model, lesson.aim)),
-      ...(lesson.answer.by === "which" ? [samplerPictures(to.model, lesson.check!.samplers, lesson.answer.theta)] : []), question(lesson, given, (a) => void measure(a)), result));
+      ...(lesson.answer.by === "which" ? [samplerPictures(to.model, lesson.check!.samplers, lesson.answer.theta)] : []), question(lesson, to.asker(), given, (a) => void measure(a)), result));
   if (given !== undefined) void measure(given);
 }
 
@@ -105,7 +112,7 @@ export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
     for (const { lesson, place, say } of articles) {
       try {
         const found = await asker.find(lesson);
-        place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, line))));
+        place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}${lesson.ask.kind === "region" ? ` in ${lesson.answer.by === "largest" ? lesson.answer.of[0]!.region : ""}` : ""}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, line))));
         say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? ""));
       } catch (error) {
         place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;

@@ -6,6 +6,7 @@ export interface Measured { arm: string; n: number; region: "H" | "S"; seeds: nu
 
 export type Ask =
   | { kind: "choice"; options: readonly { value: string; words: string }[] }
+  | { kind: "region" } // a box, drawn or typed
   | { kind: "slider"; low: number; high: number; step: number; unit: string };
 
 /** How the core answers: from measurements, from one sample, from a furnace, or from the verdicts of samplers. */
@@ -35,12 +36,12 @@ export const lessons: readonly Lesson[] = [
   {
     id: "sparkle", title: "Which column sparkles where?", minutes: 5, arms: three, n: 64, play: ["sphere.s", "seed"],
     aim: "Same image, same number of samples, same random numbers: only the aim differs, and with it the place of the noise.",
-    question: "Three arms draw 64 samples a pixel. In which one will the highlight H be noisiest?",
-    ask: { kind: "choice", options: ranked(three) }, answer: { by: "largest", of: three.map((arm) => at(arm, "H")) },
+    question: "Three arms draw 64 samples a pixel: uniform, cosine and phong. Draw a box in which phong will be the noisiest of the three.",
+    ask: { kind: "region" }, answer: { by: "largest", of: three.map((arm) => at(arm, "S")) },
     says: {
-      uniform: "The wider an arm aims, the seldomer it meets the small light that makes the highlight, and the heavier each meeting weighs.",
-      cosine: "Here the arm that follows the cosine is the noisiest: the highlight lies where that density is small.",
-      phong: "Here the sharpest aim is the noisiest: its density is small where this highlight stands.", overlap,
+      uniform: "In this box the widest aim is the noisiest: it seldom meets the small light, and each meeting weighs the more. Look for a box that the light's mirror image does not fill.",
+      cosine: "In this box the arm that follows the cosine is the noisiest: it seldom meets the small light. Look for a box that the light's mirror image does not fill.",
+      phong: "In this box phong is the noisiest: away from its mirror direction its density nearly vanishes, and what comes from there weighs much. In the highlight H it is the other way round.", overlap,
     },
   },
   {

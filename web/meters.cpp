@@ -55,9 +55,13 @@ CRESCENT_EXPORT(tail)()->void {
     const auto found = region_tail(
         bench().scene, arm_of(asked.at("arm").get<std::string>()).sampler, bench().experiment.seed, box, "", watch);
     if (!found) return say(ordered_json{{"words", "no tail: the samples do not spread"}});
-    const std::string_view words = found->k >= 1 ? "the mean itself is infinite"
-        : found->heavy()                         ? "inconclusive: heavy tail, the variance is infinite"
-                                                 : "the variance is finite";
+    // The mean is the integral and exists whatever k is; from k = 1 on the samples seen do not bound it.
+    const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
+    const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
+        : found->heavy() && sure                 ? "inconclusive: heavy tail, the variance looks infinite"
+        : found->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
+        : sure                                   ? "the variance looks finite"
+                                                 : "the variance may be finite";
     say(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
         {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
 }
@@ -72,8 +76,11 @@ CRESCENT_EXPORT(ladder_chart)()->void {
     x.ticks = ns;
     std::ranges::sort(x.ticks);
     x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
-    const double last = x.high;
+    const double last = *std::ranges::max_element(ns);
     x.high *= 2.2;  // room for names at the ends of lines
+    for (const auto& series : asked.at("series"))
+        if (const auto& all = series.at("points"); !all.empty())
+            values.push_back(all[0].at(1).get<double>() * std::sqrt(all[0].at(0).get<double>() / last));
     const auto region = asked.at("region").get<std::string>();
     Chart chart(420, 330, x, log_axis("RMSE of " + region, values), "RMSE against N in region " + region);
     for (const auto& series : asked.at("series")) {

@@ -189,6 +189,12 @@ export class Model {
     return (await this.pool.ask({ kind: "ask", call, request, opening }, true)).said as T;
   }
 
+  /** The reference of an experiment as a picture, RGBA of a box after another. What is asked last is answered first. */
+  photograph(opening: Opening, [width, height]: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): void {
+    for (const box of this.pool.tiles(width, height, referenceCost).reverse())
+      this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question stands without it
+  }
+
   /** RGBA of a box, rows from the top. */
   pixels(picture: number, index: number, other: number, top: number, box: Box): ImageData {
     const size = 4 * pixelsOf(box), { x0, y0, x1, y1 } = box;

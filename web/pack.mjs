@@ -25,6 +25,7 @@ async function opened(module) {
 }
 
 function sources(door) {
+  const native = JSON.parse(text(join(web, "native.json")));
   const names = readdirSync(experiments).filter((name) => name.endsWith(".toml")).sort();
   names.sort((a, b) => (b === "gallery.toml") - (a === "gallery.toml"));
   const all = {};
@@ -34,7 +35,11 @@ function sources(door) {
     const published = figures ? text(join(experiments, figures[1])) : "";
     const d = door.ask("open", { file, text: body, published, set: [] });
     const arms = Object.fromEntries(d.arms.map((arm) => [arm.name, arm.n]));
-    all[name.replace(/\.toml$/, "")] = { file, title: d.title, text: body, published, arms, regions: d.regions, quadrature: d.quadrature };
+    const short = name.replace(/\.toml$/, "");
+    all[short] = {
+      file, title: d.title, text: body, published, arms, regions: d.regions, size: [d.width, d.height], quadrature: d.quadrature,
+      films: native[short] ?? {},
+    };
   }
   return all;
 }

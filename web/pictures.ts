@@ -1,36 +1,28 @@
-// The pictures side by side, each with its meters: a canvas of the experiment's size, regions drawn over it, a pixel to
-// choose by pointer or by arrow keys, a region to draw by dragging.
+// The pictures side by side, each with its meters, the hash of its film and the program's.
 import { Box } from "./door";
 import { el, made } from "./dom";
 import { Arm, Described, Meter, Model, Shown } from "./model";
+import { Frame, Picking } from "./frame";
 import { State } from "./state";
-
-export interface Picking {
-  pixel(i: number, j: number): void;
-  region(box: [number, number, number, number]): void;
-}
 
 const mine = "mine";
 
 /** One picture: index of its film, or -1 for the reference. */
 export class Picture {
-  readonly canvas: HTMLCanvasElement;
   readonly root: HTMLElement;
-  private readonly over = el("div", { class: "over" });
+  private readonly frame: Frame;
   private readonly words = el("figcaption");
   private readonly aim = el("p", { class: "aim" });
+  private readonly versus = el("p", { class: "aim" });
   private readonly table = el("div", { class: "meters" });
-  private from: [number, number] | undefined;
 
-  constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
-    this.canvas = el("canvas", { width: d.width, height: d.height, tabindex: 0, role: "img" });
-    const frame = el("div", { class: "frame" }, this.canvas, this.over);
-    this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, frame, this.words, this.aim, this.table);
-    this.canvas.addEventListener("pointerdown", (e) => { this.from = this.at(e); this.canvas.setPointerCapture(e.pointerId); });
-    this.canvas.addEventListener("pointermove", (e) => this.drag(e));
-    this.canvas.addEventListener("pointerup", (e) => this.drop(e));
-    this.canvas.addEventListener("pointercancel", () => { this.from = undefined; });
+  constructor(readonly index: number, private readonly d: Described, picking: Picking) {
+    this.frame = new Frame(d, picking);
+    this.canvas.tabIndex = 0;
+    this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, this.frame.root, this.words, this.versus, this.aim, this.table);
   }
+
+  get canvas(): HTMLCanvasElement { return this.frame.canvas; }
 
   name(title: string, line: string): void {
     this.words.replaceChildren(el("b", {}, title), line ? ` ${line}` : "");
@@ -48,59 +40,28 @@ export class Picture {
     const heat = state.view === "heat", width = 256, end = model.door.say("figures", undefined, top);
     const bar = el("canvas", { width, height: 1, class: "bar", role: "img", "aria-label": heat ? `the colours of |Y − Y_ref| from 0 to ${end}` : "the two colours of the signed maps" });
     bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(model.door.bytes("scale_bar", 4 * width, heat ? 1 : 2, width)), width, 1), 0, 0);
-    const ends = heat ? ["|Y − Y_ref| = 0", end] : [`the next is nearer by ${end}`, `this one by ${end}`];
+    const ends = heat ? ["|Y − Y_ref| = 0", end] : [`the other arm is nearer by ${end}`, `this one by ${end}`];
     this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
 
-  /** Pixel (i, j) under the pointer, from the bottom-left. */
-  private at(event: PointerEvent): [number, number] {
-    const r = this.canvas.getBoundingClientRect(), { width, height } = this.d;
-    const clip = (x: number, most: number): number => Math.max(0, Math.min(most - 1, Math.floor(x)));
-    return [clip(((event.clientX - r.left) / r.width) * width, width), clip(((r.bottom - event.clientY) / r.height) * height, height)];
-  }
-  private dragged(event: PointerEvent): [number, number, number, number] | undefined {
-    if (!this.from) return undefined;
-    const [a, b] = this.from, [c, d] = this.at(event);
-    if (Math.abs(a - c) < 6 || Math.abs(b - d) < 6) return undefined;
-    return [Math.min(a, c), Math.min(b, d), Math.max(a, c), Math.max(b, d)];
-  }
-  private drag(event: PointerEvent): void {
-    const box = this.dragged(event);
-    this.over.querySelector(".dragging")?.remove();
-    if (box) this.over.append(this.outline(box, "dragging", ""));
-  }
-  private drop(event: PointerEvent): void {
-    const box = this.dragged(event), from = this.from;
-    this.from = undefined;
-    this.over.querySelector(".dragging")?.remove();
-    if (box) this.picking.region(box);
-    else if (from) this.picking.pixel(...from);
-  }
-
-  private outline(box: readonly number[], css: string, name: string): HTMLElement {
-    const [x0, y0, x1, y1] = box as [number, number, number, number], { width, height } = this.d;
-    const made = el("div", { class: css }, name ? el("span", {}, name) : undefined);
-    made.style.left = `${(100 * x0) / width}%`;
-    made.style.width = `${(100 * (x1 - x0 + 1)) / width}%`;
-    made.style.top = `${(100 * (height - 1 - y1)) / height}%`;
-    made.style.height = `${(100 * (y1 - y0 + 1)) / height}%`;
-    return made;
-  }
-
-  outlines(pixel: [number, number] | undefined): void {
-    const regions = this.d.regions.map((r) => this.outline(r.box, "region", r.name));
-    const chosen = pixel ? [this.outline([...pixel, ...pixel], "pixel", "")] : [];
-    this.over.replaceChildren(...regions, ...chosen);
-  }
+  outlines(pixel: [number, number] | undefined): void { this.frame.outlines(this.d.regions, pixel); }
 
   paint(model: Model, state: State, top: number, box: Box): void {
     const kind = this.index < 0 || state.view === "photograph" ? 0 : state.view === "heat" ? 1 : 2;
     const other = (this.index + 1) % model.shown.length;
+    this.versus.textContent = kind !== 2 ? "" : other === this.index ? "choose a second arm to compare it with" : `compared with ${model.shown[other]!.name}`;
     const pixels = model.pixels(kind, this.index, Math.max(other, 0), top, box);
     this.canvas.getContext("2d")!.putImageData(pixels, box.x0, this.d.height - box.y1);
   }
 
-  meters(s: Shown): void {
+  private beside(hash: string, program: string | undefined): (Node | string)[] {
+    if (!program) return [];
+    const verdict = hash === program ? ": the same bits" : el("b", { class: "bad" }, ": not the same bits");
+    return [", the program's ", el("code", {}, program), verdict];
+  }
+
+  /** `native`: the hash of the program's film, where this one has it. */
+  meters(s: Shown, native: (key: string) => string | undefined): void {
     const last = s.rungs.at(-1);
     this.name(s.name, last ? `N = ${last.n}` : "being sampled");
     if (!last) return;
@@ -121,7 +82,7 @@ export class Picture {
     row("mean Y", m.meters["y_mean"]);
     if (m.bad > 0) row("not a number", { value: m.bad, text: String(m.bad) });
     this.table.replaceChildren(el("table", {}, el("tbody", {}, ...rows)),
-      el("p", { class: "hash" }, "film ", el("code", { "data-hash": `${s.name} ${last.n}` }, m.hash)));
+      el("p", { class: "hash" }, "film ", el("code", { "data-hash": `${s.name} ${last.n}` }, m.hash), ...this.beside(m.hash, native(m.key))));
   }
 }
 

@@ -1,8 +1,14 @@
 // What the address says, and the command line that makes the same numbers. The address is data: what is wrong in it
 // gives its default, and a line that says so.
+import { Lesson, lessons } from "./lessons";
 import { ladder, Region } from "./model";
 
-export interface Source { file: string; title: string; text: string; published: string; arms: Record<string, number[]>; regions: Region[]; quadrature: boolean }
+export interface Source {
+  file: string; title: string; text: string; published: string; arms: Record<string, number[]>; regions: Region[];
+  size: [number, number]; quadrature: boolean;
+  films: Record<string, string>; // the program's hashes, by "ARM n=N s=S"
+}
+export type Part = "bench" | "lessons" | "sheet";
 
 export interface State {
   experiment: string;
@@ -12,20 +18,45 @@ export interface State {
   set: Record<string, string>; // path -> value, as --set takes it
   pixel: [number, number] | undefined;
   arm: number; // whose draws the hemisphere shows
+  part: Part;
   lesson: string;
   answers: Record<string, string>; // lesson -> answer
 }
 
 const path = /^(?!__)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){0,3}$/;
+const keys = ["experiment", "arms", "n", "view", "set", "pixel", "arm", "part", "lesson", "answer"];
 const number = "-?(\\d+\\.?\\d*|\\.\\d+)([eE][-+]?\\d{1,3})?";
 const value = new RegExp(`^(${number}|\\[ *${number}( *, *${number}){0,7} *\\]|"[a-z-]{1,40}")$`);
 
 export function fresh(experiment: string, source: Source): State {
   const arms = Object.keys(source.arms).slice(0, 3), rungs = source.arms[arms[0]!]!;
   return {
-    experiment, arms, n: Math.max(...ladder.filter((n) => n <= Math.max(...rungs))), view: "photograph", set: {}, pixel: undefined, arm: 0, lesson: "",
-    answers: {},
+    experiment, arms, n: Math.max(...ladder.filter((n) => n <= Math.max(...rungs))), view: "photograph", set: {}, pixel: undefined, arm: 0, part: "bench",
+    lesson: "", answers: {},
   };
+}
+
+/** Whether a lesson can be answered so. */
+function answers({ ask }: Lesson, to: string, size: readonly [number, number]): boolean {
+  if (ask.kind === "choice") return ask.options.some(({ value }) => value === to);
+  if (ask.kind === "slider") return to !== "" && Number(to) >= ask.low && Number(to) <= ask.high;
+  const box = /^(\d{1,5}),(\d{1,5}),(\d{1,5}),(\d{1,5})$/.exec(to)?.slice(1).map(Number);
+  return box !== undefined && box[0]! < box[2]! && box[2]! < size[0] && box[1]! < box[3]! && box[3]! < size[1];
+}
+
+/** The part of the page, the lesson and its answers. */
+function readLessons(asked: URLSearchParams, state: State, size: readonly [number, number], said: string[], wrong: (key: string, instead: string) => void): void {
+  const part = asked.get("part");
+  if (part === "bench" || part === "lessons" || part === "sheet") state.part = part;
+  else if (part !== null) wrong("part", "the bench is open");
+  const lesson = asked.get("lesson") ?? "";
+  if (lessons.some(({ id }) => id === lesson)) Object.assign(state, { lesson, part: "lessons" });
+  else if (lesson) wrong("lesson", "the list of lessons is open"), (state.part = "lessons");
+  for (const text of asked.getAll("answer")) {
+    const at = text.indexOf(":"), to = text.slice(at + 1), of = lessons.find(({ id }) => id === text.slice(0, at));
+    if (of && answers(of, to, size)) state.answers[of.id] = to;
+    else said.push(`The address says answer=${text.slice(0, 60)}, which answers no lesson: it is left out.`);
+  }
 }
 
 /** Reads an address; `said` receives a line for everything that was not understood. */
@@ -67,11 +98,8 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   const arm = Number(asked.get("arm") ?? 0);
   if (Number.isInteger(arm) && arm >= 0 && arm < state.arms.length) state.arm = arm;
   else wrong("arm", "the first one is shown");
-  state.lesson = /^[a-z0-9-]{0,40}$/.exec(asked.get("lesson") ?? "")?.[0] ?? "";
-  for (const text of asked.getAll("answer")) {
-    const found = /^([a-z0-9-]{1,40}):([-0-9.a-z,]{1,60})$/.exec(text);
-    if (found) state.answers[found[1]!] = found[2]!;
-  }
+  readLessons(asked, state, sources[first]!.size, said, wrong);
+  for (const key of new Set(asked.keys())) if (!keys.includes(key)) wrong(key, "it is left out");
   return state;
 }
 
@@ -82,8 +110,9 @@ export function write(state: State): string {
   if (state.pixel) out.set("pixel", state.pixel.join(","));
   if (state.arm > 0) out.set("arm", String(state.arm));
   if (state.lesson) out.set("lesson", state.lesson);
+  else if (state.part !== "bench") out.set("part", state.part);
   for (const [lesson, answer] of Object.entries(state.answers)) out.append("answer", `${lesson}:${answer}`);
-  return `#${out.toString().replaceAll("%2C", ",").replaceAll("%3D", "=").replaceAll("%3A", ":")}`;
+  return `#${out.toString().replaceAll("%2C", ",").replaceAll("%3D", "=").replaceAll("%3A", ":").replaceAll("%2F", "/")}`;
 }
 
 /** Rungs that an arm of the experiment does not have, as --set takes them; "" where there are none. */
@@ -93,14 +122,21 @@ function rungs(arm: string, state: State, source: Source): string {
   return `arms.${arm}.n=[${ladder.filter((n) => n <= most && (n > 1 || state.n === 1)).join(", ")}]`;
 }
 
+/** The program's hash of a film that the page has too, where the settings are the experiment's; regions and k change none. */
+export function nativeHash(state: State, source: Source, key: string): string | undefined {
+  return Object.keys(state.set).every((path) => /^(regions\.|firefly_k$)/.test(path)) ? source.films[key] : undefined;
+}
+
 /** What was set, and what the arms that are looked at need beside it. */
 export function overrides(state: State, source: Source): string[] {
   const set = Object.entries(state.set).map(([key, to]) => `${key}=${to}`);
   return [...set, ...state.arms.map((arm) => rungs(arm, state, source)).filter((word) => word !== "")];
 }
 
+/** A word as a shell takes it. */
+export const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
+
 export function command(state: State, source: Source): string {
-  const quoted = (word: string): string => (/^[A-Za-z0-9_.=/-]+$/.test(word) ? word : `'${word}'`);
   const measured = source.quadrature ? [] : ['reference.kind="quadrature"']; // as the page does, whatever the file says
   return ["./run", source.file, ...[...overrides(state, source), ...measured].flatMap((word) => ["--set", quoted(word)])].join(" ");
 }

@@ -51,6 +51,8 @@ def opens_and_measures(driver):
           f"with the reference and all meters {took} ms, {told['workers']} workers")
     assert int(told["workers"]) >= 1
     assert "published" in browser.text(driver, "#pictures")
+    beside = [e.text for e in driver.find_elements(By.CSS_SELECTOR, ".hash")]
+    assert len(beside) == 3 and all(line.endswith(": the same bits") for line in beside), beside
     assert len(driver.find_elements(By.CSS_SELECTOR, "#pictures canvas")) == 4
     rungs = driver.execute_script(
         "return [...document.querySelectorAll('#charts figure')].map((s) => s.querySelectorAll('circle').length)")
@@ -67,12 +69,26 @@ def opens_and_measures(driver):
 def address_is_data(driver):
     """Nonsense in the address gives defaults and lines that say so."""
     browser.open_page(driver, page, "#experiment=%3Cscript%3E&arms=evil,phong&n=7&view=x"
-                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9",
-                      until="document.getElementById('wrong').textContent")
+                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9&part=q&lesson=none&answer=sparkle:evil"
+                      "&answer=firefly:l&answer=four-times:99&answer=sparkle:1,1,960,9&unknown=1",
+                      until="document.getElementById('wrong').textContent.includes('sphere.s')")
     said = browser.text(driver, "#wrong")
-    for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm="):
+    for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm=", "part=q", "lesson=none", "unknown=1",
+                 "answer=sparkle:evil", "answer=firefly:l", "answer=four-times:99", "answer=sparkle:1,1,960,9"):
         assert word in said, f"{word} is not told: {said}"
-    assert "sphere.s" in said, f"a value out of range is not told: {said}"
+    browser.open_page(driver, page, small + "&pixel=160,3")
+    assert "pixel=160,3" in browser.text(driver, "#wrong"), "a pixel outside the picture is not told"
+
+
+def address_keeps_all(driver):
+    """What was set in an answered lesson stands in its address and comes back from there; so does every part."""
+    browser.open_page(driver, page, "#experiment=three-glosses&arms=cosine&n=4&lesson=firefly&answer=firefly:1/p&zz=1",
+                      until=f"document.getElementById('reveal') && {browser.FINISHED}")
+    address = driver.execute_script("return location.hash")
+    for word in ("lesson=firefly", "answer=firefly:1/p", "experiment=three-glosses", "arms=cosine", "n=4"):
+        assert word in address, f"{word} is lost: {address}"
+    assert "You said 1/p" in browser.text(driver, "#reveal") and "zz=1" in browser.text(driver, "#wrong")
+    browser.open_page(driver, page, "#part=sheet", until="!document.getElementById('sheet').hidden")
 
 
 def faults_are_sentences(driver):
@@ -126,6 +142,30 @@ def the_link_back(driver):
         print(f"  {words[:60]} ...: {len(films)} films, {checked} RMSEs")
 
 
+def a_lesson_is_confirmed(driver):
+    """The numbers of an answer are those of the command that stands under it."""
+    browser.open_page(driver, page, "#lesson=sparkle&answer=sparkle:380,140,420,190",
+                      until="document.getElementById('reveal')")
+    said = browser.text(driver, "#reveal")
+    words = driver.find_element(By.CSS_SELECTOR, "#reveal .again code").text
+    source = pathlib.Path(os.environ["CRESCENT_SOURCE"])
+    with tempfile.TemporaryDirectory() as out:
+        file = next(word for word in shlex.split(words) if word.endswith(".toml"))
+        parts = re.split(r"(?m)^(?=\[)", (source / file).read_text())  # without what no number of the lesson needs
+        kept = [part for part in parts if not re.match(r"\[+(exponent|furnaces|plates|assertions)", part)]
+        scene = pathlib.Path(out) / "scene.toml"
+        scene.write_text(re.sub(r"(?m)^(published|monte_carlo|n = \[).*$", "", "".join(kept)))
+        command = shlex.split(words.replace(file, str(scene)))[1:] + ["--only", "metrics", "--quiet", "--out", out]
+        subprocess.run([os.environ["CRESCENT"], "run", *command], check=True, stdout=subprocess.DEVNULL)
+        bands = json.loads((pathlib.Path(out) / "metrics.json").read_text())["bands"]
+    found = re.findall(r"(\w+), N = 64: RMSE of your box ([\d.]+), from ([\d.]+) to ([\d.]+)", said)
+    assert [arm for arm, *_ in found] == ["uniform", "cosine", "phong"], said
+    for arm, *numbers in found:
+        band = next(b for b in bands if (b["arm"], b["n"], b["s"], b["meter"]) == (arm, 64, 32, "rmse.mine"))
+        for text, name in zip(numbers, ("median", "q05", "q95")):
+            assert math.isclose(float(text), band[name], rel_tol=1e-3), f"{arm}, {name}: {text}, not {band[name]}"
+
+
 def slices_without_workers(driver):
     """The program's hash stands under the picture; where workers are refused, the same come in slices."""
     found = []
@@ -170,8 +210,8 @@ def two_hundred_settings(driver):
     assert settings[-1].split("arms=")[1].split("&")[0] in driver.execute_script("return location.hash")
 
 
-laws = [same_bits, opens_and_measures, address_is_data, faults_are_sentences, the_link_back, slices_without_workers,
-        two_hundred_settings, *reach.laws(page, pathlib.Path(page_path).resolve().parent)]
+laws = [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
+        a_lesson_is_confirmed, slices_without_workers, two_hundred_settings, *reach.laws(page, pathlib.Path(page_path).resolve().parent)]
 driver = browser.chromium()
 failed = 0
 try:

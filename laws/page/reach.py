@@ -22,8 +22,13 @@ def laws(page, folder):
     def answer(driver, lesson):
         """From the question to what was measured; the focus stands on the page before it."""
         browser.tab_to(driver, "#lessons input[name=answer], #guess")
-        choice = driver.execute_script("return document.activeElement.type === 'radio'")
-        browser.keys(driver, Keys.SPACE if choice else Keys.ARROW_RIGHT)
+        kind = driver.execute_script("return document.activeElement.type")
+        if kind == "number":  # a box: its corners
+            for corner in ("380", "140", "420", "190"):
+                browser.keys(driver, corner, Keys.TAB)
+            assert driver.find_elements(By.CSS_SELECTOR, "#lessons .over .region:nth-child(3)"), "the box is not drawn"
+        else:
+            browser.keys(driver, Keys.SPACE if kind == "radio" else Keys.ARROW_RIGHT)
         browser.tab_to(driver, "#measure")
         browser.keys(driver, Keys.ENTER)
         browser.wait(driver, "document.getElementById('reveal') || document.querySelector('#lessons .bad')", 120)
@@ -90,7 +95,7 @@ def laws(page, folder):
     def fits_every_screen(driver):
         """From 320 px, which is 1280 px at 400 %, to 4K, light and dark: nothing scrolls sideways."""
         for address, until in ((small + "&pixel=80,30", browser.FINISHED), ("#lesson=fault", ASKED),
-                               (small + "&view=heat", browser.FINISHED)):
+                               ("#lesson=sparkle", ASKED), (small + "&view=heat", browser.FINISHED)):
             browser.open_page(driver, page, address, until=until)
             for scheme in ("light", "dark"):
                 browser.media(driver, prefers_color_scheme=scheme)
@@ -159,6 +164,14 @@ def laws(page, folder):
         driver.execute_script("document.querySelector('#pictures canvas').focus()")
         browser.keys(driver, Keys.ARROW_RIGHT)
         browser.wait(driver, "document.querySelector('#pixel .disk')")
+        browser.open_page(driver, page, "#lesson=sparkle", until=ASKED)
+        browser.wait(driver, "document.querySelector('#lessons canvas').toDataURL().length > 30000")  # painted
+        canvas = driver.find_element(By.CSS_SELECTOR, "#lessons canvas")
+        hand = ActionChains(driver).move_to_element_with_offset(canvas, -60, 40)
+        hand.click_and_hold().move_by_offset(60, -30).release().perform()
+        shot(driver, "region")
+        typed = driver.execute_script("return [...document.querySelectorAll('#lessons .number')].map((e) => +e.value)")
+        assert typed[0] > 0 and typed[0] < typed[2] and typed[1] < typed[3], typed
 
     source = folder / "node_modules/axe-core/axe.min.js"
 

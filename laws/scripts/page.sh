@@ -2,12 +2,21 @@
 # The page as its readers open it: the same bits in node and in Chromium as from the program, the lessons by keyboard,
 # no request, no line on the console, workers refused, every width. $CRESCENT_PAGE is the build of ./page.
 . "$(dirname "$0")/common.sh"
+trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 [ -f "${CRESCENT_PAGE:-}/crescent.wasm" ] || skip "the page is not built (./test builds it)"
 for tool in node esbuild; do command -v "$tool" >/dev/null || skip "no $tool"; done
 
 esbuild "$CRESCENT_SOURCE/laws/page/hashes.ts" \
     --bundle --format=iife --target=es2022 --log-level=warning >hashes.js || die "hashes.ts"
 expect 0 node "$CRESCENT_SOURCE/web/pack.mjs" "$CRESCENT_PAGE" "$work/crescent.html"
+
+# axe-core, of the version and content that package-lock.json names; without npm or a network that one law is left out.
+cp "$CRESCENT_SOURCE"/laws/page/package*.json . && command -v npm >/dev/null &&
+    npm ci --ignore-scripts --no-audit --no-fund --prefer-offline >npm.log 2>&1 &
+fetched=$!
+# The hashes that the page shows as the program's.
+node "$CRESCENT_SOURCE/web/native.mjs" "$CRESCENT" >native.json 2>native.log &
+programs=$!
 
 # Every sampler over three scenes, small.
 arms=$("$CRESCENT" list arms | sed 's/ .*//')
@@ -26,6 +35,9 @@ expect 0 node --no-warnings "$CRESCENT_SOURCE/laws/page/hashes.mjs" hashes.js "$
 sort -u printed >node
 diff native node >difference || die "films differ in node: $(head -n 12 difference)"
 
+wait "$programs" && diff native.json "$CRESCENT_SOURCE/web/native.json" >difference ||
+    die "web/native.json is not the program's; node web/native.mjs build/crescent makes it: $(cat native.log difference)"
+
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
     $python -c 'import selenium' 2>/dev/null || skip "no Chromium that can be driven"
@@ -34,14 +46,17 @@ expect 0 "$FILM_HASHES" "$CRESCENT_SOURCE/experiments/three-glosses.toml"
 SHOWN=$(awk '$3 == "phong" && $4 == "n=16" { print $5; exit }' printed)
 export SHOWN
 
-# axe-core, of the version and content that package-lock.json names; without npm or a network that one law is left out.
-cp "$CRESCENT_SOURCE"/laws/page/package*.json . && command -v npm >/dev/null &&
-    npm ci --ignore-scripts --no-audit --no-fund --prefer-offline >npm.log 2>&1 || true
+wait "$fetched"
+# A second engine, where there is one, at the same time.
+engine=
+if command -v WebKitWebDriver >/dev/null && command -v xvfb-run >/dev/null; then
+    xvfb-run -a $python "$CRESCENT_SOURCE/laws/page/webkit.py" crescent.html "$SHOWN" >engine.log 2>&1 &
+    engine=$!
+fi
 expect 0 $python "$CRESCENT_SOURCE/laws/page/page.py" crescent.html hashes.js native \
     tiny-all.toml three-glosses-all.toml two-lamps-all.toml
 cat printed
 
-# A second engine, where there is one.
-command -v WebKitWebDriver >/dev/null && command -v xvfb-run >/dev/null || { echo 'no WebKit to try'; exit 0; }
-expect 0 xvfb-run -a $python "$CRESCENT_SOURCE/laws/page/webkit.py" crescent.html "$SHOWN"
-cat printed
+[ -n "$engine" ] || { echo 'no WebKit to try'; exit 0; }
+wait "$engine" || die "$(cat engine.log)"
+cat engine.log

@@ -1,0 +1,296 @@
+// The page: reads the address, opens the experiment, shows it, writes the address.
+import { choice, controlRows } from "./controls";
+import { Asker } from "./answers";
+import { Box, DoorError } from "./door";
+import { byId, el, made, Speaker } from "./dom";
+import { pixelFailed, showPixel } from "./hemisphere";
+import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
+import { lessons } from "./lessons";
+import { Described, ladder, Model, Shown, Viewer } from "./model";
+import { drawnRegion, Picture } from "./pictures";
+import { Pool } from "./pool";
+import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
+
+export interface Data { version: string; sources: Record<string, Source> }
+interface Sampler { name: string; label: string; summary: string }
+
+const tooLarge = "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below.";
+
+export class Page implements Viewer {
+  private state!: State;
+  private model!: Model;
+  private pictures: Picture[] = [];
+  private samplers: Sampler[] = [];
+  private top = 1;
+  private timer = 0;
+  private openedAt = 0;
+  private movedAt = 0; // when a hand changed what is not yet open
+  private awaited = 0; // and what is not yet painted
+  private said: string[] = []; // of the address, until something is opened
+  private asRead = false; // an answered lesson that the address shows with settings of its own
+  private known: Asker | undefined;
+  private readonly speaker = new Speaker(byId("status"));
+
+  constructor(private readonly data: Data) {}
+
+  async start(module: WebAssembly.Module, worker: string): Promise<void> {
+    const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
+    const pool = await Pool.start(module, worker, count);
+    this.model = new Model(module, pool, this);
+    document.documentElement.dataset["workers"] = String(pool.workers);
+    this.samplers = this.model.door.ask<Sampler[]>("samplers");
+    byId("copy").onclick = (): void => void this.copy();
+    byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
+    byId("tabs").onclick = (event): void => {
+      const part = (event.target as HTMLElement).dataset["tab"];
+      if (!part) return;
+      event.preventDefault();
+      Object.assign(this.state, { lesson: "", part });
+      history.replaceState(null, "", write(this.state));
+      this.show();
+    };
+    window.onhashchange = (): void => this.fromAddress();
+    this.fromAddress();
+  }
+
+  private get source(): Source { return this.data.sources[this.state.experiment]!; }
+
+  private fromAddress(): void {
+    if (this.state && write(this.state) === location.hash) return;
+    this.said = [];
+    this.state = read(location.hash, this.data.sources, this.samplers.map((s) => s.name), this.said);
+    const { answers, lesson } = this.state, answered = answers[lesson] !== undefined;
+    this.asRead = answered && new URLSearchParams(location.hash.slice(1)).has("arms");
+    this.show();
+    if (!answered || lessons.find((l) => l.id === lesson)?.check) this.open(); // any other answered lesson opens what it shows
+  }
+
+  private async copy(): Promise<void> {
+    const words = byId("command");
+    try {
+      await navigator.clipboard.writeText(words.textContent ?? "");
+      this.speaker.say("Copied.");
+    } catch { // a browser that keeps its clipboard to itself
+      window.getSelection()?.selectAllChildren(words);
+      this.speaker.say("Selected: copy it with the keyboard.");
+    }
+  }
+
+  /** Opens what the state says; settings that the core refuses are told and left out. */
+  private open(said: string[] = this.said): void {
+    const { state, source } = this;
+    this.said = [];
+    this.openedAt = performance.now();
+    const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
+    byId("wrong").replaceChildren(...said.map((line) => el("p", {}, line)));
+    this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
+      const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
+      const plain = fresh(state.experiment, source);
+      const touched = Object.keys(state.set).length > 0 || state.arms.join() !== plain.arms.join();
+      if (!touched || why.kind === "memory") return this.failed(why, true);
+      Object.assign(state, { set: {}, arms: plain.arms, arm: 0 });
+      this.open([...said, `These settings cannot be: ${why.message}. The experiment is as it was written.`]);
+    });
+  }
+
+  /** A setting changes: at once in the address, in the pictures thirty times a second at most. */
+  private change(path: string, value: string | undefined): void {
+    if (value === undefined) delete this.state.set[path];
+    else this.state.set[path] = value;
+    this.movedAt ||= performance.now();
+    const wait = this.openedAt + 30 - performance.now();
+    if (!this.timer) this.timer = window.setTimeout(() => { this.timer = 0; this.open(); }, Math.max(0, wait));
+  }
+
+  opened(d: Described, shown: Shown[]): void {
+    if (this.movedAt) (this.awaited = this.movedAt), (this.movedAt = 0);
+    delete document.documentElement.dataset["took"];
+    const at = this.state.pixel;
+    if (at && (at[0] >= d.width || at[1] >= d.height)) {
+      this.state.pixel = undefined;
+      byId("wrong").append(el("p", {}, `The address says pixel=${at.join(",")}, which lies outside the picture: none is open.`));
+    }
+    history.replaceState(null, "", write(this.state));
+    byId("command").textContent = command(this.state, this.source);
+    this.choices();
+    const picking = {
+      pixel: (i: number, j: number): void => this.choose([i, j]),
+      region: (box: number[]): void => this.change(drawnRegion, `[${box.join(", ")}]`),
+    };
+    const same = this.pictures.length === shown.length + 1 && this.pictures[0]?.canvas.width === d.width && this.pictures[0].canvas.height === d.height;
+    this.pictures = [...shown.map((_, index) => new Picture(index, d, picking)), new Picture(-1, d, picking)].map((picture, k) => {
+      if (same) picture.canvas.getContext("2d")!.drawImage(this.pictures[k]!.canvas, 0, 0); // the last picture stands until it is painted over
+      return picture;
+    });
+    for (const picture of this.pictures) {
+      picture.outlines(this.state.pixel);
+      picture.canvas.addEventListener("keydown", (event) => this.key(event, d));
+      if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
+      else picture.about(d.arms[shown[picture.index]!.arm]!), this.meters(picture.index);
+    }
+    byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
+    if (!document.activeElement?.closest("[data-path]")) this.knobs();
+  }
+
+  /** All settings, or those that a lesson lets one play with. A hand on one of them keeps it: they are not made anew then. */
+  private knobs(): void {
+    const lesson = lessons.find((l) => l.id === this.state.lesson), { described } = this.model;
+    if (described) byId("knobs").replaceChildren(...controlRows(described, (path, value) => this.change(path, value), lesson?.play));
+  }
+
+  private choices(): void {
+    const { state } = this, set = (change: () => void) => (): void => { change(); this.open(); };
+    const held = document.activeElement?.id;
+    const labels = new Map(this.samplers.map((s) => [s.name, s.label]));
+    const known = [...new Set([...Object.keys(this.source.arms), ...labels.keys()])].map((name): [string, string] => [name, labels.get(name) ?? name]);
+    const arms = [0, 1, 2].map((k) => choice(`arm-${k}`, `arm ${k + 1}`,
+      [...(k > 0 ? [["", "none"] as [string, string]] : []), ...known], state.arms[k] ?? "",
+      (value) => set(() => {
+        const all = [0, 1, 2].map((at) => (at === k ? value : state.arms[at] ?? ""));
+        state.arms = [...new Set(all.filter((arm) => arm !== ""))];
+        state.arm = Math.min(state.arm, state.arms.length - 1);
+      })()));
+    byId("choices").replaceChildren(
+      choice("experiment", "experiment", Object.entries(this.data.sources).map(([name, s]) => [name, s.title]), state.experiment,
+        (value) => set(() => { Object.assign(state, fresh(value, this.data.sources[value]!), { answers: state.answers, lesson: state.lesson, part: state.part }); })()), ...arms,
+      choice("n", "samples a pixel, up to", ladder.map((n) => [String(n), String(n)]), String(state.n), (value) => set(() => { state.n = Number(value); })()),
+      choice("view", "pictures show", [["photograph", "photographs"], ["heat", "|Y − Y_ref|, one scale"], ["signed", "the nearer of two"]], state.view,
+        (value) => { state.view = value as State["view"]; history.replaceState(null, "", write(state)); this.repaint(); }));
+    if (held) document.getElementById(held)?.focus();
+  }
+
+  painted(index: number, box: Box): void {
+    const picture = index < 0 ? this.pictures.at(-1) : this.pictures[index];
+    const told = document.documentElement.dataset;
+    told["first"] ??= String(Math.round(performance.now()));
+    if (this.awaited && index >= 0) (told["moved"] = String(Math.round(performance.now() - this.awaited))), (this.awaited = 0);
+    if (index < 0 || this.state.view === "photograph") picture?.paint(this.model, this.state, this.top, box);
+  }
+
+  private meters(index: number): void { this.pictures[index]?.meters(this.model.shown[index]!, (key) => nativeHash(this.state, this.source, key)); }
+  tailed(): void { this.model.shown.forEach((_, index) => this.meters(index)); }
+
+  measured(): void {
+    const { shown } = this.model;
+    this.tailed();
+    if (this.model.referenceDone && this.state.view !== "photograph") this.repaint();
+    const region = this.model.described.regions[0]?.name;
+    const lines = shown.filter((s) => s.rungs.length > 0).map((s) => {
+      const last = s.rungs.at(-1)!;
+      return `${s.name}, N = ${last.n}${region ? `: RMSE of ${region} ${last.meters.meters[`rmse.${region}`]!.text}` : ""}`;
+    });
+    this.speaker.say(lines.join("; "));
+    if (!this.model.finished) return;
+    document.documentElement.dataset["films"] = String(Math.round(this.model.filmsTook));
+    document.documentElement.dataset["memory"] = String(this.model.door.size);
+    document.documentElement.dataset["took"] = String(Math.round(this.model.took));
+    this.charts();
+    if (this.state.pixel) this.openPixel();
+  }
+
+  private charts(): void {
+    const charts = this.model.described.regions.map(({ name }) => {
+      const series = this.model.shown.map((s) => ({ arm: s.name, points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)) }));
+      return el("figure", { class: "narrow" }, made(this.model.door.say("ladder_chart", { region: name, series })));
+    });
+    byId("charts").replaceChildren(...charts);
+  }
+
+  private repaint(): void {
+    const { width, height } = this.model.described;
+    this.top = this.model.referenceDone ? this.model.door.number("scale", this.model.shown.length) : 1;
+    for (const picture of this.pictures) picture.paint(this.model, this.state, this.top, { x0: 0, y0: 0, x1: width, y1: height });
+    this.pictures.at(-1)?.legend(this.model, this.state, this.top);
+  }
+
+  private key(event: KeyboardEvent, d: Described): void {
+    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!by) return;
+    event.preventDefault();
+    const step = event.shiftKey ? 10 : 1, [i, j] = this.state.pixel ?? [d.width >> 1, d.height >> 1];
+    const clip = (x: number, most: number): number => Math.max(0, Math.min(most - 1, x));
+    this.choose([clip(i + step * by[0]!, d.width), clip(j + step * by[1]!, d.height)]);
+  }
+
+  private choose(pixel: [number, number]): void {
+    this.state.pixel = pixel;
+    history.replaceState(null, "", write(this.state));
+    for (const picture of this.pictures) picture.outlines(pixel);
+    this.openPixel();
+  }
+
+  private openPixel(): void {
+    const { pixel } = this.state, { described: d } = this.model;
+    if (!pixel) return;
+    const [i, j] = [Math.min(pixel[0], d.width - 1), Math.min(pixel[1], d.height - 1)];
+    const inside = el("div");
+    try {
+      const s = this.model.shown[this.state.arm] ?? this.model.shown[0]!;
+      showPixel(inside, this.model, i, j, s.arm, s.name, this.state.n);
+    } catch (error) { pixelFailed(inside, error); }
+    const arms = this.state.arms.map((arm, k): [string, string] => [String(k), arm]);
+    byId("pixel").replaceChildren(choice("whose", "draws of", arms, String(this.state.arm), (value) => {
+      this.state.arm = Number(value);
+      history.replaceState(null, "", write(this.state));
+      this.openPixel();
+      byId("whose").focus();
+    }), inside);
+  }
+
+  /** A sentence with what to do; `all`: there is nothing to show of these settings but their command. */
+  failed(error: DoorError, all = false): void {
+    if (all) {
+      byId("command").textContent = command(this.state, this.source);
+      for (const id of ["pictures", "charts", "pixel"]) byId(id).replaceChildren();
+      this.pictures = [];
+      this.choices();
+    }
+    const what = error.kind === "memory" ? tooLarge : error.kind === "input" ? `This cannot be: ${error.message}.`
+      : `The kernels stopped: ${error.message}. Reload the page; the address holds your settings.`;
+    byId("wrong").replaceChildren(el("p", {}, what));
+  }
+
+  /** The bench, the lessons or the sheet. A lesson brings its arms and keeps the bench below it. */
+  private show(): void {
+    const { part, answers } = this.state, lesson = lessons.find((l) => l.id === this.state.lesson);
+    for (const link of document.querySelectorAll<HTMLElement>("#tabs a"))
+      link.dataset["tab"] === part ? link.setAttribute("aria-current", "page") : link.removeAttribute("aria-current");
+    byId("lessons").hidden = part !== "lessons";
+    byId("sheet").hidden = part !== "sheet";
+    byId("bench").hidden = part === "sheet" || (part === "lessons" && (!lesson || Boolean(lesson.check) || answers[lesson.id] === undefined));
+    byId<HTMLDetailsElement>("controls").open = part === "lessons";
+    this.knobs();
+    if (part === "sheet") showSheet(byId("sheet"), this.model, this.asker());
+    if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
+  }
+
+  private asker(): Asker {
+    const [, source] = Object.entries(this.data.sources)[0]!;
+    const opening = { file: source.file, text: source.text, published: source.published, set: [] };
+    return (this.known ??= new Asker(this.model, opening, source));
+  }
+
+  private lessons(): Lessons {
+    return {
+      root: byId("lessons"),
+      model: this.model,
+      asker: () => this.asker(),
+      say: (line) => this.speaker.say(line),
+      answered: (lesson, answer) => {
+        const kept = this.asRead;
+        this.asRead = false;
+        this.state.answers[lesson.id] = answer;
+        if (lesson.check) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
+        if (!kept) Object.assign(this.state, { experiment: Object.keys(this.data.sources)[0]!, arms: [...lesson.arms], n: lesson.n, view: lesson.view ?? "photograph", arm: 0 });
+        byId("bench").hidden = false;
+        this.open();
+      },
+      go: (id) => {
+        Object.assign(this.state, { lesson: id, part: "lessons", set: {} });
+        history.replaceState(null, "", write(this.state));
+        this.show();
+        byId("lessons").querySelector<HTMLElement>("a, input, button")?.focus();
+      },
+    };
+  }
+}
