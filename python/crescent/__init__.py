@@ -13,7 +13,7 @@ from ._crescent import commit
 from ._crescent import version as __version__
 from ._judgement import Judgement, Verdict
 from ._sampler import Sampler
-from .arms import Tail, arm, arm_names, brdf_names, pdf_of, tail
+from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, load, parse, run
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "__version__",
     "arm",
     "arm_names",
+    "brdf",
     "brdf_names",
     "check",
     "commit",

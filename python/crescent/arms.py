@@ -3,6 +3,7 @@
 phong = crescent.arm("phong", brdf="phong", s=32)
 wi, p = phong.sample(wo, u)
 crescent.tail(phong.f(wo, wi) * wi[:, 2] / p)
+f = crescent.brdf("ggx", alpha=0.2)
 """
 
 from __future__ import annotations
@@ -29,6 +30,17 @@ def brdf_names() -> list[str]:
     return list(_crescent.brdf_names())
 
 
+def _core(name: str, lobe: str, s: float, alpha: float, rho_d: float, rho_s: float) -> _crescent.ListedArm:
+    """ValueError names the parameter that no surface has."""
+    for what, value, most in (("s", s, 1e6), ("alpha", alpha, 1)):
+        if not 0 < value <= most:
+            raise ValueError(f"{what} is {value:g}: expected a number above 0, up to {most:g}")
+    for what, value in (("rho_d", rho_d), ("rho_s", rho_s)):
+        if not 0 <= value <= 1:
+            raise ValueError(f"{what} is {value:g}: expected a number from 0 to 1")
+    return _crescent.ListedArm(name, lobe, s, alpha, rho_d, rho_s if lobe else 0.0)
+
+
 def arm(
     name: str, *, brdf: str = "", s: float = 32, alpha: float = 0.3, rho_d: float = 0.5, rho_s: float = 0.4
 ) -> Sampler:
@@ -36,23 +48,21 @@ def arm(
 
     Draws and densities are of single precision, as they render. Arms that aim at lamps are none of these.
     """
-    for what, value, least, most in (
-        ("s", s, 0, 1e6),
-        ("alpha", alpha, 0, 1),
-        ("rho_d", rho_d, 0, 1),
-        ("rho_s", rho_s, 0, 1),
-    ):
-        if not least <= value <= most or (value == 0 and what in ("s", "alpha")):
-            raise ValueError(
-                f"{what} is {value:g}: expected a number {'above' if what[0] != 'r' else 'from'} 0, up to {most:g}"
-            )
-    core = _crescent.ListedArm(name, brdf, s, alpha, rho_d, rho_s if brdf else 0.0)
+    core = _core(name, brdf, s, alpha, rho_d, rho_s)
     return Sampler(
         lambda wo, u: core.sample(*_rows(wo, u, "u", 2)),
         lambda wo, wi: core.pdf(*_rows(wo, wi, "wi", 3)),
         lambda wo, wi: core.f(*_rows(wo, wi, "wi", 3)),
         name=name,
     )
+
+
+def brdf(
+    name: str = "", *, s: float = 32, alpha: float = 0.3, rho_d: float = 0.5, rho_s: float = 0.4
+) -> Callable[[ArrayLike, ArrayLike], Array]:
+    """A built-in BRDF, rho_d / pi + rho_s * lobe, as f(wo, wi) -> [n] in 1/sr, without the cosine; "": Lambert's."""
+    core = _core("cosine", name, s, alpha, rho_d, rho_s)
+    return lambda wo, wi: core.f(*_rows(wo, wi, "wi", 3))
 
 
 def _finite(a: ArrayLike, what: str, columns: int) -> Array:

@@ -244,14 +244,14 @@ def test_a_plugin_of_ones_own_with_a_fault_is_found(mi):
 def test_an_emitter_of_mitsuba_is_right(mi):
     light = {"type": "sphere", "center": [0.0, 1.0, 2.0], "radius": 0.5, "emitter": {"type": "area"}}
     assert crescent.check(adapters.mitsuba_emitter(light)).state == "right"
-    assert crescent.check(adapters.mitsuba_emitter(mi.load_dict(light))).state == "right"
+    by_name = adapters.mitsuba(light)
+    assert by_name.name == "sphere" and by_name.wo == "none" and crescent.check(by_name).state == "right"
 
 
 def test_what_is_no_plugin_of_that_kind_is_told(mi):
-    with pytest.raises(TypeError, match="int is no BSDF"):
-        adapters.mitsuba(3)
-    with pytest.raises(TypeError, match="is no BSDF"):
-        adapters.mitsuba({"type": "constant"})
+    for other in (3, {"type": "hdrfilm"}):
+        with pytest.raises(TypeError, match="neither a mi.BSDF nor an emitter"):
+            adapters.mitsuba(other)
     with pytest.raises(TypeError, match="is no emitter"):
         adapters.mitsuba_emitter({"type": "diffuse"})
     with pytest.raises(ValueError, match="no emitter in it"):

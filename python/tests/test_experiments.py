@@ -158,6 +158,9 @@ def test_arms_are_vectorised_functions():
     up = wi[:, 2] > 0
     assert np.allclose(phong.pdf(wo, wi)[up], p[up], rtol=1e-4)
     assert np.allclose(crescent.arm("cosine").f(wo, wi)[up], 0.5 / np.pi)
+    ggx = crescent.brdf("ggx", alpha=0.2, rho_d=0)
+    assert np.allclose(ggx(wo, wi), crescent.arm("ggx-d", brdf="ggx", alpha=0.2, rho_d=0).f(wo, wi))
+    assert np.allclose(crescent.brdf()([0, 0, 1], [0, 0, 1]), 0.5 / np.pi)
     assert crescent.check(phong, wo_deg=[30]).of("density")[0].state == "right"
     assert "phong" in crescent.arm_names() and "ggx" in crescent.brdf_names()
     for bad in (

@@ -43,12 +43,16 @@ def _column(v: Any, n: int) -> Array:
     return np.broadcast_to(np.asarray(v, np.float64).ravel(), n)
 
 
-def _loaded(mi: Any, what: Any, kind: str, wanted: tuple[str, ...]) -> Any:
-    """The object that a dictionary or an XML text describes, which is of one of mi's classes `wanted`."""
-    it = mi.load_dict(what) if isinstance(what, dict) else mi.load_string(what) if isinstance(what, str) else what
-    if not isinstance(it, tuple(getattr(mi, name) for name in wanted)):
-        raise TypeError(f"{type(it).__name__} is no {kind}: expected {', '.join('mi.' + name for name in wanted)}, ...")
-    return it
+_EMITTERS = ("Emitter", "Scene", "Shape")
+
+
+def _is(mi: Any, it: Any, kinds: tuple[str, ...]) -> bool:
+    return isinstance(it, tuple(getattr(mi, kind) for kind in kinds))
+
+
+def _loaded(mi: Any, what: Any) -> Any:
+    """The object, or what a dictionary or an XML text describes."""
+    return mi.load_dict(what) if isinstance(what, dict) else mi.load_string(what) if isinstance(what, str) else what
 
 
 class _Bsdf:
@@ -104,16 +108,23 @@ class _Bsdf:
 
 
 def mitsuba(bsdf: Any, *, uv: tuple[float, float] = (0.5, 0.5), context: Any = None, **known: Any) -> Sampler:
-    """Any mi.BSDF: both sides where it answers for both, colour, delta parts, its own weights.
+    """Any mi.BSDF: both sides where it answers for both, colour, delta parts, its own weights; or any emitter, as
+    mitsuba_emitter takes it.
 
     `bsdf`: a mi.BSDF, a dictionary or an XML text. `uv`: where its textures are read. `context`: a mi.BSDFContext, for
     one component alone or for importance.
     """
     mi = _library()
-    plugin = _loaded(mi, bsdf, "BSDF", ("BSDF",))
+    plugin = _loaded(mi, bsdf)
+    if isinstance(bsdf, dict):
+        known.setdefault("name", bsdf["type"])
+    if _is(mi, plugin, _EMITTERS):
+        return mitsuba_emitter(plugin, **known)
+    if not _is(mi, plugin, ("BSDF",)):
+        raise TypeError(f"{type(plugin).__name__} is neither a mi.BSDF nor an emitter")
     own = _Bsdf(mi, plugin, uv, context or mi.BSDFContext())
     flags = int(plugin.flags())
-    known.setdefault("name", bsdf["type"] if isinstance(bsdf, dict) else type(plugin).__name__)
+    known.setdefault("name", type(plugin).__name__)
     known.setdefault("wo", "both" if flags & int(mi.BSDFFlags.BackSide) else "upper")
     known.setdefault("delta", bool(flags & int(mi.BSDFFlags.Delta)))
     known.setdefault("eta", own.eta() if flags & int(mi.BSDFFlags.Transmission) else None)
@@ -164,7 +175,9 @@ def mitsuba_emitter(emitter: Any, *, point: tuple[float, float, float] = (0.0, 0
     """Directions towards an emitter as a renderer samples them from `point`: a mi.Scene, a mi.Emitter, a mi.Shape that
     holds one, or a dictionary or an XML text of these. Points and single directions of light have no density."""
     mi = _library()
-    it = _loaded(mi, emitter, "emitter", ("Scene", "Emitter", "Shape"))
+    it = _loaded(mi, emitter)
+    if not _is(mi, it, _EMITTERS):
+        raise TypeError(f"{type(it).__name__} is no emitter: expected mi.Emitter, mi.Shape or mi.Scene, ...")
     if isinstance(emitter, dict):
         known.setdefault("name", emitter["type"])
     scene = it if isinstance(it, mi.Scene) else mi.load_dict({"type": "scene", "it": it})
