@@ -211,7 +211,8 @@ def two_hundred_settings(driver):
 
 
 laws = [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
-        a_lesson_is_confirmed, slices_without_workers, two_hundred_settings, *reach.laws(page, pathlib.Path(page_path).resolve().parent)]
+        a_lesson_is_confirmed, slices_without_workers, two_hundred_settings,
+        *reach.laws(page, pathlib.Path(page_path).resolve().parent)]
 driver = browser.chromium()
 failed = 0
 try:

@@ -36,7 +36,7 @@ sort -u printed >node
 diff native node >difference || die "films differ in node: $(head -n 12 difference)"
 
 wait "$programs" && diff native.json "$CRESCENT_SOURCE/web/native.json" >difference ||
-    die "web/native.json is not the program's; node web/native.mjs build/crescent makes it: $(cat native.log difference)"
+    die "web/native.json is not the program's (node web/native.mjs build/crescent): $(cat native.log difference)"
 
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
