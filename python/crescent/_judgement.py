@@ -43,12 +43,40 @@ def _verdict(raw: dict[str, Any]) -> Verdict:
     )
 
 
+@dataclass(frozen=True)
+class _Kept:
+    """A judgement as texts and numbers alone, which go from process to process."""
+
+    state: str
+    as_expected: bool
+    tests: int
+    verdicts: list[dict[str, Any]]
+    texts: dict[str, str]
+
+    def text(self, all: bool = False) -> str:
+        return self.texts["all" if all else "table"]
+
+    def json(self) -> str:
+        return self.texts["json"]
+
+    def junit(self) -> str:
+        return self.texts["junit"]
+
+    def html(self) -> str:
+        return self.texts["html"]
+
+
 class Judgement:
     """What a call of :func:`crescent.check` found. It has no truth value: ask for ``.state``."""
 
-    def __init__(self, judged: _crescent.Judged) -> None:
+    def __init__(self, judged: _crescent.Judged | _Kept) -> None:
         self._judged = judged
         self._verdicts = tuple(_verdict(raw) for raw in judged.verdicts)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        j = self._judged
+        texts = {"table": j.text(), "all": j.text(True), "json": j.json(), "junit": j.junit(), "html": j.html()}
+        return Judgement, (_Kept(self.state, self.as_expected, self.tests, list(j.verdicts), texts),)
 
     @property
     def state(self) -> State:

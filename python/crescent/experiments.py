@@ -118,6 +118,9 @@ class Experiment:
         """What tells experiments apart, computed from every value."""
         return self._core.hash
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return parse, (self.text, self._core.file)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Experiment) and self.hash == other.hash
 

@@ -1,6 +1,7 @@
 """load, parse and run: films without a copy, records, and the file's own checks; arms, BRDFs and tails as functions."""
 
 import os
+import pickle
 import signal
 
 import numpy as np
@@ -63,6 +64,7 @@ def test_an_experiment_is_read_and_changed_with_the_files_own_checks(tmp_path):
         e["image.width"] = -1
     with pytest.raises(KeyError, match="image has width, height"):
         e["image.depth"]
+    assert pickle.loads(pickle.dumps(e)) == e
     (tmp_path / "tiny.toml").write_text(e.text)
     assert crescent.load(tmp_path / "tiny.toml") == e
     with pytest.raises(ValueError, match="t.toml:1:"):
