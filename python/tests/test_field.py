@@ -42,3 +42,19 @@ def test_every_bsdf_and_emitter_that_ships_is_judged_or_left_out_with_a_reason()
     left_out = {name for names in LEFT_OUT for name in names.split(", ")}
     assert len(shipped) > 30 and shipped <= judged | left_out, shipped - judged - left_out
     assert not left_out & judged
+
+
+def test_the_program_tells_before_the_work_what_it_cannot_do_and_judges_one_plugin(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("mitsuba")
+    from crescent.field.__main__ import main
+
+    monkeypatch.chdir(tmp_path)
+    for words, said in (
+        (["--only", "difuse"], "did you mean 'diffuse'?"),
+        (["--out", "none/field.md"], "there is no folder none"),
+        (["--faults", "none"], "none: no such folder"),
+    ):
+        assert main(words) == 2
+        assert said in capsys.readouterr().err
+    assert main(["--only", "diffuse"]) == 0
+    assert "| `diffuse: reflectance = rgb` | right | - |" in (tmp_path / "field.md").read_text()

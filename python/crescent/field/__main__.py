@@ -1,6 +1,6 @@
 """``python -m crescent.field``: judges what ships in Mitsuba 3 and the faults of laws/field, and writes docs/field.md.
 
-    python -m crescent.field [--faults laws/field] [--out docs/field.md] [--only PLUGIN ...]
+    python -m crescent.field [--faults FOLDER] [--out FILE] [--only PLUGIN ...]
 
 Needs mitsuba from PyPI. Equal versions give equal texts.
 """
@@ -8,6 +8,7 @@ Needs mitsuba from PyPI. Equal versions give equal texts.
 from __future__ import annotations
 
 import argparse
+import difflib
 import re
 import sys
 from collections.abc import Iterator
@@ -126,12 +127,36 @@ def _faults_text(faults: list[Fault]) -> Iterator[str]:
     yield "\n".join(rows)
 
 
+def _before_the_work(out: Path, only: list[str]) -> None:
+    """ImportError or ValueError of what would else be told after minutes."""
+    try:
+        import mitsuba as mi
+    except ImportError:
+        raise ImportError("mitsuba is not here: pip install 'crescent[mitsuba]'") from None
+    mi.set_variant("llvm_ad_rgb")
+    if not out.parent.is_dir():
+        raise ValueError(f"--out {out}: there is no folder {out.parent}")
+    judged = {it.plugin["type"] for it in bsdfs() + emitters()}
+    for word in only:
+        if word not in judged:
+            near = difflib.get_close_matches(word, judged, 1)
+            raise ValueError(f"--only {word}: no such plugin" + (f"; did you mean '{near[0]}'?" if near else ""))
+
+
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m crescent.field", description=(__doc__ or "").partition("\n\n")[0])
-    parser.add_argument("--faults", default="laws/field", metavar="FOLDER")
-    parser.add_argument("--out", default="docs/field.md", metavar="FILE")
-    parser.add_argument("--only", nargs="*", default=[], metavar="PLUGIN")
+    parser.add_argument("--faults", metavar="FOLDER", help="laws/field where it is there")
+    parser.add_argument("--out", metavar="FILE", help="docs/field.md, or field.md where there is no docs")
+    parser.add_argument("--only", nargs="*", default=[], metavar="PLUGIN", help="these plugins alone")
     args = parser.parse_args(argv)
+    out = Path(args.out or ("docs/field.md" if Path("docs").is_dir() else "field.md"))
+    faults = args.faults or ("laws/field" if Path("laws/field").is_dir() else None)
+    try:
+        _before_the_work(out, args.only)
+        known = faults_in(faults) if faults else []
+    except (ValueError, ImportError) as e:
+        print(e, file=sys.stderr)
+        return 2
     parts = [
         "# The field, judged",
         "Written by `python -m crescent.field`, which anyone can run again: `pip install crescent[mitsuba]`. Verdicts "
@@ -144,9 +169,9 @@ def main(argv: list[str] | None = None) -> int:
         "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; "
         "*open*: not decided.",
         *_shipped_text(args.only),
-        *(_faults_text(faults_in(args.faults)) if Path(args.faults).is_dir() else []),
+        *(_faults_text(known) if known else []),
     ]
-    crescent._crescent.write_whole(args.out, "\n\n".join(parts) + "\n")
+    crescent._crescent.write_whole(str(out), "\n\n".join(parts) + "\n")
     return 0
 
 
