@@ -7,7 +7,7 @@ import { Model, Region } from "./model";
 import { quoted, Source } from "./state";
 
 /** `kind` names what was found: the lesson has a sentence for it. */
-export interface Found { answer: string; kind: string; lines: string[] }
+export interface Found { answer: string; kind: string; lines: string[]; pixel?: [number, number] }
 
 const builtIn = ["uniform", "cosine", "phong"]; // arms that the experiment of the lessons has
 

@@ -25,6 +25,17 @@ export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
 
+/** Copies an element's text; a browser that keeps its clipboard to itself has it selected. What was done, in words. */
+export async function copied(from: HTMLElement): Promise<string> {
+  try {
+    await navigator.clipboard.writeText(from.textContent ?? "");
+    return "Copied.";
+  } catch {
+    window.getSelection()?.selectAllChildren(from);
+    return "Selected: copy it with the keyboard.";
+  }
+}
+
 /** Says a line to those who listen, at most once a second, the last one always. */
 export class Speaker {
   private said = 0;

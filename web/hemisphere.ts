@@ -87,7 +87,7 @@ export function showPixel(root: HTMLElement, model: Model, i: number, j: number,
     el("p", {}, el("b", {}, `Pixel (${i}, ${j}), ${pixel.shape}. `), `After ${n} samples ${name} reads `, el("b", { class: "v" }, pixel.mean),
       ", the reference ", el("b", { class: "v" }, pixel.reference), `.${under}`),
     el("div", { class: "disks" },
-      el("figure", {}, integrand, el("figcaption", {}, el("b", {}, "f L cos θ"), ", four decades; the ring is the light's edge")),
+      el("figure", {}, integrand, el("figcaption", {}, el("b", {}, "f L cos θ"), `, four decades${pixel.lights.some(({ rim }) => rim.length > 0) ? "; the ring is the light's edge" : ""}`)),
       el("figure", {}, density, el("figcaption", {}, el("b", {}, `p of ${name}`), " with its draws, made of the same random numbers for every arm: area is weight, squares met a light")),
       el("figure", {}, made(pixel.chart), el("figcaption", {}, "The mean so far, and the reference.")),
       pixel.largest ? el("figure", {}, largestTable(pixel.largest), el("figcaption", {}, "The largest sample: X = f L cos θ / p.")) : undefined));

@@ -12,6 +12,7 @@ export interface Lessons {
   model: Model;
   asker(): Asker;
   answered(lesson: Lesson, answer: string): void;
+  open(pixel: [number, number]): void; // its hemisphere, where none is open
   go(lesson: string): void;
   say(line: string): void;
 }
@@ -85,6 +86,7 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
       result.replaceChildren(shown, play, el("p", {},
         el("button", { type: "button", id: "next", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
       shown.focus();
+      if (found.pixel) to.open(found.pixel);
       to.say(`Measured: ${worded(lesson, found.answer)}`);
     } catch (error) {
       result.replaceChildren(el("p", { class: "bad" }, `This could not be measured: ${error instanceof Error ? error.message : error}.`));

@@ -41,7 +41,7 @@ export const lessons: readonly Lesson[] = [
     says: {
       uniform: "In this box the widest aim is the noisiest: it seldom meets the small light, and each meeting weighs the more. Look for a box that the light's mirror image does not fill.",
       cosine: "In this box the arm that follows the cosine is the noisiest: it seldom meets the small light. Look for a box that the light's mirror image does not fill.",
-      phong: "In this box phong is the noisiest: away from its mirror direction its density nearly vanishes, and what comes from there weighs much. In the highlight H it is the other way round.", overlap,
+      phong: "In this box phong is the noisiest: away from its mirror direction its density nearly vanishes, and what comes from there weighs much. Draw a box over the highlight H, and compare.", overlap,
     },
   },
   {
@@ -72,9 +72,9 @@ export const lessons: readonly Lesson[] = [
     question: "In S, phong's brightest pixel was made by one sample. Which factor of f, L, cos and 1/p is the largest?",
     ask: { kind: "choice", options: names(["f", "L", "cos", "1/p"]) }, answer: { by: "firefly", arm: "phong", n: 64, region: "S" },
     says: {
-      "1/p": "The divisor made it: the arm drew a direction that it hardly ever draws. Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
-      "L": "The light made it: a sample met the key. Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
-      "f": "The lobe made it. Open any speck in the pictures below: its largest sample is taken apart under the hemisphere.",
+      "1/p": "The divisor made it: the arm drew a direction that it hardly ever draws. Its hemisphere is open below, with the sample taken apart; click any other speck.",
+      "L": "The light made it: a sample met the key. Its hemisphere is open below, with the sample taken apart; click any other speck.",
+      "f": "The lobe made it. Its hemisphere is open below, with the sample taken apart; click any other speck.",
     },
   },
   {

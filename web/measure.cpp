@@ -75,7 +75,7 @@ CRESCENT_EXPORT(measure)()->void {
     say(out);
 }
 
-/// {arm, n, box} -> the largest sample of a box: X = f L cos / p taken apart, and which factor is the largest.
+/// {arm, n, box} -> the largest sample of a box: X = f L cos / p taken apart, which factor is the largest, its pixel.
 CRESCENT_EXPORT(firefly)()->void {
     const ordered_json asked = request();
     const Box box = box_of(asked.at("box"));
@@ -96,7 +96,7 @@ CRESCENT_EXPORT(firefly)()->void {
     const auto& most = *std::ranges::max_element(factors, {}, &std::pair<std::string, double>::second);
     const std::string line = fmt::format("pixel ({}, {}): X = {} of f = {}/sr, L = {}, cos = {}, 1/p = {} sr", i, j,
         figures(s.x), figures(s.f), figures(s.light), figures(s.cos), figures(1 / double(s.pdf)));
-    say(ordered_json{{"answer", most.first}, {"kind", most.first}, {"lines", {line}}});
+    say(ordered_json{{"answer", most.first}, {"kind", most.first}, {"lines", {line}}, {"pixel", {i, j}}});
 }
 
 /// {n, name} -> what that furnace of the experiment reads at n samples and why; a line for each furnace.

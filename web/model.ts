@@ -82,6 +82,12 @@ export class Model {
     }
   }
 
+  /** What is under way is dropped. */
+  stop(): void {
+    ++this.era;
+    this.pool.cancel();
+  }
+
   /** Films first: the reference costs more than a film at the rungs before it, and no picture waits for it. Rungs that
       were over before it was there are made once more, for their meters. */
   private async compute(era: number, opening: Opening, rungs: number[]): Promise<void> {

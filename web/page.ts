@@ -2,12 +2,12 @@
 import { choice, controlRows } from "./controls";
 import { Asker } from "./answers";
 import { Box, DoorError } from "./door";
-import { byId, el, made, Speaker } from "./dom";
+import { byId, copied, el, made, Speaker } from "./dom";
 import { pixelFailed, showPixel } from "./hemisphere";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
 import { lessons } from "./lessons";
 import { Described, ladder, Model, Shown, Viewer } from "./model";
-import { drawnRegion, Picture } from "./pictures";
+import { byArrow, drawnRegion, Picture } from "./pictures";
 import { Pool } from "./pool";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
 
@@ -27,6 +27,7 @@ export class Page implements Viewer {
   private movedAt = 0; // when a hand changed what is not yet open
   private awaited = 0; // and what is not yet painted
   private said: string[] = []; // of the address, until something is opened
+  private idle = true; // nothing is computed for a bench that is not seen
   private asRead = false; // an answered lesson that the address shows with settings of its own
   private known: Asker | undefined;
   private readonly speaker = new Speaker(byId("status"));
@@ -39,7 +40,7 @@ export class Page implements Viewer {
     this.model = new Model(module, pool, this);
     document.documentElement.dataset["workers"] = String(pool.workers);
     this.samplers = this.model.door.ask<Sampler[]>("samplers");
-    byId("copy").onclick = (): void => void this.copy();
+    byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
     byId("tabs").onclick = (event): void => {
       const part = (event.target as HTMLElement).dataset["tab"];
@@ -48,6 +49,7 @@ export class Page implements Viewer {
       Object.assign(this.state, { lesson: "", part });
       history.replaceState(null, "", write(this.state));
       this.show();
+      if (this.idle && !byId("bench").hidden) this.open();
     };
     window.onhashchange = (): void => this.fromAddress();
     this.fromAddress();
@@ -62,24 +64,16 @@ export class Page implements Viewer {
     const { answers, lesson } = this.state, answered = answers[lesson] !== undefined;
     this.asRead = answered && new URLSearchParams(location.hash.slice(1)).has("arms");
     this.show();
-    if (!answered || lessons.find((l) => l.id === lesson)?.check) this.open(); // any other answered lesson opens what it shows
-  }
-
-  private async copy(): Promise<void> {
-    const words = byId("command");
-    try {
-      await navigator.clipboard.writeText(words.textContent ?? "");
-      this.speaker.say("Copied.");
-    } catch { // a browser that keeps its clipboard to itself
-      window.getSelection()?.selectAllChildren(words);
-      this.speaker.say("Selected: copy it with the keyboard.");
-    }
+    if (this.said.length > 0) byId("wrong").replaceChildren(...this.said.map((line) => el("p", {}, line)));
+    if (byId("bench").hidden) history.replaceState(null, "", write(this.state));
+    else if (!answered) this.open(); // an answered lesson opens what it shows
   }
 
   /** Opens what the state says; settings that the core refuses are told and left out. */
   private open(said: string[] = this.said): void {
     const { state, source } = this;
     this.said = [];
+    this.idle = false;
     this.openedAt = performance.now();
     const opening = { file: source.file, text: source.text, published: source.published, set: overrides(state, source) };
     byId("wrong").replaceChildren(...said.map((line) => el("p", {}, line)));
@@ -124,7 +118,7 @@ export class Page implements Viewer {
     });
     for (const picture of this.pictures) {
       picture.outlines(this.state.pixel);
-      picture.canvas.addEventListener("keydown", (event) => this.key(event, d));
+      picture.canvas.addEventListener("keydown", (event) => { const to = byArrow(event, this.state.pixel, d); if (to) this.choose(to); });
       if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
       else picture.about(d.arms[shown[picture.index]!.arm]!), this.meters(picture.index);
     }
@@ -203,15 +197,6 @@ export class Page implements Viewer {
     this.pictures.at(-1)?.legend(this.model, this.state, this.top);
   }
 
-  private key(event: KeyboardEvent, d: Described): void {
-    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    if (!by) return;
-    event.preventDefault();
-    const step = event.shiftKey ? 10 : 1, [i, j] = this.state.pixel ?? [d.width >> 1, d.height >> 1];
-    const clip = (x: number, most: number): number => Math.max(0, Math.min(most - 1, x));
-    this.choose([clip(i + step * by[0]!, d.width), clip(j + step * by[1]!, d.height)]);
-  }
-
   private choose(pixel: [number, number]): void {
     this.state.pixel = pixel;
     history.replaceState(null, "", write(this.state));
@@ -258,10 +243,19 @@ export class Page implements Viewer {
     byId("lessons").hidden = part !== "lessons";
     byId("sheet").hidden = part !== "sheet";
     byId("bench").hidden = part === "sheet" || (part === "lessons" && (!lesson || Boolean(lesson.check) || answers[lesson.id] === undefined));
+    if (byId("bench").hidden && !this.idle) this.rest();
     byId<HTMLDetailsElement>("controls").open = part === "lessons";
     this.knobs();
     if (part === "sheet") showSheet(byId("sheet"), this.model, this.asker());
     if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
+  }
+
+  private rest(): void {
+    this.idle = true;
+    window.clearTimeout(this.timer);
+    this.timer = 0;
+    this.model.stop();
+    this.speaker.say("");
   }
 
   private asker(): Asker {
@@ -276,6 +270,7 @@ export class Page implements Viewer {
       model: this.model,
       asker: () => this.asker(),
       say: (line) => this.speaker.say(line),
+      open: (pixel) => { if (!this.state.pixel) this.choose(pixel); },
       answered: (lesson, answer) => {
         const kept = this.asRead;
         this.asRead = false;
@@ -286,6 +281,7 @@ export class Page implements Viewer {
         this.open();
       },
       go: (id) => {
+        byId("wrong").replaceChildren();
         Object.assign(this.state, { lesson: id, part: "lessons", set: {} });
         history.replaceState(null, "", write(this.state));
         this.show();

@@ -88,3 +88,13 @@ export class Picture {
 
 /** The path under which a region that was drawn is set. */
 export const drawnRegion = `regions.${mine}.box`;
+
+/** The pixel that an arrow key leads to, ten pixels on with shift; from the middle where none is chosen. */
+export function byArrow(event: KeyboardEvent, from: [number, number] | undefined, d: Described): [number, number] | undefined {
+  const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+  if (!by) return undefined;
+  event.preventDefault();
+  const step = event.shiftKey ? 10 : 1, [i, j] = from ?? [d.width >> 1, d.height >> 1];
+  const clip = (x: number, most: number): number => Math.max(0, Math.min(most - 1, x));
+  return [clip(i + step * by[0]!, d.width), clip(j + step * by[1]!, d.height)];
+}

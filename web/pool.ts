@@ -68,10 +68,15 @@ export class Pool {
   /** Workers at work; 0: slices of the page's own thread. */
   get workers(): number { return this.hands.length; }
 
-  /** Every instance opens this; what was asked before is never answered. */
-  async open(opening: Opening): Promise<void> {
+  /** What was asked is never answered, but for what lasts. */
+  cancel(): void {
     ++this.era;
     this.queue = this.queue.filter((waiting) => waiting.lasting);
+  }
+
+  /** Every instance opens this; what was asked before is never answered. */
+  async open(opening: Opening): Promise<void> {
+    this.cancel();
     const job: Job = { kind: "open", opening };
     if (this.alone) { this.alone.answer(job); return; }
     for (const hand of this.hands) hand.give({ job, lasting: true, done: () => {}, failed: () => {} });

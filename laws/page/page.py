@@ -69,13 +69,16 @@ def opens_and_measures(driver):
 def address_is_data(driver):
     """Nonsense in the address gives defaults and lines that say so."""
     browser.open_page(driver, page, "#experiment=%3Cscript%3E&arms=evil,phong&n=7&view=x"
-                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9&part=q&lesson=none&answer=sparkle:evil"
+                      "&set=__proto__.x=1&set=sphere.s=-4&pixel=a&arm=9&part=q&answer=sparkle:evil"
                       "&answer=firefly:l&answer=four-times:99&answer=sparkle:1,1,960,9&unknown=1",
                       until="document.getElementById('wrong').textContent.includes('sphere.s')")
     said = browser.text(driver, "#wrong")
-    for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm=", "part=q", "lesson=none", "unknown=1",
+    for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm=", "part=q", "unknown=1",
                  "answer=sparkle:evil", "answer=firefly:l", "answer=four-times:99", "answer=sparkle:1,1,960,9"):
         assert word in said, f"{word} is not told: {said}"
+    browser.open_page(driver, page, "#lesson=none", until="document.getElementById('wrong').textContent")
+    assert "lesson=none" in browser.text(driver, "#wrong")
+    assert browser.text(driver, "#lessons").count("minutes") == 12
     browser.open_page(driver, page, small + "&pixel=160,3")
     assert "pixel=160,3" in browser.text(driver, "#wrong"), "a pixel outside the picture is not told"
 
@@ -119,6 +122,8 @@ def the_link_back(driver):
         films, words = shown(driver), browser.text(driver, "#command")
         assert words.startswith("./run experiments/"), words
         assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
+        driver.execute_script("document.getElementById('copy').click()")
+        browser.wait(driver, "/^(Copied|Selected)/.test(document.getElementById('status').textContent)")
         rmse = driver.execute_script(
             "return [...document.querySelectorAll('.shown')].flatMap((f) => [...f.querySelectorAll('tr')].map("
             "(r) => [f.querySelector('b').textContent, r.cells[0].textContent, r.cells[1].firstChild.textContent]))")

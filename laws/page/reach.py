@@ -40,6 +40,8 @@ def laws(page, folder):
         assert kind.text, f"{lesson}: nothing is said of '{kind.get_attribute('data-kind')}'"
         focused = driver.execute_script("return document.activeElement.id")
         assert focused == "reveal", f"{lesson}: the focus is on '{focused}'"
+        if lesson == "firefly":
+            browser.wait(driver, "/largest X/.test(document.getElementById('pixel').textContent)")
         print(f"  {lesson}: {said.splitlines()[0]} ({kind.get_attribute('data-kind')})")
 
     def lessons_by_keyboard(driver):
@@ -49,6 +51,7 @@ def laws(page, folder):
         browser.keys(driver, Keys.ENTER)
         ids = [e.get_attribute("data-lesson") for e in driver.find_elements(By.CSS_SELECTOR, "[data-lesson]")]
         assert len(ids) == 12, ids
+        browser.wait(driver, "document.getElementById('status').textContent === ''")  # a number would answer a question
         browser.tab_to(driver, "[data-lesson]")
         browser.keys(driver, Keys.ENTER)
         for lesson in ids:
