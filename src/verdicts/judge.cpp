@@ -82,6 +82,7 @@ void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const P
     for (const VerdictKind* kind : std::span(verdict_kinds).subspan(1))
         if (kind->judge) judge_next(work, out, *kind, watch);
     diagnose(work, out.verdicts);
+    out.contrasted = contrasted(work);
     if (work.subject.has_f() && work.weighs()) out.efficiency = measure_efficiency(work, index);
 }
 
@@ -227,10 +228,11 @@ Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcome
 
 Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& watch) {
     TestSettings settings = given;
-    settings.share(count_tests(trials));
+    settings.share(count_tests(trials) + pooled_tests(trials));
     TestCounts tally;
     watch.begin("verdicts", static_cast<double>(trials.size()));
     std::vector<Outcome> outcomes = judge_all(trials, settings, tally, watch);
+    judge_pooled(trials, outcomes, settings, tally, watch);
     Judgement out;
     out.alpha = settings.alpha;
     out.tests = tally.tests;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "verdicts/judge.h"
+#include "verdicts/pooled.h"
 
 namespace crescent::inline verdicts {
 
@@ -20,6 +21,7 @@ struct Outcome {
     std::vector<WeightPicture> pictures;
     std::optional<Efficiency> efficiency;
     std::optional<Cut> cut;
+    std::optional<Contrasted> contrasted;
 };
 
 /// All verdicts of one trial but those that hold it against other trials.

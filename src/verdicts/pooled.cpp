@@ -1,0 +1,188 @@
+#include "verdicts/pooled.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "simd/random.h"
+#include "verdicts/outcome.h"
+
+namespace crescent::inline verdicts {
+
+namespace {
+
+constexpr const char* names[contrast_count] = {
+    "the mean of log p", "how near to the axis they fall", "the cosine of their azimuth", "the sine of their azimuth"};
+
+/// What each bin counts for, contrast by contrast; 0 for bins that expect fewer than five draws.
+std::vector<Contrasts> values_of(const Density& d, double draws) {
+    const std::size_t sectors = static_cast<std::size_t>(d.sectors);
+    std::vector<Contrasts> out(d.mass.bins.size());
+    double nearer = 0;
+    for (std::size_t ring = 0; ring + 1 < d.rings.size(); ++ring) {
+        double of_ring = 0;
+        for (std::size_t k = 0; k < sectors; ++k) of_ring += d.mass.bins[ring * sectors + k];
+        for (std::size_t k = 0; k < sectors; ++k) {
+            const double mass = d.mass.bins[ring * sectors + k], area = d.rings[ring + 1] - d.rings[ring],
+                         phi = 2 * pi * (static_cast<double>(k) + 0.5) / static_cast<double>(sectors);
+            if (!(mass * draws >= 5) || !(area > 0)) continue;
+            out[ring * sectors + k] = {math::log(mass / area), nearer + 0.5 * of_ring, math::cos(phi), math::sin(phi)};
+        }
+        nearer += of_ring;
+    }
+    return out;
+}
+
+}  // namespace
+
+Contrasts contrasts_of(const Density& d, const SampleBatch& b) {
+    constexpr double allowed = 1e-4;  // relative: what normalised and identity grant p
+    std::vector<double> seen(d.mass.bins.size());
+    double n = 0, total = 0;
+    for (std::size_t i = 0; i < b.draws.size(); ++i)
+        if (!is_null_sample(b.draws[i], b.pdf[i])) ++seen[d.bin_of(d.map.coordinates(b.draws[i].wi))], ++n;
+    for (double m : d.mass.bins) total += m;
+    const std::vector<Contrasts> value = values_of(d, n);
+    Contrasts out{};
+    for (std::size_t c = 0; c < contrast_count; ++c) {
+        double mean = 0, square = 0, sum = 0, doubt = 0, weight = 0;
+        const auto counts = [&](std::size_t i) { return d.mass.bins[i] * n >= 5; };
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            if (counts(i)) mean += d.mass.bins[i] * value[i][c], weight += d.mass.bins[i];
+        if (!(weight > 0)) continue;
+        mean /= weight;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            if (!counts(i)) continue;
+            const double v = value[i][c] - mean, share = d.mass.bins[i] / total;
+            sum += seen[i] * v;
+            square += share * v * v;
+            doubt += std::fabs(v) * (d.mass.bin_errors[i] + allowed * share);
+        }
+        if (!(square > 1e-6)) continue;
+        const double off = std::max(std::fabs(sum) - n * doubt, 0.0);
+        out[c] = (sum < 0 ? -off : off) / std::sqrt(n * square);
+    }
+    return out;
+}
+
+std::optional<Contrasted> contrasted(const TrialContext& work) {
+    if (!work.traits.has_pdf || !work.subject.draws_at_will() || work.scatter().pdf()) return {};
+    Contrasted out;
+    for (int t = 0; t < work.subject.techniques(); ++t) {
+        const Density& d = work.density(t);
+        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value) || d.mass.sampled || !d.doubt.empty() ||
+            d.mass.error > 1e-3)
+            return {};
+        out.densities.push_back(d);
+        out.z.push_back(contrasts_of(d, work.first(t)));
+    }
+    return out;
+}
+
+namespace {
+
+/// Draws of a fresh seed, four times as many; a program is asked for as many again.
+std::vector<Contrasts> fresh_contrasts(
+    const Trial& trial, std::size_t index, const Contrasted& of, const TestSettings& settings, TestCounts& tally) {
+    TestSettings fresh = settings;
+    fresh.seed = seed_of(settings.seed, 0x9001u);
+    fresh.draws = trial.subject->serial() ? settings.draws : 4 * settings.draws;
+    const TrialContext work(trial, fresh, tally, static_cast<std::uint32_t>(index));
+    std::vector<Contrasts> out;
+    for (std::size_t t = 0; t < of.densities.size(); ++t)
+        out.push_back(contrasts_of(of.densities[t], work.first(static_cast<int>(t))));
+    return out;
+}
+
+using Members = std::vector<std::size_t>;
+constexpr std::size_t fewest = 4;  // w_o; of fewer, density tells nearly as well
+
+std::vector<Members> groups_of(std::span<const Trial> trials) {
+    std::vector<Members> out;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        if (trials[i].baseline || !trials[i].subject->traits().has_pdf || !trials[i].subject->draws_at_will()) continue;
+        const auto same =
+            std::find_if(out.begin(), out.end(), [&](const Members& m) { return trials[m[0]].arm == trials[i].arm; });
+        if (same == out.end()) out.push_back({i});
+        else same->push_back(i);
+    }
+    std::erase_if(out, [](const Members& m) { return m.size() < fewest; });
+    return out;
+}
+
+struct Pooled {
+    double statistic = 0, degrees = 0, largest = 0;
+    std::size_t at = 0;  // the trial that shows it most
+    void add(double z, std::size_t trial) {
+        statistic += z * z;
+        ++degrees;
+        if (std::fabs(z) > std::fabs(largest)) largest = z, at = trial;
+    }
+    double p() const { return chi_squared_p(statistic, degrees); }
+};
+
+void tell(Verdict& v, const Pooled& screened, const Pooled& fresh, std::size_t contrast) {
+    v.state = State::wrong;
+    v.evidence["pooled_contrast"] = names[contrast];
+    v.evidence["pooled_chi2"] = fresh.statistic;
+    v.evidence["pooled_degrees"] = fresh.degrees;
+    v.say = fmt::format(
+        "The draws do not follow p: {} is off over {:g} w_o together, chi-square {:.4g} on {:g} degrees and {:.4g} on "
+        "a fresh seed, most here, by {:.1f} standard errors. Bin by bin no w_o shows it alone.",
+        names[contrast], fresh.degrees, screened.statistic, fresh.degrees, fresh.statistic, fresh.largest);
+}
+
+Verdict* density_of(Outcome& o) {
+    const auto at =
+        std::find_if(o.verdicts.begin(), o.verdicts.end(), [](const Verdict& v) { return v.name == "density"; });
+    return at == o.verdicts.end() ? nullptr : &*at;
+}
+
+void judge_group(const Members& all, std::span<const Trial> trials, std::span<Outcome> outcomes,
+    const TestSettings& settings, TestCounts& tally) {
+    Members members;
+    for (std::size_t i : all) {
+        Verdict* v = density_of(outcomes[i]);
+        if (v && v->state == State::wrong) return;  // told already
+        for (std::size_t t = 0; v && outcomes[i].contrasted && t < outcomes[i].contrasted->z.size(); ++t)
+            v->evidence[t == 0 ? "contrasts" : "contrasts_2"] = outcomes[i].contrasted->z[t];
+        if (outcomes[i].contrasted && v && v->state == State::right) members.push_back(i);
+    }
+    if (members.size() < fewest) return;
+    std::optional<std::vector<std::vector<Contrasts>>> again;
+    for (std::size_t c = 0; c < contrast_count; ++c) {
+        Pooled first, second;
+        for (std::size_t i : members)
+            for (const Contrasts& z : outcomes[i].contrasted->z) first.add(z[c], i);
+        ++tally.tests;
+        if (!(first.p() < settings.screen)) continue;
+        ++tally.screened;
+        if (!again) {
+            again.emplace();
+            for (std::size_t i : members)
+                again->push_back(fresh_contrasts(trials[i], i, *outcomes[i].contrasted, settings, tally));
+        }
+        for (std::size_t k = 0; k < members.size(); ++k)
+            for (const Contrasts& z : (*again)[k]) second.add(z[c], members[k]);
+        if (!(second.p() < settings.confirm)) continue;
+        ++tally.confirmed;
+        return tell(*density_of(outcomes[second.at]), first, second, c);
+    }
+}
+
+}  // namespace
+
+std::uint64_t pooled_tests(std::span<const Trial> trials) { return contrast_count * groups_of(trials).size(); }
+
+void judge_pooled(std::span<const Trial> trials, std::span<Outcome> outcomes, const TestSettings& settings,
+    TestCounts& tally, const ProgressMonitor& watch) {
+    for (const Members& group : groups_of(trials)) {
+        watch.check();
+        try {
+            judge_group(group, trials, outcomes, settings, tally);
+        } catch (const SubjectFault&) {}  // a program that broke off said so where it was asked first
+    }
+}
+
+}  // namespace crescent::inline verdicts
