@@ -42,7 +42,7 @@ expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py"
 sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscaled.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py"
 grep -q "not 2.25 times that" printed || die "that eta^2 is missing is not said: $(cat printed)"
-expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/sky.py"
+expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/sky.py 512 1024"
 sed 's/(j + np.clip(along/(j + 1 + np.clip(along/' "$pipes/sky.py" >next_texel.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 next_texel.py 256 512"
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x colour=3'

@@ -40,7 +40,7 @@ double asked_again(const std::vector<double>& apart) {
 
 /// Of neighbours, where the difference does not shrink with the step: a slope is sixteen times smaller at the fine one.
 double of_neighbours(const std::vector<double>& near, const std::vector<double>& far) {
-    constexpr double no_rounding = 0.03;
+    constexpr double no_rounding = 0.1;  // of sharp lobes in single precision
     constexpr std::size_t enough = 16;
     const double small = median(near);
     return near.size() >= enough && small > no_rounding && median(far) < 4 * small ? small : 0;
