@@ -79,6 +79,28 @@ TEST(RightSamplers, WithAnAliasTableOfThousandsOfTexelsAreLeftAlone) {
     }
 }
 
+/// In single precision sqrt(1 - c c) makes stairs of a sharp lobe's warp; their slopes are no density.
+TEST(RightSamplers, OfSharpLobesInSinglePrecisionAreLeftAlone) {
+    ProgressMonitor watch;
+    const auto lobe = [](float s) {
+        const auto p = [s](double cos) {
+            return cos > 0 ? (s + 1) / (2 * pi) * std::pow(static_cast<float>(cos), s) : 0.0;
+        };
+        Recipe r{"Phong lobe in floats", std::to_string(s)};
+        r.sample = [p, s](Vec3d, const Numbers& u) {
+            const float c = std::pow(static_cast<float>(u[0]), 1 / (s + 1)), si = std::sqrt(1 - c * c);
+            const float turn = 6.2831853f * static_cast<float>(u[1]);
+            return Draw{{si * std::cos(turn), si * std::sin(turn), c}, p(c)};
+        };
+        r.pdf = [p](Vec3d, Vec3d w) { return p(w.z); };
+        return r;
+    };
+    for (const float s : {500.0f, 5000.0f}) {
+        const Judgement j = judge(trials_of_subject(subject_of(lobe(s)), false), TestSettings::quick(), watch);
+        EXPECT_EQ(j.state, State::right) << s << ": " << what_is_wrong(j);
+    }
+}
+
 /// What explains a fault is named for four of five planted faults that have such a cause, and never where nothing is
 /// wrong.
 TEST(RightSamplers, HaveNothingThatADiagnosisExplains) {

@@ -106,28 +106,48 @@ void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
     }
 }
 
-/// How far a direction goes when one of its random numbers goes by 2^-24, in the median over these draws: a warp that
-/// is steep, as a cell of a large table is, draws no finer than that.
-double step_of_numbers(
-    const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws) {
+/// How far a direction goes at least when it goes at all, in the median over these draws: by moves of u of 2^-24 or,
+/// where those leave it where it is, by the least that does not. A warp that is steep, as a cell of a large table is,
+/// draws no finer than that, and neither does one of which floats make stairs. Where many u are sent to one point
+/// without such a stair, the way out of it is as fine as anywhere.
+double least_step(const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws) {
     const int numbers = work.traits.numbers;
     if (draws.empty() || b.u.size() != b.draws.size() || !work.subject.draws_at_will()) return 0;
-    std::vector<Numbers> u;
+    struct Move {
+        std::size_t draw;
+        int axis;
+        double stays = 0, goes = 0x1p-24, step = 0;  // moves of u
+    };
+    std::vector<Move> all;
     for (std::size_t i : draws)
-        for (int k = 0; k < numbers; ++k) {
-            u.push_back(b.u[i]);
-            u.back()[k] += u.back()[k] < 0.5 ? 0x1p-24 : -0x1p-24;
+        for (int k = 0; k < numbers; ++k) all.push_back({i, k});
+    for (int round = 0; round < 40; ++round) {
+        std::vector<Move*> open;
+        std::vector<Numbers> u;
+        for (Move& m : all) {
+            const bool narrow = m.step > 0 && m.goes - m.stays <= 0x1p-24;
+            if (narrow || m.goes > 0x1p-8) continue;
+            open.push_back(&m);
+            const double by = m.step > 0 ? 0.5 * (m.stays + m.goes) : m.goes;
+            u.push_back(b.u[m.draw]);
+            u.back()[m.axis] += u.back()[m.axis] < 0.5 ? by : -by;
         }
-    std::vector<Draw> moved(u.size());
-    work.subject.sample(technique, work.trial.wo, u, moved);
-    std::vector<double> steps;
-    for (std::size_t i = 0; i < draws.size(); ++i) {
-        double most = 0;
-        for (std::size_t k = i * static_cast<std::size_t>(numbers); k < (i + 1) * static_cast<std::size_t>(numbers);
-            ++k)
-            if (moved[k].pdf > 0 && is_finite(moved[k].wi))
-                most = std::max(most, length(moved[k].wi - b.draws[draws[i]].wi));
-        steps.push_back(most);
+        if (open.empty()) break;
+        std::vector<Draw> moved(u.size());
+        work.subject.sample(technique, work.trial.wo, u, moved);
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            Move& m = *open[i];
+            const double far =
+                moved[i].pdf > 0 && is_finite(moved[i].wi) ? length(moved[i].wi - b.draws[m.draw].wi) : 0;
+            const double by = m.step > 0 ? 0.5 * (m.stays + m.goes) : m.goes;
+            if (far > 0) m.goes = by, m.step = far;
+            else m.stays = by, m.goes = m.step > 0 ? m.goes : 4 * by;
+        }
+    }
+    std::vector<double> steps(draws.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        double& most = steps[i / static_cast<std::size_t>(numbers)];
+        most = std::max(most, all[i].step);
     }
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
@@ -151,7 +171,7 @@ Clump densest_clump(const TrialContext& work, int technique, const Density& d, c
         for (bool rings : {true, false}) look_at_slices(spots, rings, search);
         const Clump found = search.found(d.map);
         if (turn == 2 || !(found.p < work.settings.screen)) return found;
-        const double step = 4 * step_of_numbers(work, technique, b, search.crowd());
+        const double step = 4 * least_step(work, technique, b, search.crowd());
         if (step <= rounding) return found;
         rounding = step;
     }

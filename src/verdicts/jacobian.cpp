@@ -96,63 +96,91 @@ double third_quartile(std::vector<double> pj) {
     return *at;
 }
 
+constexpr std::array look_steps = {0x1p-7, 0x1p-8, 0x1p-10, 0x1p-12, 0x1p-14, 0x1p-16, 0x1p-18};
+
 struct Suspect {
     Numbers u;
     double p, p_j;  // over the share of the choosing number
     double share = 1, allowed = 0;
     bool stands = true;
-    double grain = 0, before = 0;  // rounding of the warp there; p |J| by the step before this one
-    bool settled = false;          // two steps agree
+    double grain = 0;                              // rounding of the warp there
+    std::array<double, look_steps.size()> here{};  // p |J| by each step, and its noise
+    std::array<double, look_steps.size()> noise{};
+
+    double lacking() const { return 1 - p_j; }
+    bool nearly(double a, double b) const { return std::fabs(a - b) < 0.1 * lacking(); }
+    /// The finest steps say the same and less than one, whatever the rounding is thought to be: a warp in doubles.
+    bool settles_below() const {
+        const std::size_t last = here.size() - 1;
+        return nearly(here[last], here[last - 1]) && nearly(here[last - 1], here[last - 2]) && here[last] > 0.1 &&
+            here[last] < 1 - 0.3 * lacking();  // on a stair nothing moves
+    }
+    bool settles_at_one() const {
+        for (std::size_t k = 2; k < here.size(); ++k)
+            if (nearly(here[k], 1) && nearly(here[k - 1], 1)) return true;
+        return false;
+    }
+    /// One that reaches 1 in any quadrant is let go, and so is one of which no two steps in turn say the same: there
+    /// the difference is the step's, not the density's.
+    bool stands_against_rounding() const {
+        double before = 0;
+        bool settled = false;
+        for (std::size_t k = 0; k < here.size(); ++k) {
+            const double h = look_steps[k];
+            if (h < step && 2 * noise[k] > 0.25 * lacking()) continue;  // lost in rounding: the wider steps decide
+            if (h <= step && (here[k] > 1 - 0.3 * lacking() || noise[k] > lacking())) return false;
+            settled = settled || (before > 0 && std::fabs(here[k] - before) < 0.5 * lacking());
+            before = here[k];
+        }
+        return settled;
+    }
 };
 
 /// How finely the warp is computed at each suspect. A difference of two nearly equal numbers within the sampler may
-/// cost most of its digits, of which the direction's own grain knows nothing. By third differences over moves of u by
-/// 2^-19, which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the
-/// moves cross spoils three of nine.
+/// cost most of its digits, of which the direction's own grain knows nothing. By third differences over moves of u,
+/// which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the moves
+/// cross spoils three of nine. Small moves stay within the cell of a table; where floats make stairs of a warp only
+/// wide ones leave a stair, of several lengths, since stairs as long as the move look smooth.
 void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
     constexpr std::size_t moves = 12;
-    std::vector<Numbers> u;
-    for (const Suspect& s : suspects)
-        for (int axis = 0; axis < 2; ++axis)
-            for (std::size_t k = 0; k < moves; ++k)
-                u.push_back(s.u), u.back()[axis] += static_cast<double>(k) * tiny_step;
-    std::vector<Draw> w(u.size());
-    work.subject.sample(technique, work.trial.wo, u, w);
-    for (std::size_t line = 0; line < 2 * suspects.size(); ++line) {
-        Suspect& s = suspects[line / 2];
-        std::array<double, moves - 3> rough{};
-        for (std::size_t k = 0; k < rough.size(); ++k) {
-            const Draw* at = &w[line * moves + k];
-            if (at[0].pdf > 0 && at[1].pdf > 0 && at[2].pdf > 0 && at[3].pdf > 0)
-                rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
+    for (const double by : {tiny_step, 1267 * 0x1p-24, 2048 * 0x1p-24, 3001 * 0x1p-24}) {
+        std::vector<Numbers> u;
+        for (const Suspect& s : suspects)
+            for (int axis = 0; axis < 2; ++axis)
+                for (std::size_t k = 0; k < moves; ++k) u.push_back(s.u), u.back()[axis] += static_cast<double>(k) * by;
+        std::vector<Draw> w(u.size());
+        work.subject.sample(technique, work.trial.wo, u, w);
+        for (std::size_t line = 0; line < 2 * suspects.size(); ++line) {
+            Suspect& s = suspects[line / 2];
+            std::array<double, moves - 3> rough{};
+            for (std::size_t k = 0; k < rough.size(); ++k) {
+                const Draw* at = &w[line * moves + k];
+                if (at[0].pdf > 0 && at[1].pdf > 0 && at[2].pdf > 0 && at[3].pdf > 0)
+                    rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
+            }
+            std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
+            s.grain = std::max({s.grain, work.direction_resolution(), 0.5 * rough[rough.size() / 2]});
         }
-        std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
-        s.grain = std::max({s.grain, work.direction_resolution(), 0.5 * rough[rough.size() / 2]});
     }
 }
 
-/// Looks at every suspect again with steps down to 2^-18, as far as rounding allows. One that reaches 1 in any quadrant
-/// is let go, and so is one of which no two steps in turn say the same: there the difference is the step's, not the
-/// density's.
+/// Looks at every suspect again with steps down to 2^-18.
 void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
     find_grains(work, technique, suspects);
-    for (const double h : {0x1p-7, 0x1p-8, 0x1p-10, 0x1p-12, 0x1p-14, 0x1p-16, 0x1p-18}) {
+    for (std::size_t k = 0; k < look_steps.size(); ++k) {
         std::vector<Numbers> u;
         for (const Suspect& s : suspects)
-            for (const Numbers& v : stencil_at(s.u, h)) u.push_back(v);
+            for (const Numbers& v : stencil_at(s.u, look_steps[k])) u.push_back(v);
         std::vector<Draw> w(u.size());
         work.subject.sample(technique, work.trial.wo, u, w);
         for (std::size_t i = 0; i < suspects.size(); ++i) {
             Suspect& s = suspects[i];
-            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), s.grain, h);
-            const double lacking = 1 - s.p_j, here = s.p * q.largest;
-            if (h < step && 2 * q.noise > 0.25 * lacking) continue;  // lost in rounding: the wider steps decide
-            if (h <= step && (here > 1 - 0.3 * lacking || q.noise > lacking)) s.stands = false;
-            s.settled = s.before > 0 && std::fabs(here - s.before) < 0.5 * lacking;
-            s.before = here;
+            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), s.grain, look_steps[k]);
+            s.here[k] = s.p * q.largest, s.noise[k] = q.noise;
         }
     }
-    for (Suspect& s : suspects) s.stands = s.stands && s.settled;
+    for (Suspect& s : suspects)
+        s.stands = s.stands && !s.settles_at_one() && (s.settles_below() || s.stands_against_rounding());
 }
 
 /// A number may choose at a few points alone: seen from the denser side glass lets little through. Every suspect is
