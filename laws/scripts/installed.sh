@@ -7,6 +7,8 @@ build_example find_package
 expect 0 find_package/build/noise "$tiny"
 grep -q mixture printed || die "the example says nothing of mixture: $(cat printed)"
 expect 0 "$work/prefix/bin/crescent" --version
+stray=$(find "$work/prefix" -name '_crescent*')
+[ -z "$stray" ] || die "the Python module belongs into the wheel: $stray"
 
 # What the README says of a renderer of one's own: its lines for CMake and its C++, as they stand there.
 snippet() {
