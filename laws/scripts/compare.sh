@@ -88,6 +88,8 @@ bad "named twice" --arm a=s7/films/uniform.exr --arm a=s7/films/uniform.exr --la
 bad "say which with --layer" --arm a=s7/films/uniform.exr
 bad "found a PNG" --arm a=one/plates/renders.png
 bad "did you mean 'rmse'?" "${arms[@]}" --assert 'rsme.ball(u) < 1'
+bad "'frame', the whole image" "${arms[@]}" --assert 'rmse(u) < 1'
+bad "neither n nor s" "${arms[@]}" --assert 'rmse.frame(u, n=4) < 1'
 bad "did you mean 'ball'?" "${arms[@]}" --assert 'rmse.bal(u) < 1'
 bad "expected a box on the image" "${arms[@]}" --region big=0,0,4000,2
 bad "expected a number above 0" "${arms[@]}" --spp many

@@ -203,7 +203,7 @@ void FirstPass::known(const RenderFile& file, const std::string& arm) {
     if (other == arm)
         throw InputError(
             {file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
-    all_.warnings.push_back(fmt::format("{}: the same pixels as {} of {}", file.path, path, other));
+    all_.warnings.push_back(fmt::format("{} of {}: the same pixels as {} of {}", file.path, arm, path, other));
 }
 
 }  // namespace crescent::inline comparing

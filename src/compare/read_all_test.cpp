@@ -57,7 +57,7 @@ TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndTold) {
 
 TEST_F(Memory, CopiesInOneArmAreRefusedAndInTwoArmsTold) {
     put("a0", 1), put("a1", 2), put("b0", 1), put("b1", 3);
-    EXPECT_THAT(read().warnings, ::testing::ElementsAre(HasSubstr("b0: the same pixels as a0 of a")));
+    EXPECT_THAT(read().warnings, ::testing::ElementsAre(HasSubstr("b0 of b: the same pixels as a0 of a")));
     put("a2", 2);
     EXPECT_THAT(refusal(), HasSubstr("a2: the same pixels as a1"));
 }

@@ -92,28 +92,28 @@ const Section& compare_schema() {
 
 const std::vector<QuantityWord>& compare_words() {
     static const std::vector<QuantityWord> words = {
-        {"rmse", true, QuantityOf::run, "root mean square error of Y of one render against the reference"},
-        {"var", true, QuantityOf::run, "mean variance of Y of one render, over renders"},
-        {"bias2", true, QuantityOf::run, "squared bias of Y, MSE less variance; may be below 0 by noise"},
-        {"relmse", true, QuantityOf::run, "mean of (Y - Y_ref)^2 / (Y_ref^2 + 0.01)"},
-        {"mape", true, QuantityOf::run, "mean of |Y - Y_ref| / (|Y_ref| + 0.01)"},
-        {"fireflies", true, QuantityOf::run, "pixels with |Y - Y_ref| > firefly_k Y_ref, of one render"},
-        {"y_mean", true, QuantityOf::run, "mean Y"},
-        {"flip", true, QuantityOf::run, "mean HDR-FLIP of the arm's first render against the reference"},
-        {"flip_ldr", true, QuantityOf::run, "mean LDR-FLIP of the two photographs, at the exposure of the plates"},
-        {"efficiency", true, QuantityOf::run, "1 / (variance x seconds)"},
-        {"unit_time", true, QuantityOf::run,
+        {"rmse", true, QuantityOf::compared, "root mean square error of Y of one render against the reference"},
+        {"var", true, QuantityOf::compared, "mean variance of Y of one render, over renders"},
+        {"bias2", true, QuantityOf::compared, "squared bias of Y, MSE less variance; may be below 0 by noise"},
+        {"relmse", true, QuantityOf::compared, "mean of (Y - Y_ref)^2 / (Y_ref^2 + 0.01)"},
+        {"mape", true, QuantityOf::compared, "mean of |Y - Y_ref| / (|Y_ref| + 0.01)"},
+        {"fireflies", true, QuantityOf::compared, "pixels with |Y - Y_ref| > firefly_k Y_ref, of one render"},
+        {"y_mean", true, QuantityOf::compared, "mean Y"},
+        {"flip", true, QuantityOf::compared, "mean HDR-FLIP of the arm's first render against the reference"},
+        {"flip_ldr", true, QuantityOf::compared, "mean LDR-FLIP of the two photographs, at the exposure of the plates"},
+        {"efficiency", true, QuantityOf::compared, "1 / (variance x seconds)"},
+        {"unit_time", true, QuantityOf::compared,
             "seconds after which the mean of renders has a variance of 1: variance x seconds"},
-        {"sample_var", true, QuantityOf::run, "variance of one sample: variance x samples a pixel"},
+        {"sample_var", true, QuantityOf::compared, "variance of one sample: variance x samples a pixel"},
     };
     return words;
 }
 
 std::string compare_schema_text() {
     std::string out = manual_of(compare_schema());
-    out += "\nQuantities of a check; REGION may also be a mask or 'frame'\n";
+    out += "\nQuantities of a check; REGION may also be a mask, or 'frame', the whole image\n";
     for (const QuantityWord& word : compare_words())
-        out += "  " + std::string(word.word) + ".REGION(ARM)\n      " + std::string(word.means) + "\n";
+        out += "  " + form_of(word) + "\n      " + std::string(word.means) + "\n";
     return out;
 }
 

@@ -101,7 +101,10 @@ private:
             return false;
         }
         if (known->of_region != !q.region.empty()) {
-            why_ = fmt::format("expected {}, found '{}'", form_of(*known), name.substr(0, 64));
+            const bool whole_image = known->of_region && known->subject == QuantityOf::compared;
+            why_ = fmt::format("expected {}{}, found '{}'", form_of(*known),
+                whole_image ? ", where REGION is a region, a mask or 'frame', the whole image" : "",
+                name.substr(0, 64));
             return false;
         }
         return known->subject == QuantityOf::none || brackets(q, *known);
@@ -113,7 +116,7 @@ private:
         if (q.subject.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
         while (known.subject == QuantityOf::run && take(','))
             if (!argument(q)) return false;
-        return take(')') || fail("')'");
+        return take(')') || fail(known.subject == QuantityOf::compared ? "')', for films have neither n nor s" : "')'");
     }
 
     bool argument(ParsedQuantity& q) {
@@ -186,8 +189,9 @@ const std::vector<QuantityWord>& quantity_words() {
 
 std::string form_of(const QuantityWord& word) {
     static constexpr std::string_view brackets[] = {
-        "", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)"};
-    static_assert(std::size(brackets) == std::size_t(QuantityOf::plate) + 1, "a form for each subject of a quantity");
+        "", "(ARM, n=N, s=S)", "(FURNACE)", "(SHAPE)", "(REGION)", "(PLATE)", "(ARM)"};
+    static_assert(
+        std::size(brackets) == std::size_t(QuantityOf::compared) + 1, "a form for each subject of a quantity");
     return fmt::format(
         "{}{}{}", word.word, word.of_region ? ".REGION" : "", brackets[static_cast<std::size_t>(word.subject)]);
 }
@@ -217,7 +221,8 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
         if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
     const QuantityWord* known = word_of(q);
     switch (known ? known->subject : QuantityOf::none) {
-        case QuantityOf::none: return "";
+        case QuantityOf::none:
+        case QuantityOf::compared: return "";
         case QuantityOf::run: return resolve_run(q, e);
         case QuantityOf::furnace: return missing(e.furnaces, "furnace", q.subject);
         case QuantityOf::shape: return missing(e.shapes, "shape", q.subject);

@@ -15,7 +15,7 @@ namespace crescent::inline experiment {
 struct Experiment;
 
 /// What stands in the brackets of a quantity.
-enum class QuantityOf { none, run, furnace, shape, region, plate };
+enum class QuantityOf { none, run, furnace, shape, region, plate, compared };  // compared: an arm without n and s
 
 /// A word that a check may name: what stands in its brackets, whether a region follows it, what it means.
 struct QuantityWord {

@@ -113,6 +113,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
         case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
         case QuantityOf::run: return of_run(q, metrics.find(q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed));
         case QuantityOf::furnace: return of_furnace(q, metrics);
+        case QuantityOf::compared: break;
         case QuantityOf::shape: {
             const auto it = metrics.shape_pixels.find(q.subject);
             return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
