@@ -54,7 +54,7 @@ TEST(Waivers, HoldForTheArmVerdictAndStateThatTheyNameAlone) {
     };
     EXPECT_EQ(state("my glass tail=inconclusive: GGX by its normals"), State::inconclusive);
     EXPECT_EQ(state("tail=inconclusive: heavy"), State::right);
-    EXPECT_EQ(state("* tail = inconclusive"), State::right);
+    EXPECT_EQ(state("* tail = inconclusive: heavy"), State::right);
     EXPECT_EQ(state("tail=wrong: heavy"), State::wrong) << "none is wrong, which was expected";
 }
 
@@ -80,10 +80,12 @@ TEST(Waivers, AreReadFromAFileWithItsLines) {
 }
 
 TEST(Waivers, SayWhatIsKnownWhereAWordIsNot) {
+    for (const char* text : {"support=wrong", "support=wrong:", "phong support = wrong : "})
+        EXPECT_NE(fault_of(text).find("expected the reason"), std::string::npos) << text << ": " << fault_of(text);
     EXPECT_NE(fault_of("phong suport=wrong").find("did you mean 'support'?"), std::string::npos);
     EXPECT_NE(fault_of("support=right").find("expected wrong or inconclusive, got 'right'"), std::string::npos);
     EXPECT_NE(fault_of("/no/such/file").find("nor a file that can be read"), std::string::npos);
-    const std::vector<Waiver> w = read_waivers(std::vector<std::string>{"phon support=wrong"});
+    const std::vector<Waiver> w = read_waivers(std::vector<std::string>{"phon support=wrong: the horizon"});
     try {
         check_waivers(w, std::vector<std::string>{"phong", "cosine"});
         ADD_FAILURE() << "phon is no arm";

@@ -33,7 +33,7 @@ struct Origin {
 Waiver read_one(const std::string& text, const Origin& at) {
     const auto fault = [&](const std::string& say) { throw InputError({at.file, at.line, 0}, say); };
     const std::size_t equals = text.find('='), colon = text.find(':', equals == text.npos ? 0 : equals);
-    if (equals == text.npos) fault(fmt::format("expected [ARM ]VERDICT=STATE[: REASON], got '{}'", printable(text)));
+    if (equals == text.npos) fault(fmt::format("expected [ARM ]VERDICT=STATE: REASON, got '{}'", printable(text)));
     const std::string left = trimmed(text.substr(0, equals));
     const std::size_t space = left.find_last_of(" \t");
     Waiver out;
@@ -43,7 +43,6 @@ Waiver read_one(const std::string& text, const Origin& at) {
     if (out.arm == "*") out.arm.clear();
     const std::string state = trimmed(text.substr(equals + 1, colon == text.npos ? colon : colon - equals - 1));
     if (colon != text.npos) out.reason = trimmed(text.substr(colon + 1));
-    if (out.reason.empty()) out.reason = "expected by " + out.place;
     if (std::find(waivable.begin(), waivable.end(), out.verdict) == waivable.end()) {
         const std::string near = nearest(out.verdict, waivable);
         fault(fmt::format("no verdict '{}'{}", printable(out.verdict),
@@ -51,6 +50,9 @@ Waiver read_one(const std::string& text, const Origin& at) {
     }
     if (state == "inconclusive") out.state = State::inconclusive;
     else if (state != "wrong") fault(fmt::format("expected wrong or inconclusive, got '{}'", printable(state)));
+    if (out.reason.empty())
+        fault(fmt::format("expected the reason behind the state, as in '{}: it never reaches the horizon', got '{}'",
+            printable(trimmed(text.substr(0, colon))), printable(text)));
     return out;
 }
 
@@ -62,7 +64,7 @@ void read_file(const std::string& path, std::vector<Waiver>& out) {
     std::ifstream in(path);
     if (!in)
         throw InputError(
-            {"--expect " + path, 0, 0}, "is neither [ARM ]VERDICT=STATE[: REASON] nor a file that can be read");
+            {"--expect " + path, 0, 0}, "is neither [ARM ]VERDICT=STATE: REASON nor a file that can be read");
     std::string line;
     for (unsigned number = 1; std::getline(in, line); ++number)
         if (const std::string text = trimmed(line.substr(0, line.find('#'))); !text.empty())

@@ -1,7 +1,7 @@
 // What a caller expects of a judgement beside "right": "phong support=wrong: it never reaches the horizon". A verdict
 // that is as expected does not count; an expectation that nothing meets any more does.
 //
-//   [ARM ]VERDICT=STATE[: REASON]      STATE is wrong or inconclusive; without ARM, or with *, of every arm
+//   [ARM ]VERDICT=STATE: REASON      STATE is wrong or inconclusive; without ARM, or with *, of every arm
 #pragma once
 
 #include <span>
