@@ -6,8 +6,10 @@
 
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
+#include "verdicts/against.h"
 #include "verdicts/asked_once.h"
 #include "verdicts/list.h"
+#include "verdicts/print.h"
 
 namespace crescent {
 namespace {
@@ -153,6 +155,36 @@ TEST(AskedOnce, KeepsWhatWasAnsweredAndAsksForTheRestInOrder) {
     kept->exact_pdf(0, second, out);
     program->pdf(0, second, direct);
     EXPECT_EQ(out, direct);
+}
+
+/// An arm of the list has a trial for every surface and light; a program held against it gives the same answers in all
+/// of them.
+TEST(Against, AsksAProgramOnceAtEachDirection) {
+    const std::vector<Trial> a = trials_of("cosine", {}, false, {{45, 0}});
+    ASSERT_GE(a.size(), 4u);
+    const auto answers = [&](std::span<const Trial> trials) {
+        const auto program = std::make_shared<Counted>(a[0].subject);
+        TestSettings settings;
+        settings.draws = 4096;
+        ProgressMonitor watch;
+        judge_against(trials, sampler_against(program, trials), settings, false, watch);
+        return program->spending().answers;
+    };
+    EXPECT_LT(answers(a), 2 * answers(std::span(a).first(1)));
+}
+
+/// Files are of equal bytes for equal calls, with the questions that were answered in them, whatever else is written.
+TEST(Asked, PicturesTakeNoQuestionsOfTheirOwn) {
+    const auto answers = [](bool pictures) {
+        Trial trial = trials_of("cosine", {}, false, {{45, 0}})[0];
+        trial.subject = std::make_shared<Counted>(trial.subject);
+        TestSettings settings;
+        settings.draws = 4096;
+        settings.pictures = pictures;
+        ProgressMonitor watch;
+        return verdict_json(judge({&trial, 1}, settings, watch), {});
+    };
+    EXPECT_EQ(answers(true), answers(false));
 }
 
 }  // namespace

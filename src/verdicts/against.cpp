@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <numeric>
 
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "simd/random.h"
+#include "verdicts/asked_once.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 
@@ -151,9 +153,21 @@ Verdict same_f(const TrialContext& a, const TrialContext& b) {
     return v;
 }
 
-std::vector<Verdict> compare_one(const Trial& ta, const Trial& tb, std::uint32_t index, const TestSettings& settings,
-    bool expect_same, TestCounts& tally) {
-    TrialContext a(ta, settings, tally, index), b(tb, settings, tally, index + other_stream);
+/// Trials of the same w_o one after the other.
+std::vector<std::size_t> by_direction(std::span<const Trial> trials) {
+    std::vector<std::size_t> order(trials.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+        const Trial &x = trials[i], &y = trials[k];
+        return std::pair(x.theta_deg, x.azimuth_deg) < std::pair(y.theta_deg, y.azimuth_deg);
+    });
+    return order;
+}
+
+std::vector<Verdict> compare_one(
+    const Side& one, const Side& other, const TestSettings& settings, bool expect_same, TestCounts& tally) {
+    const Trial &ta = one.trial, &tb = other.trial;
+    TrialContext a(ta, settings, tally, one.stream), b(tb, settings, tally, other.stream);
     a.measure_density();
     b.measure_density();
     std::vector<Verdict> out = {same_distribution(a, b, expect_same), same_f(a, b), ratio_of_variances(a, b)};
@@ -174,10 +188,13 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
     TestCounts tally;
     watch.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
+    AskedByDirection asked_a, asked_b;  // by one thread, where either is a program
     const auto one = [&](std::size_t i) {
         watch.check();
         try {
-            all[i] = compare_one(a[i], b[i], static_cast<std::uint32_t>(i), settings, expect_same, tally);
+            const auto stream = static_cast<std::uint32_t>(i);
+            all[i] = compare_one(
+                asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, tally);
         } catch (const SubjectFault& fault) {
             const Cut cut = cut_by(fault);
             for (const char* name : {"same_distribution", "same_f", "variance"}) {
@@ -197,7 +214,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
     bool serial = false;
     for (std::size_t i = 0; i < a.size(); ++i) serial = serial || a[i].subject->serial() || b[i].subject->serial();
     if (serial)
-        for (std::size_t i = 0; i < a.size(); ++i) one(i);
+        for (std::size_t i : by_direction(a)) one(i);
     else parallel_for(std::size_t{0}, a.size(), one);
     Judgement out;
     out.alpha = settings.alpha;

@@ -1,5 +1,6 @@
 #include "verdicts/asked_once.h"
 
+#include <algorithm>
 #include <bit>
 #include <unordered_map>
 
@@ -43,16 +44,29 @@ void answer(Kept<Value>& kept, std::span<const Pair> at, std::span<Value> out, c
     for (std::size_t i = 0; i < at.size(); ++i) out[i] = kept[Key(at[i])];
 }
 
+bool same(const Numbers& a, const Numbers& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
+
 class AskedOnce : public JudgedSampler {
 public:
-    explicit AskedOnce(std::shared_ptr<const JudgedSampler> inner) : inner_(std::move(inner)) {}
+    AskedOnce(std::shared_ptr<const JudgedSampler> inner, bool draws) : inner_(std::move(inner)), keeps_draws_(draws) {}
     std::string name() const override { return inner_->name(); }
     Traits traits() const override { return inner_->traits(); }
     int techniques() const override { return inner_->techniques(); }
     void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        if (!keeps_draws_) return inner_->sample(t, wo, u, out);
+        for (const Drawn& d : drawn_)
+            if (d.technique == t && Key({wo, wo}) == Key({d.wo, d.wo}) && std::ranges::equal(d.u, u, same)) {
+                std::ranges::copy(d.draws, out.begin());
+                return;
+            }
         inner_->sample(t, wo, u, out);
+        drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { inner_->pdf(t, at, out); }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        if (!keeps_draws_ || t > 1) return inner_->pdf(t, at, out);
+        answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
+            [&](std::span<const Pair> a, std::span<double> o) { inner_->pdf(t, a, o); });
+    }
     void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
         if (t > 1) return inner_->exact_pdf(t, at, out);
         answer<double>(pdf_[static_cast<std::size_t>(t)], at, out,
@@ -87,16 +101,35 @@ public:
     const JudgedSampler& inner() const { return *inner_; }
 
 private:
+    struct Drawn {
+        int technique;
+        Vec3d wo;
+        std::vector<Numbers> u;
+        std::vector<Draw> draws;
+    };
     std::shared_ptr<const JudgedSampler> inner_;
-    mutable std::array<Kept<double>, 2> pdf_;  // by technique
+    bool keeps_draws_;
+    mutable std::vector<Drawn> drawn_;
+    mutable std::array<Kept<double>, 2> plain_pdf_;  // by technique
+    mutable std::array<Kept<double>, 2> pdf_;        // by technique
     mutable Kept<double> f_;
     mutable Kept<Vec3d> channels_;
 };
 
 }  // namespace
 
-std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSampler> sampler) {
-    return std::make_shared<AskedOnce>(std::move(sampler));
+std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSampler> sampler, bool draws) {
+    return std::make_shared<AskedOnce>(std::move(sampler), draws);
+}
+
+Side AskedByDirection::of(const Trial& trial, std::uint32_t stream) {
+    if (!trial.subject->serial()) return {trial, stream};
+    const std::array<double, 3> wo = {trial.wo.x, trial.wo.y, trial.wo.z};
+    if (asked_ != trial.subject || wo != wo_)
+        asked_ = trial.subject, wo_ = wo, stream_ = stream, kept_ = asked_once(trial.subject, true);
+    Side out{trial, stream_};
+    out.trial.subject = kept_;
+    return out;
 }
 
 const JudgedSampler& afresh(const JudgedSampler& sampler) {
