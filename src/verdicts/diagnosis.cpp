@@ -1,6 +1,7 @@
-// A factor explains the ratios where, up to one constant, nine of ten of them are it to 0.2 % and what they are known
-// to. The density that is drawn is 1 / |J| where one u alone reaches a direction; where there is no warp at hand, or
-// several u reach one direction, bins tell: draws weighed by 1 / (c g) must come to the mass that p has in each bin.
+// A factor explains the ratios where, up to one constant, nine of ten of them are it to 0.2 %, to a fiftieth of how far
+// they are from one, and what they are known to. The density that is drawn is 1 / |J| where one u alone reaches a
+// direction; where there is no warp at hand, or several u reach one direction, bins tell: draws weighed by 1 / (c g)
+// must come to the mass that p has in each bin.
 #include "verdicts/diagnosis.h"
 
 #include <algorithm>
@@ -44,20 +45,20 @@ struct Fitted {
 };
 
 Fitted fit(const Factor& factor, std::span<const Ratio> ratios) {
-    std::vector<double> logs, raw, allowed;
+    std::vector<double> logs, raw, errors;
     for (const Ratio& r : ratios) {
         const double g = factor.g(r.wi);
         if (!(g > 0) || !std::isfinite(g)) continue;
         logs.push_back(math::log(r.value / g));
         raw.push_back(math::log(r.value));
-        allowed.push_back(close + 2 * r.error);
+        errors.push_back(r.error);
     }
     if (logs.size() < ratios.size() * 9 / 10) return {};
-    const double middle = median_of(logs);
+    const double middle = median_of(logs), all = trimmed(sizes(raw, 0));
     std::size_t inside = 0;
-    for (std::size_t i = 0; i < logs.size(); ++i) inside += std::fabs(logs[i] - middle) <= allowed[i];
+    for (std::size_t i = 0; i < logs.size(); ++i) inside += std::fabs(logs[i] - middle) <= may_differ(all, errors[i]);
     return {static_cast<double>(inside) >= enough * static_cast<double>(ratios.size()), math::exp(middle),
-        trimmed(sizes(logs, middle)), trimmed(sizes(raw, 0))};
+        trimmed(sizes(logs, middle)), all};
 }
 
 /// Nothing differs that could be explained: half of all ratios are one.
@@ -66,6 +67,23 @@ bool mostly_one(std::span<const Ratio> ratios) {
     for (const Ratio& r : ratios) one += std::fabs(r.value - 1) <= 1e-3 + 2 * r.error;
     return 2 * one >= ratios.size();
 }
+
+}  // namespace
+
+double may_differ(double all, double error) { return std::min(close, 0.02 * all) + std::min(2 * error, 0.1 * all); }
+
+std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique) {
+    const WarpFinding& warp = study_warp(work, technique);
+    std::vector<Vec3d> wi;
+    for (const WarpPoint& p : warp.points) wi.push_back(p.wi);
+    const std::vector<double> claimed = work.pdf(technique, wi);
+    std::vector<Ratio> ratios;
+    for (std::size_t i = 0; i < wi.size(); ++i)
+        ratios.push_back({wi[i], 1 / (claimed[i] * warp.points[i].jacobian), warp.points[i].error});
+    return ratios;
+}
+
+namespace {
 
 std::vector<Ratio> usable(std::vector<Ratio> all) {
     std::erase_if(all, [](const Ratio& r) { return !(r.value > 0) || !std::isfinite(r.value) || r.error > 0.05; });
@@ -175,21 +193,15 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
 std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
     const WarpFinding& warp = study_warp(work, technique);
     if (warp.points.size() < least) return diagnose_by_bins(work, technique);
-    std::vector<Vec3d> wi;
-    for (const WarpPoint& p : warp.points) wi.push_back(p.wi);
-    const std::vector<double> claimed = work.pdf(technique, wi);
-    std::vector<Ratio> ratios;
-    for (std::size_t i = 0; i < wi.size(); ++i)
-        ratios.push_back({wi[i], 1 / (claimed[i] * warp.points[i].jacobian), warp.points[i].error});
-    const std::vector<Ratio> known = usable(std::move(ratios));
-    if (10 * known.size() >= 9 * wi.size())
+    const std::vector<Ratio> known = usable(drawn_over_claimed(work, technique));
+    const bool enough_known = 10 * known.size() >= 9 * warp.points.size();
+    if (enough_known)
         if (std::optional<Diagnosis> found = explain(work, known); found && comes_to_one(work, technique, *found)) {
             found->means = "what is drawn is pdf(w) times " + found->means;
             return found;
         }
-    if (std::optional<Diagnosis> found = mostly_one(known) && 10 * known.size() >= 9 * wi.size()
-            ? std::nullopt
-            : turned(work, technique, warp.points))
+    if (std::optional<Diagnosis> found =
+            mostly_one(known) && enough_known ? std::nullopt : turned(work, technique, warp.points))
         return found;
     return diagnose_by_bins(work, technique);
 }
@@ -214,11 +226,13 @@ std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int techniq
     const std::vector<double> truth = work.subject.has_true_f() ? work.f(wi, true) : std::vector<double>(wi.size());
     const std::vector<double>& value = work.f_of_drawn(b);
     if (std::optional<Diagnosis> found = exchanged_channels(work, b, n)) return found;
+    if (std::optional<Diagnosis> found = scaled_channels(work, b, n)) return found;
+    const bool grey = !channels_differ(work, b, n);
     for (std::size_t i = 0, k = 0; i < n; ++i) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || !work.counts(d.wi)) continue;
         pdf.push_back({d.wi, d.pdf / b.pdf[i], 0});
-        if (d.weight) weight.push_back({d.wi, *d.weight * d.pdf / (value[i] * std::fabs(d.wi.z)), 0});
+        if (d.weight && grey) weight.push_back({d.wi, *d.weight * d.pdf / (value[i] * std::fabs(d.wi.z)), 0});
         if (work.subject.has_true_f()) f.push_back({d.wi, value[i] / truth[k], 0});
         ++k;
     }
@@ -233,9 +247,9 @@ std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int techniq
 
 namespace {
 
-void tell(Verdict& v, const std::optional<Diagnosis>& found) {
+void tell(const TrialContext& work, Verdict& v, const std::optional<Diagnosis>& found) {
     if (!found) {
-        v.say += " None of the usual factors explains it.";
+        v.say += " None of the usual factors explains it" + spread_told(work, v) + ".";
         v.evidence["diagnosis"] = "none";
         return;
     }
@@ -265,7 +279,7 @@ void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
             if (!density) identity = diagnose_identity(work, t);
             if (of_identity && !identity) density = diagnose_density(work, t);
         }
-        tell(v, density ? density : identity);
+        tell(work, v, density ? density : identity);
         first = v.name;
     }
 }

@@ -39,6 +39,13 @@ std::string name_of_constant(const TrialContext& work, double constant);
 std::string factor_text(const TrialContext& work, const std::string& name, double constant);
 /// The first factor that explains nine of ten ratios; none where nothing differs, or nothing explains it.
 std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio> ratios);
+/// What one ratio may differ from a factor by, in the logarithm: 0.2 %, a fiftieth of how far the ratios are from one
+/// (`all`), and its error. What is nearly constant is no constant where its own spread shows.
+double may_differ(double all, double error);
+/// What is drawn, 1 / |J|, over pdf(w) at points of the warp; less than that where several u reach one direction.
+std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique);
+/// ": what is drawn is pdf(w) times 0.924 on average, 0.873 to 0.975 at nine of ten directions"; "" where they agree.
+std::string spread_told(const TrialContext& work, Verdict& v);
 /// What is drawn against pdf(w), by the warp's Jacobian, or by bins where there is none: a factor, or another frame.
 std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique);
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique);
@@ -46,6 +53,10 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
 bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& found);
 /// The weight of one channel is f cos / p of another, or of their luminance.
 std::optional<Diagnosis> exchanged_channels(const TrialContext& work, const SampleBatch& b, std::size_t most);
+/// The weights of one or two channels are f cos / p times a factor, the others are right.
+std::optional<Diagnosis> scaled_channels(const TrialContext& work, const SampleBatch& b, std::size_t most);
+/// The weights of the channels are off by unlike factors: their luminance tells nothing.
+bool channels_differ(const TrialContext& work, const SampleBatch& b, std::size_t most);
 /// What comes with the draws against what is asked: pdf, weight, f.
 std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int technique);
 /// Says of the first verdict that is wrong what explains it, or that nothing usual does; the later ones refer to it.

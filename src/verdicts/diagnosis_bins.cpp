@@ -2,6 +2,7 @@
 // come to the mass that p has in each bin.
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "math/functions.h"
 #include "verdicts/diagnosis.h"
@@ -52,6 +53,44 @@ Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
 
 }  // namespace
 
+namespace {
+
+/// Ratios by the warp that hold for a constant c: 1 / |J| is no more than what is drawn, whatever else reaches there.
+struct ByWarp {
+    std::vector<double> known;  // ascending
+    double mean = 0;            // over what is claimed
+    bool whole = false;         // one u alone reaches each direction: they are what is drawn, over what is claimed
+    bool denies = false;        // c
+};
+
+ByWarp look_at_warp(const TrialContext& work, int technique, const Binned& as_is) {
+    ByWarp out;
+    double inverse = 0, beyond = 0;
+    const double c = as_is.constant, off = std::fabs(math::log(c));
+    for (const Ratio& r : drawn_over_claimed(work, technique)) {
+        if (!(r.value > 0) || !std::isfinite(r.value) || r.error > 0.05) continue;
+        out.known.push_back(r.value);
+        inverse += 1 / r.value;
+        beyond += math::log(r.value / c) > may_differ(off, r.error) + 3 * as_is.relative_se;
+    }
+    const double n = static_cast<double>(out.known.size());
+    if (n < 100) return out;
+    std::sort(out.known.begin(), out.known.end());
+    out.mean = n / inverse;
+    out.whole = std::fabs(c / out.mean - 1) < 0.01 + 5 * as_is.relative_se;
+    out.denies = out.whole || beyond > 0.1 * n;
+    return out;
+}
+
+/// Bins tell a constant from what varies about it only so far: a spread that adds half to their chi-square would show.
+bool bins_show_a_constant(const TrialContext& work, int technique, const Binned& as_is) {
+    const double n = static_cast<double>(work.first(technique).draws.size());
+    const double unseen = std::sqrt(0.5 * as_is.degrees / n);
+    return !name_of_constant(work, as_is.constant).empty() || std::fabs(math::log(as_is.constant)) > 4 * unseen;
+}
+
+}  // namespace
+
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique) {
     const Density& d = work.density(technique);
     const SampleBatch& b = work.first(technique);
@@ -71,6 +110,8 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
                 by.off > 0.1 * as_is.off + 2 / std::sqrt(static_cast<double>(b.draws.size()))))
             continue;
         if (!shape && factor.name != "a constant") continue;
+        if (!shape && (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by)))
+            return {};
         return Diagnosis{factor.name, by.constant, shape ? std::max(1 - by.off / as_is.off, 0.0) : 1,
             "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant), factor.g};
     }
@@ -83,6 +124,30 @@ bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& foun
     if (!found.g) return false;
     const Binned by = weigh(work.density(technique), work.first(technique), {found.name, found.g});
     return std::fabs(by.constant / found.constant - 1) < 2e-3 + 5 * by.relative_se;
+}
+
+std::string spread_told(const TrialContext& work, Verdict& v) {
+    if (!work.traits.has_pdf || v.name == "mean" || v.name == "physics") return "";
+    std::string out;
+    for (int t = 0; t < work.subject.techniques() && out.empty(); ++t) {
+        const double mass = work.density(t).mass.value;
+        if (!(mass > 0) || !std::isfinite(mass)) continue;
+        const Binned by = weigh(work.density(t), work.first(t), {"a constant", [](Vec3d) { return 1.0; }});
+        const ByWarp warp = look_at_warp(work, t, by);
+        const auto quantile = [&](double q) {
+            return warp.known[static_cast<std::size_t>(q * static_cast<double>(warp.known.size() - 1))];
+        };
+        const bool spread = warp.whole && quantile(0.95) / quantile(0.05) > 1 + 2 * close;
+        const double mean = warp.whole ? warp.mean : by.constant, known_to = warp.whole ? 0 : 3 * by.relative_se;
+        if (!spread && std::fabs(mean - 1) < close + known_to) continue;
+        v.evidence["drawn_over_claimed"] = mean;
+        out = fmt::format(": what is drawn is pdf(w) times {:.5g} on average", mean);
+        if (!warp.whole) continue;
+        v.evidence["drawn_over_claimed_5_percent"] = quantile(0.05);
+        v.evidence["drawn_over_claimed_95_percent"] = quantile(0.95);
+        out += fmt::format(", {:.5g} to {:.5g} at nine of ten directions", quantile(0.05), quantile(0.95));
+    }
+    return out;
 }
 
 }  // namespace crescent::inline verdicts

@@ -1,0 +1,159 @@
+// A cause that is not there is not named: faults whose ratio of what is drawn to pdf(w) varies little, or over few
+// faces, are no constant.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/planted/planted.h"
+#include "laws/right/right.h"
+#include "math/functions.h"
+#include "simd/frame.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+
+namespace crescent {
+namespace {
+
+Vec3d spherical(double cos, double phi) {
+    const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
+    return {sin * math::cos(phi), sin * math::sin(phi), cos};
+}
+
+Judgement judged(const Recipe& recipe, double theta = 0) {
+    const Trial trial = trial_of_subject(subject_of(recipe), theta, 0);
+    ProgressMonitor watch;
+    return judge({&trial, 1}, TestSettings::quick(), watch);
+}
+
+struct Said {
+    State state;
+    std::string diagnosis, say;
+};
+/// The first verdict that is wrong and has a diagnosis.
+Said first_said(const Judgement& j) {
+    for (const Verdict& v : j.verdicts)
+        if (v.state == State::wrong && v.evidence.contains("diagnosis"))
+            return {j.state, v.evidence["diagnosis"].get<std::string>(), v.say};
+    return {j.state, "", ""};
+}
+
+/// A rectangle drawn by area, with the cosine at the surface in place of the cosine at the light: it spreads by 6 %.
+Recipe rectangle_with_the_wrong_cosine() {
+    Recipe r{"rectangle", "", {}, {}, {}};
+    const Frame<double> frame = frame_about(normalize(Vec3d{-0.3, 0.1, -1}));
+    const Vec3d n = normalize(Vec3d{-0.3, 0.1, -1}), centre{0.8, -0.3, 2};
+    constexpr double w = 1.2, h = 0.7;
+    r.pdf = [=](Vec3d, Vec3d i) {
+        const double across = dot(i, n), d = across < 0 ? dot(centre, n) / across : 0;
+        const Vec3d q = i * d - centre;
+        if (!(d > 0) || std::fabs(dot(q, frame.t)) > w / 2 || std::fabs(dot(q, frame.b)) > h / 2) return 0.0;
+        return d * d / (w * h * std::fabs(i.z));
+    };
+    r.sample = [=, p = r.pdf](Vec3d o, const Numbers& u) {
+        const Vec3d i = normalize(centre + frame.t * ((u[0] - 0.5) * w) + frame.b * ((u[1] - 0.5) * h));
+        return Draw{i, p(o, i), {}, {}};
+    };
+    return r;
+}
+
+/// Henyey & Greenstein 1941, its pdf tilted by 1 % from one pole to the other.
+Recipe tilted_phase() {
+    Recipe r{"phase", "", {}, {}, {}};
+    constexpr double g = 0.6;
+    r.pdf = [](Vec3d o, Vec3d i) {
+        const double c = -dot(o, i);
+        return (1 + 0.01 * c) * (1 - g * g) / (4 * pi * math::pow(1 + g * g - 2 * g * c, 1.5));
+    };
+    r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+        const double s = (1 - g * g) / (1 - g + 2 * g * u[0]), c = (1 + g * g - s * s) / (2 * g);
+        const Vec3d i = frame_about(-o).to_world(spherical(std::clamp(c, -1.0, 1.0), 2 * pi * u[1]));
+        return Draw{i, p(o, i), {}, {}};
+    };
+    return r;
+}
+
+/// Sheen half vectors (Estevez & Kulla 2017) whose pdf has 1 + 0.02 n.m too much: near w_o = n that is all but
+/// constant.
+Recipe sheen_off_by_a_cosine() {
+    Recipe r{"sheen", "", {}, {}, {}};
+    constexpr double a = 0.3;
+    r.pdf = [](Vec3d o, Vec3d i) {
+        if (i.z <= 0) return 0.0;
+        const Vec3d h = normalize(o + i);
+        const double sin = std::sqrt(std::max(1 - h.z * h.z, 0.0));
+        return (2 + 1 / a) * math::pow(sin, 1 / a) / (2 * pi) * h.z / (4 * dot(o, h)) * (1 + 0.02 * h.z);
+    };
+    r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+        const double sin = math::pow(u[0], a / (2 * a + 1));
+        const Vec3d h = spherical(std::sqrt(std::max(1 - sin * sin, 0.0)), 2 * pi * u[1]);
+        const Vec3d i = h * (2 * dot(o, h)) - o;
+        if (dot(o, h) <= 0 || i.z <= 0) return Draw{{0, 0, 1}, 0, {}, {}};
+        return Draw{i, p(o, i), {}, {}};
+    };
+    return r;
+}
+
+/// A cube drawn by area over its six faces, each direction reached by two of them; the pdf of one face is 2 % too high.
+Recipe cube_with_one_face_off() {
+    Recipe r{"cube", "", {}, {}, {}};
+    r.traits.numbers = 3;
+    const Vec3d centre{0.6, 0.4, 1.8};
+    constexpr double h = 0.35;
+    r.pdf = [=](Vec3d, Vec3d i) {
+        const double at[3] = {centre.x, centre.y, centre.z}, along[3] = {i.x, i.y, i.z};
+        double near = -1e9, far = 1e9;
+        int entered = 0, left = 0;
+        for (int k = 0; k < 3; ++k) {
+            const auto [first, second] = std::minmax({(at[k] - h) / along[k], (at[k] + h) / along[k]});
+            if (first > near) near = first, entered = k;
+            if (second < far) far = second, left = k;
+        }
+        if (near >= far || far <= 0) return 0.0;
+        constexpr double area = 24 * h * h;
+        return (near * near / std::fabs(along[entered]) + far * far / std::fabs(along[left])) / area *
+            (entered == 2 ? 1.02 : 1);
+    };
+    r.sample = [=, p = r.pdf](Vec3d o, const Numbers& u) {
+        const int face = std::min(5, static_cast<int>(u[2] * 6)), k = face / 2;
+        double q[3];
+        q[k] = face & 1 ? h : -h;
+        q[(k + 1) % 3] = (2 * u[0] - 1) * h;
+        q[(k + 2) % 3] = (2 * u[1] - 1) * h;
+        const Vec3d i = normalize(centre + Vec3d{q[0], q[1], q[2]});
+        return Draw{i, p(o, i), {}, {}};
+    };
+    return r;
+}
+
+TEST(Diagnosis, NamesNoConstantWhereTheRatiosSpread) {
+    const Said rectangle = first_said(judged(rectangle_with_the_wrong_cosine()));
+    EXPECT_EQ(rectangle.diagnosis, "none") << rectangle.say;
+    EXPECT_NE(rectangle.say.find("nine of ten directions"), std::string::npos) << rectangle.say;
+    for (const auto& [recipe, theta] :
+        {std::pair(tilted_phase(), 45.0), {sheen_off_by_a_cosine(), 1.0}, {cube_with_one_face_off(), 30.0}}) {
+        const Said said = first_said(judged(recipe, theta));
+        EXPECT_EQ(said.state, State::wrong) << recipe.family;
+        EXPECT_EQ(said.diagnosis, "none") << recipe.family << ": " << said.say;
+        EXPECT_NE(said.say.find("on average"), std::string::npos) << recipe.family << ": " << said.say;
+    }
+}
+
+TEST(Diagnosis, NamesTheChannelWhoseWeightIsOff) {
+    Recipe r{"cosine in colour", "", {}, {}, {}};
+    r.traits.channels = 3;
+    r.pdf = [](Vec3d, Vec3d i) { return std::max(i.z, 0.0) / pi; };
+    r.f_channels = [](Vec3d, Vec3d i) { return i.z > 0 ? Vec3d{0.8 / pi, 0.5 / pi, 0.1 / pi} : Vec3d{}; };
+    r.sample = [](Vec3d, const Numbers& u) {
+        const Vec3d i = spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]);
+        Draw d{i, i.z / pi, {}, {}};
+        d.weights = {0.8, 0.5, 0.2};
+        d.weight = luminance(d.weights);
+        return d;
+    };
+    const Said said = first_said(judged(r, 45));
+    EXPECT_EQ(said.diagnosis, "channel 3") << said.say;
+    EXPECT_NE(said.say.find("the weight of channel 3 is f cos / p times a constant 2"), std::string::npos) << said.say;
+}
+
+}  // namespace
+}  // namespace crescent
