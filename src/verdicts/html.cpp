@@ -125,7 +125,7 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
             "seed{}.</p>\n",
             j.tests, j.alpha, j.screened, j.confirmed,
             j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "") +
-        "<p>" + escape(unseen_told(j)) + "</p>\n";
+        "<p>" + escape(unseen_told(j)) + " " + escape(nothing_drawn_told(j)) + "</p>\n";
     if (!source.version.empty())
         frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
             escape(source.commit), escape(source.command));

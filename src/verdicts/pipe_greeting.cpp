@@ -113,7 +113,7 @@ std::string read_key(std::string_view word, Greeting& out) {
 
 std::string read_greeting(std::string_view answer, Greeting& out) {
     const bool one = answer.starts_with("hello 1 "), two = answer.starts_with("hello 2 ");
-    if ((!one && !two) || blank(answer.substr(8))) return "got " + shown(answer);
+    if ((!one && !two) || blank(answer.substr(8))) return "got " + shown(answer) + only_answers;
     out.protocol = one ? 1 : 2;
     std::string_view rest = answer.substr(8), name = rest;
     const std::size_t key = two ? rest.find('=') : rest.npos;

@@ -117,7 +117,8 @@ void Talk::lines(std::size_t count, std::string_view expected, const Write& writ
     x.take = [&] { take_lines(x, read); };
     run(x);
     if (pending().find('\n') != std::string_view::npos)
-        fault(x, count - 1, "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))));
+        fault(x, count - 1,
+            "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))) + only_answers);
     requests_ += count;
 }
 
@@ -133,9 +134,9 @@ void Talk::take_lines(Exchange& x, const Read& read) {
         std::string_view text(incoming_.data() + read_from_, end - read_from_);
         if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
         if (x.answered >= x.written)
-            fault(x, std::min(x.answered, x.count - 1), "unexpected extra line: " + shown(text));
+            fault(x, std::min(x.answered, x.count - 1), "unexpected extra line: " + shown(text) + only_answers);
         if (x.answered >= x.count) return;
-        if (!read(x.answered, text)) fault(x, x.answered, "got " + shown(text));
+        if (!read(x.answered, text)) fault(x, x.answered, "got " + shown(text) + only_answers);
         ++x.answered;
         read_from_ = end + 1;
     }

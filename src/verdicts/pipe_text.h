@@ -20,6 +20,9 @@ inline std::string shown(std::string_view s) {
     return out + (s.size() > 80 ? "...'" : "'");
 }
 
+/// Behind what came in place of an answer: programs greet their users, warn and tell of progress.
+inline constexpr const char* only_answers = "; stdout is for answers alone, what else is said belongs on stderr";
+
 /// What a double makes of a number that it cannot hold: infinite where it is too large, 0 where it is too small.
 /// Decided by the place of its first digit, in powers of ten (of two for hexadecimal digits).
 inline double out_of_range(std::string_view word, bool hex) {

@@ -87,6 +87,7 @@ std::string verdict_table(const Judgement& judgement, bool all) {
     for (const Verdict& v : judgement.verdicts)
         if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
     if (const std::string unseen = unseen_told(judgement); !unseen.empty()) out += "\n" + unseen + "\n";
+    if (const std::string nothing = nothing_drawn_told(judgement); !nothing.empty()) out += "\n" + nothing + "\n";
     const std::string asked =
         judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
     out += fmt::format(

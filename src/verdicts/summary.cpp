@@ -173,4 +173,15 @@ std::string unseen_told(const Judgement& judgement) {
     return out.empty() ? "" : "What is right could hide " + out + ".";
 }
 
+std::string nothing_drawn_told(const Judgement& judgement) {
+    double most = 0;
+    const Verdict* where = nullptr;
+    for (const Verdict& v : judgement.verdicts)
+        if (const double share = v.evidence.value("share_that_drew_nothing", 0.0); share > most)
+            most = share, where = &v;
+    if (!where) return "";
+    return fmt::format("Up to {:.3g} % of the draws drew nothing, pdf 0 or under the horizon: {} at {}.", 100 * most,
+        where->arm, where->trial);
+}
+
 }  // namespace crescent::inline verdicts

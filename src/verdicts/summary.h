@@ -32,6 +32,8 @@ std::string left_out_told(const Judgement& judgement);
 /// What those that are right could hide, over all cases: "p that is off from one by less than ..."; "" where nothing
 /// was integrated.
 std::string unseen_told(const Judgement& judgement);
+/// What share of the draws drew nothing where that is most, over 1 %; "" where it is nowhere.
+std::string nothing_drawn_told(const Judgement& judgement);
 /// The sentence of a verdict, with what it says of times.
 std::string told(const Verdict& verdict);
 /// The first sentence of a text.

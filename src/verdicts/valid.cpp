@@ -119,7 +119,7 @@ std::optional<Verdict> judge_rare_faults(const TrialContext& work, int technique
 }
 
 Verdict judge(TrialContext& work) {
-    std::uint64_t draws = 0, drawn = 0;
+    std::uint64_t draws = 0, drawn = 0, nothing = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
         std::string fault = first_fault(work, t, work.first(t));
         if (fault.empty() && !work.subject.draws_at_will()) fault = first_fault(work, t, work.draw(t, 1));
@@ -131,6 +131,7 @@ Verdict judge(TrialContext& work) {
         }
         if (std::optional<Verdict> rare = judge_rare_faults(work, t)) return *rare;
         draws += work.first(t).draws.size();
+        nothing += work.first(t).nothing - work.first(t).deltas;
         for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0 || d.delta > 0;
     }
     if (drawn == 0 && !reflects_nothing(work))
@@ -147,6 +148,11 @@ Verdict judge(TrialContext& work) {
         v.evidence["random_estimates"] = {{"pdf", s.of_pdf}, {"f", s.of_f}, {"by_direction", s.hashed}};
     }
     v.evidence["draws"] = draws;
+    const double share = static_cast<double>(nothing) / static_cast<double>(draws);
+    if (share > 0.01) {
+        v.evidence["share_that_drew_nothing"] = share;
+        v.say += fmt::format(" {:.3g} % of them drew nothing: pdf 0, or under the horizon.", 100 * share);
+    }
     v.evidence["direction_grain"] = work.direction_resolution();
     return v;
 }
