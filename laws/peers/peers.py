@@ -101,9 +101,9 @@ def crescent(program, folder, kept, p):
 
 
 def arviz_k(kept, p):
-    """Of the rows that crescent judges."""
+    """Of the rows that crescent judges; f is constant, below the surface too."""
     w = kept["w"][::2]
-    x = np.where(w[:, 2] > 0, w[:, 2] / p(w), 0)
+    x = np.abs(w[:, 2]) / p(w)
     with np.errstate(divide="ignore"):
         return float(arviz.psislw(np.log(x))[1])
 
