@@ -124,12 +124,19 @@ bool SampleFile::agrees_as_cells() const {
 }
 
 /// A straight line from point to point is off by a quarter of what p bends by where p is smooth, and by all of it at a
-/// kink. At the first and the last row the line is prolonged: twice what it bends by next to it.
+/// kink. At the first and the last row the line is prolonged: twice what it bends by next to it, and where a pole lies
+/// beyond, what p differs by around it.
 void SampleFile::find_bends() {
     const std::size_t m = rows_.size(), n = columns_.size();
     bent_.assign(values_.size(), 0);
     if (cells_) return;
     const auto p = [&](std::size_t i, std::size_t j) { return values_[i * n + j]; };
+    const auto around = [&](std::size_t i) {
+        const auto [least, most] = std::minmax_element(&values_[i * n], &values_[i * n] + n);
+        return *most - *least;
+    };
+    cap_below_ = row_edges_.front() == -1 ? around(0) : 0;
+    cap_above_ = around(m - 1);
     for (std::size_t i = 0; i < m; ++i)
         for (std::size_t j = 0; j < n; ++j) {
             const std::size_t c = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(m, 3) - 2),
@@ -186,8 +193,10 @@ double SampleFile::doubt(Vec3d w) const {
     if (cells_ || w.z < row_edges_.front()) return 0;
     const GridCell at = spot(w);
     const std::size_t n = columns_.size();
-    return std::max(
-        {bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
+    const double cap = at.s > 1 ? cap_above_ : at.s < 0 ? cap_below_ : 0;
+    return cap +
+        std::max(
+            {bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
 }
 
 /// In pieces that are small beside any bin.

@@ -36,7 +36,8 @@ private:
     std::vector<unsigned> lines_;
     std::vector<double> rows_, columns_;  // cos theta and phi of the entries
     std::vector<double> row_edges_, column_edges_;
-    std::vector<double> values_, bent_;  // p by row; how far p bends away from a straight line there
+    std::vector<double> values_, bent_;     // p by row; how far p bends away from a straight line there
+    double cap_below_ = 0, cap_above_ = 0;  // what p differs by around the poles, where it is prolonged to them
     void read_samples(const std::string& path);
     void read_table(const std::string& path);
     void find_bends();
