@@ -177,8 +177,9 @@ std::string nothing_drawn_told(const Judgement& judgement) {
     double most = 0;
     const Verdict* where = nullptr;
     for (const Verdict& v : judgement.verdicts)
-        if (const double share = v.evidence.value("share_that_drew_nothing", 0.0); share > most)
-            most = share, where = &v;
+        if (v.evidence.contains("share_that_drew_nothing"))  // what was cut short may have no evidence at all
+            if (const double share = v.evidence["share_that_drew_nothing"].get<double>(); share > most)
+                most = share, where = &v;
     if (!where) return "";
     return fmt::format("Up to {:.3g} % of the draws drew nothing, pdf 0 or under the horizon: {} at {}.", 100 * most,
         where->arm, where->trial);
