@@ -86,7 +86,7 @@ TEST(RightSamplers, OfSharpLobesInSinglePrecisionAreLeftAlone) {
         const auto p = [s](double cos) {
             return cos > 0 ? (s + 1) / (2 * pi) * std::pow(static_cast<float>(cos), s) : 0.0;
         };
-        Recipe r{"Phong lobe in floats", std::to_string(s)};
+        Recipe r{"Phong lobe in floats", std::to_string(s), {}, {}, {}};
         r.sample = [p, s](Vec3d, const Numbers& u) {
             const float c = std::pow(static_cast<float>(u[0]), 1 / (s + 1)), si = std::sqrt(1 - c * c);
             const float turn = 6.2831853f * static_cast<float>(u[1]);
