@@ -73,13 +73,16 @@ bool mostly_one(std::span<const Ratio> ratios) {
 double may_differ(double all, double error) { return std::min(close, 0.02 * all) + std::min(2 * error, 0.1 * all); }
 
 std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique) {
-    const WarpFinding& warp = study_warp(work, technique);
-    std::vector<Vec3d> wi;
-    for (const WarpPoint& p : warp.points) wi.push_back(p.wi);
-    const std::vector<double> claimed = work.pdf(technique, wi);
+    const std::vector<WarpPoint>& points = study_warp(work, technique).points;
+    std::vector<double>& claimed = work.claimed[static_cast<std::size_t>(technique)];
+    if (claimed.size() != points.size()) {
+        std::vector<Vec3d> wi;
+        for (const WarpPoint& p : points) wi.push_back(p.wi);
+        claimed = work.pdf(technique, wi);
+    }
     std::vector<Ratio> ratios;
-    for (std::size_t i = 0; i < wi.size(); ++i)
-        ratios.push_back({wi[i], 1 / (claimed[i] * warp.points[i].jacobian), warp.points[i].error});
+    for (std::size_t i = 0; i < points.size(); ++i)
+        ratios.push_back({points[i].wi, 1 / (claimed[i] * points[i].jacobian), points[i].error});
     return ratios;
 }
 

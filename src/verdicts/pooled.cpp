@@ -82,12 +82,19 @@ std::optional<Contrasted> contrasted(const TrialContext& work) {
 
 namespace {
 
-/// Draws of a fresh seed, four times as many; a program is asked for as many again.
-std::vector<Contrasts> fresh_contrasts(
-    const Trial& trial, std::size_t index, const Contrasted& of, const TestSettings& settings, TestCounts& tally) {
+/// Draws of a fresh seed at each of `count` w_o: four times as many; of a program as many again, as far as what it may
+/// be asked in all allows, a sample and its pdf each.
+std::uint64_t fresh_draws(const Trial& trial, std::size_t count, const TestSettings& settings) {
+    if (!trial.subject->serial()) return 4 * settings.draws;
+    const std::uint64_t asked = trial.subject->spending().answers, all = settings.questions_in_all;
+    return std::min<std::uint64_t>(settings.draws, (all > asked ? all - asked : 0) / (2 * count));
+}
+
+std::vector<Contrasts> fresh_contrasts(const Trial& trial, std::size_t index, const Contrasted& of,
+    const TestSettings& settings, std::uint64_t draws, TestCounts& tally) {
     TestSettings fresh = settings;
     fresh.seed = seed_of(settings.seed, 0x9001u);
-    fresh.draws = trial.subject->serial() ? settings.draws : 4 * settings.draws;
+    fresh.draws = draws;
     const TrialContext work(trial, fresh, tally, static_cast<std::uint32_t>(index));
     std::vector<Contrasts> out;
     for (std::size_t t = 0; t < of.densities.size(); ++t)
@@ -159,9 +166,12 @@ void judge_group(const Members& all, std::span<const Trial> trials, std::span<Ou
         if (!(first.p() < settings.screen)) continue;
         ++tally.screened;
         if (!again) {
+            constexpr std::uint64_t few = 4096;
+            const std::uint64_t draws = fresh_draws(trials[members[0]], members.size(), settings);
+            if (draws < few) return;
             again.emplace();
             for (std::size_t i : members)
-                again->push_back(fresh_contrasts(trials[i], i, *outcomes[i].contrasted, settings, tally));
+                again->push_back(fresh_contrasts(trials[i], i, *outcomes[i].contrasted, settings, draws, tally));
         }
         for (std::size_t k = 0; k < members.size(); ++k)
             for (const Contrasts& z : (*again)[k]) second.add(z[c], members[k]);

@@ -180,6 +180,7 @@ public:
     }
 
     mutable std::array<std::shared_ptr<const WarpFinding>, 2> warps;  // by technique; see study_warp
+    mutable std::array<std::vector<double>, 2> claimed;               // pdf(w) at the points of `warps`, once asked
     std::vector<BinMap> maps;
     std::vector<WeightPicture> pictures;
     void measure_density();  // fills density(); apart, since an invalid sampler has none
