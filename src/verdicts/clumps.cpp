@@ -10,6 +10,7 @@
 #include "math/distributions.h"
 #include "math/functions.h"
 #include "simd/scalar.h"
+#include "verdicts/median.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
@@ -117,6 +118,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
         std::size_t draw;
         int axis;
         double stays = 0, goes = 0x1p-24, step = 0;  // moves of u
+        double next() const { return step > 0 ? 0.5 * (stays + goes) : goes; }
     };
     std::vector<Move> all;
     for (std::size_t i : draws)
@@ -128,7 +130,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
             const bool narrow = m.step > 0 && m.goes - m.stays <= 0x1p-24;
             if (narrow || m.goes > 0x1p-8) continue;
             open.push_back(&m);
-            const double by = m.step > 0 ? 0.5 * (m.stays + m.goes) : m.goes;
+            const double by = m.next();
             u.push_back(b.u[m.draw]);
             u.back()[m.axis] += u.back()[m.axis] < 0.5 ? by : -by;
         }
@@ -139,7 +141,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
             Move& m = *open[i];
             const double far =
                 moved[i].pdf > 0 && is_finite(moved[i].wi) ? length(moved[i].wi - b.draws[m.draw].wi) : 0;
-            const double by = m.step > 0 ? 0.5 * (m.stays + m.goes) : m.goes;
+            const double by = m.next();
             if (far > 0) m.goes = by, m.step = far;
             else m.stays = by, m.goes = m.step > 0 ? m.goes : 4 * by;
         }
@@ -149,9 +151,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
         double& most = steps[i / static_cast<std::size_t>(numbers)];
         most = std::max(most, all[i].step);
     }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
+    return median_of(std::move(steps));
 }
 
 }  // namespace

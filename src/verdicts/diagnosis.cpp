@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "verdicts/median.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
@@ -18,11 +19,6 @@ namespace {
 constexpr double close = 2e-3;      // relative
 constexpr double enough = 0.9;      // of all ratios
 constexpr std::size_t least = 100;  // ratios
-
-double median_of(std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-}
 
 /// Mean without the largest tenth.
 double trimmed(std::vector<double> v) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "verdicts/diagnosis.h"
+#include "verdicts/median.h"
 
 namespace crescent::inline verdicts {
 
@@ -61,9 +62,7 @@ std::optional<double> factor_of(std::span<const Weights> all, std::size_t c) {
     for (const Weights& w : all)
         if (w.due[c] > 0 && w.said[c] > 0) ratios.push_back(w.said[c] / w.due[c]);
     if (10 * ratios.size() < 9 * all.size()) return {};
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    const double factor = *middle;
+    const double factor = median_of(ratios);
     const auto near =
         std::count_if(ratios.begin(), ratios.end(), [&](double r) { return std::fabs(r / factor - 1) <= close_to; });
     return 10 * static_cast<std::size_t>(near) >= 9 * ratios.size() ? std::optional(factor) : std::nullopt;

@@ -6,6 +6,7 @@
 
 #include "math/functions.h"
 #include "verdicts/asked_once.h"
+#include "verdicts/median.h"
 #include "verdicts/mesh.h"
 #include "verdicts/trial_context.h"
 
@@ -26,24 +27,18 @@ std::vector<double> differences(std::span<const double> a, std::span<const doubl
     return out;
 }
 
-double median(std::vector<double> v) {
-    if (v.empty()) return 0;
-    std::nth_element(v.begin(), v.begin() + std::ssize(v) / 2, v.end());
-    return v[v.size() / 2];
-}
-
 /// Answers to one question that differ, at three directions at least and at one of twenty.
 double asked_again(const std::vector<double>& apart) {
     const auto differ = std::count_if(apart.begin(), apart.end(), [](double v) { return v > same; });
-    return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median(apart), same) : 0;
+    return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median_of(apart), same) : 0;
 }
 
 /// Of neighbours, where the difference does not shrink with the step: a slope is sixteen times smaller at the fine one.
 double of_neighbours(const std::vector<double>& near, const std::vector<double>& far) {
     constexpr double no_rounding = 0.1;  // of sharp lobes in single precision
     constexpr std::size_t enough = 16;
-    const double small = median(near);
-    return near.size() >= enough && small > no_rounding && median(far) < 4 * small ? small : 0;
+    const double small = median_of(near);
+    return near.size() >= enough && small > no_rounding && median_of(far) < 4 * small ? small : 0;
 }
 
 std::vector<Vec3d> beside(std::span<const Vec3d> at, double step) {
