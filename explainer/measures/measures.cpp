@@ -92,7 +92,7 @@ PixelStory pixel_story(const Data& data) {
     return out;
 }
 
-/// As meters/evidence.cpp draws them.
+/// As studies/evidence.cpp draws them.
 std::vector<Vec3d> cosine_directions(std::uint32_t seed, std::uint64_t n) {
     std::vector<Vec3d> out;
     const Cosine<double> arm(ShadingPoint<double>{});

@@ -12,10 +12,10 @@
 
 #include "base/formula.h"
 #include "estimator/estimator.h"
-#include "estimator/reference.h"
 #include "meters/meters.h"
 #include "meters/quantity.h"
 #include "plates/plates.h"
+#include "reference/reference.h"
 #include "report/report.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"

@@ -13,10 +13,11 @@
 #include <iostream>
 
 #include "estimator/estimator.h"
-#include "estimator/reference.h"
 #include "experiment/experiment.h"
 #include "laws/films/plain.h"
 #include "math/functions.h"
+#include "reference/reference.h"
+#include "studies/note_reference.h"
 
 namespace {
 

@@ -10,10 +10,7 @@
 #include <limits>
 #include <thread>
 
-#include "estimator/furnace_sites.h"
-#include "estimator/reference.h"
 #include "estimator/test_scene.h"
-#include "simd/random.h"
 
 namespace crescent::inline estimator {
 namespace {
@@ -90,30 +87,12 @@ TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
     }
 }
 
-TEST(BadSamples, APlantedNaNIsCountedInEverySampleAndReachesTheFilm) {
-    Surface surface{{0.5, 0.5, 0.5}, 0.1, lobe_named("phong"), std::numeric_limits<double>::quiet_NaN(), 0};
-    for (const std::string& isa : isas()) {
-        const Moments m = estimate_sites(furnace_sites(surface, 3), "phong", 100, 1, isa, nullptr);
-        EXPECT_EQ(m.bad[0], 100u) << isa;
-        EXPECT_TRUE(std::isnan(m.g[0])) << isa;
-    }
-    surface.s = 32;
-    EXPECT_EQ(estimate_sites(furnace_sites(surface, 3), "phong", 100, 1, "", nullptr).bad[0], 0u);
-}
-
-TEST(BadSamples, ANegativeWeightIsCounted) {
-    const Surface surface{{-0.5, -0.5, -0.5}, 0, lobe_named("phong"), 0, 0};
-    EXPECT_EQ(estimate_sites(furnace_sites(surface, 1), "cosine", 50, 1, "", nullptr).bad[0], 50u);
-}
-
 TEST(BadSamples, MinusZeroIsNone) {
     const Scene scene(test::small_scene({"fill.radiance=[-0.0,-0.0,-0.0]", "shapes.ground.rho_d=[-0.0,-0.0,-0.0]",
         "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
     ProgressMonitor watch;
     for (const std::string& arm : all_arms())
         EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", watch)[0].bad, 0u) << arm;
-    const Surface black{{-0.0, -0.0, -0.0}, 0, lobe_named("phong"), 0, 0};
-    EXPECT_EQ(estimate_sites(furnace_sites(black, 1), "cosine", 50, 1, "", nullptr).bad[0], 0u);
 }
 
 TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
@@ -133,32 +112,6 @@ TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
     EXPECT_GT(above_n, 0u);  // a pair of directions may meet a light twice
 }
 
-TEST(Furnace, CosineOnLambertHasNoVarianceAndLosesNothing) {
-    const Surface surface{{0.5, 0.5, 0.5}, 0, lobe_named("phong"), 0, 0};
-    const Moments m = estimate_sites(furnace_sites(surface, 1), "cosine", 1000, 1, "", nullptr);
-    EXPECT_NEAR(m.g[0] / 1000 / pi, 1, 1e-6);
-    EXPECT_NEAR(m.spread[0] / 1000, 0, 1e-12);
-    EXPECT_EQ(m.horizon[0], 0u);
-}
-
-/// Arms that reach everything agree with the quadrature within their own standard error, over the whole image.
-TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
-    const Experiment experiment = test::small_scene();
-    const Scene scene(experiment);
-    ProgressMonitor watch;
-    const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, watch)[0];
-    for (const char* arm :
-        {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
-        const Film film = estimate_films(scene, arm, {1024}, 17, "", watch)[0];
-        double difference = 0, variance = 0;
-        for (std::size_t at = 0; at < film.size(); ++at) {
-            difference += static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
-            variance += static_cast<double>(film.var[at]);
-        }
-        EXPECT_LT(std::fabs(difference), 4 * std::sqrt(variance)) << arm;
-    }
-}
-
 TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
     const Scene scene(test::small_scene());
     const ShadingPoints sites = sites_of(scene, {30, 20, 34, 23}, nullptr).front();
@@ -170,69 +123,6 @@ TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
     resolve_film(scene, sites, moments, film);
     EXPECT_TRUE(std::isnan(film.var[sites.pixel[0]]));
     EXPECT_EQ(film.var[sites.pixel[1]], 0);
-}
-
-/// Standard errors between the two references, over the whole image.
-double references_apart(const Experiment& experiment) {
-    const Scene scene(experiment);
-    ProgressMonitor watch;
-    const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0],
-                        note = monte_carlo_reference(scene, experiment, {experiment.s()}, "", watch)[0];
-    double difference = 0, variance = 0;
-    for (std::size_t at = 0; at < q.size(); ++at) {
-        difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
-        variance += static_cast<double>(note.error[at]) * static_cast<double>(note.error[at]);
-    }
-    return std::fabs(difference) / std::sqrt(variance);
-}
-
-TEST(Estimator, TheNotesReferenceMeetsTheQuadratureWithinItsOwnError) {
-    EXPECT_LT(references_apart(test::small_scene()), 4);
-}
-
-TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
-    Experiment experiment = test::small_scene();
-    DiskLight& near = experiment.disks[0];
-    DiskLight& far = experiment.disks[1];
-    near.center = {0, 2, 0}, near.normal = {0, -1, 0}, near.radius = 0.5, near.radiance = {5, 5, 5};
-    far.center = {0, 3, 0}, far.normal = {0, -1, 0}, far.radius = 0.6, far.radiance = {50, 50, 50};
-    EXPECT_LT(references_apart(experiment), 4);
-    Experiment alone = experiment;
-    alone.disks.erase(alone.disks.begin());
-    ProgressMonitor watch;
-    const Scene both(experiment), bare(alone);
-    const ReferenceFilm with = quadrature_reference(both, {both.s()}, watch)[0];
-    const ReferenceFilm without = quadrature_reference(bare, {bare.s()}, watch)[0];
-    int darker = 0;  // ten times less radiant than what it hides
-    for (std::size_t at = 0; at < with.size(); ++at) darker += with.y[at] < 0.7f * without.y[at];
-    EXPECT_GT(darker, 100);
-}
-
-/// Correlation of what two films are off by, over the pixels that see a shape.
-double correlation(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& truth) {
-    double aa = 0, bb = 0, ab = 0;
-    for (std::size_t at = 0; at < truth.size(); ++at) {
-        const double x = static_cast<double>(a[at] - truth[at]), y = static_cast<double>(b[at] - truth[at]);
-        aa += x * x, bb += y * y, ab += x * y;
-    }
-    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
-}
-
-TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
-    Experiment experiment = test::small_scene();
-    experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
-    const Scene scene(experiment);
-    ProgressMonitor watch;
-    const std::vector<double> s = {experiment.s()};
-    const ReferenceFilm truth = quadrature_reference(scene, s, watch)[0],
-                        note = monte_carlo_reference(scene, experiment, s, "", watch)[0];
-    for (std::uint32_t k = 0; k < 4; ++k)
-        for (const char* arm : {"phong", "light-area"}) {
-            const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", watch)[0];
-            EXPECT_LT(std::fabs(correlation(note.y, film.y, truth.y)), 0.15) << arm << ", seed " << k;
-        }
-    for (std::uint32_t k = 0; k < 64; ++k)
-        for (std::uint32_t a = 0; a < 4; ++a) EXPECT_NE(reference_seed(experiment, k), seed_of(experiment.seed, a));
 }
 
 TEST(Estimator, StopsWhenAsked) {

@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "base/vec_cast.h"
 #include "estimator/disk_hit.h"
-#include "estimator/figure.h"
+#include "scene/figure.h"
 #include "color/rgb.h"
 #include "math/functions.h"
 #include "lobes/all.h"

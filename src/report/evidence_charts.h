@@ -1,4 +1,5 @@
-// Charts and sentences of the evidence against three explanations of the note; the numbers come from meters/evidence.h.
+// Charts and sentences of the evidence against three explanations of the note; the numbers come from
+// studies/evidence.h.
 #pragma once
 
 #include <string>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "meters/evidence.h"
+#include "studies/evidence.h"
 #include "meters/metrics.h"
 
 namespace crescent::inline report {

@@ -7,13 +7,13 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "estimator/estimator.h"
-#include "meters/evidence_measure.h"
-#include "meters/furnace.h"
 #include "meters/meters.h"
-#include "meters/region_tail.h"
 #include "meters/quantity.h"
 #include "run/stopping.h"
 #include "run/version.h"
+#include "studies/evidence_measure.h"
+#include "studies/furnace.h"
+#include "studies/region_tail.h"
 
 namespace crescent::inline runs {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "meters/evidence.h"
+#include "studies/evidence.h"
 #include "meters/metrics.h"
 #include "report/report.h"
 #include "run/execute.h"

@@ -8,12 +8,13 @@
 #include "base/stopwatch.h"
 #include "estimator/estimator.h"
 #include "estimator/kernel.h"
-#include "estimator/reference.h"
 #include "meters/meters.h"
+#include "reference/reference.h"
 #include "run/checkpoint.h"
 #include "run/needs.h"
 #include "run/outside.h"
 #include "run/stopping.h"
+#include "studies/note_reference.h"
 
 namespace crescent::inline runs {
 

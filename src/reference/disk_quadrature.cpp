@@ -1,0 +1,164 @@
+#include "reference/disk_quadrature.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/disk_point.h"
+#include "reference/fans.h"
+#include "reference/whole_disk.h"
+
+namespace crescent::inline reference {
+
+namespace {
+
+/// Does one body hide the whole figure? Its shadow on the figure's plane is convex: if two opposite sides of a
+/// parallelogram around the figure lie in it, so does all between them. From within a body the shadow is not convex.
+bool hides_all(const Blocker& blocker, Vec3d x, const Figure& figure) {
+    if (holds(blocker.body, x)) return false;
+    const auto whole = [&](Vec3d from, Vec3d to) {
+        const Interval part = hidden(blocker.body, x, from, to, blocker.between)[0];
+        return part.lo <= 0 && part.hi >= 1;
+    };
+    const std::array<Vec3d, 4> at = corners_about(figure);
+    return whole(at[0], at[1]) && whole(at[3], at[2]);
+}
+
+/// Is the lobe wide against the disk as seen from the point, so that rules which know nothing of its peak see all of
+/// it?
+bool is_soft(const DiskPoint& point, const Figure& figure, double height) {
+    if (!(point.surface.rho_s > 0)) return true;
+    const Vec3d d = middle_of(figure) - point.x;
+    const double radius = radius_of(figure);
+    const double nearest = std::max(std::fabs(dot(d, point.light_normal)), std::sqrt(dot(d, d)) - radius);
+    // A lobe of a small exponent about R ends with a jump at 90 degrees from it.
+    const LobeInfo& lobe = lobe_info(point.surface.brdf);
+    const Vec3d r = point.frame.to_world(mirror(point.wo));
+    const bool ends = lobe.about_mirror && lobe.exponent(point.surface.s, point.surface.alpha) < 4;
+    if (ends && dot(d, r) < radius) return false;
+    return height > 0 && radius < nearest && point.sharpness(radius / nearest) < 2;
+}
+
+/// May the body reach into the ball about c? Never false where it does.
+bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
+    return std::visit(
+        [&](const auto& b) {
+            const Vec3d d = b.middle() - c;
+            const auto beyond = [&](Vec3d axis) {
+                return dot(axis, d) - b.half_extent(axis) > radius * std::sqrt(dot(axis, axis));  // never along 0
+            };
+            if (beyond(d)) return false;
+            for (const Vec3d& axis : b.faces())
+                if (beyond(axis) || beyond(-axis)) return false;
+            return true;
+        },
+        body.body);
+}
+
+/// The integral over the directions of a figure, what stands before it hidden.
+DiskIntegral over(const Figure& figure, const DiskPoint& point, Vec3d normal, const std::vector<const Blocker*>& near) {
+    const double height = dot(middle_of(figure) - point.x, normal), reach = half_extent_of(figure, normal);
+    for (const Blocker* blocker : near)
+        if (hides_all(*blocker, point.x, figure)) return {};
+    const bool soft = is_soft(point, figure, height);
+    const bool at_horizon = !(height - reach > 0);
+    const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure);
+    if (disk && near.empty() && soft && !at_horizon) return whole_disk(point, *disk, frame_about(disk->normal));
+    return fan_by_fan(point, figure, near, !soft, at_horizon);
+}
+
+DiskIntegral operator+(const DiskIntegral& a, const DiskIntegral& b) {
+    return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+}
+/// What is left of a without b.
+DiskIntegral operator-(const DiskIntegral& a, const DiskIntegral& b) {
+    return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+}
+/// The truth lies between a and b.
+DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
+    const auto off = [](double p, double q, double error, double other) {
+        return 0.5 * std::fabs(p - q) + std::max(error, other);
+    };
+    return {0.5 * (a.diffuse + b.diffuse), 0.5 * (a.lobe + b.lobe),
+        off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error), off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
+}
+
+/// How far the ball's nearest point is, of the way to the middle of its figure.
+double nearest_of(const lights::Sphere& ball, Vec3d x) {
+    const Vec3d d = ball.center - x;
+    const double far = std::sqrt(dot(d, d));
+    return far / (far + ball.radius);
+}
+
+/// A ball that bodies or other lights reach into. Its surface bulges before the figure, and what stands behind it hides
+/// nothing. In rings about the middle, each as if all of it were as near as its inner edge and as if as far as its
+/// outer one: the truth is between.
+DiskIntegral ring_by_ring(
+    const DiskPoint& point, Vec3d normal, const lights::Sphere& ball, const std::vector<const Blocker*>& near) {
+    const shapes::Disk whole = std::get<shapes::Disk>(ball.seen_from(point.x));
+    const Vec3d d = whole.center - point.x, c = ball.center - point.x;
+    const double plane = std::sqrt(dot(d, d)), far = std::sqrt(dot(c, c));
+    // The share of the way at which the ball is met on the way to a point of the figure at `off` from its middle.
+    const auto met_at = [&](double off) {
+        const double way = std::sqrt(sqr(plane) + sqr(off)), along = far * plane / way;
+        const double half2 = sqr(ball.radius) - sqr(far * off / way);
+        return std::min(1.0, (along - std::sqrt(std::max(half2, 0.0))) / way);
+    };
+    constexpr int rings = 8;
+    DiskIntegral sum;
+    for (int k = 0; k < rings; ++k) {
+        // Evenly in how far the surface bulges, about: it falls like a root at the edge.
+        const auto edge = [&](int at) {
+            return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(at) / rings));
+        };
+        const auto up_to = [&](double off, double way) {
+            const shapes::Disk part = {whole.center, whole.normal, off};
+            return off > 0 ? over(moved(Figure(part), point.x, way), point, normal, near) : DiskIntegral{};
+        };
+        const double from = edge(k), to = edge(k + 1);
+        const auto ring = [&](double way) { return up_to(to, way) - up_to(from, way); };
+        sum = sum + enclosed(ring(met_at(from)), ring(met_at(to)));
+    }
+    return sum;
+}
+
+}  // namespace
+
+DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene.lights()[k]) {
+    for (const Occluder& body : scene.occluders()) blockers_.push_back({body});
+    for (std::size_t other = 0; other < scene.lights().size(); ++other) {
+        if (other == k) continue;
+        const Light& light = scene.lights()[other];  // of two in one place the first is met
+        blockers_.push_back({{light.body(), -1}, {0, other < k ? 1 + at_an_end : 1 - at_an_end}, &light});
+    }
+}
+
+std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Figure& figure) const {
+    std::vector<const Blocker*> out;
+    for (const Blocker& b : blockers_) {
+        if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
+        // A light in this one's plane stands before it at the end of the way, or does not.
+        const Figure end = b.light ? moved(figure, hit.x, b.between.to) : figure;
+        if (!is_separated(b.body, {hit.x}, body_of(end))) out.push_back(&b);
+    }
+    return out;
+}
+
+DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) const {
+    if (!light_.shines_on(hit.x)) return {};
+    const Figure figure = light_.seen_from(hit.x);
+    if (dot(middle_of(figure) - hit.x, hit.n) + half_extent_of(figure, hit.n) <= 0) return {};
+    const Frame<double> local = frame_about(hit.n);
+    const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, normal_of(figure)};
+    const std::vector<const Blocker*> near = in_the_way(hit, figure);
+    const DiskIntegral out = over(figure, point, hit.n, near);
+    const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
+    const auto reaches_in = [&](const Blocker* b) { return may_reach_into(b->body, ball->center, ball->radius); };
+    if (!ball || std::none_of(near.begin(), near.end(), reaches_in)) return out;
+    const DiskIntegral least = over(moved(figure, hit.x, nearest_of(*ball, hit.x)), point, hit.n, near);
+    if (std::fabs(least.diffuse - out.diffuse) <= least.diffuse_error + out.diffuse_error &&
+        std::fabs(least.lobe - out.lobe) <= least.lobe_error + out.lobe_error)
+        return enclosed(out, least);
+    return ring_by_ring(point, hit.n, *ball, near);
+}
+
+}  // namespace crescent::inline reference

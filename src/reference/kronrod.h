@@ -1,0 +1,50 @@
+// Integrals over an interval by two rules at once: Kronrod's, and the Gauss rule among its nodes (Piessens et al. 1983,
+// QUADPACK). Their difference bounds the error of the finer one, by far where the integrand is smooth.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace crescent::inline reference {
+
+/// Nodes from the middle outwards; each second one, from the middle on, is Gauss's too.
+template <std::size_t n> struct KronrodRule {
+    std::array<double, n> x, kronrod;
+    std::array<double, (n + 1) / 2> gauss;
+};
+
+inline constexpr KronrodRule<4> kronrod_7 = {
+    {0.0, 0.434243749346802558002071502844628, 0.774596669241483377035853079956480,
+        0.960491268708020283423507092629080},
+    {0.450916538658474142345110087045571, 0.401397414775962222905051818618432, 0.268488089868333440728569280666710,
+        0.104656226026467265193823857192073},
+    {8.0 / 9, 5.0 / 9}};
+
+inline constexpr KronrodRule<8> kronrod_15 = {
+    {0.0, 0.207784955007898467600689403773245, 0.405845151377397166906606412076961, 0.586087235467691130294144691693013,
+        0.741531185599394439863864773280788, 0.864864423359769072789712788640926, 0.949107912342758524526189684047851,
+        0.991455371120812639206854697526329},
+    {0.209482141084727828012999174891714, 0.204432940075298892414161999234649, 0.190350578064785409913256402421014,
+        0.169004726639267902826583426598550, 0.140653259715525918745189590510238, 0.104790010322250183839876322541518,
+        0.063092092629978553290700663189204, 0.022935322010529224963732008058970},
+    {0.417959183673469387755102040816327, 0.381830050505118944950369775488975, 0.279705391489276667901467771423780,
+        0.129484966168869693270611432679082}};
+
+template <class V> struct TwoRules {
+    V fine, off;  // Kronrod's integral; less Gauss's
+};
+
+/// f gives any V with V + V, V - V and double * V.
+template <std::size_t n, class F> auto by_two_rules(const KronrodRule<n>& rule, const F& f, double lo, double hi) {
+    const double middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+    const auto first = f(middle);
+    auto fine = rule.kronrod[0] * first, coarse = rule.gauss[0] * first;
+    for (std::size_t k = 1; k < n; ++k) {
+        const auto both = f(middle - half * rule.x[k]) + f(middle + half * rule.x[k]);
+        fine = fine + rule.kronrod[k] * both;
+        if (k % 2 == 0) coarse = coarse + rule.gauss[k / 2] * both;
+    }
+    return TwoRules<decltype(first + first)>{half * fine, half * (fine - coarse)};
+}
+
+}  // namespace crescent::inline reference

@@ -1,0 +1,129 @@
+#include "reference/lobe_albedo.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "math/functions.h"
+#include "math/gauss.h"
+#include "lobes/all.h"
+
+namespace crescent::inline reference {
+
+namespace {
+
+template <class Call> double integrate(Call&& f, double a, double b, double tolerance = 1e-9) {
+    return b > a ? boost::math::quadrature::gauss_kronrod<double, 21>::integrate(f, a, b, 12, tolerance) : 0.0;
+}
+
+/// A lobe about the half vector m: with m drawn by the lobe's own distribution (cos(m) from u, azimuth phi, density
+/// p_m) and dwi = 4 (wo.m) dm, the integrand f cos(theta_i) 4 (wo.m) / p_m is smooth over those m whose wi is above the
+/// horizon: cos(phi) > (cos_o / (2 c) - cos_o c) / (sin_o sin_m). Gauss-Legendre in phi, cut there; adaptive in u.
+template <class L, class Normals> double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals) {
+    using Rule = math::Gauss<30>;
+    const double theta_o = math::acos(cos_o), sin_o = math::sin(theta_o);
+    const Vec3<double> wo = {sin_o, 0, cos_o};
+    const auto ring = [&](double u) {
+        const double c = normals.height(u), sin = std::sqrt(std::max(0.0, 1 - c * c));
+        const double cut = (0.5 / c - c) * cos_o, all = sin_o * sin;
+        const double last = cut <= -all ? pi : cut >= all ? 0 : math::acos(cut / all);
+        const auto at = [&](double phi) {
+            const Vec3<double> m = {sin * math::cos(phi), sin * math::sin(phi), c};
+            const double d = dot(wo, m);
+            const Vec3<double> wi = 2 * d * m - wo;
+            return d > 0 && wi.z > 0 ? lobe(wo, wi) * wi.z * 4 * d / normals.density(c) : 0.0;
+        };
+        return last > 0 ? Rule::integrate(at, 0.0, last) / pi : 0.0;  // even in phi
+    };
+    const auto piece = [&](double a, double b) {  // stretched at both ends, where u has roots
+        const auto f = [&](double t) { return ring(a + (b - a) * t * t * (3 - 2 * t)) * (b - a) * 6 * t * (1 - t); };
+        return b != a ? integrate(f, 0, 1, 1e-6) : 0.0;
+    };
+    // u rises as m tilts away from n or towards it: from m = n to where the first wi dips, and on to where the last one
+    // has.
+    const double upright = normals.below(1), dips = normals.below(math::cos(0.5 * (pi / 2 - theta_o))),
+                 gone = normals.below(math::cos(0.5 * (pi / 2 + theta_o)));
+    return std::fabs(piece(upright, dips) + piece(dips, gone));
+}
+
+}  // namespace
+
+double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o) {
+    const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no room at the horizon itself
+    int index = 0;
+    double out = 0;
+    for_each_lobe(Lobes{}, [&]<template <class> class L>() {
+        if (index++ != static_cast<int>(kind)) return;
+        if constexpr (requires { typename L<double>::Normals; })
+            out = half_vector_albedo(L<double>(s, alpha), c, typename L<double>::Normals(s, alpha));
+        else
+            out = L<double>::albedo(s, alpha, std::clamp(cos_o, 0.0, 1.0),
+                [](const auto& f, double a, double b) { return integrate(f, a, b); });
+    });
+    return out;
+}
+
+namespace {
+
+/// Lagrange through five even nodes, t from 0 to 4.
+double through_five(const std::array<double, 5>& v, double t) {
+    const double a = t, b = t - 1, c = t - 2, d = t - 3, e = t - 4;
+    return v[0] * b * c * d * e / 24 - v[1] * a * c * d * e / 6 + v[2] * a * b * d * e / 4 - v[3] * a * b * c * e / 6 +
+        v[4] * a * b * c * d / 24;
+}
+
+}  // namespace
+
+LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha) {
+    const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta)); };
+    const bool about_mirror = lobe_info(kind).about_mirror;
+    const double good = about_mirror ? 1e-7 : 1e-6;  // half vectors take forty times as long
+    const double own = about_mirror ? 1e-10 : 1e-6;
+    constexpr int even = 8, halvings = 12;
+    std::vector<Cell> open(even), next;
+    std::vector<std::array<double, 4>> between;
+    for (std::size_t k = 0; k < even; ++k) open[k] = {pi / 2 * static_cast<double>(k) / even, pi / 2 / even, {}, 0};
+    parallel_for(std::size_t{0}, open.size() * 5, [&](std::size_t i) {
+        open[i / 5].value[i % 5] = exact(open[i / 5].from + open[i / 5].size * static_cast<double>(i % 5) / 4);
+    });
+    for (int depth = 0; !open.empty(); ++depth, std::swap(open, next)) {
+        between.resize(open.size());  // what measures a cell's error is among its halves' nodes
+        parallel_for(std::size_t{0}, open.size() * 4, [&](std::size_t i) {
+            between[i / 4][i % 4] = exact(open[i / 4].from + open[i / 4].size * (static_cast<double>(i % 4) + 0.5) / 4);
+        });
+        next.clear();
+        for (std::size_t k = 0; k < open.size(); ++k) {
+            Cell& c = open[k];
+            const std::array<double, 5>& v = c.value;
+            const std::array<double, 4>& m = between[k];
+            for (std::size_t i = 0; i < 4; ++i)
+                c.error = std::max(c.error, std::fabs(through_five(v, static_cast<double>(i) + 0.5) - m[i]));
+            if (c.error < good || depth == halvings) {
+                c.error = 2 * c.error + own;  // midpoints are not quite where five nodes are worst
+                cells_.push_back(c);
+                continue;
+            }
+            next.push_back({c.from, c.size / 2, {v[0], m[0], v[1], m[1], v[2]}, 0});
+            next.push_back({c.from + c.size / 2, c.size / 2, {v[2], m[2], v[3], m[3], v[4]}, 0});
+        }
+    }
+    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.from < b.from; });
+}
+
+const LobeAlbedo::Cell& LobeAlbedo::cell(double theta) const {
+    const auto after =
+        std::upper_bound(cells_.begin() + 1, cells_.end(), theta, [](double t, const Cell& c) { return t < c.from; });
+    return *std::prev(after);
+}
+
+double LobeAlbedo::operator()(double cos_o) const {
+    const double theta = math::acos(std::clamp(cos_o, -1.0, 1.0));
+    const Cell& c = cell(theta);
+    return through_five(c.value, 4 * (theta - c.from) / c.size);
+}
+
+double LobeAlbedo::error(double cos_o) const { return cell(math::acos(std::clamp(cos_o, -1.0, 1.0))).error; }
+
+}  // namespace crescent::inline reference

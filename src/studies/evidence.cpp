@@ -1,0 +1,164 @@
+#include "studies/evidence.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "arms/all.h"
+#include "color/rgb.h"
+#include "estimator/estimator.h"
+#include "studies/furnace_sites.h"
+#include "math/distributions.h"
+#include "math/functions.h"
+#include "studies/evidence_measure.h"
+#include "meters/meters.h"
+#include "simd/random.h"
+
+namespace crescent::inline studies {
+
+namespace {
+
+/// What the heavy tail is shown on: the control shape's material as luminances, seen straight from above.
+struct FurnaceSubject {
+    Surface surface;
+    double s = 0, rho_d = 0, rho_s = 0;
+    std::uint32_t seed = 0;
+
+    /// X of the combined furnace for u, R = n: the angle about R does not matter.
+    double weight(double u) const {
+        const double cos = math::exp(math::log(u) / (s + 1));
+        const double p = (s + 1) / (2 * pi) * (u / cos);
+        const double lobe = (s + 2) / (2 * pi) * (u / cos);
+        return (cos / p) * (rho_d / pi + rho_s * lobe);
+    }
+};
+
+constexpr std::size_t replicates = 256;
+const std::vector<std::uint64_t> furnace_rungs = {64, 256, 1024, 4096, 16384};
+
+FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, const std::vector<double>& means) {
+    return {std::move(arithmetic), bits, n, quantile(means, 0.05), quantile(means, 0.25), quantile(means, 0.5),
+        quantile(means, 0.75), quantile(means, 0.95)};
+}
+
+void float_furnace(const FurnaceSubject& subject, const std::string& isa, ProgressMonitor& watch, Evidence& out) {
+    const ShadingPoints sites = furnace_sites(subject.surface, replicates);
+    for (std::uint64_t n : furnace_rungs) {
+        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
+        std::vector<double> means;
+        for (std::size_t i = 0; i < replicates; ++i)
+            means.push_back((subject.rho_d / pi * m.g[i] + subject.rho_s * m.g_lobe[i]) / static_cast<double>(n));
+        out.furnace.push_back(quantiles("float32", 24, n, means));
+    }
+}
+
+/// u as an odd multiple of 2^-bits, from 64 random bits.
+double unit_double(std::uint64_t h, int bits) {
+    return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits);
+}
+
+void double_furnace(const FurnaceSubject& subject, int bits, ProgressMonitor& watch, Evidence& out) {
+    std::vector<std::vector<double>> means(furnace_rungs.size(), std::vector<double>(replicates));
+    parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
+        double sum = 0;
+        std::uint64_t j = 0;
+        for (std::size_t rung = 0; rung < furnace_rungs.size() && !watch.stop; ++rung) {
+            for (; j < furnace_rungs[rung]; ++j) {
+                const auto h =
+                    draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
+                sum += subject.weight(unit_double(std::uint64_t{h.x} << 32 | h.y, bits));
+            }
+            means[rung][r] = sum / static_cast<double>(j);
+        }
+    });
+    for (std::size_t rung = 0; rung < furnace_rungs.size(); ++rung)
+        out.furnace.push_back(quantiles("float64", bits, furnace_rungs[rung], means[rung]));
+}
+
+/// Draws by the cosine arm, asks the Phong arm for its density: where it is 0, Lambert's light is lost.
+LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
+    constexpr std::uint64_t n = 100'000;
+    const double theta = theta_deg * pi / 180;
+    ShadingPoint<double> site{};
+    site.wo = {math::sin(theta), 0, math::cos(theta)};
+    site.s = subject.s;
+    const Cosine<double> cosine(site);
+    const Vec3<double> R = mirror(site.wo);
+    std::uint64_t lost = 0;
+    for (std::uint64_t j = 0; j < n; ++j) {
+        const Vec2<float> u = draw(subject.seed, 0, j);
+        const Vec3<double> wi = cosine.sample(site.wo, {static_cast<double>(u.x), static_cast<double>(u.y)}).wi;
+        lost += dot(wi, R) <= 0;  // the support of the Phong pdf, however small its power gets
+    }
+    const double p = static_cast<double>(lost) / static_cast<double>(n);
+    return {theta_deg, p, std::sqrt(p * (1 - p) / static_cast<double>(n)), (1 - math::cos(theta)) / 2};
+}
+
+/// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
+FalseRejection false_rejection(
+    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, ProgressMonitor& watch) {
+    constexpr std::uint64_t n = 100'000;
+    constexpr int runs = 128;
+    Surface lambert = subject.surface;
+    lambert.rho_d = {1, 1, 1}, lambert.rho_s = 0, lambert.s = s;
+    FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
+    std::vector<int> rejected(runs);
+    const double bound = math::student_two_sided_quantile(static_cast<double>(n - 1), alpha);
+    constexpr int share = 16;
+    parallel_for(0, (runs + share - 1) / share, [&](int part) {
+        const int first = part * share, count = std::min(share, runs - first);
+        ShadingPoints sites = furnace_sites(lambert, static_cast<std::size_t>(count));
+        for (std::uint32_t& pixel : sites.pixel) pixel += static_cast<std::uint32_t>(first);
+        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
+        for (int i = 0; i < count; ++i) {
+            const std::size_t at = static_cast<std::size_t>(i);
+            const double mean = m.g[at] / pi / static_cast<double>(n), off = mean - 1;
+            const double se = std::sqrt(m.spread[at] / static_cast<double>(n) / static_cast<double>(n - 1));
+            rejected[static_cast<std::size_t>(first + i)] = std::fabs(off) > bound * se;
+        }
+    });
+    for (int r : rejected) out.rejected += r;
+    const math::Interval rate = math::binomial_interval(runs, out.rejected, 0.025);
+    out.low = rate.low;
+    out.high = rate.high;
+    return out;
+}
+
+const Shape* subject_shape(const Experiment& experiment) {
+    if (experiment.exponent) return experiment.find_shape(experiment.exponent->shape);
+    for (const Shape& shape : experiment.shapes)
+        if (shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong")) return &shape;
+    return nullptr;
+}
+
+}  // namespace
+
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& watch) {
+    Evidence out;
+    if (!experiment.note_evidence) return out;
+    const bool phong = std::any_of(
+        experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
+    const Shape* shape = subject_shape(experiment);
+    if (!phong || !shape || shape->material.brdf != lobe_named("phong") || !(shape->material.rho_s > 0)) return out;
+    FurnaceSubject subject;
+    subject.surface = furnace_surface(experiment, *shape, false);
+    subject.s = out.s = subject.surface.s;
+    subject.rho_d = out.rho_d = luminance(subject.surface.rho_d);
+    subject.rho_s = out.rho_s = subject.surface.rho_s;
+    subject.seed = experiment.seed;
+    out.expected = out.rho_d + out.rho_s;
+    float_furnace(subject, isa, watch, out);
+    for (int bits : {24, 32, 53}) {
+        double_furnace(subject, bits, watch, out);
+        const double k = (subject.s - 1) / (subject.s + 1);
+        out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
+    }
+    for (double theta = 0; theta <= 75; theta += 7.5) out.lost.push_back(lost_support(subject, theta));
+    for (double s : {2.0, 3.0, 8.0, 32.0, 128.0})
+        out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));
+    watch.check();
+    return out;
+}
+
+}  // namespace crescent::inline studies

@@ -1,0 +1,20 @@
+// White furnaces: L_i = 1 everywhere and R = n, so that the answer is known: rho_d + rho_s, or rho_s for the lobe
+// alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arms/outside.h"
+#include "base/progress_monitor.h"
+#include "experiment/experiment.h"
+#include "experiment/published.h"
+#include "meters/metrics.h"
+
+namespace crescent::inline studies {
+
+/// Every furnace of the experiment, measured. Throws Interrupted when the watch says stop.
+std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
+    ProgressMonitor& watch, const OutsideSamplers& outside = {});
+
+}  // namespace crescent::inline studies

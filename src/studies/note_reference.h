@@ -1,0 +1,27 @@
+// The published recipe for a reference: analytic Lambert x fill, the lobe x fill by sampling the lobe, the lights by
+// next-event estimation, on streams that no arm has; states its standard error per pixel, and all that a lobe may hold
+// where it is too narrow for that many samples on a light.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/progress_monitor.h"
+#include "estimator/tile_checkpoint.h"
+#include "experiment/experiment.h"
+#include "films/film.h"
+#include "scene/scene.h"
+
+namespace crescent::inline studies {
+
+/// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from.
+std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
+
+/// One film per exponent, in order. `experiment`: whose reference it is; says how many samples, and which seeds.
+/// `keeper`: keeps finished tiles.
+std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
+    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch,
+    TileCheckpoint* keeper = nullptr);
+
+}  // namespace crescent::inline studies

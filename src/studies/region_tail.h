@@ -1,0 +1,20 @@
+// The tail of one arm's samples in a box of the image.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "arms/outside.h"
+#include "base/progress_monitor.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "stats/tail.h"
+
+namespace crescent::inline studies {
+
+/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
+/// few spread. May throw Interrupted.
+std::optional<Tail> region_tail(const Scene& scene, const ArmInUse& arm, std::uint32_t seed, const Box& box,
+    const std::string& isa, ProgressMonitor& watch);
+
+}  // namespace crescent::inline studies
