@@ -80,6 +80,7 @@ const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
         {"arms", "samplers on trial", arms},
         {"shapes", "kinds of shape", [] { return words_of_key("shapes", "kind"); }},
+        {"lights", "kinds of light", [] { return words_of_key("lights", "kind"); }},
         {"brdfs", "lobes beside the Lambert term", lobes},
         {"plates", "kinds of picture", plates},
         {"meters", "quantities that a check can name", meters},

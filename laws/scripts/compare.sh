@@ -55,6 +55,21 @@ expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --reference s
     --layer 'reference=quadrature s=32' --region ball=40,20,56,34 --out ladder --quiet
 expect 0 /usr/bin/python3 -c 'import xml.etree.ElementTree as e; e.parse("ladder/plates/ladders.svg")'
 [ -s ladder/plates/ladders.png ] || die "no plate of the ladders"
+# Without a reference the page draws what its caption names: the standard deviation, read off the chart's own ticks.
+expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --out bare --quiet
+expect 0 /usr/bin/python3 - <<'END'
+import json, math, re
+bare = json.load(open("bare/metrics.json"))
+figures = re.findall("<figure>.*?</figure>", open("bare/index.html").read(), re.S)
+figure = next(f for f in figures if "The standard deviation of" in f)
+assert ">standard deviation</text>" in figure and ">variance</text>" not in figure, figure
+ticks = re.findall(r'M58.0 ([\d.]+) H.*?text-anchor="end">([\d.e-]+)</text>', figure)
+(y0, v0), (y1, v1) = [(float(y), math.log(float(v))) for y, v in (ticks[0], ticks[-1])]
+drawn = [math.exp(v0 + (float(y) - y0) / (y1 - y0) * (v1 - v0)) for y in re.findall(r'class="dot.*? cy="([\d.]+)"', figure)]
+meter = {a["arm"]: a["regions"]["frame"]["meters"]["var"]["value"] for a in bare["arms"]}
+for name, value in zip(bare["ladders"][0]["arms"], drawn, strict=True):
+    assert abs(value / math.sqrt(meter[name]) - 1) < 0.02, (name, value, meter[name])
+END
 expect 0 "$CRESCENT" compare ladder.toml --spp 16 --out alike --quiet
 [ ! -e alike/plates/ladders.png ] || die "a plate of no ladder"
 expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'

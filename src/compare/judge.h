@@ -48,6 +48,10 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const ArmReadings& a, 
 /// Arms in order by what a unit of time or a sample buys, region by region.
 std::vector<Ranking> rank(const CompareResult& result);
 
+/// What a ladder shows of an arm in a region, and its name: the RMSE; where there is no reference, the standard
+/// deviation. Both fall as N^-0.5 with independent samples.
+MeterValue rung_of(const RegionResult& region);
+const char* rung_words(const RegionResult& region);
 /// Arms that are one arm at several samples a pixel, told by their names: "path-16" at 16, "path-64" at 64.
 std::vector<SppLadder> ladders_of(const CompareResult& result);
 

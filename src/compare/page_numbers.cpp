@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compare/judge.h"
 #include "compare/page.h"
 #include "compare/schema.h"
 #include "pages/charts.h"
@@ -116,24 +117,23 @@ std::string ladders_section(const CompareResult& result) {
     if (result.ladders.empty()) return out;
     for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r) {
         const std::string& region = result.arms[0].regions[r].region;
-        const bool referred = result.arms[0].regions[r].meter("rmse").value.has_value();
+        const char* what = rung_words(result.arms[0].regions[r]);
         std::vector<double> xs, ys;
         for (const SppLadder& l : result.ladders)
             for (const std::size_t a : l.arms) {
                 xs.push_back(*result.arms[a].spp);
-                const MeterValue& m = result.arms[a].regions[r].meter(referred ? "rmse" : "var");
+                const MeterValue m = rung_of(result.arms[a].regions[r]);
                 if (m.value) ys.push_back(*m.value);
                 if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
             }
-        Chart chart(520, 280, log_axis("samples a pixel", xs), log_axis(referred ? "RMSE" : "variance", ys),
-            "Ladder of " + region);
+        Chart chart(520, 280, log_axis("samples a pixel", xs), log_axis(what, ys), "Ladder of " + region);
         std::vector<std::string> slopes;
         for (std::size_t k = 0; k < result.ladders.size(); ++k) {
             const SppLadder& l = result.ladders[k];
             const std::string colour = fmt::format("c{}", k % 6);
             std::vector<Point> line;
             for (const std::size_t a : l.arms) {
-                const MeterValue& m = result.arms[a].regions[r].meter(referred ? "rmse" : "var");
+                const MeterValue m = rung_of(result.arms[a].regions[r]);
                 if (!m.value) continue;
                 line.push_back({*result.arms[a].spp, *m.value});
                 if (m.interval) chart.bar(*result.arms[a].spp, m.interval->first, m.interval->second, colour);
@@ -151,7 +151,7 @@ std::string ladders_section(const CompareResult& result) {
         out += fmt::format(
             "<figure>{}<figcaption>Region {}. The {} of {}. Independent samples alone fall as N to the power −0.5; "
             "less is a bias or a tail.</figcaption></figure>\n",
-            chart.str(), escape(region), referred ? "RMSE" : "standard deviation", html::join(slopes));
+            chart.str(), escape(region), what, html::join(slopes));
     }
     return out;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/judge.h"
 #include "compare/plate_parts.h"
 #include "compare/plates.h"
 #include "plates/ladder_chart.h"
@@ -18,27 +19,14 @@ namespace {
 constexpr std::size_t most_columns = 3, most_curves = 8;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A rung's value and interval: the RMSE, or the root of the variance.
-struct Rung {
-    double value = nan;
-    std::pair<double, double> interval{nan, nan};
-};
-Rung rung_of(const RegionResult& r, bool referred) {
-    const MeterValue& m = r.meter(referred ? "rmse" : "var");
-    const auto transform = [&](double v) { return referred ? v : std::sqrt(std::max(0.0, v)); };
-    Rung out;
-    if (m.value) out.value = transform(*m.value);
-    if (m.interval) out.interval = {transform(m.interval->first), transform(m.interval->second)};
-    return out;
-}
-
-LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_t region, bool referred) {
+LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_t region) {
     const SppLadder& l = result.ladders[ladder];
     LadderCurve out;
     out.name = escaped(l.name), out.ink = series[ladder % series_count];
     for (const std::size_t a : l.arms) {
-        const Rung rung = rung_of(result.arms[a].regions[region], referred);
-        out.n.push_back(*result.arms[a].spp), out.value.push_back(rung.value), out.interval.push_back(rung.interval);
+        const MeterValue rung = rung_of(result.arms[a].regions[region]);
+        out.n.push_back(*result.arms[a].spp), out.value.push_back(rung.value.value_or(nan));
+        out.interval.push_back(rung.interval.value_or(std::pair(nan, nan)));
         out.heavy |= result.arms[a].regions[region].heavy();
     }
     const MeterValue& slope = l.slopes[region].second;
@@ -55,14 +43,13 @@ std::vector<std::size_t> columns_of(const CompareResult& result) {
 }
 
 void draw(Canvas& c, const CompareResult& result) {
-    const bool referred = result.arms[0].regions[0].meter("rmse").value.has_value();
-    const char* what = referred ? "RMSE" : "standard deviation";
+    const char* what = rung_words(result.arms[0].regions[0]);
     header(c, true, fmt::format("{} of one render over its samples a pixel", what));
     const std::vector<std::size_t> columns = columns_of(result);
     const std::size_t shown = std::min(most_curves, result.ladders.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
         std::vector<LadderCurve> curves;
-        for (std::size_t l = 0; l < shown; ++l) curves.push_back(curve_of(result, l, columns[i], referred));
+        for (std::size_t l = 0; l < shown; ++l) curves.push_back(curve_of(result, l, columns[i]));
         const std::string& region = result.arms[0].regions[columns[i]].region;
         draw_ladder_chart(c, column(content_band, columns.size(), i),
             fmt::format("{}<sub>{}</sub> against N", what, escaped(region)), curves);

@@ -121,6 +121,20 @@ MeterValue slope_of(const CompareResult& result, const SppLadder& ladder, std::s
 
 }  // namespace
 
+MeterValue rung_of(const RegionResult& region) {
+    const MeterValue& rmse = region.meter("rmse");
+    if (rmse.value) return rmse;
+    MeterValue out = region.meter("var");
+    const auto root = [](double v) { return std::sqrt(std::max(0.0, v)); };
+    if (out.value) out.value = root(*out.value);
+    if (out.interval) out.interval = {root(out.interval->first), root(out.interval->second)};
+    return out;
+}
+
+const char* rung_words(const RegionResult& region) {
+    return region.meter("rmse").value ? "RMSE" : "standard deviation";
+}
+
 std::vector<SppLadder> ladders_of(const CompareResult& result) {
     std::vector<SppLadder> out;
     for (std::size_t a = 0; a < result.arms.size(); ++a) {
