@@ -2,6 +2,7 @@
 // 1-3).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>

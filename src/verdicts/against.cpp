@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
+#include <tuple>
 
 #include "base/errors.h"
 #include "base/parallel.h"
@@ -157,9 +158,9 @@ Verdict same_f(const TrialContext& a, const TrialContext& b) {
 std::vector<std::size_t> by_direction(std::span<const Trial> trials) {
     std::vector<std::size_t> order(trials.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
         const Trial &x = trials[i], &y = trials[k];
-        return std::pair(x.theta_deg, x.azimuth_deg) < std::pair(y.theta_deg, y.azimuth_deg);
+        return std::tuple(x.theta_deg, x.azimuth_deg, i) < std::tuple(y.theta_deg, y.azimuth_deg, k);
     });
     return order;
 }

@@ -1,3 +1,4 @@
+// The page of a judgement: what was found, in sentences, tables and pictures.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
