@@ -36,7 +36,8 @@ line or experiment file; 3 an output cannot be written, a part is missing or
 void add_list(CLI::App& app, Work& work) {
     std::shared_ptr<ListFlags> f;
     CLI::App* c = command(app, work, "list", "What an experiment can name.", list, f);
-    c->add_option("WHAT", f->what, "arms, shapes, lights, brdfs, plates, meters, verdicts, isas or devices; without it, all")
+    c->add_option(
+         "WHAT", f->what, "arms, shapes, lights, brdfs, plates, meters, verdicts, isas or devices; without it, all")
         ->type_name("");
 }
 

@@ -65,7 +65,8 @@ figure = next(f for f in figures if "The standard deviation of" in f)
 assert ">standard deviation</text>" in figure and ">variance</text>" not in figure, figure
 ticks = re.findall(r'M58.0 ([\d.]+) H.*?text-anchor="end">([\d.e-]+)</text>', figure)
 (y0, v0), (y1, v1) = [(float(y), math.log(float(v))) for y, v in (ticks[0], ticks[-1])]
-drawn = [math.exp(v0 + (float(y) - y0) / (y1 - y0) * (v1 - v0)) for y in re.findall(r'class="dot.*? cy="([\d.]+)"', figure)]
+dots = re.findall(r'class="dot.*? cy="([\d.]+)"', figure)
+drawn = [math.exp(v0 + (float(y) - y0) / (y1 - y0) * (v1 - v0)) for y in dots]
 meter = {a["arm"]: a["regions"]["frame"]["meters"]["var"]["value"] for a in bare["arms"]}
 for name, value in zip(bare["ladders"][0]["arms"], drawn, strict=True):
     assert abs(value / math.sqrt(meter[name]) - 1) < 0.02, (name, value, meter[name])
