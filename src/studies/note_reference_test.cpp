@@ -7,6 +7,7 @@
 #include "estimator/estimator.h"
 #include "estimator/test_scene.h"
 #include "reference/reference.h"
+#include "simd/random.h"
 
 namespace crescent::inline studies {
 namespace {
