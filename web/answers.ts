@@ -36,13 +36,18 @@ export class Asker {
     return this.model.ask("measure", { ...request, region: name, box }, this.opened(set, [m.arm]));
   }
 
+  private all(of: readonly Measured[]): Promise<unknown[]> { return Promise.all(of.map((m) => this.measured(m))); }
+
   /** The verdicts of a sampler at one w_o. */
   judged<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("judged", { sampler, theta }, this.opened([], [])); }
 
-  private concluded(answer: Answer, lesson: Lesson, of: unknown[]): Promise<Found> {
+  /** The furnaces at an exponent and a number of samples. */
+  furnaces(lesson: Lesson, s: number, n: number): Promise<Found> { return this.model.ask<Found>("furnaces_of", { ...lesson.answer, n }, this.opened([`sphere.s=${s}`], [])); }
+
+  private concluded(answer: Answer, lesson: Lesson, of: unknown[], beside?: unknown[]): Promise<Found> {
     const options = lesson.ask.kind === "choice" ? lesson.ask.options.map((option) => option.value) : "of" in answer ? answer.of.map(({ arm }) => arm) : [];
     const surface = "surface" in answer ? answer.surface : "";
-    return this.model.ask<Found>("concluded", { by: answer.by, options, surface, of }, this.opened([], []));
+    return this.model.ask<Found>("concluded", { by: answer.by, options, surface, of, beside }, this.opened([], []));
   }
 
   /** Measured once a page: the sheet shows what the lessons found. `guess` matters where a box is the answer; without
@@ -94,7 +99,7 @@ export class Asker {
       case "which":
         return this.concluded(answer, lesson, await Promise.all(answer.samplers.map((name) => this.judged(name, answer.theta))));
       default:
-        return this.concluded(answer, lesson, await Promise.all(answer.of.map((m) => this.measured(m))));
+        return this.concluded(answer, lesson, await this.all(answer.of), answer.beside && (await this.all(answer.beside)));
     }
   }
 }

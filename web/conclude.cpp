@@ -20,27 +20,30 @@ struct Found {
 struct Series {
     std::string name;  // "cosine, N = 64: RMSE of H"
     double n = 0, median = 0, low = 0, high = 0;
+    double mean = 0, met = 0;  // Y of the reference; share of the directions that met a disk light
     std::vector<double> rmse;
 
     std::string line() const {
-        if (rmse.size() < 2) return fmt::format("{} {}", name, figures(median));
-        return fmt::format("{} {}, from {} to {} between the 5 % and 95 % quantiles of {} seeds", name, figures(median),
-            figures(low), figures(high), rmse.size());
+        return fmt::format(
+            "{} {}, from {} to {} between the 5 % and 95 % quantiles of {} seeds; mean Y there is {}, and "
+            "{} % of the directions met a light's disk",
+            name, figures(median), figures(low), figures(high), rmse.size(), figures(mean, 3), figures(100 * met, 2));
     }
 };
 
 Series series_of(const ordered_json& v) {
     Series out{v.at("name").get<std::string>(), v.at("n").get<double>(), v.at("median").get<double>(),
-        v.at("q05").get<double>(), v.at("q95").get<double>(), {}};
+        v.at("q05").get<double>(), v.at("q95").get<double>(), v.at("mean").get<double>(), v.at("met").get<double>(),
+        {}};
     for (const auto& x : v.at("rmse")) out.rmse.push_back(x.get<double>());
     return out;
 }
 
-/// The largest or the smallest, where its band lies apart from every other; else "overlap".
-Found extreme(const ordered_json& asked) {
+/// The largest or the smallest of these, where its band lies apart from every other; else "overlap".
+Found extreme_of(const ordered_json& asked, const ordered_json& of) {
     const double sign = asked.at("by").get<std::string>() == "largest" ? 1 : -1;
     std::vector<Series> all;
-    for (const auto& v : asked.at("of")) all.push_back(series_of(v));
+    for (const auto& v : of) all.push_back(series_of(v));
     const auto best = std::ranges::max_element(all, {}, [&](const Series& s) { return sign * s.median; });
     Found out{asked.at("options").at(static_cast<std::size_t>(best - all.begin())).get<std::string>(), ""};
     bool apart = true;
@@ -50,6 +53,15 @@ Found extreme(const ordered_json& asked) {
     }
     out.kind = apart ? out.answer : "overlap";
     if (!apart) out.answer = "overlap";
+    return out;
+}
+
+/// The same of what was asked, with what was measured beside it.
+Found extreme(const ordered_json& asked) {
+    Found out = extreme_of(asked, asked.at("of"));
+    if (!asked.contains("beside")) return out;
+    Found beside = extreme_of(asked, asked.at("beside"));
+    std::ranges::move(beside.lines, std::back_inserter(out.lines));
     return out;
 }
 
@@ -150,6 +162,7 @@ Found which_is_right(const ordered_json& asked) {
             fmt::format("sampler {}, {}: {}", option, name, first.empty() ? "no verdict is wrong" : first));
     }
     if (right == 1) out.kind = "one";
+    else out.answer = "none";
     return out;
 }
 
@@ -168,7 +181,8 @@ Found concluded(const ordered_json& asked) {
 
 }  // namespace
 
-/// {by, options, surface, of: [what measure or judged said]} -> {answer, kind, lines}.
+/// {by, options, surface, of: [what measure or judged said], beside: [what else measure said]} -> {answer, kind,
+/// lines}.
 CRESCENT_EXPORT(concluded)()->void {
     const Found found = concluded(request());
     say(ordered_json{{"answer", found.answer}, {"kind", found.kind}, {"lines", found.lines}});

@@ -17,13 +17,16 @@ function valueAt(knob: Knob, t: number): number {
   return knob.log ? knob.low * (knob.high / knob.low) ** t : knob.low + t * (knob.high - knob.low);
 }
 
-function field(label: string, value: number, taken: (x: number) => void): HTMLInputElement {
+/** taken: returns what becomes of x, where that may be another value. */
+function field(label: string, value: number, taken: (x: number) => number | undefined): HTMLInputElement {
   return el("input", {
     type: "text", inputmode: "decimal", "aria-label": label, value: short(value), class: "number",
     onchange: (event): void => {
       const input = event.target as HTMLInputElement, x = Number(input.value.trim() || NaN);
-      if (Number.isFinite(x)) taken(x);
-      else input.value = short(value);
+      if (!Number.isFinite(x)) { input.value = short(value); return; }
+      const becomes = taken(x);
+      value = becomes ?? x;
+      if (becomes !== undefined) input.value = short(value);
     },
   });
 }
@@ -46,26 +49,30 @@ function knobRow(knob: Knob, change: Change): HTMLElement {
   const inside: HTMLElement[] = [];
   if (typeof knob.value === "number") {
     const write = knob.path === "seed" ? (x: number): string => String(Math.max(0, Math.round(x))) : short;
-    const text = field(knob.label, knob.value, (x) => change(knob.path, write(x)));
+    const text = field(knob.label, knob.value, (x) => { change(knob.path, write(x)); return undefined; });
     if (knob.path === "seed") text.value = String(knob.value);
     else inside.push(slider(`${knob.label} (slider)`, knob, knob.value, (x) => { text.value = short(x); change(knob.path, short(x)); }));
     inside.push(text);
   } else {
-    const all = knob.value, names = knob.low < 0 ? ["x", "y", "z"] : ["red", "green", "blue"];
-    const set = (values: number[]): void => change(knob.path, `[${values.map(short).join(", ")}]`);
+    let all = knob.value;
+    const names = knob.low < 0 ? ["x", "y", "z"] : ["red", "green", "blue"];
+    const set = (values: number[]): undefined => void change(knob.path, `[${(all = values).map(short).join(", ")}]`);
     const most = Math.max(...all);
     if (knob.low >= 0 && most > 0)
-      inside.push(slider(`${knob.label} (slider)`, knob, most, (x) => set(all.map((c) => (c * x) / most))));
+      inside.push(slider(`${knob.label} (slider)`, knob, most, (x) => set(all.map((c) => (c * x) / (Math.max(...all) || 1)))));
     inside.push(...all.map((c, k) => field(`${knob.label} ${names[k] ?? k}`, c, (x) => set(all.map((old, at) => (at === k ? x : old))))));
   }
   return el("fieldset", { class: "knob", "data-path": knob.path }, el("legend", {}, legend), el("div", { class: "row" }, ...inside));
 }
 
-function regionRow(region: Region, change: Change): HTMLElement {
-  const names = ["left", "bottom", "right", "top"];
-  const fields = region.box.map((x, k) => field(`region ${region.name} ${names[k]}`, x, (to) => {
-    const box = region.box.map((old, at) => (at === k ? Math.round(to) : old));
+/** Its four ends; none passes the one beyond, or the picture's edge. */
+function regionRow(region: Region, { width, height }: Described, change: Change): HTMLElement {
+  const names = ["left", "bottom", "right", "top"], box = [...region.box];
+  const fields = box.map((x, k) => field(`region ${region.name} ${names[k]}`, x, (to) => {
+    const low = [0, 0, box[0]! + 1, box[1]! + 1][k]!, high = [box[2]! - 1, box[3]! - 1, width - 1, height - 1][k]!;
+    box[k] = Math.max(low, Math.min(high, Math.round(to)));
     change(`regions.${region.name}.box`, `[${box.join(", ")}]`);
+    return box[k]!;
   }));
   return el("fieldset", { class: "knob", "data-path": `regions.${region.name}.box` },
     el("legend", {}, `region ${region.name}, pixels`), el("div", { class: "row" }, ...fields));
@@ -75,7 +82,7 @@ function regionRow(region: Region, change: Change): HTMLElement {
 export function controlRows(d: Described, change: Change, only: readonly string[] | undefined): HTMLElement[] {
   const wanted = (path: string): boolean => !only || only.includes(path);
   const knobs = d.knobs.filter((knob) => wanted(knob.path)).map((knob) => knobRow(knob, change));
-  const regions = d.regions.filter((r) => wanted(`regions.${r.name}.box`)).map((r) => regionRow(r, change));
+  const regions = d.regions.filter((r) => wanted(`regions.${r.name}.box`)).map((r) => regionRow(r, d, change));
   return [...knobs, ...regions];
 }
 

@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
-#include "door.h"
+#include "parts.h"
 
 namespace crescent::web {
 
 namespace {
 
 TileBox box_of(int x0, int y0, int x1, int y1) { return {x0, y0, x1, y1}; }
-std::size_t area(const TileBox& b) {
-    return static_cast<std::size_t>(b.x1 - b.x0) * static_cast<std::size_t>(b.y1 - b.y0);
-}
 
 /// Rows of a box, from a plane of the image's width or to it; 4 bytes a pixel.
 template <class Move> void each_row(const TileBox& box, std::size_t width, Move&& move) {
@@ -29,7 +25,7 @@ template <class F> void put_planes(F& film, const TileBox& box, const std::byte*
     for (const std::span<std::byte> plane : film.planes()) {
         each_row(box, static_cast<std::size_t>(film.width),
             [&](std::size_t at, std::size_t to, std::size_t size) { std::memcpy(&plane[to], from + at, size); });
-        from += area(box) * 4;
+        from += pixels_of(box) * 4;
     }
 }
 template <class F> std::vector<std::byte>& all_planes(F& film) {
@@ -39,27 +35,6 @@ template <class F> std::vector<std::byte>& all_planes(F& film) {
     return out;
 }
 
-double bad_of(const Moments& m, std::size_t count) {
-    return static_cast<double>(
-        std::accumulate(m.bad.begin(), m.bad.begin() + static_cast<std::ptrdiff_t>(count), std::uint64_t{0}));
-}
-
-/// Where a pixel of the image stands in a box.
-std::uint32_t within(std::uint32_t pixel, const TileBox& box, std::size_t width) {
-    const auto i = static_cast<int>(pixel % width), j = static_cast<int>(pixel / width);
-    return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
-}
-
-/// What the primary rays of a box meet; asked for arm after arm, they are traced once.
-std::vector<ShadingPoints>& sites_seen(Bench& b, const TileBox& box) {
-    const bool same = b.seen.x0 == box.x0 && b.seen.y0 == box.y0 && b.seen.x1 == box.x1 && b.seen.y1 == box.y1;
-    if (same) return b.sites;
-    b.shapes.shape.resize(b.pixels());
-    b.sites = sites_of(b.scene, box, b.shapes.shape.data());
-    b.seen = box;
-    return b.sites;
-}
-
 }  // namespace
 
 /// The arm at n samples over a box: the nine planes of a film, which shape each pixel sees, and how many samples were
@@ -67,23 +42,14 @@ std::vector<ShadingPoints>& sites_seen(Bench& b, const TileBox& box) {
 CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const void* {
     Bench& b = bench();
     const TileBox box = box_of(x0, y0, x1, y1);
-    const ArmPlan& plan = b.experiment.arms.at(static_cast<std::size_t>(arm));
-    Film film(x1 - x0, y1 - y0, static_cast<std::uint64_t>(n));
-    double bad = 0;
-    for (ShadingPoints& sites : sites_seen(b, box)) {
-        const Moments moments = estimate_sites(sites, plan.sampler, film.n, b.experiment.seed, "", nullptr);
-        const std::vector<std::uint32_t> of_image = sites.pixel;
-        for (std::uint32_t& pixel : sites.pixel) pixel = within(pixel, box, b.width());
-        resolve_film(b.scene, sites, moments, film);
-        sites.pixel = of_image;
-        bad += bad_of(moments, sites.count);
-    }
+    const std::string& sampler = b.experiment.arms.at(static_cast<std::size_t>(arm)).sampler;
+    Film film = film_over(box, sampler, static_cast<std::uint64_t>(n), b.experiment.seed);
     std::vector<std::byte>& out = all_planes(film);
     std::vector<std::int32_t> tail;
     for (int j = y0; j < y1; ++j)
         for (int i = x0; i < x1; ++i)
             tail.push_back(b.shapes.shape[static_cast<std::size_t>(j) * b.width() + std::size_t(i)]);
-    tail.push_back(static_cast<std::int32_t>(bad));
+    tail.push_back(static_cast<std::int32_t>(film.bad));
     const auto* bytes = reinterpret_cast<const std::byte*>(tail.data());
     out.insert(out.end(), bytes, bytes + tail.size() * sizeof tail[0]);
     return out.data();
@@ -92,11 +58,10 @@ CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const 
 /// The reference over a box: five planes.
 CRESCENT_EXPORT(reference_tile)(int x0, int y0, int x1, int y1)->const void* {
     Bench& b = bench();
-    if (!b.quadrature) b.quadrature = std::make_unique<PixelQuadrature>(b.scene);
     if (b.reference.size() == 0)
         b.reference = ReferenceFilm(b.experiment.image.width, b.experiment.image.height, b.scene.s());
     const TileBox box = box_of(x0, y0, x1, y1);
-    b.quadrature->write(box, b.reference);
+    reference_over(box, b.reference);
     std::vector<std::byte>& out = scratch<std::byte>();
     out.clear();
     for (const std::span<std::byte> plane : b.reference.planes())
@@ -132,7 +97,7 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     const TileBox box = box_of(x0, y0, x1, y1);
     const std::byte* from = scratch<std::byte>().data();
     put_planes(film, box, from);
-    const std::byte* rest = from + area(box) * 4 * film.planes().size();
+    const std::byte* rest = from + pixels_of(box) * 4 * film.planes().size();
     b.shapes.width = film.width, b.shapes.height = film.height, b.shapes.shape.resize(b.pixels(), -1);
     for (int j = y0; j < y1; ++j)
         for (int i = x0; i < x1; ++i, rest += 4) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "disk.h"
 
@@ -26,24 +27,25 @@ ordered_json largest_in_parts(const PixelSample& s, const OpenPixel& pixel) {
     return out;
 }
 
-std::string mean_chart(const std::vector<double>& mean, double reference, const std::string& css) {
+std::string mean_chart(const std::vector<double>& mean, std::optional<double> reference, const std::string& css) {
     std::vector<Point> points;
-    std::vector<double> values{reference};
+    std::vector<double> values{0};
+    if (reference) values.push_back(*reference);
     for (std::size_t k = 0; k < mean.size(); ++k) {
         points.push_back({double(k + 1), mean[k]});
         values.push_back(mean[k]);
     }
-    values.push_back(0);
     Chart chart(320, 260, log_axis("N, samples of this pixel", {1, double(std::max<std::size_t>(mean.size(), 2))}),
         linear_axis("running mean of X", values), "Running mean of this pixel against N");
-    chart.rule(reference, "strong", "reference");
+    if (reference) chart.rule(*reference, "strong", "reference");
     chart.line(points, css);
     return chart.str();
 }
 
 }  // namespace
 
-/// {i, j, arm, n, css} -> draws, lights, the running mean and the largest sample; {} where the pixel sees nothing.
+/// {i, j, arm, n, css, reference: whether it is computed} -> draws, lights, the running mean and the largest sample; {}
+/// where the pixel sees nothing.
 CRESCENT_EXPORT(pixel)()->void {
     const ordered_json asked = request();
     const int i = asked.at("i").get<int>(), j = asked.at("j").get<int>();
@@ -76,10 +78,12 @@ CRESCENT_EXPORT(pixel)()->void {
             if (w.z > 0) rim.push_back(view.place(w));
         out["lights"].push_back({{"name", disk.name}, {"rim", rim}, {"angle", disk.angular_radius}});
     }
-    const double reference = b.reference.y.at(static_cast<std::size_t>(j) * b.width() + static_cast<std::size_t>(i));
+    std::optional<double> reference;
+    if (asked.at("reference").get<bool>())
+        reference = b.reference.y.at(static_cast<std::size_t>(j) * b.width() + static_cast<std::size_t>(i));
     const std::vector<double> mean = running_mean(all);
     out["mean"] = mean.empty() ? "0" : figures(mean.back());
-    out["reference"] = figures(reference);
+    if (reference) out["reference"] = figures(*reference);
     out["chart"] = mean_chart(mean, reference, asked.at("css").get<std::string>());
     if (largest) out["largest"] = largest_in_parts(*largest, *open);
     say(out);

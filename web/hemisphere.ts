@@ -6,7 +6,7 @@ import { Model } from "./model";
 
 interface Opened {
   shape?: string; mirror: [number, number]; draws: [number, number, number, number][]; under: number;
-  lights: { name: string; rim: [number, number][]; angle: number }[]; mean: string; reference: string; chart: string;
+  lights: { name: string; rim: [number, number][]; angle: number }[]; mean: string; reference?: string; chart: string;
   largest?: Record<string, string>;
 }
 
@@ -70,7 +70,7 @@ function largestTable(parts: Record<string, string>): HTMLElement {
 
 /** Fills `root` with pixel (i, j) under an arm. Throws DoorError. */
 export function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number): void {
-  const pixel = model.door.ask<Opened>("pixel", { i, j, arm: name, n, css: `c${arm % 6}` });
+  const pixel = model.door.ask<Opened>("pixel", { i, j, arm: name, n, css: `c${arm % 6}`, reference: model.referenceDone });
   if (!pixel.shape) {
     root.replaceChildren(el("p", {}, `Pixel (${i}, ${j}) sees nothing: there is no hemisphere over it.`));
     return;
@@ -85,11 +85,11 @@ export function showPixel(root: HTMLElement, model: Model, i: number, j: number,
   const under = pixel.under > 0 ? ` ${pixel.under} of them fell under the horizon and weigh 0.` : "";
   root.replaceChildren(
     el("p", {}, el("b", {}, `Pixel (${i}, ${j}), ${pixel.shape}. `), `After ${n} samples ${name} reads `, el("b", { class: "v" }, pixel.mean),
-      ", the reference ", el("b", { class: "v" }, pixel.reference), `.${under}`),
+      ...(pixel.reference === undefined ? ["; the reference is being computed"] : [", the reference ", el("b", { class: "v" }, pixel.reference)]), `.${under}`),
     el("div", { class: "disks" },
       el("figure", {}, integrand, el("figcaption", {}, el("b", {}, "f L cos θ"), `, four decades${pixel.lights.some(({ rim }) => rim.length > 0) ? "; the ring is the light's edge" : ""}`)),
       el("figure", {}, density, el("figcaption", {}, el("b", {}, `p of ${name}`), " with its draws, made of the same random numbers for every arm: area is weight, squares met a light")),
-      el("figure", {}, made(pixel.chart), el("figcaption", {}, "The mean so far, and the reference.")),
+      el("figure", {}, made(pixel.chart), el("figcaption", {}, pixel.reference === undefined ? "The mean so far." : "The mean so far, and the reference.")),
       pixel.largest ? el("figure", {}, largestTable(pixel.largest), el("figcaption", {}, "The largest sample: X = f L cos θ / p.")) : undefined));
 }
 

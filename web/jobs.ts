@@ -11,7 +11,7 @@ export type Job =
   | { kind: "ask"; call: string; request: unknown; opening?: Opening }; // opening: asked of another experiment
 
 export type Answer = { bytes?: ArrayBuffer[]; said?: unknown };
-export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string } };
+export type Reply = { id: number; answer?: Answer; error?: { kind: string; text: string }; size?: number }; // size: of its instance
 
 const filmPlanes = 9, referencePlanes = 5;
 
@@ -35,26 +35,52 @@ function perform(door: Door, job: Exclude<Job, { kind: "open" }>): Answer {
   }
 }
 
+const goesOn = (answer: Answer): boolean => typeof answer.said === "object" && answer.said !== null && "more" in answer.said;
+
 /** An instance that opens what a job is about, and its experiment again after it broke. */
 export class Answering {
   private door: Door;
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the door
+  most = 0; // the work of the largest part so far, in samples
 
   constructor(private readonly module: WebAssembly.Module) {
     this.door = new Door(module);
   }
 
+  get size(): number { return this.door.size; }
+
+  /** All parts of a job. */
   answer(job: Job): Answer {
+    let answer = this.begin(job);
+    while (!answer) answer = this.goOn();
+    return answer;
+  }
+
+  /** The first part of a job; undefined where more are left. What was not finished before is dropped. */
+  begin(job: Job): Answer | undefined {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
-    try {
+    return this.part(() => {
       if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) {
         this.here = undefined;
         this.door.ask("open", about);
         this.here = about;
       }
       return job.kind === "open" ? {} : perform(this.door, job);
+    });
+  }
+
+  /** The next part of the job that was begun. */
+  goOn(): Answer | undefined {
+    return this.part(() => ({ said: this.door.ask("go_on") }));
+  }
+
+  private part(work: () => Answer): Answer | undefined {
+    try {
+      const answer = work();
+      this.most = Math.max(this.most, this.door.number("worked"));
+      return goesOn(answer) ? undefined : answer;
     } catch (error) {
       this.door = new Door(this.module);
       this.here = undefined;

@@ -4,6 +4,7 @@ import { Asker, Found } from "./answers";
 import { boxQuestion } from "./box";
 import { checkPanel, samplerPictures } from "./check";
 import { el, made } from "./dom";
+import { furnacePanel } from "./furnace";
 import { Lesson, lessons } from "./lessons";
 import { Model } from "./model";
 
@@ -55,13 +56,15 @@ function question(lesson: Lesson, asker: Asker, given: string | undefined, take:
     hint, el("button", { type: "submit", class: "main", id: "measure" }, "Measure"));
 }
 
+const unsaid = "The lines above say what was found; it is not what this lesson has words for.";
+
 /** Words with formulas, as the core sets them. */
 const set = (model: Model, words: string): DocumentFragment => made(model.door.say("html", words));
 
 /** An answer as the question words it. */
 function worded({ ask }: Lesson, value: string): string {
   if (ask.kind === "slider") return `${value} ${ask.unit}`;
-  if (ask.kind === "choice") return ask.options.find((o) => o.value === value)?.words ?? value;
+  if (ask.kind === "choice") return ask.options.find((o) => o.value === value)?.words ?? (value === "overlap" ? "none: the intervals of the seeds overlap" : value);
   const [x0, y0, x1, y1] = value.split(",");
   return y1 ? `the box from (${x0}, ${y0}) to (${x1}, ${y1})` : value === "overlap" ? "none is the noisiest: the intervals of the seeds overlap" : `${value} is the noisiest`;
 }
@@ -70,7 +73,7 @@ function revealed(model: Model, lesson: Lesson, answer: string, found: Found, co
   const again = commands.length > 0 ? [el("p", { class: "again" }, "The same numbers from the program: ", ...commands.flatMap((words, k) => [k > 0 ? ", " : "", el("code", {}, words)]))] : [];
   return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
     el("p", {}, "You said ", el("b", {}, worded(lesson, answer)), "; measured here: ", el("b", {}, worded(lesson, found.answer)), "."),
-    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? "")), ...again);
+    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? unsaid)), ...again);
 }
 
 export function showLesson(to: Lessons, lesson: Lesson, given: string | undefined): void {
@@ -82,7 +85,7 @@ export function showLesson(to: Lessons, lesson: Lesson, given: string | undefine
     try {
       const found = await to.asker().find(lesson, answer);
       const shown = revealed(to.model, lesson, answer, found, to.asker().commands(lesson, answer));
-      const play = lesson.check ? checkPanel(to.asker(), lesson) : el("p", {}, "Now play: the pictures and settings below are this lesson's.");
+      const play = lesson.check ? checkPanel(to.asker(), lesson) : lesson.furnace ? furnacePanel(to.asker(), lesson) : el("p", {}, "Now play: the pictures and settings below are this lesson's.");
       result.replaceChildren(shown, play, el("p", {},
         el("button", { type: "button", id: "next", onclick: () => to.go(next ? next.id : "") }, next ? `Next: ${next.title}` : "All lessons")));
       shown.focus();
@@ -115,7 +118,7 @@ export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
       try {
         const found = await asker.find(lesson);
         place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}${lesson.ask.kind === "region" ? ` in ${lesson.answer.by === "largest" ? lesson.answer.of[0]!.region : ""}` : ""}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, line))));
-        say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? ""));
+        say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? unsaid));
       } catch (error) {
         place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;
       }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "door.h"
+#include "parts.h"
 
 namespace crescent::web {
 
@@ -24,6 +24,35 @@ std::string class_of(const std::string& arm) {
     const auto& arms = bench().experiment.arms;
     const auto at = std::ranges::find(arms, arm, &ArmPlan::name) - arms.begin();
     return fmt::format("c{}", at % 6);
+}
+
+/// The largest samples of a box beside those of the boxes before it.
+void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
+    const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
+    count_work(pixels_of(box) * plan.n * directions_per_sample(sampler));
+    ProgressMonitor watch;
+    std::uint64_t drawn = 0;
+    const std::vector<float> here =
+        largest_samples(bench().scene, sampler, plan.n, bench().experiment.seed, ends, plan.kept, "", watch, drawn);
+    largest.insert(largest.end(), here.begin(), here.end());
+    if (largest.size() <= plan.kept) return;
+    std::ranges::nth_element(largest, largest.begin() + static_cast<std::ptrdiff_t>(plan.kept), std::greater<>());
+    largest.resize(plan.kept);
+}
+
+void say_tail(std::vector<float>& largest) {
+    std::ranges::sort(largest, std::greater<>());
+    const std::optional<Tail> found = fit_pooled_tail(largest);
+    if (!found) return say(ordered_json{{"words", "no tail: the samples do not spread"}});
+    // The mean is the integral and exists whatever k is; from k = 1 on the samples seen do not bound it.
+    const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
+    const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
+        : found->heavy() && sure                 ? "inconclusive: heavy tail, the variance looks infinite"
+        : found->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
+        : sure                                   ? "the variance looks finite"
+                                                 : "the variance may be finite";
+    say(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
+        {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
 }
 
 }  // namespace
@@ -46,24 +75,19 @@ CRESCENT_EXPORT(meters)(int index)->void {
     say(out);
 }
 
-/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, words}: how heavy the tail of the arm's samples is in a box.
+/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: how heavy the tail of the arm's samples is in a box.
 CRESCENT_EXPORT(tail)()->void {
     const ordered_json asked = request();
-    const auto& v = asked.at("box");
-    const Box box{v.at(0).get<int>(), v.at(1).get<int>(), v.at(2).get<int>(), v.at(3).get<int>()};
-    ProgressMonitor watch;
-    const auto found = region_tail(
-        bench().scene, arm_of(asked.at("arm").get<std::string>()).sampler, bench().experiment.seed, box, "", watch);
-    if (!found) return say(ordered_json{{"words", "no tail: the samples do not spread"}});
-    // The mean is the integral and exists whatever k is; from k = 1 on the samples seen do not bound it.
-    const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
-    const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
-        : found->heavy() && sure                 ? "inconclusive: heavy tail, the variance looks infinite"
-        : found->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
-        : sure                                   ? "the variance looks finite"
-                                                 : "the variance may be finite";
-    say(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
-        {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
+    const Box box = asked_box(asked);
+    const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
+    const TailPlan plan = tail_plan(box);
+    const auto largest = std::make_shared<std::vector<float>>();
+    Parts parts;
+    if (plan.kept > 0)
+        for (const TileBox& part : parts_of(tile_of(box), plan.n * directions_per_sample(sampler)))
+            parts.emplace_back([=] { keep_largest(part, sampler, plan, *largest); });
+    parts.emplace_back([=] { say_tail(*largest); });
+    begin(std::move(parts));
 }
 
 /// {region, series: [{arm, points: [[n, rmse], ...]}]} -> RMSE against N as SVG, with N^(-1/2) from the first points.

@@ -37,7 +37,6 @@ export interface Viewer {
 
 export const ladder = [1, 4, 16, 64, 256, 1024];
 const referenceAfter = 64; // rungs up to here come before it
-const referenceCost = 1000; // of one pixel, in samples
 const untouchedByReference = /^(seed|firefly_k|arms\.|regions\.)/;
 
 export class Model {
@@ -49,11 +48,22 @@ export class Model {
   startedAt = 0;
   took = 0; // ms to the last meter, and to the last film
   filmsTook = 0;
+  private readonly most: number; // samples of one part, and what a pixel of the reference counts among them
+  private readonly referenceCost: number;
   private era = 0;
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
   constructor(private readonly module: WebAssembly.Module, readonly pool: Pool, private readonly viewer: Viewer) {
     this.door = new Door(module);
+    this.most = this.door.number("most_of_part");
+    this.referenceCost = this.door.number("reference_cost");
+  }
+
+  private boxes(cost: number, [width, height]: readonly [number, number] = [this.described.width, this.described.height]): Box[] {
+    return this.pool.tiles(width, height, cost, this.most);
+  }
+  private cost(shown: Shown[], n: number): number {
+    return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques, 0);
   }
 
   /** Opens, and begins to compute up to n samples a pixel of these arms; throws DoorError for settings that are wrong. */
@@ -106,7 +116,7 @@ export class Model {
 
   private async rung(era: number, n: number): Promise<void> {
     this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, n));
-    const boxes = this.pool.tiles(this.described.width, this.described.height, n);
+    const boxes = this.boxes(this.cost(this.shown, n));
     let left = boxes.length;
     await Promise.all(boxes.map(async (box) => {
       if (!(await this.tile(era, this.shown.map((s, index) => [index, s.arm]), n, box))) return;
@@ -122,7 +132,7 @@ export class Model {
     const spare = this.shown.length;
     for (const s of this.shown) {
       this.door.number("begin", spare, s.arm, n);
-      await Promise.all(this.pool.tiles(this.described.width, this.described.height, n).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
+      await Promise.all(this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
       if (era !== this.era) return;
       s.rungs.push({ n, meters: this.door.ask<Meters>("meters", undefined, spare) });
       s.rungs.sort((a, b) => a.n - b.n);
@@ -152,7 +162,7 @@ export class Model {
     if (this.tiles.key !== key) this.tiles = { key, parts: [] };
     return this.tiles.parts.length === this.referenceBoxes().length;
   }
-  private referenceBoxes(): Box[] { return this.pool.tiles(this.described.width, this.described.height, referenceCost); }
+  private referenceBoxes(): Box[] { return this.boxes(this.referenceCost); }
 
   /** By quadrature; what is kept is put first. */
   private async reference(era: number): Promise<void> {
@@ -196,8 +206,8 @@ export class Model {
   }
 
   /** The reference of an experiment as a picture, RGBA of a box after another. What is asked last is answered first. */
-  photograph(opening: Opening, [width, height]: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): void {
-    for (const box of this.pool.tiles(width, height, referenceCost).reverse())
+  photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): void {
+    for (const box of this.boxes(this.referenceCost, size).reverse())
       this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question stands without it
   }
 

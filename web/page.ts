@@ -1,12 +1,13 @@
 // The page: reads the address, opens the experiment, shows it, writes the address.
+import { showChoices } from "./choices";
 import { choice, controlRows } from "./controls";
 import { Asker } from "./answers";
 import { Box, DoorError } from "./door";
 import { byId, copied, el, made, Speaker } from "./dom";
 import { pixelFailed, showPixel } from "./hemisphere";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
-import { lessons } from "./lessons";
-import { Described, ladder, Model, Shown, Viewer } from "./model";
+import { Lesson, lessons, onBench } from "./lessons";
+import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
 import { Pool } from "./pool";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
@@ -47,15 +48,22 @@ export class Page implements Viewer {
       if (!part) return;
       event.preventDefault();
       Object.assign(this.state, { lesson: "", part });
-      history.replaceState(null, "", write(this.state));
+      this.turn();
       this.show();
       if (this.idle && !byId("bench").hidden) this.open();
     };
+    document.querySelector<HTMLElement>(".skip")!.onclick = (event): void => { event.preventDefault(); byId("main").focus(); }; // the address holds the state
     window.onhashchange = (): void => this.fromAddress();
     this.fromAddress();
   }
 
   private get source(): Source { return this.data.sources[this.state.experiment]!; }
+  private get lesson(): Lesson | undefined { return lessons.find((l) => l.id === this.state.lesson); }
+
+  /** A step that the browser's Back takes back: another part, lesson or choice. What is dragged or typed is none. */
+  private turn(): void {
+    if (write(this.state) !== location.hash) history.pushState(null, "", write(this.state));
+  }
 
   private fromAddress(): void {
     if (this.state && write(this.state) === location.hash) return;
@@ -122,35 +130,26 @@ export class Page implements Viewer {
       if (picture.index < 0) picture.name("reference", "by quadrature, no samples");
       else picture.about(d.arms[shown[picture.index]!.arm]!), this.meters(picture.index);
     }
+    const held = (document.activeElement as HTMLElement | null)?.dataset["corner"];
     byId("pictures").replaceChildren(...this.pictures.map((p) => p.root));
+    if (held) document.querySelector<HTMLElement>(`#pictures .reference [data-corner="${held}"]`)?.focus();
+    if (byId("charts").childElementCount !== d.regions.length)
+      byId("charts").replaceChildren(...d.regions.map(() => el("figure", { class: "narrow chart-to-come" })));
     if (!document.activeElement?.closest("[data-path]")) this.knobs();
   }
 
   /** All settings, or those that a lesson lets one play with. A hand on one of them keeps it: they are not made anew then. */
   private knobs(): void {
-    const lesson = lessons.find((l) => l.id === this.state.lesson), { described } = this.model;
-    if (described) byId("knobs").replaceChildren(...controlRows(described, (path, value) => this.change(path, value), lesson?.play));
+    const { described } = this.model;
+    if (described) byId("knobs").replaceChildren(...controlRows(described, (path, value) => this.change(path, value), this.lesson?.play));
   }
 
   private choices(): void {
-    const { state } = this, set = (change: () => void) => (): void => { change(); this.open(); };
-    const held = document.activeElement?.id;
-    const labels = new Map(this.samplers.map((s) => [s.name, s.label]));
-    const known = [...new Set([...Object.keys(this.source.arms), ...labels.keys()])].map((name): [string, string] => [name, labels.get(name) ?? name]);
-    const arms = [0, 1, 2].map((k) => choice(`arm-${k}`, `arm ${k + 1}`,
-      [...(k > 0 ? [["", "none"] as [string, string]] : []), ...known], state.arms[k] ?? "",
-      (value) => set(() => {
-        const all = [0, 1, 2].map((at) => (at === k ? value : state.arms[at] ?? ""));
-        state.arms = [...new Set(all.filter((arm) => arm !== ""))];
-        state.arm = Math.min(state.arm, state.arms.length - 1);
-      })()));
-    byId("choices").replaceChildren(
-      choice("experiment", "experiment", Object.entries(this.data.sources).map(([name, s]) => [name, s.title]), state.experiment,
-        (value) => set(() => { Object.assign(state, fresh(value, this.data.sources[value]!), { answers: state.answers, lesson: state.lesson, part: state.part }); })()), ...arms,
-      choice("n", "samples a pixel, up to", ladder.map((n) => [String(n), String(n)]), String(state.n), (value) => set(() => { state.n = Number(value); })()),
-      choice("view", "pictures show", [["photograph", "photographs"], ["heat", "|Y − Y_ref|, one scale"], ["signed", "the nearer of two"]], state.view,
-        (value) => { state.view = value as State["view"]; history.replaceState(null, "", write(state)); this.repaint(); }));
-    if (held) document.getElementById(held)?.focus();
+    const move = (how: () => void) => (): void => { this.turn(); how(); };
+    showChoices(byId("choices"), {
+      state: this.state, sources: this.data.sources, samplers: this.samplers, only: this.lesson?.play,
+      open: move(() => this.open()), show: move(() => this.repaint()),
+    });
   }
 
   painted(index: number, box: Box): void {
@@ -176,7 +175,7 @@ export class Page implements Viewer {
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
     document.documentElement.dataset["films"] = String(Math.round(this.model.filmsTook));
-    document.documentElement.dataset["memory"] = String(this.model.door.size);
+    document.documentElement.dataset["memory"] = `${this.model.door.size} ${this.model.pool.size}`; // of the page's instance, of the workers
     document.documentElement.dataset["took"] = String(Math.round(this.model.took));
     this.charts();
     if (this.state.pixel) this.openPixel();
@@ -237,14 +236,15 @@ export class Page implements Viewer {
 
   /** The bench, the lessons or the sheet. A lesson brings its arms and keeps the bench below it. */
   private show(): void {
-    const { part, answers } = this.state, lesson = lessons.find((l) => l.id === this.state.lesson);
+    const { part, answers } = this.state, { lesson } = this;
     for (const link of document.querySelectorAll<HTMLElement>("#tabs a"))
       link.dataset["tab"] === part ? link.setAttribute("aria-current", "page") : link.removeAttribute("aria-current");
     byId("lessons").hidden = part !== "lessons";
     byId("sheet").hidden = part !== "sheet";
-    byId("bench").hidden = part === "sheet" || (part === "lessons" && (!lesson || Boolean(lesson.check) || answers[lesson.id] === undefined));
+    byId("bench").hidden = part === "sheet" || (part === "lessons" && (!lesson || !onBench(lesson) || answers[lesson.id] === undefined));
     if (byId("bench").hidden && !this.idle) this.rest();
     byId<HTMLDetailsElement>("controls").open = part === "lessons";
+    this.choices();
     this.knobs();
     if (part === "sheet") showSheet(byId("sheet"), this.model, this.asker());
     if (part === "lessons") lesson ? showLesson(this.lessons(), lesson, answers[lesson.id]) : lessonList(this.lessons(), answers);
@@ -274,8 +274,11 @@ export class Page implements Viewer {
       answered: (lesson, answer) => {
         const kept = this.asRead;
         this.asRead = false;
-        this.state.answers[lesson.id] = answer;
-        if (lesson.check) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
+        if (this.state.answers[lesson.id] !== answer) {
+          this.state.answers[lesson.id] = answer;
+          this.turn();
+        }
+        if (!onBench(lesson)) return history.replaceState(null, "", write(this.state)); // it plays with samplers, not with pictures
         if (!kept) Object.assign(this.state, { experiment: Object.keys(this.data.sources)[0]!, arms: [...lesson.arms], n: lesson.n, view: lesson.view ?? "photograph", arm: 0 });
         byId("bench").hidden = false;
         this.open();
@@ -283,7 +286,7 @@ export class Page implements Viewer {
       go: (id) => {
         byId("wrong").replaceChildren();
         Object.assign(this.state, { lesson: id, part: "lessons", set: {} });
-        history.replaceState(null, "", write(this.state));
+        this.turn();
         this.show();
         byId("lessons").querySelector<HTMLElement>("a, input, button")?.focus();
       },

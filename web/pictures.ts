@@ -2,7 +2,7 @@
 import { Box } from "./door";
 import { el, made } from "./dom";
 import { Arm, Described, Meter, Model, Shown } from "./model";
-import { Frame, Picking } from "./frame";
+import { byKey, Frame, Outlined, Picking } from "./frame";
 import { State } from "./state";
 
 const mine = "mine";
@@ -16,7 +16,7 @@ export class Picture {
   private readonly versus = el("p", { class: "aim" });
   private readonly table = el("div", { class: "meters" });
 
-  constructor(readonly index: number, private readonly d: Described, picking: Picking) {
+  constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
     this.frame = new Frame(d, picking);
     this.canvas.tabIndex = 0;
     this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, this.frame.root, this.words, this.versus, this.aim, this.table);
@@ -44,7 +44,11 @@ export class Picture {
     this.table.replaceChildren(bar, el("p", { class: "ends" }, ...ends.map((words) => el("span", {}, words))));
   }
 
-  outlines(pixel: [number, number] | undefined): void { this.frame.outlines(this.d.regions, pixel); }
+  /** The corners of a region that was drawn can be moved; by the tabulator, those on the reference are reached. */
+  outlines(pixel: [number, number] | undefined): void {
+    const own = (name: string): Partial<Outlined> => (name === mine ? { move: this.picking.region, reached: this.index < 0 } : {});
+    this.frame.outlines(this.d.regions.map((region) => ({ ...region, ...own(region.name) })), pixel);
+  }
 
   paint(model: Model, state: State, top: number, box: Box): void {
     const kind = this.index < 0 || state.view === "photograph" ? 0 : state.view === "heat" ? 1 : 2;
@@ -60,29 +64,30 @@ export class Picture {
     return [", the program's ", el("code", {}, program), verdict];
   }
 
-  /** `native`: the hash of the program's film, where this one has it. */
+  /** Every row is there from the start, so that nothing moves when its number comes. `native`: the hash of the program's film, where this one has it. */
   meters(s: Shown, native: (key: string) => string | undefined): void {
     const last = s.rungs.at(-1);
     this.name(s.name, last ? `N = ${last.n}` : "being sampled");
-    if (!last) return;
-    const m = last.meters, rows: HTMLTableRowElement[] = [];
-    const row = (name: string, meter: Meter | undefined, note = ""): void => {
+    const m = last?.meters, rows: HTMLTableRowElement[] = [], waiting: Meter = { value: 0, text: "…" };
+    const row = (name: string, meter: Meter | undefined = last ? undefined : waiting, note = ""): void => {
       if (!meter) return;
-      const published = meter.published ? el("small", {}, `published ${meter.published}`) : undefined;
+      const room = this.d.source !== "" && !note; // for what was published, where anything was
+      const published = meter.published || room ? el("small", {}, meter.published ? `published ${meter.published}` : "\u00a0") : undefined;
       rows.push(el("tr", {}, el("th", { scope: "row" }, name),
-        el("td", { class: "n" }, meter.text, published, note ? el("small", {}, note) : undefined)));
+        el("td", { class: "n" }, meter.text, published)));
+      if (note) rows.push(el("tr", { class: "note" }, el("td", { colspan: 2 }, note)));
     };
     for (const { name } of this.d.regions) {
-      row(`RMSE of ${name}`, m.meters[`rmse.${name}`], m.unsure?.includes(name) ? "the reference is not good enough" : "");
+      row(`RMSE of ${name}`, m?.meters[`rmse.${name}`], m?.unsure?.includes(name) ? "the reference is not good enough" : "");
       const tail = s.tails[name];
-      if (tail) row(`tail k̂ of ${name}`, { value: 0, text: tail.text ?? "–" }, tail.words);
+      row(`tail k̂ of ${name}`, tail ? { value: 0, text: tail.text ?? "–" } : waiting, tail?.words ?? "being measured");
     }
-    row("fireflies", m.meters["fireflies"]);
-    row("under the horizon", m.meters["horizon_frac"]);
-    row("mean Y", m.meters["y_mean"]);
-    if (m.bad > 0) row("not a number", { value: m.bad, text: String(m.bad) });
+    row("fireflies", m?.meters["fireflies"]);
+    row("under the horizon", m?.meters["horizon_frac"]);
+    row("mean Y", m?.meters["y_mean"]);
+    if (m && m.bad > 0) row("not a number", { value: m.bad, text: String(m.bad) });
     this.table.replaceChildren(el("table", {}, el("tbody", {}, ...rows)),
-      el("p", { class: "hash" }, "film ", el("code", { "data-hash": `${s.name} ${last.n}` }, m.hash), ...this.beside(m.hash, native(m.key))));
+      el("p", { class: "hash" }, ...(m && last ? ["film ", el("code", { "data-hash": `${s.name} ${last.n}` }, m.hash), ...this.beside(m.hash, native(m.key))] : ["film …"])));
   }
 }
 
@@ -91,10 +96,9 @@ export const drawnRegion = `regions.${mine}.box`;
 
 /** The pixel that an arrow key leads to, ten pixels on with shift; from the middle where none is chosen. */
 export function byArrow(event: KeyboardEvent, from: [number, number] | undefined, d: Described): [number, number] | undefined {
-  const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+  const by = byKey(event);
   if (!by) return undefined;
-  event.preventDefault();
-  const step = event.shiftKey ? 10 : 1, [i, j] = from ?? [d.width >> 1, d.height >> 1];
+  const [i, j] = from ?? [d.width >> 1, d.height >> 1];
   const clip = (x: number, most: number): number => Math.max(0, Math.min(most - 1, x));
-  return [clip(i + step * by[0]!, d.width), clip(j + step * by[1]!, d.height)];
+  return [clip(i + by[0], d.width), clip(j + by[1], d.height)];
 }

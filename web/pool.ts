@@ -9,8 +9,10 @@ interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
 
 const underWay = 2; // jobs that a worker holds, so that it never waits for the page
 const sliceMs = 10;
+const side = 64; // of a tile, in pixels
 
 class Hand {
+  size = 0; // bytes that its instance has taken
   private readonly held = new Map<number, Waiting>();
   private next = 0;
   constructor(private readonly worker: Worker, private readonly free: () => void) {
@@ -24,15 +26,42 @@ class Hand {
   private take(reply: Reply): void {
     const waiting = this.held.get(reply.id);
     this.held.delete(reply.id);
+    this.size = reply.size ?? this.size;
     if (waiting && reply.answer) waiting.done(reply.answer);
     else if (waiting && reply.error) waiting.failed(new DoorError(reply.error.kind, reply.error.text));
     this.free();
   }
 }
 
+/** What has no worker: jobs in parts, one after another, each in an instance that no other job touches meanwhile. */
+class Lane {
+  readonly answering: Answering;
+  queue: Waiting[] = [];
+  private current: Waiting | undefined;
+  constructor(module: WebAssembly.Module) { this.answering = new Answering(module); }
+
+  get busy(): boolean { return this.current !== undefined || this.queue.length > 0; }
+  drop(): void { this.queue = []; this.current = undefined; }
+
+  /** One part of a job. */
+  part(): void {
+    const fresh = this.current === undefined, waiting = (this.current ??= this.queue.shift()!);
+    try {
+      const answer = fresh ? this.answering.begin(waiting.job) : this.answering.goOn();
+      if (!answer) return;
+      this.current = undefined;
+      waiting.done(answer);
+    } catch (error) {
+      this.current = undefined;
+      const { kind, text } = failure(error);
+      waiting.failed(new DoorError(kind, text));
+    }
+  }
+}
+
 export class Pool {
   private hands: Hand[] = [];
-  private alone: Answering | undefined;
+  private alone: { lasting: Lane; passing: Lane } | undefined; // what is opened meanwhile breaks no lasting question
   private queue: Waiting[] = [];
   private era = 0;
   private timer = 0;
@@ -46,7 +75,7 @@ export class Pool {
     const starting = Array.from({ length: count }, () => pool.startOne(url));
     const started = await Promise.all(starting);
     URL.revokeObjectURL(url);
-    if (!started.some(Boolean)) pool.alone = new Answering(module);
+    if (!started.some(Boolean)) pool.alone = { lasting: new Lane(module), passing: new Lane(module) };
     return pool;
   }
 
@@ -72,13 +101,18 @@ export class Pool {
   cancel(): void {
     ++this.era;
     this.queue = this.queue.filter((waiting) => waiting.lasting);
+    this.alone?.passing.drop();
   }
+
+  /** Bytes that the instances of all workers have taken; the largest part that was done without them, in samples. */
+  get size(): number { return this.hands.reduce((sum, hand) => sum + hand.size, 0); }
+  get most(): number { return Math.max(this.alone?.lasting.answering.most ?? 0, this.alone?.passing.answering.most ?? 0); }
 
   /** Every instance opens this; what was asked before is never answered. */
   async open(opening: Opening): Promise<void> {
     this.cancel();
     const job: Job = { kind: "open", opening };
-    if (this.alone) { this.alone.answer(job); return; }
+    if (this.alone) { this.alone.passing.answering.answer(job); return; }
     for (const hand of this.hands) hand.give({ job, lasting: true, done: () => {}, failed: () => {} });
   }
 
@@ -88,20 +122,21 @@ export class Pool {
     return new Promise((resolve, reject) => {
       const here = (): boolean => lasting || era === this.era;
       const waiting: Waiting = { job, lasting, done: (a) => here() && resolve(a), failed: (e) => here() && reject(e) };
-      if (lasting) this.queue.unshift(waiting);
-      else this.queue.push(waiting);
+      const queue = this.alone ? this.alone[lasting ? "lasting" : "passing"].queue : this.queue;
+      if (lasting) queue.unshift(waiting);
+      else queue.push(waiting);
       this.pump();
     });
   }
 
-  /** Boxes of a size that one job should have: what a slice can do where there are no workers. */
-  tiles(width: number, height: number, cost: number): Box[] {
-    const side = 64;
-    const rows = this.alone ? Math.max(1, Math.min(side, Math.floor(3000 / Math.max(cost, 1)))) : side;
+  /** Boxes of a size that one job should have; a pixel costs so many samples. Without workers, a job has `most` samples. */
+  tiles(width: number, height: number, cost: number, most: number): Box[] {
+    const pixels = this.alone ? Math.max(1, Math.floor(most / cost)) : Infinity;
+    const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
     const all: Box[] = [];
-    for (let y0 = 0; y0 < height; y0 += rows)
-      for (let x0 = 0; x0 < width; x0 += side)
-        all.push({ x0, y0, x1: Math.min(x0 + side, width), y1: Math.min(y0 + rows, height) });
+    for (let y0 = 0; y0 < height; y0 += up)
+      for (let x0 = 0; x0 < width; x0 += across)
+        all.push({ x0, y0, x1: Math.min(x0 + across, width), y1: Math.min(y0 + up, height) });
     const far = (b: Box): number => Math.hypot(b.x0 + b.x1 - width, (b.y0 + b.y1 - height) * 1.5);
     return all.sort((a, b) => far(a) - far(b));
   }
@@ -117,16 +152,9 @@ export class Pool {
 
   private slice(): void {
     this.timer = 0;
-    const until = performance.now() + sliceMs;
-    while (this.queue.length > 0 && performance.now() < until) {
-      const waiting = this.queue.shift()!;
-      try {
-        waiting.done(this.alone!.answer(waiting.job));
-      } catch (error) {
-        const { kind, text } = failure(error);
-        waiting.failed(new DoorError(kind, text));
-      }
-    }
-    if (this.queue.length > 0) this.pump();
+    const until = performance.now() + sliceMs, { lasting, passing } = this.alone!;
+    while ((lasting.busy || passing.busy) && performance.now() < until) (lasting.busy ? lasting : passing).part();
+    document.documentElement.dataset["part"] = String(this.most);
+    if (lasting.busy || passing.busy) this.pump();
   }
 }

@@ -11,14 +11,14 @@ let answering: Answering | undefined;
 scope.onmessage = ({ data }: MessageEvent): void => {
   if (!answering) {
     answering = new Answering(data as WebAssembly.Module);
-    scope.postMessage({ id: -1 }, []);
+    scope.postMessage({ id: -1, size: answering.size }, []);
     return;
   }
   const { id, job } = data as { id: number; job: Job };
   try {
     const answer = answering.answer(job);
-    scope.postMessage({ id, answer }, answer.bytes ?? []);
+    scope.postMessage({ id, answer, size: answering.size }, answer.bytes ?? []);
   } catch (error) {
-    scope.postMessage({ id, error: failure(error) }, []);
+    scope.postMessage({ id, error: failure(error), size: answering.size }, []);
   }
 };

@@ -42,7 +42,7 @@ def wait(driver, script, seconds=60):
         value = driver.execute_script("return " + script)
         if value:
             return value
-        time.sleep(0.05)
+        time.sleep(0.02)
     raise AssertionError(f"after {seconds} s still not: {script}; the page says: "
                          + driver.execute_script("return document.body.innerText.slice(0, 1500)"))
 
@@ -74,7 +74,8 @@ def axe(driver, source):
     """What axe-core finds on the page as it stands."""
     driver.execute_script(source)
     return driver.execute_async_script(
-        "axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']})"
+        "axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'],"
+        " rules: {'target-size': {enabled: true}}})"
         ".then((r) => arguments[0](r.violations.map("
         "(v) => v.id + ': ' + v.nodes.map((n) => n.html).slice(0, 3).join(' '))))")
 

@@ -1,5 +1,6 @@
-"""The page in Chromium, from a file, offline: page.py PAGE BUNDLE NATIVE EXPERIMENT... . NATIVE has the program's
-hashes. One browser for all; ONLY names laws to run alone, SHOTS a folder for pictures of what they look at."""
+"""The page in Chromium, from a file, offline: page.py GROUP PAGE BUNDLE NATIVE EXPERIMENT... . NATIVE has the program's
+hashes. GROUP: numbers, what the page computes and keeps, or readers, who can use it; one browser for each, so that both
+can run at once. ONLY names laws to run alone, SHOTS a folder for pictures of what they look at."""
 import base64
 import gzip
 import json
@@ -19,8 +20,9 @@ from selenium.webdriver.common.keys import Keys
 
 import browser
 import reach
+import steady
 
-page_path, bundle, native_path, *experiments = sys.argv[1:]
+group, page_path, bundle, native_path, *experiments = sys.argv[1:]
 page = pathlib.Path(page_path).resolve().as_uri()
 small = "#experiment=three-glosses&n=4"
 
@@ -125,7 +127,8 @@ def the_link_back(driver):
         driver.execute_script("document.getElementById('copy').click()")
         browser.wait(driver, "/^(Copied|Selected)/.test(document.getElementById('status').textContent)")
         rmse = driver.execute_script(
-            "return [...document.querySelectorAll('.shown')].flatMap((f) => [...f.querySelectorAll('tr')].map("
+            "return [...document.querySelectorAll('.shown')].flatMap("
+            "(f) => [...f.querySelectorAll('tr:not(.note)')].map("
             "(r) => [f.querySelector('b').textContent, r.cells[0].textContent, r.cells[1].firstChild.textContent]))")
         with tempfile.TemporaryDirectory() as out:
             command = shlex.split(words)[1:] + ["--seeds", "1", "--only", "metrics", "--quiet", "--out", out]
@@ -182,12 +185,30 @@ def slices_without_workers(driver):
         workers = driver.execute_script("return document.documentElement.dataset.workers")
         assert (workers == "0") == refuse, workers
         found.append(shown(driver))
+    most = 100_000  # samples of one part; a pixel of the reference counts as a thousand
+    browser.wait(driver, "!document.getElementById('pictures').textContent.includes('being measured')")  # tails
+    parts = [driver.execute_script("return Number(document.documentElement.dataset.part)")]
+    for lesson, guess in (("four-times", "2"), ("sparkle", "380,140,420,190"), ("firefly", "f"), ("furnace", "bug")):
+        browser.open_page(driver, page, f"#lesson={lesson}&answer={lesson}:{guess}",
+                          until="document.getElementById('reveal') || document.querySelector('#lessons .bad')")
+        assert not driver.find_elements(By.CSS_SELECTOR, "#lessons .bad"), browser.text(driver, "#lessons")
+        parts.append(driver.execute_script("return Number(document.documentElement.dataset.part)"))
     driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
     assert os.environ["SHOWN"] in found[0] and found[0] == found[1], found
+    assert all(0 < part <= most for part in parts), f"parts of {parts} samples, not at most {most}"
+    print(f"  without workers: parts of at most {max(parts):.0f} samples")
+
+
+def kept(driver):
+    """What the page's scripts keep, in bytes and in nodes, after what nobody holds was thrown away."""
+    driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
+    metrics = {m["name"]: m["value"] for m in driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]}
+    return metrics["JSHeapUsedSize"], metrics["Nodes"]
 
 
 def two_hundred_settings(driver):
-    """Two hundred random settings, each to its end: the second hundred takes no more memory than the first."""
+    """Two hundred random settings, each to its end: the second hundred takes no more memory than the first, neither the
+    modules of the page and of its workers, nor the scripts, nor the document."""
     draw = random.Random(7)
     browser.open_page(driver, page, small)
     names = ["uniform", "cosine", "phong", "mixture", "ggx-vndf", "mis-balance"]
@@ -196,7 +217,7 @@ def two_hundred_settings(driver):
         fill = f"&set=fill.radiance=[{0.1 * (turn // 20):.1f}, 1, 1]"  # another reference now and then
         settings.append(f"experiment=three-glosses&n=4&arms={','.join(draw.sample(names, 3))}"
                         f"&set=seed={draw.randrange(2**32)}{fill}")
-    sizes = driver.execute_async_script("""
+    run = """
         const [settings, done] = arguments, told = document.documentElement.dataset, sizes = [];
         const next = (k) => {
             if (k === settings.length) return done(sizes);
@@ -205,19 +226,35 @@ def two_hundred_settings(driver):
             const seed = /seed=[0-9]+/.exec(settings[k])[0], command = document.getElementById('command');
             const look = () => {
                 if (!told.took || !command.textContent.includes(seed)) return setTimeout(look, 5);
-                sizes.push(Number(told.memory));
+                sizes.push(told.memory.split(" ").map(Number));
                 next(k + 1);
             };
             setTimeout(look, 5);
         };
-        next(0);""", settings)
-    assert len(sizes) == 200 and max(sizes[100:]) <= max(sizes[:100]), f"memory grew: {sizes[::20]}"
+        next(0);"""
+    driver.execute_cdp_cmd("Performance.enable", {})
+    sizes, scripts = [], []
+    for half in (settings[:100], settings[100:]):
+        sizes += driver.execute_async_script(run, half)
+        scripts.append(kept(driver))
+    driver.execute_cdp_cmd("Performance.disable", {})
+    (first, nodes), (second, nodes_after) = scripts
+    own, workers = ([[one[k] for one in half] for half in (sizes[:100], sizes[100:])] for k in (0, 1))
+    print(f"  the page's module {max(own[1]) / 1e6:.2f} MB; workers {max(workers[0]) / 1e6:.2f} MB, then "
+          f"{max(workers[1]) / 1e6:.2f}; scripts {first / 1e6:.2f} MB, then {second / 1e6:.2f}; "
+          f"{nodes} nodes, then {nodes_after}")
+    assert len(sizes) == 200 and max(own[1]) <= max(own[0]), f"the page's module grew: {own[0][::20]}, {own[1][::20]}"
+    # Which worker gets which tile is chance, and so is when it takes the most. 2.5 kB a setting hold no picture.
+    assert max(workers[1]) <= max(workers[0]) + 2**20, f"the workers grew: {workers[0][::20]}, {workers[1][::20]}"
+    assert second <= first + 2**18 and nodes_after <= 1.2 * nodes, f"the scripts kept {scripts}"
     assert settings[-1].split("arms=")[1].split("&")[0] in driver.execute_script("return location.hash")
 
 
-laws = [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
-        a_lesson_is_confirmed, slices_without_workers, two_hundred_settings,
-        *reach.laws(page, pathlib.Path(page_path).resolve().parent)]
+laws = {
+    "numbers": [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
+                a_lesson_is_confirmed, slices_without_workers, two_hundred_settings],
+    "readers": [*reach.laws(page, pathlib.Path(page_path).resolve().parent), *steady.laws(page)],
+}[group]
 driver = browser.chromium()
 failed = 0
 try:

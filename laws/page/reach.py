@@ -10,6 +10,11 @@ from selenium.webdriver.common.keys import Keys
 import browser
 
 small = "#experiment=three-glosses&n=4"
+PLAY = {  # what each lesson leaves to play with
+    "sparkle": ["sphere.s", "seed"], "four-times": ["n", "seed"], "four-times-phong": ["n", "sphere.s", "seed"],
+    "firefly": ["sphere.s", "firefly_k"], "sharper": ["sphere.s"], "furnace": ["furnace-s", "furnace-n"],
+    "mixture": ["sphere.s", "sphere.rho_d", "sphere.rho_s"], "seeds": ["seed"],
+    **{name: ["check-sampler", "check-theta"] for name in ("unbiased", "chi-square", "t-test", "fault")}}
 ASKED = "document.getElementById('measure')"
 SHEET = "document.getElementById('sheet').dataset.measured"
 
@@ -38,6 +43,12 @@ def laws(page, folder):
         assert "measured here" in said, f"{lesson}: {said}"
         kind = driver.find_element(By.CSS_SELECTOR, "#reveal [data-kind]")
         assert kind.text, f"{lesson}: nothing is said of '{kind.get_attribute('data-kind')}'"
+        assert "lesson has words for" not in kind.text, f"{lesson}: '{kind.get_attribute('data-kind')}' has no sentence"
+        left = driver.execute_script(
+            "return [...document.querySelectorAll('#choices select, #knobs [data-path], #lessons section select')]"
+            ".filter((e) => e.checkVisibility()).map((e) => e.dataset.path ?? e.id)"
+            ".filter((name) => !name.startsWith('regions.'))")
+        assert left == PLAY[lesson], f"{lesson}: to play with are {left}"
         focused = driver.execute_script("return document.activeElement.id")
         assert focused == "reveal", f"{lesson}: the focus is on '{focused}'"
         if lesson == "firefly":
@@ -56,6 +67,12 @@ def laws(page, folder):
         browser.keys(driver, Keys.ENTER)
         for lesson in ids:
             answer(driver, lesson)
+            if lesson == "furnace":  # at another s
+                browser.tab_to(driver, "#furnace-s")
+                browser.keys(driver, Keys.HOME)
+                browser.tab_to(driver, "#read-again")
+                browser.keys(driver, Keys.ENTER)
+                browser.wait(driver, "/s = 8, N = 1024/.test(document.getElementById('read').textContent)")
             if lesson == "unbiased":  # `check` in the page: another w_o
                 browser.tab_to(driver, "#check-theta")
                 browser.keys(driver, Keys.HOME)
@@ -151,6 +168,25 @@ def laws(page, folder):
             seen.append(int(at) if at is not None else name)
         assert seen == order, f"reached {seen}"
 
+    def corners_are_moved(driver, box, was):
+        """By keys and by a pointer, on the bench; no corner passes the one beyond it."""
+        x0, y0, x1, y1 = was
+        corner = "#pictures .reference [data-corner='mine 2 3']"
+        driver.execute_script("document.querySelector(arguments[0]).focus()", corner)
+        for strokes, right in (((Keys.ARROW_RIGHT,), x1 + 1), ((Keys.SHIFT, Keys.ARROW_RIGHT), x1 + 11),
+                               ((Keys.ARROW_LEFT,), x1 + 10), ((Keys.SHIFT, Keys.ARROW_LEFT, Keys.ARROW_LEFT), x0 + 1)):
+            browser.keys(driver, *strokes)
+            browser.wait(driver, f"({box}).join() === '{x0},{y0},{right},{y1}' && {browser.FINISHED}")
+            assert driver.execute_script("return document.activeElement.matches(arguments[0])", corner), \
+                "the focus is lost"
+        nothing_found(driver, "a box that was drawn")
+        hand = ActionChains(driver).click_and_hold(driver.find_element(By.CSS_SELECTOR, corner))
+        hand.move_by_offset(30, -20).release().perform()
+        browser.wait(driver, f"({box})[2] > {x0 + 5} && ({box})[3] > {y1} && {browser.FINISHED}")
+        hand = ActionChains(driver).click_and_hold(driver.find_element(By.CSS_SELECTOR, corner))
+        hand.move_by_offset(-250, 150).release().perform()  # beyond the corner at the bottom left
+        browser.wait(driver, f"({box}).join() === '{x0},{y0},{x0 + 1},{y0 + 1}' && {browser.FINISHED}")
+
     def regions_are_drawn(driver):
         """A region is dragged on a picture or typed: both reach the address, the outline and the meters."""
         browser.open_page(driver, page, small)
@@ -164,6 +200,15 @@ def laws(page, folder):
         browser.keys(driver, Keys.CONTROL, "a")
         browser.keys(driver, "7", Keys.TAB)
         browser.wait(driver, f"/regions.mine.box=\\[7,/.test(decodeURIComponent(location.hash)) && {browser.FINISHED}")
+        box = ("JSON.parse(/regions.mine.box=(.[0-9, ]+.)/"
+               ".exec(decodeURIComponent(location.hash).replaceAll('+', ' '))[1])")
+        x0, y0, x1, y1 = driver.execute_script("return " + box)
+        browser.tab_to(driver, "[aria-label='region mine right']")
+        browser.keys(driver, Keys.CONTROL, "a")
+        browser.keys(driver, "3", Keys.TAB)  # left of its left end: it stops beside it
+        browser.wait(driver, f"({box}).join() === '{x0},{y0},{x0 + 1},{y1}' && {browser.FINISHED}")
+        assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
+        corners_are_moved(driver, box, (x0, y0, x0 + 1, y1))
         driver.execute_script("document.querySelector('#pictures canvas').focus()")
         browser.keys(driver, Keys.ARROW_RIGHT)
         browser.wait(driver, "document.querySelector('#pixel .disk')")

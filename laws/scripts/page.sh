@@ -53,9 +53,16 @@ if command -v WebKitWebDriver >/dev/null && command -v xvfb-run >/dev/null; then
     xvfb-run -a $python "$CRESCENT_SOURCE/laws/page/webkit.py" crescent.html "$SHOWN" >engine.log 2>&1 &
     engine=$!
 fi
-expect 0 $python "$CRESCENT_SOURCE/laws/page/page.py" crescent.html hashes.js native \
-    tiny-all.toml three-glosses-all.toml two-lamps-all.toml
+in_chromium() {
+    $python "$CRESCENT_SOURCE/laws/page/page.py" "$1" crescent.html hashes.js native \
+        tiny-all.toml three-glosses-all.toml two-lamps-all.toml
+}
+in_chromium readers >readers.log 2>&1 &  # each group waits for its own browser most of the time
+readers=$!
+expect 0 in_chromium numbers
 cat printed
+wait "$readers" || die "$(cat readers.log)"
+cat readers.log
 
 [ -n "$engine" ] || { echo 'no WebKit to try'; exit 0; }
 wait "$engine" || die "$(cat engine.log)"

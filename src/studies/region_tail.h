@@ -12,8 +12,16 @@
 
 namespace crescent::inline studies {
 
-/// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
-/// few spread. May throw Interrupted.
+/// How a box is read: n samples a pixel, about four million in all, of which the `kept` largest tell; kept is 0 where
+/// too few spread.
+struct TailPlan {
+    std::uint64_t n = 0;
+    std::size_t kept = 0;
+};
+TailPlan tail_plan(const Box& box);
+
+/// The tail index of one arm's samples X in a box, read off as tail_plan() says; none where too few spread. May throw
+/// Interrupted.
 std::optional<Tail> region_tail(const Scene& scene, const ArmInUse& arm, std::uint32_t seed, const Box& box,
     const std::string& isa, ProgressMonitor& watch);
 

@@ -1,0 +1,57 @@
+"""What stays as it is: settings when the reader goes back, places when numbers come, pixels before their reference."""
+from selenium.webdriver.common.by import By
+
+import browser
+
+small = "#experiment=three-glosses&n=4"
+
+
+def laws(page):
+    def back_and_forward(driver):
+        """Back takes back a choice, a part, a lesson; Forward does it again; the skip link changes nothing."""
+        browser.open_page(driver, page, small)
+        driver.execute_script("const n = document.getElementById('n'); n.value = 16;"
+                              "n.dispatchEvent(new Event('change'))")
+        browser.wait(driver, f"location.hash.includes('n=16') && {browser.FINISHED}")
+        for css in ("[data-tab=lessons]", "[data-lesson=firefly]"):
+            driver.find_element(By.CSS_SELECTOR, css).click()
+        for step, end, part in (
+                ("back", "n=16&part=lessons", "lessons"), ("back", "n=16", "bench"), ("back", "n=4", "bench"),
+                ("forward", "n=16", "bench"), ("forward", "n=16&part=lessons", "lessons"),
+                ("forward", "n=16&lesson=firefly", "lessons")):
+            driver.execute_script(f"history.{step}()")
+            browser.wait(driver, f"location.hash.endsWith('{end}') && !document.getElementById('{part}').hidden")
+            if part == "bench":
+                browser.wait(driver, f"document.getElementById('n').value === '{end[2:]}'")
+        assert "Who made this firefly?" in browser.text(driver, "#lessons h2")
+        address = driver.execute_script("return location.hash")
+        driver.execute_script("document.querySelector('.skip').click()")
+        assert driver.execute_script("return [location.hash, document.activeElement.id]") == [address, "main"]
+        assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
+
+    def a_pixel_before_its_reference(driver):
+        """A pixel is opened as soon as there is a picture; what the reference says of it comes when there is one."""
+        browser.open_page(driver, page, "#n=4&arms=cosine", until="document.querySelector('#pictures canvas')")
+        said, disks = driver.execute_script(
+            "document.querySelector('#pictures canvas').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));"
+            "return [document.getElementById('pixel').innerText, document.querySelectorAll('#pixel .disk').length]")
+        assert "the reference is being computed" in said and disks == 2, said
+        browser.wait(driver, "/, the reference [0-9.]+/.test(document.getElementById('pixel').textContent)")
+
+    def nothing_moves(driver):
+        """Nothing below the pictures moves while numbers come, nor after the focus went there."""
+        places = ("return ['#controls', '#hemisphere', '#copy'].map((css) => Math.round("
+                  "document.querySelector(css).getBoundingClientRect().top + scrollY))")
+        measuring = "document.getElementById('pictures').textContent.includes('being measured')"
+        browser.open_page(driver, page, small + "&set=seed=5", until="document.documentElement.dataset.first")
+        before = driver.execute_script(places)
+        browser.wait(driver, f"{browser.FINISHED} && !{measuring}")
+        assert driver.execute_script(places) == before, (before, driver.execute_script(places))
+        tops = driver.execute_async_script("""
+            const copy = document.getElementById('copy'), top = () => copy.getBoundingClientRect().top;
+            copy.focus();
+            const first = top();
+            setTimeout(() => arguments[0]([first, top()]), 400);""")
+        assert tops[0] == tops[1], f"the page scrolls on after the focus: {tops}"
+
+    return [back_and_forward, a_pixel_before_its_reference, nothing_moves]

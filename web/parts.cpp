@@ -1,0 +1,103 @@
+#include "parts.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace crescent::web {
+
+namespace {
+
+double done = 0;
+Parts left;  // the next one last
+
+std::uint64_t bad_of(const Moments& m, std::size_t count) {
+    return std::accumulate(m.bad.begin(), m.bad.begin() + static_cast<std::ptrdiff_t>(count), std::uint64_t{0});
+}
+
+/// Where a pixel of the image stands in a box.
+std::uint32_t within(std::uint32_t pixel, const TileBox& box) {
+    const auto width = static_cast<std::uint32_t>(bench().width());
+    const auto i = static_cast<int>(pixel % width), j = static_cast<int>(pixel / width);
+    return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
+}
+
+/// What the primary rays of a box meet; asked for arm after arm, they are traced once.
+std::vector<ShadingPoints>& sites_seen(const TileBox& box) {
+    Bench& b = bench();
+    const bool same = b.seen.x0 == box.x0 && b.seen.y0 == box.y0 && b.seen.x1 == box.x1 && b.seen.y1 == box.y1;
+    if (same) return b.sites;
+    b.shapes.shape.resize(b.pixels());
+    b.sites = sites_of(b.scene, box, b.shapes.shape.data());
+    b.seen = box;
+    return b.sites;
+}
+
+void next_part() {
+    ensure(!left.empty(), "a question is under way");
+    const std::function<void()> part = std::move(left.back());
+    left.pop_back();
+    if (!left.empty()) say(ordered_json{{"more", left.size()}});
+    part();
+}
+
+}  // namespace
+
+std::uint64_t pixels_of(const TileBox& b) {
+    return static_cast<std::uint64_t>(b.x1 - b.x0) * static_cast<std::uint64_t>(b.y1 - b.y0);
+}
+
+Box asked_box(const ordered_json& asked) {
+    const ordered_json& v = asked.at("box");
+    return {v.at(0).get<int>(), v.at(1).get<int>(), v.at(2).get<int>(), v.at(3).get<int>()};
+}
+
+TileBox tile_of(const Box& box) { return {box.x0, box.y0, box.x1 + 1, box.y1 + 1}; }
+
+void count_work(std::uint64_t samples) { done += static_cast<double>(samples); }
+
+std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {
+    const auto most = static_cast<int>(std::clamp<std::uint64_t>(most_of_part / cost_of_pixel, 1, 4096));
+    const int across = std::min({64, most, box.x1 - box.x0}), up = std::max(1, most / across);
+    std::vector<TileBox> all;
+    for (int y0 = box.y0; y0 < box.y1; y0 += up)
+        for (int x0 = box.x0; x0 < box.x1; x0 += across)
+            all.push_back({x0, y0, std::min(x0 + across, box.x1), std::min(y0 + up, box.y1)});
+    return all;
+}
+
+void begin(Parts parts) {
+    left = std::move(parts);
+    std::ranges::reverse(left);
+    next_part();
+}
+
+Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed) {
+    Film film(box.x1 - box.x0, box.y1 - box.y0, n);
+    count_work(pixels_of(box) * n * directions_per_sample(sampler));
+    for (ShadingPoints& sites : sites_seen(box)) {
+        const Moments moments = estimate_sites(sites, sampler, n, seed, "", nullptr);
+        const std::vector<std::uint32_t> of_image = sites.pixel;
+        for (std::uint32_t& pixel : sites.pixel) pixel = within(pixel, box);
+        resolve_film(bench().scene, sites, moments, film);
+        sites.pixel = of_image;
+        film.bad += bad_of(moments, sites.count);
+    }
+    return film;
+}
+
+void reference_over(const TileBox& box, ReferenceFilm& film) {
+    Bench& b = bench();
+    if (!b.quadrature) b.quadrature = std::make_unique<PixelQuadrature>(b.scene);
+    count_work(pixels_of(box) * reference_cost);
+    b.quadrature->write(box, film);
+}
+
+/// The next part of the question that was begun.
+CRESCENT_EXPORT(go_on)()->void { next_part(); }
+/// Samples that were drawn, or what cost as much, since the last call.
+CRESCENT_EXPORT(worked)()->double { return std::exchange(done, 0.0); }
+/// The most that one part may do, and what a pixel of a reference counts.
+CRESCENT_EXPORT(most_of_part)()->double { return static_cast<double>(most_of_part); }
+CRESCENT_EXPORT(reference_cost)()->double { return static_cast<double>(reference_cost); }
+
+}  // namespace crescent::web

@@ -1,0 +1,39 @@
+// Work in parts of bounded size: a page without workers answers to its reader between two of them. Work is counted in
+// samples of a pixel; a part of a film, of a reference, of a tail or of what a lesson asks has at most most_of_part.
+// The verdicts on a sampler (judged) are one part whatever they take.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "door.h"
+
+namespace crescent::web {
+
+inline constexpr std::uint64_t most_of_part = 100'000;
+/// What a pixel of a reference counts: no less than it takes, by the rates of both in docs/speed.md.
+inline constexpr std::uint64_t reference_cost = 1000;
+
+/// What "box": [x0, y0, x1, y1] of a request means, both ends inside.
+Box asked_box(const ordered_json& asked);
+TileBox tile_of(const Box& box);
+std::uint64_t pixels_of(const TileBox& box);
+
+/// Adds to what was done since the page asked last.
+void count_work(std::uint64_t samples);
+
+/// A box in boxes whose pixels cost at most most_of_part together, row by row from the bottom.
+std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel);
+
+using Parts = std::vector<std::function<void()>>;
+/// Does the first part of a question, says how many are left, {"more": ...}, and keeps them for go_on(); the last part
+/// says the answer. What was kept before is dropped.
+void begin(Parts parts);
+
+/// The film of a box alone: a sampler of the list at n samples.
+Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed);
+/// The pixels of a box into a reference of the scene's size.
+void reference_over(const TileBox& box, ReferenceFilm& film);
+
+}  // namespace crescent::web
