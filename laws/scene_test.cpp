@@ -95,6 +95,24 @@ TEST(Primaries, AreTheSameWhereTheyAreRemembered) {
         }
 }
 
+TEST(Primaries, OfALargeImageAreRememberedToTheLastBit) {
+    Experiment e = test::small_scene();
+    e.image.width = 1340, e.image.height = 900;
+    const Scene plain(e);
+    Scene kept = plain;
+    kept.remember_primaries();
+    for (int j = 0; j < 900; j += 7)
+        for (int i = 0; i < 1340; i += 3) {
+            const auto a = plain.primary(i, j), b = kept.primary(i, j);
+            ASSERT_EQ(a.has_value(), b.has_value()) << i << ", " << j;
+            if (!a) continue;
+            const auto all = [](const Hit& h) {
+                return std::tuple(h.shape, h.reveal, h.x.x, h.x.y, h.x.z, h.n.x, h.n.y, h.n.z, h.wo.x, h.wo.y, h.wo.z);
+            };
+            EXPECT_EQ(all(*a), all(*b)) << i << ", " << j;
+        }
+}
+
 TEST(Surfaces, TakeTheCommonExponentAndAnAlphaAsWideWhereTheyStateNone) {
     Material m;
     m.rho_d = {0.1, 0.2, 0.3}, m.rho_s = 0.4, m.brdf = lobe_named("blinn-phong");

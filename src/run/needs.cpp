@@ -9,15 +9,14 @@
 #include "base/machine.h"
 #include "films/film.h"
 #include "run/plan.h"
-#include "scene/scene.h"
 
 namespace crescent::inline runs {
 
 namespace {
 
-constexpr double for_itself = 150e6;         // code, fonts, plates, the report; measured on the gallery at 64 x 36
-constexpr double primaries_kept = 1u << 20;  // Scene::remember_primaries keeps no more
-constexpr double working_bytes = 8;          // shape map, site counts and rows on their way to a file, a pixel
+constexpr double for_itself = 150e6;  // code, fonts, plates, the report; measured on the gallery at 64 x 36
+// A pixel: Scene::remember_primaries' 4, shape map, site counts and rows on their way to a file.
+constexpr double working_bytes = 12;
 
 double megapixels_that_fit(double pixels, double needed, double available) {
     const double each = (needed - for_itself) / pixels;
@@ -42,7 +41,7 @@ std::uint64_t memory_needed(const Experiment& experiment) {
     const double again = experiment.seeds > 1 ? most : 0;
     const double a_pixel =
         film * (rungs + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
-    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + std::min(pixels, primaries_kept) * sizeof(Hit));
+    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel);
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {

@@ -50,13 +50,13 @@ Vec3d Scene::Made::nearest_seen() const {
 void Scene::remember_primaries() {
     const std::size_t width = static_cast<std::size_t>(image().width),
                       height = static_cast<std::size_t>(image().height);
-    if (width * height > std::size_t{1} << 20) return;
-    auto all = std::make_shared<std::vector<Hit>>(width * height);
+    auto all = std::make_shared<std::vector<std::int32_t>>(width * height, -1);
     parallel_for(std::size_t{0}, height, [&](std::size_t j) {
         for (std::size_t i = 0; i < width; ++i)
-            if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j))) (*all)[j * width + i] = *hit;
+            if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j)))
+                (*all)[j * width + i] = hit->shape;
     });
-    primaries_ = std::move(all);
+    primary_ = std::move(all);
 }
 
 Scene Scene::with_s(double s) const {
@@ -66,28 +66,32 @@ Scene Scene::with_s(double s) const {
 }
 
 std::optional<Hit> Scene::primary(int i, int j) const {
-    if (!primaries_) return made_->trace(i, j);
-    const Hit& hit = (*primaries_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) +
+    if (!primary_) return made_->trace(i, j);
+    const int shape = (*primary_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) +
         static_cast<std::size_t>(i)];
-    return hit.shape < 0 ? std::nullopt : std::optional<Hit>(hit);
+    if (shape < 0) return {};
+    const Vec3d d = made_->towards(i, j);
+    return made_->hit(shape, d, intersect(shapes()[static_cast<std::size_t>(shape)], camera().eye, d));
+}
+
+Vec3d Scene::Made::towards(int i, int j) const {
+    const Image& image = data.image;
+    return normalize(forward + (i + 0.5 - 0.5 * image.width) * right + (j + 0.5 - 0.5 * image.height) * up);
 }
 
 std::optional<Hit> Scene::Made::trace(int i, int j) const {
-    const Image& image = data.image;
-    const Vec3d d = normalize(forward + (i + 0.5 - 0.5 * image.width) * right + (j + 0.5 - 0.5 * image.height) * up);
-    const Vec3d eye = data.camera.eye;
+    const Vec3d d = towards(i, j);
     Intersection best;
-    Hit hit;
+    int shape = -1;
     for (std::size_t k = 0; k < data.shapes.size(); ++k) {
-        const Intersection c = intersect(data.shapes[k], eye, d);
-        if (c.order < best.order) best = c, hit.shape = static_cast<int>(k);
+        const Intersection c = intersect(data.shapes[k], data.camera.eye, d);
+        if (c.order < best.order) best = c, shape = static_cast<int>(k);
     }
-    if (hit.shape < 0) return {};
-    hit.reveal = best.reveal;
-    hit.x = eye + best.t * d;
-    hit.n = dot(best.n, d) < 0 ? best.n : -best.n;
-    hit.wo = -d;
-    return hit;
+    return shape < 0 ? std::nullopt : std::optional<Hit>(hit(shape, d, best));
+}
+
+Hit Scene::Made::hit(int shape, Vec3d d, const Intersection& met) const {
+    return {shape, met.reveal, data.camera.eye + met.t * d, dot(met.n, d) < 0 ? met.n : -met.n, -d};
 }
 
 Surface Scene::surface(const Hit& hit) const {

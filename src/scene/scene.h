@@ -2,6 +2,7 @@
 // Double precision; lengths in m. Lights are seen by sampled rays only, never by the camera.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,8 +29,8 @@ public:
 
     /// The ray through the centre of pixel (i, j), counted from the bottom-left.
     std::optional<Hit> primary(int i, int j) const;
-    /// Traces every pixel once and remembers it, for as long as the scene and its copies live; does nothing for images
-    /// of more than 2^20 pixels, which are traced tile by tile whenever they are asked for.
+    /// Traces every pixel once and remembers which shape it meets, 4 bytes a pixel, for as long as the scene and its
+    /// copies live: primary() then asks that shape alone.
     void remember_primaries();
     /// The same view with another exponent, on the shape whose s is the scene's and on all that inherit it. All but the
     /// exponent is shared.
@@ -64,13 +65,15 @@ private:
         std::ptrdiff_t s_shape = -1;  // whose exponent is the scene's; -1: none has one
 
         explicit Made(SceneData from);
+        Vec3d towards(int i, int j) const;  // pixel (i, j) from the eye, unit
         std::optional<Hit> trace(int i, int j) const;
+        Hit hit(int shape, Vec3d d, const Intersection& met) const;
         Vec3d nearest_seen() const;
     };
     std::shared_ptr<const Made> made_;
     double s_ = 0;
-    bool other_s_ = false;                               // s_ is not what the data says
-    std::shared_ptr<const std::vector<Hit>> primaries_;  // shape -1: nothing met
+    bool other_s_ = false;                                      // s_ is not what the data says
+    std::shared_ptr<const std::vector<std::int32_t>> primary_;  // a pixel's shape; -1: nothing met
 };
 
 }  // namespace crescent::inline scene
