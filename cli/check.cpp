@@ -47,7 +47,7 @@ Settings settings_of(const CheckFlags& flags) {
     return out;
 }
 
-/// x,y,z, or degrees from the normal and about it.
+/// x,y,z, or degrees from the normal and about it; on either side of the surface.
 Vec3d direction_of(const std::string& text) {
     std::vector<double> v;
     std::string rest = text;
@@ -59,15 +59,24 @@ Vec3d direction_of(const std::string& text) {
     if (v.size() > 3)
         throw InputError({"--wo " + text, 0, 0}, "expected x,y,z, or degrees from the normal and about it: 60,250");
     if (v.size() < 3) {
-        if (!(v[0] >= 0 && v[0] < 90))
-            throw InputError({"--wo " + text, 0, 0}, "expected 0 to less than 90 degrees from the normal");
+        if (!(v[0] >= 0 && v[0] <= 180 && v[0] != 90))
+            throw InputError({"--wo " + text, 0, 0}, "expected 0 to 180 degrees from the normal, and not 90");
         return tilt(v[0], v.size() > 1 ? v[1] : 0);
     }
     const Vec3d w{v[0], v[1], v[2]};
     const double size = length(w);
-    if (!(size > 0.99 && size < 1.01) || !(w.z > 0))
-        throw InputError({"--wo " + text, 0, 0}, "expected a unit vector above the horizon, z > 0");
+    if (!(size > 0.99 && size < 1.01) || w.z == 0)
+        throw InputError({"--wo " + text, 0, 0}, "expected a unit vector off the horizon, z not 0");
     return normalize(w);
+}
+
+/// A w_o under the surface is for a sampler that answers for both sides alone.
+void check_sides(const CheckFlags& flags, const Traits& traits) {
+    for (const std::string& text : flags.wo)
+        if (direction_of(text).z < 0 && traits.wo != Traits::Asked::both)
+            throw InputError({"--wo " + text, 0, 0},
+                "is under the surface, and the sampler does not answer there: 0 to less than 90 degrees from the "
+                "normal, z > 0 (a program that does says wo=both)");
 }
 
 /// The w_o of --wo; empty: the list's own.
@@ -76,7 +85,7 @@ Grid grid_of(const CheckFlags& flags) {
     for (const std::string& text : flags.wo) {
         const Vec3d w = direction_of(text);
         const auto rounded = [](double v) { return std::round(v * 1e9) / 1e9; };  // 60 for 60, not 60.00000000000001
-        const double theta = rounded(math::acos(std::min(w.z, 1.0)) * 180 / pi),
+        const double theta = rounded(math::acos(std::clamp(w.z, -1.0, 1.0)) * 180 / pi),
                      turn = rounded(math::atan2(w.y, w.x) * 180 / pi);
         out.emplace_back(theta, theta == 0 ? 0 : turn < 0 ? turn + 360 : turn);
     }
@@ -120,9 +129,16 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const ProgressMonitor& wa
         limits.stop = &watch.stop;
         if (flags.full) limits.total_seconds = 3600;
         if (flags.patience > 0) limits.total_seconds = flags.patience;
-        return trials_of_subject(start_pipe(flags.exec, limits), flags.full, grid_of(flags));
+        const auto subject = start_pipe(flags.exec, limits);
+        check_sides(flags, subject->traits());
+        return trials_of_subject(subject, flags.full, grid_of(flags));
     }
-    if (!flags.plugin.empty()) return trials_of_subject(open_plugin(flags.plugin), flags.full, grid_of(flags));
+    if (!flags.plugin.empty()) {
+        const auto subject = open_plugin(flags.plugin);
+        check_sides(flags, subject->traits());
+        return trials_of_subject(subject, flags.full, grid_of(flags));
+    }
+    check_sides(flags, {});
     if (flags.samples.empty()) return trials_of(flags.arm, settings_of(flags), flags.full, grid_of(flags));
     if (flags.wo.size() != 1 || flags.table.empty())
         throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");

@@ -138,6 +138,21 @@ TEST(Diagnosis, NamesNoConstantWhereTheRatiosSpread) {
     }
 }
 
+/// The cosine, of which one draw in ten is NaN and whose pdf is 1 % too low: below is nothing to be exchanged for.
+TEST(Diagnosis, NamesNoSideThatIsNotThere) {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d i) { return 0.99 * std::fabs(i.z) / pi * (i.z > 0); };
+    r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+        const Vec3d i = spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]);
+        return Draw{u[1] < 0.1 ? Vec3d{std::nan(""), i.y, i.z} : i, p(o, i), {}, {}};
+    };
+    const Judgement j = judged(r, 45);
+    ASSERT_EQ(j.verdicts[0].name, "valid");
+    EXPECT_EQ(j.verdicts[0].state, State::wrong);
+    EXPECT_NE(j.verdicts[0].say.find("%, cannot be used: they are NaN"), std::string::npos) << j.verdicts[0].say;
+    for (const Verdict& v : j.verdicts) EXPECT_EQ(v.say.find("exchanged"), std::string::npos) << v.say;
+}
+
 TEST(Diagnosis, NamesTheChannelWhoseWeightIsOff) {
     Recipe r{"cosine in colour", "", {}, {}, {}};
     r.traits.channels = 3;

@@ -34,6 +34,13 @@ std::string cause_of(const std::string& fault) {
         {"Fresnel left out of the pdf", "Fresnel"}, {"lobe chosen by a half, weighed by Fresnel", "Fresnel"},
         {"channels of the weight swapped", "channels 1 and 3 exchanged"},
         {"luminance for every channel of the weight", "luminance in every channel"},
+        {"Fresnel twice in the weight", "Fresnel"}, {"Fresnel left out of f", "Fresnel"},
+        {"Fresnel at n for the half vector in the weight", "Fresnel at n over Fresnel at m"},
+        {"height-correlated shadowing in f alone", "G2 over G1 G1"},
+        {"chooser's Fresnel at w_i in the pdf", "the chooser's 1 - Fresnel at w_i over that at w_o"},
+        {"passes through the coat left out of f", "both passes through a coat"},
+        {"one pass through the coat left out of f", "the pass of w_i through a coat"},
+        {"w_o.m for w_i.m in the Jacobian of refraction", "(w_o.m) / (w_i.m)"},
         {"s+1 for s+2 in the BRDF", "a constant"}, {"non-reciprocal f", "a constant"},  // at one w_o
     };
     const auto at = causes.find(fault);
@@ -44,6 +51,7 @@ std::vector<PlantedFault> planted_faults(bool full) {
     std::vector<PlantedFault> out = arm_faults(full);
     for (PlantedFault& fault : out) fault.cause = cause_of(fault.name);
     for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
+    for (PlantedFault& f : boundary_faults()) out.push_back(std::move(f));
     return out;
 }
 

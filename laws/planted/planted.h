@@ -22,6 +22,8 @@ std::vector<PlantedFault> planted_faults(bool full);
 std::vector<PlantedFault> arm_faults(bool full);
 /// Those of samplers as renderers have them, which are among the planted faults.
 std::vector<PlantedFault> renderer_faults();
+/// Those of surfaces under a smooth boundary, which are among the planted faults too.
+std::vector<PlantedFault> boundary_faults();
 /// Faults of other families, kept apart: by them it is measured how often a cause is named rightly.
 std::vector<PlantedFault> held_out_faults();
 std::string cause_of(const std::string& fault);

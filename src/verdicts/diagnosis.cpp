@@ -40,7 +40,16 @@ struct Fitted {
     double constant = 1, left = 0, all = 0;  // trimmed means of |log|
 };
 
+/// Whether a factor with the constant 1 explains most of a few ratios: what does not is not tried on all.
+bool may_be_whole(const Factor& factor, std::span<const Ratio> ratios) {
+    std::size_t inside = 0, tried = 0;
+    for (std::size_t i = 0; i < ratios.size(); i += 1 + ratios.size() / 64, ++tried)
+        inside += std::fabs(ratios[i].value / factor.g(ratios[i].wi) - 1) <= close + 2 * ratios[i].error;
+    return 4 * inside >= 3 * tried;
+}
+
 Fitted fit(const Factor& factor, std::span<const Ratio> ratios) {
+    if (factor.whole && !may_be_whole(factor, ratios)) return {};
     std::vector<double> logs, raw, errors;
     for (const Ratio& r : ratios) {
         const double g = factor.g(r.wi);
@@ -57,14 +66,13 @@ Fitted fit(const Factor& factor, std::span<const Ratio> ratios) {
         trimmed(sizes(logs, middle)), all};
 }
 
-/// Nothing differs that could be explained: half of all ratios are one.
+}  // namespace
+
 bool mostly_one(std::span<const Ratio> ratios) {
     std::size_t one = 0;
     for (const Ratio& r : ratios) one += std::fabs(r.value - 1) <= 1e-3 + 2 * r.error;
     return 2 * one >= ratios.size();
 }
-
-}  // namespace
 
 double may_differ(double all, double error) { return std::min(close, 0.02 * all) + std::min(2 * error, 0.1 * all); }
 
@@ -88,46 +96,6 @@ std::vector<Ratio> usable(std::vector<Ratio> all) {
     std::erase_if(all, [](const Ratio& r) { return !(r.value > 0) || !std::isfinite(r.value) || r.error > 0.05; });
     return all;
 }
-
-/// The frames that are taken for one another.
-struct Turn {
-    const char* name;
-    Vec3d (*of)(Vec3d);
-};
-constexpr Turn turns[] = {{"x and y exchanged", [](Vec3d w) { return Vec3d{w.y, w.x, w.z}; }},
-    {"the frame mirrored in x", [](Vec3d w) { return Vec3d{-w.x, w.y, w.z}; }},
-    {"the frame mirrored in y", [](Vec3d w) { return Vec3d{w.x, -w.y, w.z}; }},
-    {"the azimuth turned by 180 deg", [](Vec3d w) { return Vec3d{-w.x, -w.y, w.z}; }},
-    {"the azimuth turned by 90 deg", [](Vec3d w) { return Vec3d{-w.y, w.x, w.z}; }},
-    {"the azimuth turned by -90 deg", [](Vec3d w) { return Vec3d{w.y, -w.x, w.z}; }},
-    {"above and below exchanged", [](Vec3d w) { return Vec3d{w.x, w.y, -w.z}; }}};
-
-/// What is drawn is pdf(w) of another w_o, another w_i or both.
-std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::span<const WarpPoint> points) {
-    const std::size_t n = std::min<std::size_t>(points.size(), 256);
-    for (const Turn& turn : turns)
-        for (int which = 1; which < 4; ++which) {
-            std::vector<Pair> at;
-            for (std::size_t i = 0; i < n; ++i)
-                at.push_back({which & 1 ? turn.of(work.trial.wo) : work.trial.wo,
-                    which & 2 ? turn.of(points[i].wi) : points[i].wi});
-            std::vector<double> p(n);
-            work.subject.pdf(technique, at, p);
-            std::size_t same = 0;
-            for (std::size_t i = 0; i < n; ++i)
-                same += std::fabs(p[i] * points[i].jacobian - 1) <= close + 2 * points[i].error;
-            if (static_cast<double>(same) < enough * static_cast<double>(n)) continue;
-            const char* of[] = {"", " for w_o", " for w_i", ""};
-            const std::string name = std::string(turn.name) + of[which];
-            return Diagnosis{name, 1, static_cast<double>(same) / static_cast<double>(n),
-                "what is drawn is pdf(w) with " + name, {}};
-        }
-    return {};
-}
-
-}  // namespace
-
-namespace {
 
 /// "eta^2" where a constant across the surface is a power of it.
 void name_eta(const TrialContext& work, Diagnosis& d) {
@@ -173,17 +141,20 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
         if (std::optional<Diagnosis> found = explain_one_side(work, ratios)) return found;
     if (mostly_one(ratios)) return {};
     std::optional<Diagnosis> best;
-    for (const Factor& factor : usual_factors(work)) {
+    std::vector<Factor> factors = usual_factors(work);
+    add_whole_factors(factors, work);
+    for (const Factor& factor : factors) {
+        const bool constant = best && best->name == "a constant";
+        if (constant && !factor.whole) continue;
+        if (constant && !name_of_constant(work, best->constant).empty()) break;
         const Fitted f = fit(factor, ratios);
         if (!f.fits || !(f.all > 0)) continue;
+        if (factor.whole && std::fabs(math::log(f.constant)) > may_differ(f.all, 0)) continue;
         const Diagnosis now{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
             factor_text(work, factor.name, f.constant), factor.g};
         const bool plain = std::fabs(now.constant - 1) < close;
-        if (!best ||
-            (plain && factor.name != "a constant" && std::fabs(best->constant - 1) >= close &&
-                best->name != "a constant"))
+        if (!best || constant || (plain && factor.name != "a constant" && std::fabs(best->constant - 1) >= close))
             best = now;
-        if (factor.name == "a constant") break;
     }
     if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close) return {};
     return best;
@@ -261,7 +232,7 @@ void tell(const TrialContext& work, Verdict& v, const std::optional<Diagnosis>& 
 }  // namespace
 
 void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
-    if (work.scatter().any()) return;  // ratios of single answers say nothing
+    if (work.scatter().any() || !work.traits.has_pdf) return;  // ratios of single answers say nothing
     std::string first;
     std::optional<Diagnosis> density, identity;
     for (Verdict& v : verdicts) {

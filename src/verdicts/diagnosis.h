@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "verdicts/ordered.h"
 #include "verdicts/trial_context.h"
 
 namespace crescent::inline verdicts {
@@ -19,6 +20,7 @@ struct Ratio {
 struct Factor {
     std::string name;  // "cos theta_i"
     std::function<double(Vec3d wi)> g;
+    bool whole = false;  // it explains the ratios with the constant 1 alone
 };
 
 struct Diagnosis {
@@ -31,6 +33,8 @@ struct Diagnosis {
 
 /// The factors that people forget, double or exchange, at the work's w_o.
 std::vector<Factor> usual_factors(const TrialContext& work);
+/// Fresnel where it does not belong, a coat's passes, G2 for G1 G1: whole factors, see fresnel_factors.cpp.
+void add_whole_factors(std::vector<Factor>& out, const TrialContext& work);
 /// Those of what is reflected alone (across: of what is refracted), where the index is told.
 std::vector<Factor> factors_of_side(const TrialContext& work, bool across);
 /// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows.
@@ -46,6 +50,10 @@ double may_differ(double all, double error);
 std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique);
 /// ": what is drawn is pdf(w) times 0.924 on average, 0.873 to 0.975 at nine of ten directions"; "" where they agree.
 std::string spread_told(const TrialContext& work, Verdict& v);
+/// Nothing differs that could be explained: half of all ratios are one.
+bool mostly_one(std::span<const Ratio> ratios);
+/// What is drawn is pdf(w) of another w_o, another w_i or both, at nine of ten points of the warp.
+std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::span<const WarpPoint> points);
 /// What is drawn against pdf(w), by the warp's Jacobian, or by bins where there is none: a factor, or another frame.
 std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique);
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique);

@@ -16,14 +16,14 @@ constexpr double close = 2e-3;  // relative
 
 /// Draws in each bin weighed by 1 / g, beside the mass that p has there.
 struct Binned {
-    std::vector<double> sum, squares, count;
+    std::vector<double> sum, squares, count, variance;
     double constant = 1, relative_se = 0, statistic = 0, degrees = 0, off = 0;
 };
 
 Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
     Binned out;
     out.sum.resize(d.mass.bins.size());
-    out.squares = out.count = out.sum;
+    out.squares = out.count = out.variance = out.sum;
     const double n = static_cast<double>(b.draws.size());
     double total = 0, squares = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
@@ -42,9 +42,9 @@ Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
     for (std::size_t k = 0; k < out.sum.size(); ++k) {
         if (out.count[k] < 10 && d.mass.bins[k] * n < 10) continue;
         const double seen = out.sum[k] / out.constant, due = d.mass.bins[k];
-        const double variance =
+        out.variance[k] =
             std::max(out.squares[k] / sqr(out.constant), due / n) + sqr(3 * d.mass.bin_errors[k]) + sqr(close * due);
-        out.statistic += sqr(seen - due) / variance;
+        out.statistic += sqr(seen - due) / out.variance[k];
         out.off += std::fabs(seen - due);
         ++out.degrees;
     }
@@ -82,6 +82,26 @@ ByWarp look_at_warp(const TrialContext& work, int technique, const Binned& as_is
     return out;
 }
 
+/// Along rings and along sectors, where a spread shows that hides among all bins: draws over c p are one there too.
+bool is_even(const Density& d, const Binned& by) {
+    constexpr double least_p = 0.01;
+    const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = by.sum.size() / sectors;
+    const auto agrees = [&](std::size_t groups, auto&& group_of) {
+        std::vector<double> off(groups), variance(groups);
+        for (std::size_t k = 0; k < by.sum.size(); ++k) {
+            if (!(by.variance[k] > 0)) continue;
+            off[group_of(k)] += by.sum[k] / by.constant - d.mass.bins[k];
+            variance[group_of(k)] += by.variance[k];
+        }
+        double statistic = 0, degrees = -1;
+        for (std::size_t g = 0; g < groups; ++g)
+            if (variance[g] > 0) statistic += sqr(off[g]) / variance[g], ++degrees;
+        return degrees < 1 || chi_squared_p(statistic, degrees) > least_p;
+    };
+    return agrees(rings, [&](std::size_t k) { return k / sectors; }) &&
+        agrees(sectors, [&](std::size_t k) { return k % sectors; });
+}
+
 /// Bins tell a constant from what varies about it only so far: a spread that adds half to their chi-square would show.
 bool bins_show_a_constant(const TrialContext& work, int technique, const Binned& as_is) {
     const double n = static_cast<double>(work.first(technique).draws.size());
@@ -110,7 +130,8 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
                 by.off > 0.1 * as_is.off + 2 / std::sqrt(static_cast<double>(b.draws.size()))))
             continue;
         if (!shape && factor.name != "a constant") continue;
-        if (!shape && (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by)))
+        if (!shape &&
+            (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by) || !is_even(d, by)))
             return {};
         return Diagnosis{factor.name, by.constant, shape ? std::max(1 - by.off / as_is.off, 0.0) : 1,
             "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant), factor.g};

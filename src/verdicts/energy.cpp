@@ -1,7 +1,8 @@
 // Whether f creates energy: what it reflects and lets through of an even light, by channel. Where the index is told,
 // what comes through is counted as power: radiance scales by (n_o / n_i)^2 across the surface, importance not at all
 // (Veach 1997, section 5.2; Walter et al. 2007, section 5.2). Where it is not, an albedo over the whole sphere may
-// exceed 1 and be right (transmission.cpp).
+// exceed 1 and be right (transmission.cpp). What a delta part sends straight on, towards -w_o, no index scales, and a
+// phase function has none.
 #include <cmath>
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@ constexpr double allowed = 1 + 1e-4;
 /// What one channel gives to the upper and the lower half, and what that is known to.
 struct Given {
     double above = 0, below = 0, error = 0;
+    double straight = 0;  // of delta parts at -w_o, which cross no boundary that scales them: not in the halves
 };
 
 struct Scales {
@@ -25,7 +27,7 @@ struct Scales {
 };
 
 Scales scales_of(const TrialContext& work, int channel) {
-    if (!work.traits.eta) return {};
+    if (!work.traits.eta) return {1, is_phase_function(work)};
     const double eta2 = sqr(channel_of(*work.traits.eta, channel));
     if (work.traits.importance) return {1, true};
     return {work.trial.wo.z > 0 ? eta2 : 1 / eta2, true};
@@ -39,23 +41,31 @@ bool too_much(const TrialContext& work, const Given& g, int channel, const char*
         v.say = fmt::format("The surface reflects {:.6f} of what it gets{}: f creates energy.", back, tag);
         return true;
     }
+    if (g.straight > 0 && back + g.straight - g.error > allowed) {
+        v.state = State::wrong;
+        v.say = fmt::format(
+            "The surface reflects {:.6f} of what it gets and lets {:.6f} straight through{}: it creates energy.", back,
+            g.straight, tag);
+        return true;
+    }
     const Scales scale = scales_of(work, channel);
     if (!scale.known || !work.whole()) return false;
-    const double power = back + scale.through * through;
+    const double power = back + g.straight + scale.through * through;
     v.evidence[fmt::format(
         "power{}", channel < 0 || work.traits.channels == 1 ? "" : fmt::format("_{}", channel + 1))] = power;
     if (power - (1 + scale.through) * g.error <= allowed) return false;
     v.state = State::wrong;
-    v.say = fmt::format(
-        "Of the power that arrives the surface reflects {:.6f} and lets {:.6f} through{}, by the index that is told: f "
-        "creates energy, or scales by eta^2 the wrong way.",
-        back, scale.through * through, tag);
+    v.say = fmt::format("Of the power that arrives the surface reflects {:.6f} and lets {:.6f} through{}{}.", back,
+        g.straight + scale.through * through, tag,
+        work.traits.eta ? ", by the index that is told: f creates energy, or scales by eta^2 the wrong way"
+                        : ": f |cos| creates energy, as a phase function that integrates to more than 1");
     return true;
 }
 
 /// Where the index is not known: more than there is, in both ways of counting.
 bool too_much_either_way(const TrialContext& work, const Given& g, Verdict& v) {
-    if (!work.whole() || work.trial.wo.z < 0 || work.traits.eta || g.above + g.below - g.error <= allowed) return false;
+    if (!work.whole() || work.trial.wo.z < 0 || work.traits.eta || g.above + g.below + g.straight - g.error <= allowed)
+        return false;
     for (Vec3d b : drawn_below(work)) {
         const Integral through = from_below(work, b);
         v.evidence["from_below"] = through.value;
@@ -64,10 +74,21 @@ bool too_much_either_way(const TrialContext& work, const Given& g, Verdict& v) {
         v.say = fmt::format(
             "The surface gives {:.6f} of an even light from both sides, and light from ({:.4g}, {:.4g}, {:.4g}) below "
             "comes up as {:.6f} of itself: f creates energy, whatever the indices are.",
-            g.above + g.below, b.x, b.y, b.z, through.value);
+            g.above + g.below + g.straight, b.x, b.y, b.z, through.value);
         return true;
     }
     return false;
+}
+
+/// Of delta parts at -w_o; at the normal a smooth boundary refracts there too.
+Vec3d straight_through(const TrialContext& work, const DeltaParts& deltas) {
+    constexpr double same = 1e-5, slanted = 0.01;
+    const Vec3d wo = work.trial.wo;
+    Vec3d sum{};
+    if (std::sqrt(wo.x * wo.x + wo.y * wo.y) < slanted || !work.whole()) return sum;
+    for (const DeltaPart& p : deltas.parts)
+        if (length(p.wi + wo) < same) sum = sum + p.weight * p.q;
+    return sum;
 }
 
 Given given(const TrialContext& work, const Integral& albedo, const DeltaParts& deltas, int channel) {
@@ -75,6 +96,8 @@ Given given(const TrialContext& work, const Integral& albedo, const DeltaParts& 
     Given out{work.whole() ? albedo.bins[0] : albedo.value, work.whole() ? albedo.bins[1] : 0, albedo.error};
     out.above += of(deltas.energy(1));
     if (work.whole()) out.below += of(deltas.energy(-1));
+    out.straight = of(straight_through(work, deltas));
+    (work.trial.wo.z > 0 ? out.below : out.above) -= out.straight;
     return out;
 }
 
@@ -84,6 +107,7 @@ bool creates_energy(const TrialContext& work, const Integral& albedo, Verdict& v
     const DeltaParts deltas = delta_parts(work, work.first(0));
     const Given all = given(work, albedo, deltas, -1);
     if (work.whole()) v.evidence["albedo_above"] = all.above, v.evidence["albedo_below"] = all.below;
+    if (all.straight > 0) v.evidence["straight_through"] = all.straight;
     if (!deltas.parts.empty()) v.evidence["albedo_of_delta_parts"] = luminance(deltas.energy(0));
     if (work.traits.channels == 3) {
         const char* names[] = {" in the first channel", " in the second channel", " in the third channel"};

@@ -97,6 +97,8 @@ std::vector<Factor> factors_of_side(const TrialContext& work, bool across) {
         add(out, "4 (w_o.m)", [om](Vec3d w) { return 4 * om(w); });
         return out;
     }
+    add(out, "(w_o.m) / (w_i.m)",
+        [b = *b, om](Vec3d w) { return om(w) / std::max(std::fabs(dot(w, b.half(w))), 1e-12); });
     add(out, "the Jacobian of refraction", [b = *b](Vec3d w) { return b.refracted(w); });
     add(out, "the Jacobian of refraction for that of reflection",
         [b = *b, om](Vec3d w) { return 4 * om(w) * b.refracted(w); });
@@ -118,6 +120,33 @@ std::vector<Factor> usual_factors(const TrialContext& work) {
     return out;
 }
 
+namespace {
+
+/// "1/pi", "1/(2 pi)", "(s+1)/(s+2)" for (s+2)/(s+1), "cos theta_o" for 1/(cos theta_o).
+std::string inverse_of(const std::string& name) {
+    const auto bare = [](const std::string& s) {
+        return s.size() > 2 && s.front() == '(' && s.find(')') == s.size() - 1 ? s.substr(1, s.size() - 2) : s;
+    };
+    const std::size_t slash = name.find('/');
+    if (slash == std::string::npos) return "1/" + (name.find(' ') == std::string::npos ? name : "(" + name + ")");
+    const std::string over = name.substr(0, slash), under = name.substr(slash + 1);
+    return over == "1" ? bare(under) : under + "/" + over;
+}
+
+/// What is not drawn as a density is taken for part of it, or taken off twice. The bins know a constant to 0.3 %.
+std::string name_of_share(const Density& d, double c) {
+    constexpr double close = 3e-3;
+    const double above = 1 - d.nothing;
+    const char* share = d.delta == 0 ? "the share of draws that are not nothing"
+        : d.delta == d.nothing       ? "the share of draws that are of no delta part"
+                                     : "the share of draws that are neither nothing nor of a delta part";
+    if (!(above > 0.02 && above < 0.98)) return "";
+    if (std::fabs(c * above - 1) < close) return std::string("1 / ") + share;
+    return std::fabs(c / above - 1) < close ? share : "";
+}
+
+}  // namespace
+
 std::string name_of_constant(const TrialContext& work, double c) {
     std::vector<std::pair<std::string, double>> known = {
         {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}};
@@ -131,20 +160,12 @@ std::string name_of_constant(const TrialContext& work, double c) {
     for (const auto& [name, eta] :
         {std::pair("eta^2 with eta = 1.5", 1.5), {"eta^2 with eta = 1.33", 1.33}, {"eta^2 with eta = 1.8", 1.8}})
         known.push_back({name, eta * eta});
-    const std::size_t techniques = static_cast<std::size_t>(work.subject.techniques());
-    for (std::size_t t = 0; t < techniques; ++t) {
-        const SampleBatch& b = work.first(static_cast<int>(t));
-        const double above = 1 - static_cast<double>(b.nothing) / static_cast<double>(b.draws.size());
-        if (above > 0.02 && above < 0.98 && std::fabs(c * above - 1) < 0.01) return "1 / the share above the horizon";
-        if (above > 0.02 && above < 0.98 && std::fabs(c / above - 1) < 0.01) return "the share above the horizon";
-    }
+    for (int t = 0; t < work.subject.techniques(); ++t)
+        if (const std::string share = name_of_share(work.density(t), c); !share.empty()) return share;
     for (const auto& [name, value] : known) {
         if (std::fabs(value - 1) < 1e-3) continue;
         if (std::fabs(c / value - 1) < 1e-3) return name;
-        if (std::fabs(c * value - 1) < 1e-3)
-            return name.find('/') == std::string::npos
-                ? "1/" + (name.find(' ') == std::string::npos ? name : "(" + name + ")")
-                : "1/(" + name + ")";
+        if (std::fabs(c * value - 1) < 1e-3) return inverse_of(name);
     }
     return "";
 }

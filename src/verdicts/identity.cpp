@@ -188,11 +188,11 @@ bool answers_are_wrong(const TrialContext& work, int t, Verdict& v) {
     if (work.traits.has_pdf && !scatter.pdf() && tell(pdf_twice(work, t), "The pdf that came with the draw", "pdf(w)"))
         return true;
     if (!work.subject.has_f()) return false;
-    if (scatter.any()) return weights_are_off(work, t, v);
+    if (scatter.any() || !work.traits.has_pdf) return weights_are_off(work, t, v);
     Verdict before = v;
-    for (int c = 0; c < 3 && work.traits.channels == 3 && work.traits.has_pdf; ++c)
+    for (int c = 0; c < 3 && work.traits.channels == 3; ++c)
         if (tell(channel_twice(work, b, c), fmt::format("The weight of channel {}", c + 1), "f cos / p of it")) break;
-    if (work.traits.has_pdf && work.traits.channels == 1) tell(weight_twice(work, b, false), "The weight", "f cos / p");
+    if (work.traits.channels == 1) tell(weight_twice(work, b, false), "The weight", "f cos / p");
     if (v.state == State::wrong && work.traits.own_random) {  // its weights may be estimates
         v = std::move(before);
         v.evidence["weights_are_estimates"] = true;
@@ -205,7 +205,12 @@ bool answers_are_wrong(const TrialContext& work, int t, Verdict& v) {
 std::string told_of(const TrialContext& work, bool estimated_weights) {
     const Scatter& scatter = work.scatter();
     const char* in_every = work.traits.channels == 3 ? " in every channel" : "";
-    if (!work.traits.has_pdf) return "The same u gives the same answer";
+    if (!work.traits.has_pdf)
+        return std::string(work.traits.own_random ? "There is nothing that a draw says twice"
+                                                  : "The same u gives the same answer") +
+            (work.subject.has_f() && work.weighs() && work.traits.channels == 3
+                    ? "; the mean weight of every channel is the integral of f |cos|"
+                    : "");
     std::string out = scatter.pdf()
         ? "pdf(w) is a random estimate, so that neither the pdf with a draw nor the warp was "
           "held against it; `normalised` and `density` tell of its mean"
@@ -281,8 +286,11 @@ Verdict judge(TrialContext& work) {
     return v;
 }
 
-/// Weights that are estimates, in the mean.
-std::uint64_t tests(const Trial& t) { return t.subject->has_f() && t.subject->traits().own_random ? 1 : 0; }
+/// Weights that are estimates, or have no pdf beside them, in the mean.
+std::uint64_t tests(const Trial& t) {
+    const Traits traits = t.subject->traits();
+    return t.subject->has_f() && (traits.own_random || !traits.has_pdf) ? 1 : 0;
+}
 
 }  // namespace
 

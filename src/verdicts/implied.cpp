@@ -64,6 +64,12 @@ Verdict implied_density(TrialContext& work, Verdict v) {
         "There is no pdf(w) to hold the draws against. What they imply stands in the evidence, by {}: highest in the "
         "bin about ({:.4g}, {:.4g}, {:.4g}), {:.4g} 1/sr.",
         smooth ? "1/|Jacobian| of the warp and by bins" : "bins", at.x, at.y, at.z, highest);
+    if ((work.subject.has_f() && work.weighs()) || b.deltas == b.draws.size()) return v;
+    const char* has = !work.weighs() ? "neither a pdf(w) nor a weight with the draws" : "no pdf(w), and no f";
+    v.state = State::inconclusive;
+    v.say += fmt::format(" There is {}: whether the draws are right could not be examined.", has);
+    v.settle = work.weighs() ? "f(w), which the mean of the weights is held against."
+                             : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
     return v;
 }
 

@@ -149,9 +149,10 @@ void complete(const Trial& trial, Outcome& out, Compared& compared, std::size_t 
 }  // namespace
 
 Cut cut_by(const SubjectFault& fault) {
-    if (dynamic_cast<const SubjectTooSlow*>(&fault)) return {State::inconclusive, fault.what(), fault.what(), {}};
+    const auto nothing = nlohmann::ordered_json::object();
+    if (dynamic_cast<const SubjectTooSlow*>(&fault)) return {State::inconclusive, fault.what(), fault.what(), nothing};
     const std::string rest = "It could not be asked: the sampler broke off before.";
-    if (dynamic_cast<const SubjectGone*>(&fault)) return {State::error, rest, rest, {}};
+    if (dynamic_cast<const SubjectGone*>(&fault)) return {State::error, rest, rest, nothing};
     return {
         State::error, fmt::format("The sampler broke off: {}.", fault.what()), rest, {{"first_fault", fault.what()}}};
 }

@@ -26,6 +26,7 @@ Verdict judge(TrialContext& work) {
     v.evidence["quadrature_error"] = expected.error;
     v.evidence["skewness"] = s.skew;
     if (!mean_is_testable(s, tail_of(x), work.trial.theory)) {
+        if (!work.traits.has_pdf && directions_are_off(work, v)) return v;
         v.state = State::inconclusive;
         v.settle = "What settles the tail.";
         v.say = fmt::format(
@@ -44,6 +45,7 @@ Verdict judge(TrialContext& work) {
         return v;
     }
     const bool wrong = mean_fails(work, p, expected, false);
+    if (!wrong && !work.traits.has_pdf && directions_are_off(work, v)) return v;
     v.state = wrong ? State::wrong : State::right;
     v.say = fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: ", s.mean, expected.value);
     const std::string off = expected.value > 0 ? fmt::format("{:+.3g} %", 100 * (s.mean / expected.value - 1))
@@ -55,11 +57,14 @@ Verdict judge(TrialContext& work) {
             " The estimator is biased.";
     else if (z) v.say += fmt::format("z = {:.2f}, p = {:.3g}.", *z, p);
     else v.say += fmt::format("{} where every weight is alike.", off);
+    if (!wrong && !work.traits.has_pdf)
+        v.say += fmt::format(" So it is under {} lights from other sides.", v.evidence["lights"].get<std::size_t>());
     if (wrong && weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
     return v;
 }
 
-std::uint64_t tests(const Trial& t) { return t.subject->has_f() ? 1 : 0; }
+/// Without a pdf(w) under lights from several sides too.
+std::uint64_t tests(const Trial& t) { return t.subject->has_f() ? t.subject->traits().has_pdf ? 1 : 2 : 0; }
 
 }  // namespace
 

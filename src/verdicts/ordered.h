@@ -92,6 +92,13 @@ Verdict implied_density(TrialContext& work, Verdict v);
 /// More than there is, granted what eta^2 may do to what comes through; says so. See energy.cpp.
 bool creates_energy(const TrialContext& work, const Integral& albedo, Verdict& v);
 
+/// f |cos| depends on the angle between w_o and w_i alone, on both sides of the surface; see phase.cpp.
+bool is_phase_function(const TrialContext& work);
+/// A delta part goes where neither the index that is told nor a thin wall lets it through; says so. See snell.cpp.
+bool refracts_elsewhere(const TrialContext& work, Verdict& v);
+/// Weights without a pdf whose mean under a light from one side is not the integral; says so. See mean_lights.cpp.
+bool directions_are_off(const TrialContext& work, Verdict& v);
+
 /// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See
 /// transmission.cpp.
 Integral from_below(const TrialContext& work, Vec3d b);

@@ -15,6 +15,7 @@ namespace {
 
 struct Reciprocity {
     std::size_t tried = 0, broken = 0, across = 0;
+    bool phase = false;  // f |cos| is what is reciprocal
     Pair worst{};
     double one = 0, other = 0;  // f(a, b), and what f(b, a) makes of it
     int channel = 0;
@@ -34,7 +35,7 @@ Vec3d at_large(std::uint64_t i, std::uint32_t which, bool both) {
 
 /// Pairs at large, and pairs of w_o with what the sampler draws, where a lobe is high. Those across the surface only
 /// where w_o below it is answered for.
-std::vector<Pair> pairs_of(const TrialContext& work) {
+std::vector<Pair> pairs_of(const TrialContext& work, bool phase) {
     const bool both = work.traits.wo == Traits::Asked::both;
     std::vector<Pair> pairs;
     for (std::uint64_t i = 0; i < 256; ++i) pairs.push_back({at_large(i, 0, both), at_large(i, 1, both)});
@@ -42,7 +43,8 @@ std::vector<Pair> pairs_of(const TrialContext& work) {
         if (pairs.size() >= 768) break;
         if (d.pdf > 0 && (d.wi.z > 0.02 || (both && d.wi.z < -0.02))) pairs.push_back({work.trial.wo, normalize(d.wi)});
     }
-    if (!work.traits.eta)  // how f scales across the surface is not known; a w_o below may be asked of any sampler
+    if (!work.traits.eta &&
+        !phase)  // how f scales across the surface is not known; a w_o below may be asked of any sampler
         std::erase_if(pairs, [](const Pair& p) { return p.wo.z * p.wi.z < 0; });
     return pairs;
 }
@@ -50,7 +52,7 @@ std::vector<Pair> pairs_of(const TrialContext& work) {
 /// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 = (n_below / n_above)^2 from above to
 /// below, for radiance, and one over that for importance (Veach 1997, (5.14)).
 double due_ratio(const TrialContext& work, const Pair& p, int channel) {
-    if (p.wo.z * p.wi.z > 0) return 1;
+    if (p.wo.z * p.wi.z > 0 || !work.traits.eta) return 1;
     const Vec3d eta = *work.traits.eta;
     const double eta2 = sqr(channel == 0 ? eta.x : channel == 1 ? eta.y : eta.z);
     return (p.wo.z > 0) == !work.traits.importance ? eta2 : 1 / eta2;
@@ -71,7 +73,8 @@ std::vector<Vec3d> f_of(const TrialContext& work, const std::vector<Pair>& pairs
 Reciprocity reciprocity(const TrialContext& work) {
     Reciprocity out;
     if (!work.traits.reciprocal || work.scatter().f()) return out;
-    std::vector<Pair> pairs = pairs_of(work), swapped;
+    out.phase = is_phase_function(work);
+    std::vector<Pair> pairs = pairs_of(work, out.phase), swapped;
     for (const Pair& p : pairs) swapped.push_back({p.wi, p.wo});
     const std::vector<Vec3d> one = f_of(work, pairs), two = f_of(work, swapped);
     double worst = 0;
@@ -85,24 +88,26 @@ Reciprocity reciprocity(const TrialContext& work) {
         }
         bool broken = false;
         for (int c = 0; c < work.traits.channels; ++c) {
-            const double k = due_ratio(work, pairs[i], c);
+            const double back = out.phase ? std::fabs(pairs[i].wo.z) : 1;
+            const double k = out.phase ? std::fabs(pairs[i].wi.z) : due_ratio(work, pairs[i], c);
             const double a = k *
                 (c == 0          ? one[i].x
                         : c == 1 ? one[i].y
                                  : one[i].z),
-                         b = c == 0 ? two[i].x
-                : c == 1            ? two[i].y
-                                    : two[i].z;
+                         b = back *
+                (c == 0          ? two[i].x
+                        : c == 1 ? two[i].y
+                                 : two[i].z);
             const double off = std::fabs(a - b), size = std::max(std::fabs(a), std::fabs(b));
             if (off <= 1e-4 * size + 1e-30) continue;
             const double loose = k * f_conditioning(work, pairs[i].wo, pairs[i].wi, a / k, c) +
-                f_conditioning(work, pairs[i].wi, pairs[i].wo, b, c);
+                back * f_conditioning(work, pairs[i].wi, pairs[i].wo, b / back, c);
             if (off <= 1e-4 * size + loose) continue;
             broken = true;
             if (off / size <= worst) continue;
             worst = off / size;
             out.worst = pairs[i];
-            out.one = a / k;
+            out.one = out.phase ? a : a / k;
             out.other = b;
             out.channel = c;
         }
@@ -131,8 +136,9 @@ std::string missing_across(const TrialContext& work, const Reciprocity& r) {
 }
 
 Verdict judge(TrialContext& work) {
-    if (!work.subject.has_f()) return work.verdict("physics", State::skipped, "There is no BRDF.");
     Verdict v = work.verdict("physics", State::right, "");
+    if (refracts_elsewhere(work, v)) return v;
+    if (!work.subject.has_f()) return work.verdict("physics", State::skipped, "There is no BRDF.");
     const Reciprocity r = reciprocity(work);
     v.evidence["reciprocity_pairs"] = r.tried;
     v.evidence["reciprocity_broken"] = r.broken;
@@ -143,11 +149,13 @@ Verdict judge(TrialContext& work) {
         v.state = State::wrong;
         const bool across = r.worst.wo.z * r.worst.wi.z < 0;
         v.say = fmt::format(
-            "f is not reciprocal{}: f(a, b) = {:.6g} but f(b, a) = {:.6g}{}, with a = ({:.4g}, {:.4g}, {:.4g}), b = "
+            "f{} is not reciprocal{}: f(a, b) = {:.6g} but f(b, a) = {:.6g}{}, with a = ({:.4g}, {:.4g}, {:.4g}), b = "
             "({:.4g}, {:.4g}, {:.4g}), and for {} of {} pairs.",
-            work.traits.channels == 3 ? fmt::format(" in channel {}", r.channel + 1) : "", r.one, r.other,
-            across ? fmt::format(" and not {:.6g} times that, as the index has it", due_ratio(work, r.worst, r.channel))
-                   : "",
+            r.phase ? " |cos|" : "", work.traits.channels == 3 ? fmt::format(" in channel {}", r.channel + 1) : "",
+            r.one, r.other,
+            across && !r.phase
+                ? fmt::format(" and not {:.6g} times that, as the index has it", due_ratio(work, r.worst, r.channel))
+                : "",
             r.worst.wo.x, r.worst.wo.y, r.worst.wo.z, r.worst.wi.x, r.worst.wi.y, r.worst.wi.z, r.broken, r.tried);
         if (const std::string factor = missing_across(work, r); !factor.empty()) {
             v.evidence["diagnosis"] = factor;
@@ -161,7 +169,11 @@ Verdict judge(TrialContext& work) {
     const Spread s = spread(x);
     v.evidence["furnace_mean"] = s.mean;
     v.evidence["furnace_standard_error"] = s.sd / std::sqrt(s.n);
-    v.say = work.scatter().f()   ? "f is a random estimate, whose reciprocity was not looked at,"
+    v.say = work.scatter().f() ? "f is a random estimate, whose reciprocity was not looked at,"
+        : r.phase              ? fmt::format(
+                        "f |cos| depends on the angle between w_o and w_i alone, as a phase "
+                                     "function does, and is reciprocal over {} pairs",
+                        r.tried)
         : work.traits.reciprocal ? fmt::format("f is reciprocal over {} pairs", r.tried)
                                  : "f is said not to be reciprocal, which was not looked at";
     const Vec3d mirrored = delta_parts(work, work.first(0)).energy(work.trial.wo.z > 0 ? 1 : -1);
@@ -171,7 +183,8 @@ Verdict judge(TrialContext& work) {
         const bool over = work.trial.wo.z > 0;
         v.say += fmt::format(" and reflects {:.6f} of an even light, and lets {:.6f} of one from {} through",
             albedo.bins[over ? 0 : 1] + luminance(mirrored), albedo.bins[over ? 1 : 0], over ? "below" : "above");
-        if (r.across > 0) v.say += fmt::format(" ({} pairs across the surface, with eta^2)", r.across);
+        if (r.phase) v.say += "";
+        else if (r.across > 0) v.say += fmt::format(" ({} pairs across the surface, with eta^2)", r.across);
         else if (work.traits.reciprocal)
             v.say += work.traits.eta
                 ? " (reciprocity across the surface is not looked at: w_o below it is not answered for)"

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "base/text.h"
@@ -123,11 +124,14 @@ std::string read_greeting(std::string_view answer, Greeting& out) {
             return fmt::format("got no name before the keys: {}", shown(answer));
         name = rest.substr(0, before);
         rest = rest.substr(before);
+        std::set<std::string_view> seen;
         while (!blank(rest)) {
             rest.remove_prefix(rest.find_first_not_of(" \t"));
             const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
             const std::string fault = read_key(rest.substr(0, end), out);
             if (!fault.empty()) return fault;
+            const std::string_view name_of_key = rest.substr(0, rest.find('='));
+            if (!seen.insert(name_of_key).second) return fmt::format("got the key {} twice", shown(name_of_key));
             rest.remove_prefix(end);
         }
     }

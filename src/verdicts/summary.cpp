@@ -160,6 +160,7 @@ std::string what_is_wrong(const Judgement& judgement) { return summary_of(judgem
 
 std::string unseen_told(const Judgement& judgement) {
     double integral = 0, bin = 0;
+    if (judgement.state == State::error) return "";  // what there is of right verdicts is not the whole
     for (const Verdict& v : judgement.verdicts) {
         if (v.state != State::right) continue;
         integral = std::max(integral, v.evidence.value("unseen", 0.0));

@@ -63,6 +63,27 @@ std::string first_fault(const TrialContext& work, int technique, const SampleBat
 
 namespace {
 
+/// " 812 of 32768 draws, 2.5 %, cannot be used: 800 of them are NaN."; "" where all can.
+std::string share_of_faults(const TrialContext& work, int technique, Verdict& v) {
+    const SampleBatch& b = work.first(technique);
+    std::size_t faults = 0, nan = 0;
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        const Draw& d = b.draws[i];
+        if (fault_of(d, b.pdf[i]).empty()) continue;
+        ++faults;
+        nan += std::isnan(d.pdf + d.wi.x + d.wi.y + d.wi.z + d.weight.value_or(0) + b.pdf[i]);
+    }
+    if (faults == 0) return "";
+    v.evidence["draws_that_cannot_be_used"] = faults;
+    v.evidence["draws_that_are_nan"] = nan;
+    v.evidence["draws"] = b.draws.size();
+    const double percent = 100 * static_cast<double>(faults) / static_cast<double>(b.draws.size());
+    return fmt::format(" {} of {} draws, {:.3g} %, cannot be used{}.", faults, b.draws.size(), percent,
+        nan == faults ? ": they are NaN"
+            : nan > 0 ? fmt::format(": {} of them are NaN", nan)
+                      : std::string());
+}
+
 /// pdf(w) and f(w) all over the sphere, near the horizon on both sides and near the normal, whether drawn or not.
 std::string fault_all_over(const TrialContext& work, int technique) {
     std::vector<Vec3d> wi;
@@ -127,6 +148,7 @@ Verdict judge(TrialContext& work) {
         if (!fault.empty()) {
             Verdict v = work.verdict("valid", State::wrong, "What the sampler returns cannot be used: " + fault + ".");
             v.evidence["first_fault"] = fault;
+            v.say += share_of_faults(work, t, v);
             return v;
         }
         if (std::optional<Verdict> rare = judge_rare_faults(work, t)) return *rare;

@@ -1,7 +1,8 @@
 // Weights, pdf or f that are random estimates agree with one another in the mean alone. Where p is known at the draws,
 // weight and f |cos| / p of one draw are a pair, and the mean of their difference times 1, cos theta_i and the other
-// two components of w_i is 0. Where p is an estimate too, one over it is no estimate of 1 / p: the mean weight of each
-// channel is then held against int f |cos| of that channel.
+// two components of w_i is 0. Where p is an estimate too, one over it is no estimate of 1 / p, and where there is no
+// pdf(w) nothing is known of one draw: the mean weight of each channel is then held against int f |cos| of that
+// channel.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -66,11 +67,15 @@ Compared against_integral(const TrialContext& work, const SampleBatch& b, int ch
     return {mean_is_testable(s, tail_of(x), work.trial.theory) ? mean_p(s, due) : 1, channel, s.mean, due.value};
 }
 
+/// p is known at each draw.
+bool knows_p(const TrialContext& work) { return work.traits.has_pdf && !work.scatter().pdf(); }
+
 Compared compared(const TrialContext& work, const SampleBatch& b) {
     Compared out;
+    if (std::none_of(b.draws.begin(), b.draws.end(), [](const Draw& d) { return d.weight.has_value(); })) return out;
     const int channels = work.traits.channels;
     for (int c = 0; c < channels; ++c)
-        if (!work.scatter().pdf()) keep_least(out, in_pairs(work, b, c));
+        if (knows_p(work)) keep_least(out, in_pairs(work, b, c));
         else if (channels == 3) keep_least(out, against_integral(work, b, c));  // of one channel, `mean` tells
     out.p = std::min(out.p * channels, 1.0);
     return out;
@@ -87,7 +92,7 @@ bool weights_are_off(const TrialContext& work, int technique, Verdict& v) {
         "The weight{} and {} differ in the mean ({:.6g} against {:.6g}), or along a direction, and again on a fresh "
         "seed.",
         work.traits.channels == 3 ? fmt::format(" of channel {}", first.channel + 1) : "",
-        work.scatter().pdf() ? "the integral of f |cos|" : "f |cos| / p", first.said, first.due);
+        knows_p(work) ? "f |cos| / p" : "the integral of f |cos|", first.said, first.due);
     return true;
 }
 

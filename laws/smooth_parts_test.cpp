@@ -1,0 +1,140 @@
+// Delta parts go where a smooth boundary or a thin wall lets them, and what goes straight on is no more than arrives.
+// A phase function, told as f |cos|, is reciprocal by itself and held to no index.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/right/renderers.h"
+#include "math/functions.h"
+#include "simd/frame.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/summary.h"
+
+namespace crescent {
+namespace {
+
+Judgement judged(const Recipe& recipe, double theta) {
+    ProgressMonitor watch;
+    TestSettings settings;
+    settings.draws = 16384;
+    const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
+    return judge({&trial, 1}, settings, watch);
+}
+
+const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no such verdict");
+}
+
+/// Smooth glass of 1.5 whose refracted direction is `bent`.
+Recipe glass_towards(std::function<Vec3d(Vec3d wo, Vec3d wi)> bent, double weight_through = 0) {
+    Recipe r = smooth_glass(1.5);
+    r.sample = [sample = r.sample, bent, weight_through](Vec3d o, const Numbers& u) {
+        Draw d = sample(o, u);
+        if (d.wi.z * o.z > 0) return d;
+        d.wi = bent(o, d.wi);
+        if (weight_through > 0) d.weight = weight_through;
+        return d;
+    };
+    return r;
+}
+
+Vec3d inverted(Vec3d o, Vec3d) {
+    const double e = o.z > 0 ? 1 / 1.5 : 1.5, x = -o.x / e, y = -o.y / e;
+    return {x, y, -std::copysign(std::sqrt(std::max(1 - x * x - y * y, 0.0)), o.z)};
+}
+
+TEST(SmoothParts, AreRefractedByTheIndexThatIsTold) {
+    for (double theta : {0.0, 30.0, 60.0, 150.0, 175.0})
+        EXPECT_EQ(judged(smooth_glass(1.5), theta).state, State::right) << theta;
+    const Judgement wrong = judged(glass_towards(inverted), 30);
+    const Verdict& v = named(wrong, "physics");
+    EXPECT_EQ(v.state, State::wrong) << v.say;
+    EXPECT_NE(v.say.find("refracts to"), std::string::npos) << v.say;
+    EXPECT_EQ(v.evidence.value("diagnosis", ""), "1 / eta");
+}
+
+TEST(SmoothParts, OfAThinWallGoStraightOnWhateverIndexIsTold) {
+    const auto straight = [](Vec3d o, Vec3d) { return -o; };
+    for (double theta : {30.0, 60.0, 150.0}) {
+        const Judgement j = judged(glass_towards(straight, 1), theta);
+        EXPECT_NE(j.state, State::wrong) << theta << what_is_wrong(j);
+    }
+}
+
+TEST(SmoothParts, GoAnywhereWhereNoIndexIsTold) {
+    Recipe r = glass_towards(inverted);
+    r.traits.eta = {};
+    EXPECT_NE(judged(r, 30).state, State::wrong);
+}
+
+/// Half goes straight through with `open` of its light, half is reflected by Lambert of 0.5.
+Recipe mask(double open) {
+    Recipe r{"mask", "", {}, {}, {}};
+    r.traits.numbers = 3;
+    r.traits.wo = Traits::Asked::both;
+    r.traits.delta = true;
+    r.pdf = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 * std::fabs(i.z) / pi : 0; };
+    r.f = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 / pi : 0; };
+    r.sample = [open](Vec3d o, const Numbers& u) {
+        const double s = std::sqrt(u[0]), phi = 2 * pi * u[1], z = std::sqrt(1 - u[0]);
+        Draw d{{s * math::cos(phi), s * math::sin(phi), std::copysign(z, o.z)}, 0.5 * z / pi};
+        d.weight = 1;
+        if (u[2] >= 0.5) return d;
+        d = {-o, 0};
+        d.delta = 0.5;
+        d.weight = open / 0.5;
+        return d;
+    };
+    return r;
+}
+
+TEST(SmoothParts, ThatGoStraightOnCarryNoMoreThanArrives) {
+    for (double theta : {30.0, 150.0}) {
+        EXPECT_EQ(judged(mask(0.5), theta).state, State::right) << what_is_wrong(judged(mask(0.5), theta));
+        const Judgement bright = judged(mask(0.733), theta);
+        EXPECT_EQ(named(bright, "physics").state, State::wrong) << named(bright, "physics").say;
+        EXPECT_NE(named(bright, "physics").say.find("straight through"), std::string::npos);
+    }
+}
+
+/// Henyey & Greenstein 1941; drawn with g, p and f with their own.
+Recipe phase(double drawn, double claimed, double scale) {
+    Recipe r{"phase", "", {}, {}, {}};
+    r.traits.wo = Traits::Asked::both;
+    const auto p = [](double g, Vec3d o, Vec3d i) {
+        return (1 - g * g) / (4 * pi * math::pow(1 + g * g + 2 * g * dot(o, i), 1.5));
+    };
+    r.pdf = [=](Vec3d o, Vec3d i) { return p(claimed, o, i); };
+    r.f = [=](Vec3d o, Vec3d i) { return i.z == 0 ? 0 : scale * p(claimed, o, i) / std::fabs(i.z); };
+    r.sample = [=](Vec3d o, const Numbers& u) {
+        const double s = (1 - drawn * drawn) / (1 - drawn + 2 * drawn * u[0]);
+        const double c = std::clamp((1 + drawn * drawn - s * s) / (2 * drawn), -1.0, 1.0), sin = std::sqrt(1 - c * c),
+                     phi = 2 * pi * u[1];
+        Draw d{frame_about(-o).to_world(Vec3d{sin * math::cos(phi), sin * math::sin(phi), c}), 0};
+        d.pdf = p(claimed, o, d.wi);
+        d.weight = scale;
+        return d;
+    };
+    return r;
+}
+
+TEST(PhaseFunctions, AreReciprocalAsFTimesTheCosine) {
+    for (double theta : {0.0, 60.0, 150.0})
+        for (double g : {0.3, 0.75, -0.5}) {
+            const Judgement j = judged(phase(g, g, 1), theta);
+            EXPECT_EQ(j.state, State::right) << theta << " " << g << what_is_wrong(j);
+            EXPECT_NE(named(j, "physics").say.find("as a phase function does"), std::string::npos);
+        }
+}
+
+TEST(PhaseFunctions, OfTheOtherSignOrThatIntegrateToMoreAreWrong) {
+    EXPECT_EQ(named(judged(phase(0.6, -0.6, 1), 60), "density").state, State::wrong);
+    const Judgement bright = judged(phase(0.6, 0.6, 1.05), 60);
+    EXPECT_EQ(named(bright, "physics").state, State::wrong) << named(bright, "physics").say;
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,117 @@
+// Samplers without pdf(w): random estimates are held to their means, and draws to lights from several sides; where
+// nothing can be held against anything, that is said.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "laws/right/right.h"
+#include "math/functions.h"
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+#include "verdicts/summary.h"
+
+namespace crescent {
+namespace {
+
+Judgement judged(const Recipe& recipe, double theta = 45) {
+    ProgressMonitor watch;
+    TestSettings settings;
+    settings.draws = 16384;
+    const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
+    return judge({&trial, 1}, settings, watch);
+}
+
+const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no such verdict");
+}
+
+Vec3d cosine(double u1, double u2) {
+    const double s = std::sqrt(u1), phi = 2 * pi * u2;
+    return {s * math::cos(phi), s * math::sin(phi), std::sqrt(1 - u1)};
+}
+
+/// Lambert of 0.5 whose f is a walk's estimate, between 0.1 and 0.9; its weights are estimates too, `scale` times what
+/// they ought to be.
+Recipe by_walk(double scale, bool own, int channels = 1) {
+    Recipe r{"walk", "", {}, {}, {}};
+    r.traits.has_pdf = false;
+    r.traits.own_random = own;
+    r.traits.numbers = 3;
+    r.traits.channels = channels;
+    const auto dice = std::make_shared<Dice>(7);
+    r.pdf = [](Vec3d, Vec3d) { return 1.0; };
+    const auto f = [dice](Vec3d, Vec3d i) { return i.z > 0 ? dice->uniform(0.1, 0.9) / pi : 0; };
+    if (channels == 1) r.f = f;
+    else
+        r.f_channels = [f](Vec3d o, Vec3d i) {
+            const double v = f(o, i);
+            return Vec3d{v, v, v};
+        };
+    r.sample = [scale, own, dice, channels](Vec3d, const Numbers& u) {
+        Draw d{cosine(u[0], u[1]), 1};
+        const double w = 0.1 + 0.8 * (own ? dice->uniform(0, 1) : u[2]);
+        d.weight = scale * w;
+        if (channels == 3) {
+            d.weights = {w, w, scale * w};
+            d.weight = luminance(d.weights);
+        }
+        return d;
+    };
+    return r;
+}
+
+TEST(WithoutAPdf, EstimatesOfFAreHeldToTheirMeansAlone) {
+    for (bool own : {false, true})
+        for (int channels : {1, 3}) {
+            const Judgement right = judged(by_walk(1, own, channels));
+            EXPECT_EQ(right.state, State::right) << own << channels << what_is_wrong(right);
+            const Judgement wrong = judged(by_walk(1.1, own, channels));
+            EXPECT_EQ(wrong.state, State::wrong) << own << channels << what_is_wrong(wrong);
+        }
+}
+
+/// Of two cosine draws one is kept, by f or by its root; the weight is the mean of both.
+Recipe resampled(bool by_root) {
+    Recipe r{"resampled", "", {}, {}, {}};
+    r.traits.has_pdf = false;
+    r.traits.numbers = 5;
+    r.pdf = [](Vec3d, Vec3d) { return 1.0; };
+    r.f = [](Vec3d o, Vec3d i) {
+        if (!(i.z > 0)) return 0.0;
+        return 0.1 / pi + 0.5 * 8 / (2 * pi) * math::pow(std::max(dot(i, {-o.x, -o.y, o.z}), 0.0), 6);
+    };
+    r.sample = [f = r.f, by_root](Vec3d o, const Numbers& u) {
+        const Vec3d one = cosine(u[0], u[1]), two = cosine(u[2], u[3]);
+        const double a = pi * f(o, one), b = pi * f(o, two);
+        const double q = by_root ? std::sqrt(a) / (std::sqrt(a) + std::sqrt(b)) : a / (a + b);
+        Draw d{u[4] < q ? one : two, 1};
+        d.weight = 0.5 * (a + b);
+        return d;
+    };
+    return r;
+}
+
+TEST(WithoutAPdf, DrawsThatGoElsewhereThanTheirWeightsSayAreFoundUnderLightsFromOneSide) {
+    const Judgement right = judged(resampled(false)), wrong = judged(resampled(true));
+    EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
+    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").say;
+    EXPECT_EQ(named(wrong, "physics").state, State::right) << "an even light does not tell";
+    EXPECT_NE(named(wrong, "mean").say.find("Under a light from "), std::string::npos) << named(wrong, "mean").say;
+}
+
+TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
+    Recipe r{"bare", "", {}, {}, {}};
+    r.traits.has_pdf = false;
+    r.pdf = [](Vec3d, Vec3d) { return 1.0; };
+    r.f = [](Vec3d, Vec3d i) { return i.z > 0 ? 0.5 / pi : 0; };
+    r.sample = [](Vec3d, const Numbers& u) { return Draw{cosine(u[0], u[1]), 1}; };
+    const Judgement j = judged(r);
+    EXPECT_EQ(j.state, State::inconclusive);
+    const Verdict& v = named(j, "density");
+    EXPECT_NE(v.say.find("could not be examined"), std::string::npos) << v.say;
+    EXPECT_NE(v.settle.find("weight=yes"), std::string::npos) << v.settle;
+}
+
+}  // namespace
+}  // namespace crescent

@@ -1,0 +1,81 @@
+// Where delta parts go: a smooth boundary mirrors, and refracts by the index that is told (Snell); a thin wall lets
+// straight through.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+#include "verdicts/delta.h"
+#include "verdicts/ordered.h"
+
+namespace crescent::inline verdicts {
+
+namespace {
+
+constexpr double close_to = 1e-3;  // of directions; an index that is told in four digits is that close
+
+bool near(Vec3d a, Vec3d b) { return length(a - b) < close_to; }
+
+/// Where an index refracts w_o to; none where it reflects totally.
+std::optional<Vec3d> refracted(Vec3d wo, double below_over_above) {
+    const double e = wo.z > 0 ? below_over_above : 1 / below_over_above, x = -wo.x / e, y = -wo.y / e,
+                 rest = 1 - x * x - y * y;
+    if (rest < 0) return {};
+    return Vec3d{x, y, wo.z > 0 ? -std::sqrt(rest) : std::sqrt(rest)};
+}
+
+bool is_refracted(Vec3d wo, Vec3d wi, Vec3d eta, bool inverted) {
+    for (int c = 0; c < 3; ++c) {
+        const double one = channel_of(eta, c);
+        const std::optional<Vec3d> due = refracted(wo, inverted ? 1 / one : one);
+        if (due && near(*due, wi)) return true;
+    }
+    return false;
+}
+
+double degrees(Vec3d w) { return math::acos(std::min(std::fabs(w.z), 1.0)) * 180 / pi; }
+
+std::string told(Vec3d wo, Vec3d wi, Vec3d eta) {
+    const std::optional<Vec3d> due = refracted(wo, eta.x);
+    std::string out = fmt::format(
+        "A delta part goes through the surface towards ({:.5g}, {:.5g}, {:.5g}), {:.4g} deg from the normal, from w_o "
+        "{:.4g} deg from it: the index that is told, {:g}, ",
+        wi.x, wi.y, wi.z, degrees(wi), degrees(wo), eta.x);
+    if (due)
+        out += fmt::format(
+            "refracts to ({:.5g}, {:.5g}, {:.5g}), {:.4g} deg from it", due->x, due->y, due->z, degrees(*due));
+    else out += "reflects totally there";
+    return out + ", and straight through it is not either.";
+}
+
+}  // namespace
+
+bool refracts_elsewhere(const TrialContext& work, Verdict& v) {
+    if (!work.traits.eta) return false;
+    const Vec3d wo = work.trial.wo, eta = *work.traits.eta;
+    std::vector<Vec3d> across;
+    bool mirrored = false;
+    for (const DeltaPart& p : delta_parts(work, work.first(0)).parts) {
+        const bool through = p.wi.z * wo.z < 0;
+        if (!through && !near(p.wi, {-wo.x, -wo.y, wo.z})) return false;  // the boundary lies askew
+        mirrored = mirrored || !through;
+        const auto known = [&](Vec3d w) { return near(w, p.wi); };
+        if (through && std::none_of(across.begin(), across.end(), known)) across.push_back(p.wi);
+    }
+    const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
+    if (!mirrored || across.size() > indices) return false;
+    for (Vec3d wi : across) {
+        if (near(wi, -wo) || is_refracted(wo, wi, eta, false)) continue;
+        v.state = State::wrong;
+        v.say = told(wo, wi, eta);
+        v.evidence["delta_part"] = {wi.x, wi.y, wi.z};
+        if (is_refracted(wo, wi, eta, true)) {
+            v.evidence["diagnosis"] = "1 / eta";
+            v.say += " What explains it: 1 / eta for eta.";
+        }
+        return true;
+    }
+    return false;
+}
+
+}  // namespace crescent::inline verdicts
