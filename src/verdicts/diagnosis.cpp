@@ -144,17 +144,14 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
     std::vector<Factor> factors = usual_factors(work);
     add_whole_factors(factors, work);
     for (const Factor& factor : factors) {
-        const bool constant = best && best->name == "a constant";
-        if (constant && !factor.whole) continue;
-        if (constant && !name_of_constant(work, best->constant).empty()) break;
         const Fitted f = fit(factor, ratios);
         if (!f.fits || !(f.all > 0)) continue;
         if (factor.whole && std::fabs(math::log(f.constant)) > may_differ(f.all, 0)) continue;
         const Diagnosis now{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
             factor_text(work, factor.name, f.constant), factor.g};
         const bool plain = std::fabs(now.constant - 1) < close;
-        if (!best || constant || (plain && factor.name != "a constant" && std::fabs(best->constant - 1) >= close))
-            best = now;
+        if (!best || (plain && std::fabs(best->constant - 1) >= close)) best = now;
+        if (factor.name == "a constant") break;
     }
     if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close) return {};
     return best;

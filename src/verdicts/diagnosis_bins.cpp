@@ -84,7 +84,7 @@ ByWarp look_at_warp(const TrialContext& work, int technique, const Binned& as_is
 
 /// Along rings and along sectors, where a spread shows that hides among all bins: draws over c p are one there too.
 bool is_even(const Density& d, const Binned& by) {
-    constexpr double least_p = 0.01;
+    constexpr double least_p = 1e-4;
     const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = by.sum.size() / sectors;
     const auto agrees = [&](std::size_t groups, auto&& group_of) {
         std::vector<double> off(groups), variance(groups);
