@@ -1,6 +1,6 @@
 #!/bin/bash
-# g++ and clang make the same films, bit for bit, on every instruction set. $FILM_HASHES and $FILM_HASHES_GCC are the
-# program of laws/films built by clang and by g++.
+# g++ and clang make the same films, bit for bit, on every instruction set; so does clang without optimisation, of
+# smaller films. $FILM_HASHES, $FILM_HASHES_GCC and $FILM_HASHES_DEBUG are the program of laws/films built by each.
 . "$(dirname "$0")/common.sh"
 [ -x "${FILM_HASHES_GCC:-}" ] || skip "nothing built by g++ (cmake --preset gcc && ninja -C build-gcc film_hashes)"
 
@@ -25,3 +25,10 @@ diff clang printed >difference || die "films differ between compilers: $(cat dif
 grep -v -e ' quadrature ' -e '^function ' clang | awk '{ $2 = ""; print }' | sort | uniq -c |
     awk -v sets="$("$CRESCENT" list isas | wc -l)" '$1 != sets { print; bad = 1 } END { exit bad }' ||
     die "films differ between instruction sets"
+
+[ -x "${FILM_HASHES_DEBUG:-}" ] || skip "no Debug build (cmake --preset debug && ninja -C build-debug film_hashes)"
+expect 0 "$FILM_HASHES" --fewer "${experiments[@]}"
+mv printed release
+expect 0 "$FILM_HASHES_DEBUG" --fewer "${experiments[@]}"
+[ "$(wc -l <release)" -gt 20 ] || die "too few small films: $(cat release)"
+diff release printed >difference || die "films differ without optimisation: $(cat difference)"

@@ -1,7 +1,8 @@
 #!/bin/bash
 # One definition a name. A kernel that is compiled for an instruction set shares no function with other files: the
 # linker would keep one of them for everybody, and processors without that set would stop there. No two files define
-# types of one name in one namespace: what g++ -flto -Wodr would find, which takes five minutes to compile for it.
+# types of one name in one namespace, read from all sources; of what makes films g++ asks it too, as it links them
+# (preset gcc).
 . "$(dirname "$0")/common.sh"
 cd "$CRESCENT_SOURCE" || exit 1
 

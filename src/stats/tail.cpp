@@ -10,10 +10,17 @@ namespace crescent::inline stats {
 
 namespace {
 
+/// The mean of ln(1 - theta v), with one logarithm for a product of many factors: taken before the product leaves the
+/// range of doubles (a factor is below 1e108 for any two floats).
 double mean_log1p(const std::vector<double>& x, double theta) {
-    double sum = 0;
-    for (double v : x) sum += math::log1p(-theta * v);
-    return sum / static_cast<double>(x.size());
+    double sum = 0, product = 1;
+    for (double v : x) {
+        product *= 1 - theta * v;
+        if (product > 1e-200 && product < 1e200) continue;
+        sum += math::log(product);
+        product = 1;
+    }
+    return (sum + math::log(product)) / static_cast<double>(x.size());
 }
 
 /// Zhang & Stephens' posterior mean of theta = -k/sigma over a grid, x rising.

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "arms/all.h"
@@ -53,27 +54,36 @@ void float_furnace(const FurnaceSubject& subject, const std::string& isa, Progre
     }
 }
 
+/// Resolutions of u in double precision that are shown beside each other.
+constexpr std::array<int, 3> resolutions = {24, 32, 53};
+
 /// u as an odd multiple of 2^-bits, from 64 random bits.
 double unit_double(std::uint64_t h, int bits) {
     return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits);
 }
 
-void double_furnace(const FurnaceSubject& subject, int bits, ProgressMonitor& watch, Evidence& out) {
-    std::vector<std::vector<double>> means(furnace_rungs.size(), std::vector<double>(replicates));
+/// One draw of random bits serves every resolution.
+void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& watch, Evidence& out) {
+    using Means = std::vector<std::vector<double>>;  // [rung][replicate]
+    std::array<Means, resolutions.size()> means;
+    means.fill(Means(furnace_rungs.size(), std::vector<double>(replicates)));
     parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
-        double sum = 0;
+        std::array<double, resolutions.size()> sums{};
         std::uint64_t j = 0;
         for (std::size_t rung = 0; rung < furnace_rungs.size() && !watch.stop; ++rung) {
             for (; j < furnace_rungs[rung]; ++j) {
                 const auto h =
                     draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
-                sum += subject.weight(unit_double(std::uint64_t{h.x} << 32 | h.y, bits));
+                const std::uint64_t bits = std::uint64_t{h.x} << 32 | h.y;
+                for (std::size_t i = 0; i < sums.size(); ++i)
+                    sums[i] += subject.weight(unit_double(bits, resolutions[i]));
             }
-            means[rung][r] = sum / static_cast<double>(j);
+            for (std::size_t i = 0; i < sums.size(); ++i) means[i][rung][r] = sums[i] / static_cast<double>(j);
         }
     });
-    for (std::size_t rung = 0; rung < furnace_rungs.size(); ++rung)
-        out.furnace.push_back(quantiles("float64", bits, furnace_rungs[rung], means[rung]));
+    for (std::size_t i = 0; i < resolutions.size(); ++i)
+        for (std::size_t rung = 0; rung < furnace_rungs.size(); ++rung)
+            out.furnace.push_back(quantiles("float64", resolutions[i], furnace_rungs[rung], means[i][rung]));
 }
 
 /// Draws by the cosine arm, asks the Phong arm for its density: where it is 0, Lambert's light is lost.
@@ -149,8 +159,8 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     subject.seed = experiment.seed;
     out.expected = out.rho_d + out.rho_s;
     float_furnace(subject, isa, watch, out);
-    for (int bits : {24, 32, 53}) {
-        double_furnace(subject, bits, watch, out);
+    double_furnaces(subject, watch, out);
+    for (int bits : resolutions) {
         const double k = (subject.s - 1) / (subject.s + 1);
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
