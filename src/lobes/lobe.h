@@ -21,7 +21,7 @@ template <class F> CRESCENT_INLINE F both_above(Vec3<F> wo, Vec3<F> wi, F f) {
     return select((wo.z > number<F>(0)) & (wi.z > number<F>(0)), f, number<F>(0));
 }
 
-// A lobe about the half vector m states, for the table of its albedo (estimator/lobe_albedo.h), how its own
+// A lobe about the half vector m states, for the table of its albedo (reference/lobe_albedo.h), how its own
 // distribution draws m about n, in double: struct Normals with Normals(s, alpha),
 //   height(u)   the cosine (n.m) that u in [0, 1] draws,
 //   below(cos)  the u that draws an m of that cosine,
