@@ -13,11 +13,11 @@ struct Word {
     std::string word, means;
 };
 
-/// The words that a key of a section takes.
-std::vector<Word> words_of_key(const char* section, const char* key) {
+/// The kinds of a list, such as that of shapes.
+template <class Kinds> std::vector<Word> kinds() {
     std::vector<Word> out;
-    for (const std::string& word : crescent::schema().find_section(section)->find_key(key)->words)
-        out.push_back({word, ""});
+    for (std::size_t k = 0; k < Kinds::count; ++k)
+        out.push_back({std::string(Kinds::names[k]), std::string(Kinds::summaries[k])});
     return out;
 }
 
@@ -79,8 +79,8 @@ struct Topic {
 const std::vector<Topic>& topics() {
     static const std::vector<Topic> all = {
         {"arms", "samplers on trial", arms},
-        {"shapes", "kinds of shape", [] { return words_of_key("shapes", "kind"); }},
-        {"lights", "kinds of light", [] { return words_of_key("lights", "kind"); }},
+        {"shapes", "kinds of shape", kinds<Shapes>},
+        {"lights", "kinds of light", kinds<LightKinds>},
         {"brdfs", "lobes beside the Lambert term", lobes},
         {"plates", "kinds of picture", plates},
         {"meters", "quantities that a check can name", meters},

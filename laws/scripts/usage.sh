@@ -49,5 +49,14 @@ awk 'length > 80 { exit 1 }' printed || die "the help is wider than 80 columns: 
 expect 0 "$CRESCENT" --version
 grep -q "^crescent $(cat "$CRESCENT_SOURCE/VERSION") " printed || die "version: $(cat printed)"
 expect 0 "$CRESCENT" list
+for kinds in shapes lights; do  # every kind that a file can name, with what it is
+    expect 0 "$CRESCENT" list $kinds
+    awk 'NF < 3 { exit 1 }' printed || die "a kind of $kinds without a word of what it is: $(cat printed)"
+    "$CRESCENT" schema --json | python3 -c "
+import json, sys
+[table] = json.load(sys.stdin)['properties']['$kinds']['patternProperties'].values()
+print(*table['properties']['kind']['enum'], sep='\n')" >named
+    awk '{ print $1 }' printed | diff named - || die "crescent list $kinds names other kinds than the schema"
+done
 expect 0 "$CRESCENT" schema
 expect 0 "$CRESCENT" schema --json

@@ -69,11 +69,11 @@ struct Mistake {
     std::string_view says;  // what was expected there, what was found
 };
 
-/// A list of kinds; each has a name and parameters().
+/// A list of kinds; each has a name, a summary of one line for `crescent list`, and parameters().
 template <class... Kind> struct KindList {
     static constexpr std::size_t count = sizeof...(Kind);
     using Any = std::variant<Kind...>;
-    static constexpr std::array<std::string_view, count> names = {Kind::name...};
+    static constexpr std::array<std::string_view, count> names = {Kind::name...}, summaries = {Kind::summary...};
 
     /// The kind at `index` with nothing set.
     static Any make(std::size_t index) {

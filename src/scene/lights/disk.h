@@ -7,6 +7,7 @@ namespace crescent::lights {
 
 struct Disk {
     static constexpr std::string_view name = "disk";
+    static constexpr std::string_view summary = "a disk that shines from the side its normal points to, or from both";
     Vec3d center{}, normal{};  // normal: unit
     double radius = 0;
     bool two_sided = false;

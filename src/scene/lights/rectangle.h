@@ -18,6 +18,7 @@ namespace crescent::lights {
 
 struct Rectangle {
     static constexpr std::string_view name = "rectangle";
+    static constexpr std::string_view summary = "a rectangle that shines along edge_u x edge_v, or from both sides";
     Vec3d corner{}, edge_u{}, edge_v{};
     bool two_sided = false;
 

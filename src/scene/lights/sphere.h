@@ -11,6 +11,7 @@ namespace crescent::lights {
 
 struct Sphere {
     static constexpr std::string_view name = "sphere";
+    static constexpr std::string_view summary = "a ball that shines outwards";
     Vec3d center{};
     double radius = 0;
 

@@ -20,6 +20,7 @@ template <class F> void clip_slab(F lo, F hi, F o, F d, F& near, F& far) {
 
 struct Box {
     static constexpr std::string_view name = "box";
+    static constexpr std::string_view summary = "an axis-aligned box";
     Vec3d min{}, max{};
 
     static constexpr auto parameters() {

@@ -9,6 +9,7 @@ namespace crescent::shapes {
 
 struct Disk {
     static constexpr std::string_view name = "disk";
+    static constexpr std::string_view summary = "a disk, which looks along its normal";
     Vec3d center{}, normal{};  // normal: unit
     double radius = 0;
 

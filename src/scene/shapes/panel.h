@@ -7,6 +7,7 @@ namespace crescent::shapes {
 
 struct Panel {
     static constexpr std::string_view name = "panel";
+    static constexpr std::string_view summary = "a recess behind an opening, with a back and four sides";
     Vec3d corner{}, edge_u{}, edge_v{};  // of the opening; its outward normal is edge_u x edge_v
     double depth = 0;                    // how far it is set back, against the normal
     std::optional<Rgb> reveal_rho_d;     // the four sides of the recess

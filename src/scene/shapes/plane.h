@@ -9,6 +9,7 @@ namespace crescent::shapes {
 
 struct Plane {
     static constexpr std::string_view name = "plane";
+    static constexpr std::string_view summary = "an infinite plane";
     Vec3d point{}, normal{};  // normal: unit
 
     static constexpr auto parameters() {

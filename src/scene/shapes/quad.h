@@ -22,6 +22,7 @@ inline std::optional<Mistake> mistake_of_edges(Vec3d u, Vec3d v) {
 
 struct Quad {
     static constexpr std::string_view name = "quad";
+    static constexpr std::string_view summary = "a parallelogram, from a corner along two edges";
     Vec3d corner{}, edge_u{}, edge_v{};
 
     static constexpr auto parameters() {

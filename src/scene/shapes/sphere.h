@@ -9,6 +9,7 @@ namespace crescent::shapes {
 
 struct Sphere {
     static constexpr std::string_view name = "sphere";
+    static constexpr std::string_view summary = "a ball";
     Vec3d center{};
     double radius = 0;
 
