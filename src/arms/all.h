@@ -14,12 +14,15 @@
 #include "arms/mis_power.h"
 #include "arms/mixture.h"
 #include "arms/phong.h"
+#include "arms/sampler.h"
 #include "arms/uniform.h"
 
 namespace crescent::inline arms {
 
-/// The types of the arms, in the order of their indices.
-template <template <class> class... A> struct ArmList {
+/// The types of the arms, in the order of their indices. Each is a Sampler (arms/sampler.h).
+template <template <class> class... A>
+    requires(Sampler<A<float>, float> && ...)
+struct ArmList {
     static constexpr std::size_t count = sizeof...(A);
 };
 

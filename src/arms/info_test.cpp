@@ -41,6 +41,28 @@ TEST(ArmInfos, TellTheLightThatTheyMissWhereTheoryExpectsThatOfTheirSupport) {
     }
 }
 
+/// What every arm needs, but for the density of a direction: it gives a bare number.
+template <class F> struct WithoutUnits {
+    static constexpr std::string_view name = "without-units";
+    static constexpr ArmManual manual = {.label = name};
+    explicit WithoutUnits(const ShadingPoint<F>&) {}
+    Drawn<F> sample(Vec3<F>, Vec2<F>) const { return {}; }
+    F pdf(Vec3<F>, Vec3<F>) const { return {}; }
+};
+/// Two techniques of which one has no weight.
+template <class F> struct WithoutWeight : Cosine<F> {
+    static constexpr int techniques = 2;
+    using Cosine<F>::Cosine;
+    template <int> Drawn<F> sample_technique(Vec3<F> wo, Vec2<F> u) const { return this->sample(wo, u); }
+    template <int> PerSr<F> pdf_technique(Vec3<F> wo, Vec3<F> wi) const { return this->pdf(wo, wi); }
+};
+
+TEST(Samplers, AreHeldToWhatAnArmMustHaveInEveryArithmetic) {
+    for_each_arm(Arms{}, []<template <class> class A>() { static_assert(Sampler<A<double>, double>); });
+    static_assert(!Sampler<WithoutUnits<float>, float>);
+    static_assert(!Sampler<WithoutWeight<float>, float>);
+}
+
 TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
     for (const LobeInfo& lobe : lobe_infos()) {
         EXPECT_NE(find_arm_info(lobe.own_arm), nullptr) << lobe.name;

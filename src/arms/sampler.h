@@ -78,11 +78,31 @@ inline ExpectedBehaviour theory_of_light_arm(const TrialPoint& at) {
     return t;
 }
 
+/// One direction a sample, from one density.
 template <class S, class F>
-concept Sampler = requires(const S s, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
-    { S::name } -> std::convertible_to<std::string_view>;
-    { s.sample(wo, u) } -> std::convertible_to<Drawn<F>>;  // u in [0,1)^2
-    { s.pdf(wo, wi) } -> std::same_as<PerSr<F>>;           // 0 off the support
+concept DrawsOne = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
+    { arm.sample(wo, u) } -> std::convertible_to<Drawn<F>>;  // u in [0,1)^2
+    { arm.pdf(wo, wi) } -> std::same_as<PerSr<F>>;           // 0 off the support
 };
+
+/// Two directions a sample, from a density each; the weight of a direction that technique t drew.
+template <class S, class F>
+concept DrawsTwo = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u, Drawn<F> drawn) {
+    requires S::techniques == 2;
+    { arm.template sample_technique<0>(wo, u) } -> std::convertible_to<Drawn<F>>;
+    { arm.template sample_technique<1>(wo, u) } -> std::convertible_to<Drawn<F>>;
+    { arm.template pdf_technique<0>(wo, wi) } -> std::same_as<PerSr<F>>;
+    { arm.template pdf_technique<1>(wo, wi) } -> std::same_as<PerSr<F>>;
+    { arm.template weight<0>(wo, drawn) } -> std::same_as<F>;
+    { arm.template weight<1>(wo, drawn) } -> std::same_as<F>;
+};
+
+/// What an arm must have: a name, what it says of itself, and a surface point to be made from. `theory` (TrialPoint ->
+/// ExpectedBehaviour) may be left out.
+template <class S, class F>
+concept Sampler = std::constructible_from<S, const ShadingPoint<F>&> && requires {
+    { S::name } -> std::convertible_to<std::string_view>;
+    { S::manual } -> std::convertible_to<ArmManual>;
+} && (DrawsTwo<S, F> || (!requires { S::techniques; } && DrawsOne<S, F>));
 
 }  // namespace crescent::inline arms
