@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
 
 #include "verdicts/trial_context.h"
 
