@@ -39,6 +39,8 @@ expect 1 "$CRESCENT" check --quiet --exec ./often
 grep -q "not drawn as often as they say" printed || die "a delta part drawn too seldom is not told: $(cat printed)"
 /usr/bin/python3 -c 'import numpy' || die "python3-numpy is missing"
 expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py"
+expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py" --wo 150 --json below.json
+grep -q '"case": "w_o 150 deg' below.json || die "w_o under the surface is not judged"
 sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscaled.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py"
 grep -q "not 2.25 times that" printed || die "that eta^2 is missing is not said: $(cat printed)"
