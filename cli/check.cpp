@@ -248,7 +248,7 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
     return out;
 }
 
-/// Exit 0: compared; 1: f differs, or with --expect same the distribution does; 4: a tail is too heavy to tell.
+/// Exit 0: compared; 1: with --expect same, f or the distribution differs; 4: a tail is too heavy to tell.
 int check_against(
     const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& watch) {
     std::erase_if(a, [](const Trial& t) { return t.baseline; });

@@ -111,7 +111,8 @@ TEST(Against, AFileOfSamplesWithFIsComparedAtItsDraws) {
                     other = against(a, sampler_against(even_with(0.55), a)),
                     arm = against(a, arm_against("uniform", a));
     EXPECT_EQ(named(right, "same_f").state, State::right) << against_text(right);
-    EXPECT_EQ(named(other, "same_f").state, State::wrong) << against_text(other);
+    EXPECT_FALSE(named(other, "same_f").evidence["same"].get<bool>()) << against_text(other);
+    EXPECT_EQ(named(other, "variance").state, State::skipped) << against_text(other);
     // X_A = 0.5 (0.2 + 0.8 z) and X_B = z X_A; z^2 is even under A, z under B.
     const double var_a = 0.16 * (0.5 - 4.0 / 9), mean = 0.1 + 0.8 / 3,
                  square = 4 * 0.25 * (0.04 / 3 + 0.32 / 4 + 0.64 / 5), ratio = var_a / (square - mean * mean);
@@ -134,22 +135,107 @@ TEST(Against, AFileOfSamplesWithoutFSaysSo) {
     }
 }
 
-TEST(Against, AnotherFIsWrongAndAHeavyTailIsInconclusive) {
-    const std::vector<Trial> a = trials("cosine", "Lambert", 45);
+/// Lambert of `albedo`, drawn by the cosine; p is told as `told` of what is drawn.
+std::shared_ptr<const JudgedSampler> lambert(double albedo, double told = 1) {
     Recipe r{"cosine", "", {}, {}, {}};
-    r.pdf = [](Vec3d, Vec3d wi) { return std::max(wi.z, 0.0) / pi; };
-    r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.505 / pi : 0.0; };
-    r.sample = [](Vec3d, Vec2d u) {
+    r.pdf = [told](Vec3d, Vec3d wi) { return told * std::max(wi.z, 0.0) / pi; };
+    r.f = [albedo](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? albedo / pi : 0.0; };
+    r.sample = [told](Vec3d, Vec2d u) {
         const double rad = std::sqrt(u.x), phi = 2 * pi * u.y, z = std::sqrt(1 - u.x);
-        return Draw{{rad * std::cos(phi), rad * std::sin(phi), z}, z / pi, {}, {}};
+        return Draw{{rad * std::cos(phi), rad * std::sin(phi), z}, told * z / pi, {}, {}};
     };
-    const Judgement j = against(a, sampler_against(subject_of(r), a));
-    EXPECT_EQ(named(j, "same_f").state, State::wrong) << against_text(j);
+    return subject_of(r);
+}
+
+TEST(Against, AnotherFIsToldAndIsWrongWhereNoneIsExpected) {
+    const std::vector<Trial> a = trials("cosine", "Lambert", 45), b = sampler_against(lambert(0.505), a);
+    const Judgement told = against(a, b), expected = against(a, b, true);
+    EXPECT_EQ(told.state, State::right) << against_text(told);
+    const Verdict& f = named(told, "same_f");
+    EXPECT_EQ(f.state, State::right);
+    EXPECT_FALSE(f.evidence["same"].get<bool>());
+    EXPECT_NEAR(f.evidence["largest_relative"].get<double>(), 0.005 / 0.505, 1e-6);
+    EXPECT_NE(f.say.find("0.9901 times"), std::string::npos) << f.say;
+    EXPECT_EQ(named(told, "variance").state, State::skipped) << against_text(told);
+    EXPECT_EQ(expected.state, State::wrong);
+    EXPECT_EQ(named(expected, "same_f").state, State::wrong) << against_text(expected);
+}
+
+TEST(Against, AHeavyTailIsInconclusive) {
     const std::vector<Trial> phong = trials("phong", "Lambert + Phong", 0);
     const Verdict v = named(against(phong, arm_against("cosine", phong)), "variance");
     EXPECT_EQ(v.state, State::inconclusive) << v.say;
     EXPECT_NE(v.say.find("heavy tail"), std::string::npos) << v.say;
     EXPECT_FALSE(v.settle.empty());
+}
+
+/// Every weight of cosine on Lambert is the albedo: what is left is rounding, and is not ranked.
+TEST(Against, TwoSamplersWithoutVarianceAreNotRanked) {
+    const std::vector<Trial> a = trials("cosine", "Lambert", 45);
+    for (const auto& b : {arm_against("cosine", a), sampler_against(lambert(0.5), a)}) {
+        const Verdict v = named(against(a, b), "variance");
+        EXPECT_EQ(v.state, State::right);
+        EXPECT_NE(v.say.find("Neither has a variance"), std::string::npos) << v.say;
+        EXPECT_EQ(v.say.find("better"), std::string::npos) << v.say;
+    }
+    const Verdict one = named(against(a, arm_against("uniform", a)), "variance");
+    EXPECT_EQ(one.evidence["better"], "A") << one.say;
+}
+
+/// Of ninety-six pairs, one in twenty of which has an interval without 1 in it.
+TEST(Against, ItselfIsNeverBetter) {
+    const std::vector<Trial> a = trials("cosine", "Lambert + GGX", 60), even = trials("uniform", "Lambert", 45);
+    for (std::uint32_t seed = 1; seed <= 48; ++seed)
+        for (const auto& [one, arm] : {std::pair(&a, "cosine"), {&even, "uniform"}}) {
+            const Verdict v = named(against(*one, arm_against(arm, *one), false, seed, 2048), "variance");
+            EXPECT_EQ(v.evidence["better"], "none") << seed << ": " << v.say;
+            EXPECT_EQ(v.say.find("is better here:"), std::string::npos) << v.say;
+        }
+}
+
+/// Told as 0.9 of what is drawn, p makes weights of 1.11 of the light, and a variance of an integral that is none.
+TEST(Against, AWrongOneIsNotRanked) {
+    const std::vector<Trial> a = trials("uniform", "Lambert", 45);
+    const Judgement j = against(a, sampler_against(lambert(0.5, 0.9), a));
+    const Verdict& v = named(j, "variance");
+    EXPECT_EQ(v.state, State::skipped) << against_text(j);
+    EXPECT_NE(v.say.find("B is wrong itself, by normalised"), std::string::npos) << v.say;
+    EXPECT_FALSE(v.evidence.contains("ratio"));
+}
+
+/// A mirror coat over Lambert: q = 1/4, and what the mirror reflects.
+std::shared_ptr<const JudgedSampler> coated(double mirror_reflects) {
+    Recipe r{"coat", "", {}, {}, {}};
+    r.traits.numbers = 3;
+    r.traits.delta = true;
+    r.pdf = [](Vec3d, Vec3d wi) { return 0.75 * std::max(wi.z, 0.0) / pi; };
+    r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.3 / pi : 0.0; };
+    r.sample = [mirror_reflects](Vec3d wo, const Numbers& u) {
+        Draw d;
+        if (u[2] < 0.25) {
+            d.wi = {-wo.x, -wo.y, wo.z};
+            d.delta = 0.25;
+            d.weight = mirror_reflects / 0.25;
+            return d;
+        }
+        const double rad = std::sqrt(u[0]), phi = 2 * pi * u[1], z = std::sqrt(1 - u[0]);
+        d.wi = {rad * std::cos(phi), rad * std::sin(phi), z};
+        d.pdf = 0.75 * z / pi;
+        d.weight = 0.3 / 0.75;
+        return d;
+    };
+    return subject_of(r);
+}
+
+TEST(Against, DeltaPartsOfAnotherPowerAreToldAndNotRanked) {
+    const std::vector<Trial> a = {trial_of_subject(coated(0.2), 45, 0)};
+    const Judgement alike = against(a, sampler_against(coated(0.2), a)),
+                    other = against(a, sampler_against(coated(0.25), a));
+    EXPECT_TRUE(named(alike, "same_f").evidence["same"].get<bool>()) << against_text(alike);
+    EXPECT_EQ(named(alike, "variance").evidence["better"], "none") << against_text(alike);
+    EXPECT_FALSE(named(other, "same_f").evidence["same"].get<bool>()) << against_text(other);
+    EXPECT_NE(named(other, "same_f").say.find("delta part"), std::string::npos) << against_text(other);
+    EXPECT_EQ(named(other, "variance").state, State::skipped) << against_text(other);
 }
 
 }  // namespace

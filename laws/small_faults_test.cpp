@@ -192,6 +192,34 @@ TEST(LightsOfATrial, ThatAreNoDisksAreAimedAtAndIntegrated) {
     EXPECT_GT(hidden, 50);
 }
 
+/// By area p has a pole along the ball's outline, one over the root of the distance to it.
+TEST(LightsOfATrial, ABallByAreaIntegratesToOneAcrossThePoleAtItsOutline) {
+    const Stage on = stage(LobeKind::none, true, "ball", 32);
+    for (double theta : {0.0, 45.0, 85.0}) {
+        const Trial trial = trial_on(
+            on, theta, 130, "light-area", std::make_shared<BuiltIn<LightArea>>(on.surface, tilt(theta, 130), on.light));
+        const Judgement j = judged(trial);
+        for (const char* name : {"valid", "support", "normalised", "density", "identity", "mean"})
+            EXPECT_EQ(named(j, name).state, State::right) << theta << ": " << named(j, name).say;
+    }
+}
+
+/// Weights of three values, of which the largest comes once in 200 draws: the steps between them are no tail.
+TEST(Tails, OfFewValuesThatComeAgainAndAgainAreNone) {
+    Recipe r{"three values", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d wi) { return wi.z > 0 ? 1 / (2 * pi) : 0.0; };
+    r.f = [](Vec3d, Vec3d wi) {
+        return wi.z > 0 ? 0.05 * (wi.z > 0.995 ? 60 : wi.z > 0.985 ? 5 : 1) / wi.z / pi : 0.0;
+    };
+    r.sample = [](Vec3d, Vec2d u) { return Draw{about({0, 0, 1}, 1 - u.x, u.y), 1 / (2 * pi), {}, {}}; };
+    const Judgement j = judged(trial_of_subject(subject_of(r), 45, 130), 32768);
+    const Verdict& tail = named(j, "tail");
+    EXPECT_EQ(tail.state, State::right) << tail.say;
+    EXPECT_FALSE(tail.evidence.contains("k")) << tail.say;
+    EXPECT_GT(tail.evidence["times_largest"].get<int>(), 100);
+    EXPECT_EQ(named(j, "mean").state, State::right) << named(j, "mean").say;
+}
+
 /// 16 x 32 texels evenly spaced in theta, g sin theta constant in each; and the same from points at random.
 TEST(Meshes, OfTexelsInThetaAndPhiAreSummedOrSampled) {
     const auto texel = [](double theta, double b) { return 1 + (int(theta / pi * 16) * 7 + int(b * 32) * 5) % 11; };

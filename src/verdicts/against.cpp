@@ -14,11 +14,13 @@
 #include "verdicts/asked_once.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
+#include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
 
 namespace {
 
+constexpr std::array compared_by = {"same_distribution", "same_f", "variance"};
 constexpr std::uint32_t other_stream = 1u << 20;  // B draws from streams that no A draws from
 
 /// Draws of every technique, by A's bins; what draws nothing is one more.
@@ -100,60 +102,6 @@ Verdict same_distribution(const TrialContext& a, const TrialContext& b, bool exp
     return v;
 }
 
-/// f of both where both are asked: all over the upper half, and where either draws.
-Verdict same_f(const TrialContext& a, const TrialContext& b) {
-    Verdict v = a.verdict("same_f", State::right, "");
-    const bool at_draws = !a.subject.has_f() && a.subject.has_drawn_f();
-    if (!(a.subject.has_f() || at_draws) || !b.subject.has_f()) {
-        v.state = State::skipped;
-        v.say = at_draws                ? "f of A is known at its own draws, and B has none to hold against it."
-            : a.subject.draws_at_will() ? "There is no f to compare."
-                                        : "The file of A has no column f: there is nothing to compare.";
-        return v;
-    }
-    if (a.scatter().f() || b.scatter().f()) {
-        v.state = State::skipped;
-        v.say = "f is a random estimate, which is the same in the mean alone: variance compares their means' spread.";
-        return v;
-    }
-    std::vector<Vec3d> wi;
-    std::vector<double> recorded;
-    for (std::uint64_t i = 0; !at_draws && i < 256; ++i) {
-        const Vec2<float> u = draw(23, 0, i, 0);
-        const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z),
-                     phi = 2 * pi * static_cast<double>(u.y);
-        wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
-    }
-    for (std::size_t i = 0; at_draws && i < a.first(0).draws.size(); ++i)
-        if (const Draw& d = a.first(0).draws[i]; d.pdf > 0 && d.f && a.counts(d.wi))
-            wi.push_back(normalize(d.wi)), recorded.push_back(*d.f);
-    for (const TrialContext* w : {&a, &b})
-        for (std::size_t i = 0, n = at_draws ? 256 : 0; i < w->first(0).draws.size() && n < 256; ++i)
-            if (const Draw& d = w->first(0).draws[i]; d.pdf > 0 && w->counts(d.wi)) wi.push_back(normalize(d.wi)), ++n;
-    const std::vector<double> fa = at_draws ? recorded : a.f(wi), fb = b.f(wi);
-    std::size_t differ = 0, worst = 0;
-    double most = 0;
-    for (std::size_t i = 0; i < wi.size(); ++i) {
-        const double off = std::fabs(fa[i] - fb[i]), size = std::max(std::fabs(fa[i]), std::fabs(fb[i]));
-        if (off <= 1e-4 * size + 1e-30) continue;
-        const double loose = at_draws ? 4 * a.direction_resolution() * size / std::max(std::fabs(wi[i].z), 1e-9)
-                                      : f_conditioning(a, a.trial.wo, wi[i], fa[i]);
-        if (differ < 4096 && off <= 1e-4 * size + loose + f_conditioning(b, b.trial.wo, wi[i], fb[i])) continue;
-        ++differ;
-        if (off / size > most) most = off / size, worst = i;
-    }
-    v.evidence["directions"] = wi.size();
-    v.evidence["differ"] = differ;
-    v.say = fmt::format("f is the same at {} directions{}.", wi.size(), at_draws ? ", A's draws" : "");
-    if (differ == 0) return v;
-    v.state = State::wrong;
-    v.say = fmt::format(
-        "f differs at {} of {} directions, most at ({:.4g}, {:.4g}, {:.4g}): {:.6g} and {:.6g}. Their variances are "
-        "not those of one integral.",
-        differ, wi.size(), wi[worst].x, wi[worst].y, wi[worst].z, fa[worst], fb[worst]);
-    return v;
-}
-
 /// Trials of the same w_o one after the other.
 std::vector<std::size_t> by_direction(std::span<const Trial> trials) {
     std::vector<std::size_t> order(trials.size());
@@ -165,15 +113,43 @@ std::vector<std::size_t> by_direction(std::span<const Trial> trials) {
     return order;
 }
 
+/// What cannot be used at all is not compared.
+std::optional<std::string> unusable(TrialContext& work, const char* who) {
+    const Verdict v = kinds::valid.judge(work);
+    if (v.state != State::wrong || v.evidence.contains("usable")) return {};
+    return fmt::format("{} is not valid here: {}", who, v.say);
+}
+
 std::vector<Verdict> compare_one(
     const Side& one, const Side& other, const TestSettings& settings, bool expect_same, TestCounts& tally) {
     const Trial &ta = one.trial, &tb = other.trial;
     TrialContext a(ta, settings, tally, one.stream), b(tb, settings, tally, other.stream);
-    a.measure_density();
-    b.measure_density();
-    std::vector<Verdict> out = {same_distribution(a, b, expect_same), same_f(a, b), ratio_of_variances(a, b)};
+    std::vector<Verdict> out;
+    std::optional<std::string> fault = unusable(a, "A");
+    if (!fault) fault = unusable(b, "B");
+    if (fault) {
+        for (const char* name : compared_by) {
+            out.push_back(a.verdict(name, State::inconclusive, *fault));
+            out.back().settle = "A sampler that is valid: `crescent check` of it alone says more.";
+        }
+    } else {
+        a.measure_density();
+        b.measure_density();
+        out = {same_distribution(a, b, expect_same), same_f(a, b, expect_same)};
+        out.push_back(ratio_of_variances(a, b, out[1]));
+    }
     for (Verdict& v : out) v.arm = ta.arm + " against " + tb.arm;
     return out;
+}
+
+/// Three tests of the distribution, two of means and variances, and what either is tested by alone.
+std::uint64_t tests_against(std::span<const Trial> a, std::span<const Trial> b) {
+    std::uint64_t tests = 5 * a.size();
+    for (const auto& trials : {a, b})
+        for (const Trial& t : trials)
+            for (const VerdictKind* kind : judged_alone())
+                if (kind->tests) tests += kind->tests(t);
+    return tests;
 }
 
 }  // namespace
@@ -185,7 +161,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
             if (!t.subject->traits().has_pdf)
                 throw InputError({t.arm, 0, 0}, "has no pdf(w), which two samplers are held against each other by");
     TestSettings settings = given;
-    settings.share(3 * a.size());
+    settings.share(tests_against(a, b));
     TestCounts tally;
     watch.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
@@ -198,7 +174,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
                 asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, tally);
         } catch (const SubjectFault& fault) {
             const Cut cut = cut_by(fault);
-            for (const char* name : {"same_distribution", "same_f", "variance"}) {
+            for (const char* name : compared_by) {
                 Verdict v;
                 v.arm = a[i].arm + " against " + b[i].arm;
                 v.trial = a[i].text();

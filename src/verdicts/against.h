@@ -1,9 +1,10 @@
 // Two samplers, A and B, at the same w_o under the same light: do they draw from one distribution, have they one f, and
 // which of them has the smaller variance. Three verdicts a w_o:
 //
-//   same_distribution  two-sample chi-square over bins about A's lobe, over rings and over sectors alone, both stages
-//   as elsewhere same_f             f of both at pairs of directions all over, and where either draws variance Var X_A
-//   / Var X_B with its 95 % interval; "heavy tail" where either has one
+//   same_distribution  two-sample chi-square over bins about A's lobe, over rings and over sectors alone, both stages as
+//                      elsewhere
+//   same_f             f of both at directions all over, and where either draws; q times weight of delta parts
+//   variance           Var X_A / Var X_B with its 95 % interval; "heavy tail" where either has one
 #pragma once
 
 #include "verdicts/judge.h"
@@ -11,7 +12,7 @@
 
 namespace crescent::inline verdicts {
 
-/// Trials of A and of B, one for one. expect_same: a difference in distribution is wrong, not only told.
+/// Trials of A and of B, one for one. expect_same: a difference in distribution or f is wrong, not only told.
 Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& settings,
     bool expect_same, ProgressMonitor& watch);
 

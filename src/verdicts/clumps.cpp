@@ -107,10 +107,8 @@ void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
     }
 }
 
-/// How far a direction goes at least when it goes at all, in the median over these draws: by moves of u of 2^-24 or,
-/// where those leave it where it is, by the least that does not. A warp that is steep, as a cell of a large table is,
-/// draws no finer than that, and neither does one of which floats make stairs. Where many u are sent to one point
-/// without such a stair, the way out of it is as fine as anywhere.
+}  // namespace
+
 double least_step(const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws) {
     const int numbers = work.traits.numbers;
     if (draws.empty() || b.u.size() != b.draws.size() || !work.subject.draws_at_will()) return 0;
@@ -153,8 +151,6 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
     }
     return median_of(std::move(steps));
 }
-
-}  // namespace
 
 Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
     std::vector<Spot> spots;

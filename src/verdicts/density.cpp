@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <utility>
 
 #include "math/distributions.h"
@@ -59,6 +60,7 @@ Pearson pearson(
 struct Fit {
     Pearson joint, rings, sectors;
     double outside_p = 1;  // of as many draws where p integrates to next to nothing
+    double outside_seen = 0, outside_due = 0;
     Clump clump;
     std::vector<double> observed, expected;
 };
@@ -119,6 +121,7 @@ Fit fit(const TrialContext& work, int technique, const Density& d, const SampleB
             due_sector[k % sectors] -= std::exchange(expected[k], 0);
         }
     }
+    out.outside_seen = seen, out.outside_due = due;
     if (seen > 0) out.outside_p = math::poisson_tail(due + n * (1e-4 + d.mass.error + d.doubts), seen);
     if (n * d.nothing >= 5) {  // nothing drawn is one more bin
         observed.insert(observed.begin(), nothing);
@@ -160,6 +163,48 @@ bool deltas_are_wrong(const TrialContext& work, const DeltaParts& deltas, Verdic
     return true;
 }
 
+using OfFit = std::function<double(const Fit&)>;
+
+std::string told(const Pearson& of, const char* where) {
+    return fmt::format("{}: chi-square {:.4g} on {:g} degrees, p = {:.2g}", where, of.statistic, of.degrees, of.p);
+}
+
+/// What the least likely of the tests that failed says; "" where none did.
+std::string mismatch(const Fit& f, const std::function<bool(const OfFit&)>& fails) {
+    std::string say;
+    double least = 2;
+    const auto look = [&](const OfFit& p, const std::string& text) {
+        if (fails(p) && p(f) < least) least = p(f), say = text;
+    };
+    look([](const Fit& x) { return x.joint.p; }, told(f.joint, "over the whole sphere"));
+    look([](const Fit& x) { return x.rings.p; }, told(f.rings, "along the angle from the axis"));
+    look([](const Fit& x) { return x.sectors.p; }, told(f.sectors, "around the axis"));
+    look([](const Fit& x) { return x.outside_p; },
+        fmt::format("where p integrates to next to nothing: {:.0f} fell there, {:.2g} are due, p = {:.2g}",
+            f.outside_seen, f.outside_due, f.outside_p));
+    return say;
+}
+
+/// Where one step of u takes a direction through half a bin or more, draws show no more of p than the steps of u.
+std::string grain_of_u(const TrialContext& work, int technique, const Density& d, const Fit& f) {
+    const std::size_t worst = worst_bin(f.observed, f.expected), sectors = static_cast<std::size_t>(d.sectors),
+                      ring = worst / sectors;
+    const SampleBatch& b = work.first(technique);
+    std::vector<std::size_t> inside;
+    for (std::size_t i = 0; i < b.draws.size() && inside.size() < 32; ++i)
+        if (!is_null_sample(b.draws[i], b.pdf[i]) && d.bin_of(d.map.coordinates(b.draws[i].wi)) == worst)
+            inside.push_back(i);
+    const double step = least_step(work, technique, b, inside), from = d.rings[ring], to = d.rings[ring + 1],
+                 wide = math::acos(std::clamp(1 - to, -1.0, 1.0)) - math::acos(std::clamp(1 - from, -1.0, 1.0)),
+                 sin = std::sqrt(std::max(to * (2 - to), 0.0)),
+                 least = std::min(wide, 2 * pi * sin / static_cast<double>(d.sectors));
+    if (!(step > 0.5 * least)) return "";
+    return fmt::format(
+        " u comes in steps of 2^-24, of which one moves the direction there by {:.2g} deg, through a bin "
+        "{:.2g} deg wide: it may be the steps of u alone that the draws show, not p.",
+        step * 180 / pi, least * 180 / pi);
+}
+
 Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("density", State::right, "");
     const DeltaParts deltas = delta_parts(work, work.first(0));
@@ -191,24 +236,18 @@ Verdict judge(TrialContext& work) {
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d),
                 static_cast<int>(d.rings.size()) - 1, d.sectors, f.observed, f.expected, d.rings});
         std::optional<Fit> fresh;
-        const auto of = [&](auto which) {
+        const auto of = [&](const OfFit& which) {
             return work.fails(which(f), [&](int round) {
                 if (!fresh) fresh = fit(work, t, d, work.draw(t, round));
                 return which(*fresh);
             });
         };
-        std::string fault;
-        if (of([](const Fit& x) { return x.joint.p; })) fault = "over the whole sphere";
-        if (of([](const Fit& x) { return x.rings.p; })) fault = "along the angle from the axis";
-        if (of([](const Fit& x) { return x.sectors.p; })) fault = "around the axis";
-        if (of([](const Fit& x) { return x.outside_p; })) fault = "where p integrates to next to nothing";
-        if (!fault.empty()) {
+        if (const std::string fault = mismatch(f, of); !fault.empty()) {
             v.state = State::wrong;
             v.say = fmt::format(
-                "The draws do not follow p {}: chi-square {:.4g} on {:g} degrees ({}), and again on a fresh seed with "
-                "more draws.",
-                fault, f.joint.statistic, f.joint.degrees, coordinates(d));
+                "The draws do not follow p {} ({}), and again on a fresh seed with more draws.", fault, coordinates(d));
             tell_worst(v, d, f.observed, f.expected);
+            v.say += grain_of_u(work, t, d, f);
             return v;
         }
         if (of([](const Fit& x) { return x.clump.p; })) {

@@ -9,6 +9,8 @@
 
 namespace crescent::inline verdicts {
 
+struct VerdictKind;
+
 /// What is wrong with the first of these draws that cannot be used, "" where all can.
 std::string first_fault(const TrialContext& work, int technique, const SampleBatch& b);
 /// Faults at corners of u, and how often a generator of 24 bits comes upon such a u.
@@ -44,7 +46,9 @@ double johnson_t(const Spread& s, double expected);
 /// What a reader is told of that: Johnson's t, or the plain one where it is far out, for which Johnson's correction is
 /// not made. None where the weights are alike to what p itself is granted: their spread is no measure of chance.
 std::optional<double> told_z(const Spread& s, const Integral& expected);
-/// Of the largest of these weights.
+/// How often the largest weight was drawn, to the rounding of floats. One with a tail has a largest that comes once.
+std::size_t times_largest(std::span<const double> x);
+/// Of the largest of these weights; none where the largest was drawn so often that there is nothing beyond it.
 std::optional<Tail> tail_of(std::span<const double> x);
 /// A tail with k >= 1/2 has a largest weight of the order of sqrt(n) means; one of a few means among thousands is
 /// bounded, whatever a fit to the few weights that stand out may say.
@@ -75,8 +79,12 @@ struct Repeated {
     Vec3d first{}, again{};
 };
 
+/// Whether two samplers are of one f; see against_f.cpp. A difference is told, and is wrong where none is expected.
+Verdict same_f(const TrialContext& a, const TrialContext& b, bool expect_same);
 /// Which of two samplers of one f has the smaller variance; see against_variance.cpp.
-Verdict ratio_of_variances(const TrialContext& a, const TrialContext& b);
+Verdict ratio_of_variances(TrialContext& a, TrialContext& b, const Verdict& of_f);
+/// What a sampler whose variance is ranked must pass by itself.
+std::span<const VerdictKind* const> judged_alone();
 
 /// Whether weights that are estimates, or are told beside estimates, are off in the mean; says so. See
 /// weights_in_the_mean.cpp.
@@ -111,6 +119,8 @@ struct WarpPoint {
     Vec3d wi{};
     double jacobian = 0, error = 0;  // sr; relative
 };
+/// The bin that is off most for its size.
+std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected);
 /// "Most at theta 31.2 deg, phi 250.1 deg: 812 seen, 640.3 due."
 void tell_worst(Verdict& v, const Density& d, const std::vector<double>& observed, const std::vector<double>& expected);
 
@@ -124,6 +134,11 @@ struct Clump {
     double draws = 0, due = 0, room = 0;  // due: at most; room in sr
     Vec3d at{};
 };
+/// How far a direction goes at least when it goes at all, in the median over these draws: by moves of u of 2^-24 or,
+/// where those leave it where it is, by the least that does not. A warp that is steep, as a cell of a large table is,
+/// draws no finer than that, and neither does one of which floats make stairs. Where many u are sent to one point
+/// without such a stair, the way out of it is as fine as anywhere. 0: not known.
+double least_step(const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws);
 Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b);
 void tell_clump(Verdict& v, const Clump& clump);
 

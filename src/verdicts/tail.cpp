@@ -81,7 +81,11 @@ Verdict judge(TrialContext& work) {
     if (theory.tail_k) v.evidence["theory_k"] = *theory.tail_k;
     const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
     if (!tail) {
-        v.say = "The largest weights are all alike: no tail to speak of. ";
+        const std::size_t times = times_largest(x);
+        v.evidence["times_largest"] = times;
+        v.say = times == x.size() || times < 20
+            ? "The largest weights are all alike: no tail to speak of. "
+            : fmt::format("The largest weight was drawn {} times: no tail to speak of. ", times);
     } else {
         v.evidence["k"] = tail->k;
         v.evidence["se"] = tail->se;

@@ -196,6 +196,7 @@ private:
     std::vector<Vec3d> guides_, rims_;
     std::size_t drawn_guides_ = 0;  // the first of the guides
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
+    std::optional<double> pole_;    // 1 - cos of that rim, where p has a pole along it
     std::optional<Vec3d> banded_;   // the axis about which p jumps at heights alone
     std::vector<double> heights_;   // these, as 1 - cos
     double grain_ = 0;
@@ -211,6 +212,7 @@ private:
     void look_below();
     void find_guides();
     void find_rims(int technique);
+    bool has_pole_at(const SphereMap& map, double height) const;
     void add_rims(Density& d) const;
     std::optional<Density> table_density(int technique);
     Density density_of_estimates(int technique, Vec3d axis);
@@ -221,6 +223,7 @@ private:
         int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
     Density bins_about(Vec3d axis, bool about_n) const;
     Batch batch_of(int technique, const SphereMap& map) const;
+    Integral mass_inside_pole(int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) const;
     void grant_doubts(int technique, Density& d) const;
     void share_nothing(int technique, Density& d) const;
     void estimate_null_fraction(int technique, Density& d, std::uint64_t points, std::optional<double> told) const;

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "math/functions.h"
-#include "verdicts/mesh.h"
-#include "verdicts/recorded.h"
+#include "verdicts/caps.h"
 #include "verdicts/trial_context.h"
 
 namespace crescent::inline verdicts {
@@ -57,6 +56,12 @@ void TrialContext::measure_density() {
         Density d = sharp ? density_about(t, normalize(mean), false, settings.evaluations)
                           : density_about(t, axis, axis.z == 1, settings.evaluations);
         const double enough = thrifty() ? 8e-5 : 5e-5;
+        if (d.mass.error > 10 * enough && !pole_) {  // far from it: many rims
+            const std::size_t evaluations = affordable(settings.evaluations, for_later());
+            std::optional<Integral> mass =
+                integrate_caps(*this, t, d, guided(cells_of(d), d.map, guides_), {tolerance(), evaluations, 5e-5});
+            if (mass && mass->error < d.mass.error) d.mass = std::move(*mass);
+        }
         const std::size_t look = thrifty() ? settings.evaluations / 3 : settings.evaluations;  // at other coordinates
         const bool nearly = thrifty() && d.mass.error < 3e-4;  // it is finer cells that are missing
         if (d.mass.error > enough && circle_ && !nearly) {
@@ -115,42 +120,6 @@ Density TrialContext::density_of_estimates(int t, Vec3d axis) {
     return d;
 }
 
-/// A density that jumps along heights and azimuths about an axis: the normal, or for a sky any axis of the frame. Its
-/// cells are summed, or sampled where a program would be asked too often. Where it jumps at heights alone, they become
-/// edges of rings.
-std::optional<Density> TrialContext::table_density(int t) {
-    constexpr std::size_t most_heights = 64;
-    banded_.reset();
-    std::vector<Vec3d> axes = {{0, 0, 1}};
-    if (traits.wo == Traits::Asked::none) axes.insert(axes.end(), {{0, 1, 0}, {1, 0, 0}});
-    for (Vec3d axis : axes) {
-        Density d = bins_about(axis, axis.z == 1);
-        const Batch g = batch_of(t, d.map);
-        const Jumps jumps = find_jumps(g);
-        const std::optional<Mesh> mesh = mesh_of(jumps);
-        if (std::vector<double> heights = heights_of(jumps);
-            !mesh && !banded_ && !heights.empty() && heights.size() <= most_heights)
-            banded_ = axis, heights_ = std::move(heights);
-        if (!mesh) continue;
-        const SamplesPerBin seen = witnesses_of(t, d);
-        const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
-        const std::size_t most = subject.serial() && !settings.full ? affordable(400000, for_later()) / 2 : 10000000;
-        std::optional<Integral> mass;
-        if (mesh->cells() <= most)
-            mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
-                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, crowd, &seen);
-        else
-            mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
-                affordable(4 * settings.evaluations, for_later()));
-        if (!mass) continue;
-        d.mass = std::move(*mass);
-        grant_doubts(t, d);
-        share_nothing(t, d);
-        return d;
-    }
-    return {};
-}
-
 /// 2 pi p over coordinates about an axis.
 Batch TrialContext::batch_of(int technique, const SphereMap& map) const {
     return [this, technique, map](std::span<const Vec2d> at, std::span<double> out) {
@@ -159,15 +128,6 @@ Batch TrialContext::batch_of(int technique, const SphereMap& map) const {
         const std::vector<double> p = pdf(technique, wi, true);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * p[i];
     };
-}
-
-void TrialContext::grant_doubts(int technique, Density& d) const {
-    for (const TabulationError& doubt : subject.doubts()) {
-        d.doubt.resize(d.mass.bins.size());
-        d.doubt[d.bin_of(d.map.coordinates(doubt.at))] += doubt.mass;
-        d.doubts += doubt.mass;
-    }
-    if (!d.doubt.empty()) refine_table(technique, d);
 }
 
 SamplesPerBin TrialContext::witnesses_of(int technique, const Density& d) const {
@@ -189,35 +149,6 @@ std::size_t Density::bin_of(Vec2d at) const {
         std::clamp<std::ptrdiff_t>(edge - rings.begin() - 1, 0, static_cast<std::ptrdiff_t>(rings.size()) - 2);
     const int sector = at.y > 0 ? std::min(static_cast<int>(at.y * sectors), sectors - 1) : 0;
     return static_cast<std::size_t>(ring * sectors + sector);
-}
-
-/// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral /
-/// p's. The bin is set right by that, as far as its doubt reaches, and is then known to the spread of table / p: twice
-/// the standard error of its mean, and a tenth for draws that do not follow p.
-void TrialContext::refine_table(int technique, Density& d) const {
-    struct Ratio {
-        double n = 0, sum = 0, squares = 0;
-    };
-    std::vector<Ratio> ratio(d.doubt.size());
-    const SampleBatch& b = first(technique);
-    for (std::size_t i = 0; i < b.draws.size(); ++i) {
-        if (is_null_sample(b.draws[i], b.pdf[i])) continue;
-        Ratio& r = ratio[d.bin_of(d.map.coordinates(b.draws[i].wi))];
-        const double v = b.pdf[i] / b.draws[i].pdf;
-        ++r.n;
-        r.sum += v;
-        r.squares += v * v;
-    }
-    for (std::size_t k = 0; k < d.doubt.size(); ++k) {
-        const Ratio& r = ratio[k];
-        if (r.n < 8 || !(d.mass.bins[k] > 0)) continue;
-        const double mean = r.sum / r.n, sd = std::sqrt(std::max(r.squares / r.n - mean * mean, 0.0)),
-                     reach = d.doubt[k] / d.mass.bins[k];
-        const double right = d.mass.bins[k] / std::clamp(mean, std::max(1 - reach, 0.1), 1 + reach);
-        d.mass.value += right - d.mass.bins[k];
-        d.mass.bins[k] = right;
-        d.doubt[k] = std::min(d.doubt[k], right * sd * (2 / std::sqrt(r.n) + 0.1));
-    }
 }
 
 /// An edge at the nearest and the farthest rim, and one farther out, since a rim is known at a few places: what lies
@@ -290,6 +221,12 @@ Density TrialContext::density_about(
     const std::size_t evaluations = affordable(wanted, for_later());
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
+    if (pole_ && circle_ && length(axis - *circle_) < 1e-12) {
+        d.mass = mass_inside_pole(technique, d, guided(cells_of(d), d.map, guides_),
+            {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass});
+        grant_doubts(technique, d);
+        return d;
+    }
     const SamplesPerBin witnesses = witnesses_of(technique, d);
     d.mass = integral_of(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
         {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter_.pdf(), &witnesses);

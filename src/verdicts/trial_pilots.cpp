@@ -116,6 +116,8 @@ void TrialContext::find_rims(int technique) {
         const SphereMap map(*circle_);
         std::erase_if(rims_, [&](Vec3d w) { return std::fabs(map.coordinates(w).x / height - 1) < 1e-5; });
         rims_.insert(rims_.end(), exact.begin(), exact.end());
+        for (Vec3d w : exact) pole_ = std::max(pole_.value_or(0), map.coordinates(w).x);
+        if (!has_pole_at(map, *pole_)) pole_.reset();
     }
 }
 

@@ -42,12 +42,40 @@ std::optional<double> told_z(const Spread& s, const Integral& expected) {
     return std::fabs(plain) > far_out ? plain : johnson_t(s, expected.value);
 }
 
+std::size_t times_largest(std::span<const double> x) {
+    constexpr double alike = 1e-5;  // relative, as in the fit of a tail
+    if (x.empty()) return 0;
+    const double largest = *std::max_element(x.begin(), x.end());
+    return static_cast<std::size_t>(
+        std::count_if(x.begin(), x.end(), [&](double v) { return v >= largest * (1 - alike); }));
+}
+
+namespace {
+
+/// Few values that come again and again are no tail that a fit knows: it takes the steps between them for one.
+bool is_of_few_values(std::span<const double> falling) {
+    constexpr double alike = 1e-5;
+    constexpr std::size_t few = 8;
+    std::size_t values = 0;
+    for (std::size_t i = 0; i < falling.size() && values <= few; ++values) {
+        const double top = falling[i];
+        while (i < falling.size() && falling[i] >= top * (1 - alike)) ++i;
+    }
+    return values <= few;
+}
+
+}  // namespace
+
 std::optional<Tail> tail_of(std::span<const double> x) {
+    constexpr std::size_t often = 20;  // what lies beyond comes a fifth as often at most, by 98 of 100
     const std::size_t length = std::min(tail_length(x.size()) + 1, x.size());
     std::vector<double> largest(x.begin(), x.end());
     std::partial_sort(
         largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
-    return fit_tail(std::span<const double>(largest).first(length));
+    const std::span<const double> falling = std::span<const double>(largest).first(length);
+    const std::optional<Tail> tail = fit_tail(falling);
+    if (!tail || times_largest(falling) < often) return tail;
+    return is_of_few_values(falling) || tail->k + 2 * tail->se >= 0.5 ? std::nullopt : tail;
 }
 
 bool is_bounded(const Spread& s) { return s.n >= 1000 && s.largest <= std::min(4.0, 0.1 * std::sqrt(s.n)) * s.mean; }
