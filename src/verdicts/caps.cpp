@@ -194,7 +194,7 @@ std::optional<Integral> integrate_caps(
         const std::vector<double> p = work.pdf(technique, wi, true);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * pi * left_by(caps, wi[i], p[i]);
     };
-    Integral out = integrate(std::move(cells), static_cast<int>(d.mass.bins.size()), left, effort);
+    Integral out = integrate(std::move(cells), static_cast<int>(d.rings.size() - 1) * d.sectors, left, effort);
     share_out(d, caps, out);
     return out;
 }

@@ -56,12 +56,15 @@ void TrialContext::measure_density() {
         Density d = sharp ? density_about(t, normalize(mean), false, settings.evaluations)
                           : density_about(t, axis, axis.z == 1, settings.evaluations);
         const double enough = thrifty() ? 8e-5 : 5e-5;
-        if (d.mass.error > 10 * enough && !pole_) {  // far from it: many rims
+        const auto by_caps = [&](const Density& bins) {
             const std::size_t evaluations = affordable(settings.evaluations, for_later());
-            std::optional<Integral> mass =
-                integrate_caps(*this, t, d, guided(cells_of(d), d.map, guides_), {tolerance(), evaluations, 5e-5});
-            if (mass && mass->error < d.mass.error) d.mass = std::move(*mass);
-        }
+            return integrate_caps(
+                *this, t, bins, guided(cells_of(bins), bins.map, guides_), {tolerance(), evaluations, 5e-5});
+        };
+        bool capped = false;
+        if (d.mass.error > 10 * enough && !pole_)  // far from it: many rims
+            if (std::optional<Integral> mass = by_caps(d); mass && mass->error < d.mass.error)
+                d.mass = std::move(*mass), capped = d.mass.error <= enough;
         const std::size_t look = thrifty() ? settings.evaluations / 3 : settings.evaluations;  // at other coordinates
         const bool nearly = thrifty() && d.mass.error < 3e-4;  // it is finer cells that are missing
         if (d.mass.error > enough && circle_ && !nearly) {
@@ -101,8 +104,9 @@ void TrialContext::measure_density() {
         // A failure needs a second quadrature that confirms it; a sum over bands in which p is constant does not.
         const bool summed = banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6;
         if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se)
-            d.second =
-                density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
+            d.second = capped
+                ? by_caps(bins_about(d.about_n ? normalize(peak) : n, !d.about_n))
+                : density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
         density_.push_back(std::move(d));
     }
 }
@@ -160,6 +164,12 @@ void TrialContext::add_rims(Density& d) const {
         const double a = d.map.coordinates(w).x;
         least = std::min(least, a);
         most = std::max(most, a);
+    }
+    // Rounding takes draws beyond a rim at which p has a pole, where many of them fall.
+    if (pole_ && circle_ && length(d.map.frame.n - *circle_) < 1e-12) {
+        const double rounding = 8 * std::max(grain_, 0x1p-24) * std::sqrt(2 * *pole_);
+        std::erase_if(d.rings, [&](double edge) { return std::fabs(edge - *pole_) < rounding; });
+        least = most = *pole_ + rounding;
     }
     for (double edge : {least, most, most + 0.1 * (most - least)})
         if (edge > 1e-12 && edge < 2 - 1e-9) d.rings.push_back(edge);

@@ -99,6 +99,7 @@ void TrialContext::find_rims(int technique) {
     subject.sample(technique, trial.wo, u, drawn);
     for (const Draw& d : drawn)
         if (d.pdf > 0 && is_finite(d.wi)) rims_.push_back(d.wi);
+    std::optional<Vec3d> nearly;  // a circle along which p does not end
     for (std::size_t side = 0; side < 4 * choices && !circle_; ++side) {
         std::vector<Vec3d> rim;
         for (std::size_t i = 0; i < along; ++i) {
@@ -111,14 +112,16 @@ void TrialContext::find_rims(int technique) {
         if (!about) continue;
         const double height = SphereMap(*about).coordinates(rim[0]).x;
         const std::vector<Vec3d> exact = exact_rim(*this, *about, height);
-        circle_ = exact.empty() ? axis_of_circle(rim, closely) : axis_of_circle(exact, 1e-10);
-        if (exact.empty() || !circle_) continue;
+        if (exact.empty() && !nearly) nearly = axis_of_circle(rim, closely);
+        if (!exact.empty()) circle_ = axis_of_circle(exact, 1e-10);
+        if (!circle_) continue;
         const SphereMap map(*circle_);
         std::erase_if(rims_, [&](Vec3d w) { return std::fabs(map.coordinates(w).x / height - 1) < 1e-5; });
         rims_.insert(rims_.end(), exact.begin(), exact.end());
         for (Vec3d w : exact) pole_ = std::max(pole_.value_or(0), map.coordinates(w).x);
         if (!has_pole_at(map, *pole_)) pole_.reset();
     }
+    if (!circle_) circle_ = nearly;
 }
 
 /// What is not of the density: delta parts, whose draws say how often they come, and draws of nothing. These are looked

@@ -24,7 +24,10 @@ Integral TrialContext::mass_inside_pole(
     const double h = *pole_;
     const auto there = [h](double a) { return a < h ? h * (1 - std::sqrt(1 - a / h)) : a; };
     const auto back = [h](double t) { return t < h ? h * (1 - sqr(1 - t / h)) : t; };
-    for (Rect& r : cells) r.a0 = there(r.a0), r.a1 = there(r.a1);
+    for (std::size_t i = 0, n = cells.size(); i < n; ++i) {
+        if (cells[i].a0 < h && cells[i].a1 > h) cells.push_back(cells[i]), cells[i].a1 = cells.back().a0 = h;
+        cells[i].a0 = there(cells[i].a0), cells[i].a1 = there(cells[i].a1);
+    }
     SamplesPerBin witnesses = witnesses_of(technique, d);
     for (auto& bin : witnesses.bins)
         for (Witness& w : bin) w.g *= w.at.x < h ? 2 * std::sqrt(1 - w.at.x / h) : 1, w.at.x = there(w.at.x);
