@@ -12,6 +12,8 @@ namespace {
 
 constexpr int rays = 8, around = 16, bisections = 44;
 constexpr double least_jump = 0.15;  // of p, from one step along a ray to the next
+constexpr double largest = 0.02;     // 1 - cos: 11 deg; the cells of a larger one are few
+constexpr std::size_t many = 8;      // fewer are left to the cubature
 constexpr double alike = 1e-6;       // of p: what caps leave there is rounding
 
 /// A great circle from a draw, as far as p first jumps.
@@ -66,7 +68,7 @@ std::optional<Cap> through(const Ray& x, const Ray& y, const Ray& z) {
     Vec3d axis = normal * (1 / size);
     if (dot(axis, x.from) < dot(axis, p)) axis = -axis;
     const double a = 0.5 * dot(p - axis, p - axis);
-    return a > 1e-14 && a < 2 - 1e-9 ? std::optional(Cap{axis, a, x.p0 - x.p1}) : std::nullopt;
+    return a > 1e-14 && a < largest ? std::optional(Cap{axis, a, x.p0 - x.p1}) : std::nullopt;
 }
 
 /// Sets the step of those that have the same all round; takes out the others.
@@ -187,7 +189,7 @@ std::vector<Cap> find_caps(const TrialContext& work, int technique) {
 std::optional<Integral> integrate_caps(
     const TrialContext& work, int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) {
     const std::vector<Cap> caps = find_caps(work, technique);
-    if (caps.size() < 2) return {};
+    if (caps.size() < many) return {};
     const auto left = [&](std::span<const Vec2d> at, std::span<double> out) {
         std::vector<Vec3d> wi;
         for (Vec2d v : at) wi.push_back(d.map.direction(v));

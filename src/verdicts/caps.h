@@ -20,7 +20,7 @@ struct Cap {
 std::vector<Cap> find_caps(const TrialContext& work, int technique);
 
 /// The integral over the bins of d: of the caps in closed form, of what they leave of p by cubature over `cells`. None
-/// where fewer than two caps are found.
+/// where fewer than eight caps are found.
 std::optional<Integral> integrate_caps(
     const TrialContext& work, int technique, const Density& d, std::vector<Rect> cells, const Effort& effort);
 
