@@ -1,7 +1,7 @@
 // Two samplers, A and B, at the same w_o under the same light: do they draw from one distribution, have they one f, and
 // which of them has the smaller variance. Three verdicts a w_o:
 //
-//   same_distribution  two-sample chi-square over bins about A's lobe, over rings and over sectors alone, in both stages
+//   same_distribution  two-sample chi-square over bins about A's lobe, over rings, over sectors, in both stages
 //   same_f             f of both at directions all over, and where either draws; q times weight of delta parts
 //   variance           Var X_A / Var X_B with its 95 % interval; "heavy tail" where either has one
 #pragma once
