@@ -219,7 +219,7 @@ void tell_cost(std::span<const Trial> trials, const TestSettings& settings, Prog
     }
     if (!program || !settings.full) return;
     const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
-    watch.say(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
+    watch.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
         settings.questions, judged, more));
 }
 

@@ -70,7 +70,7 @@ std::string right_tables(const CheckFlags& flags, ProgressMonitor& watch, bool& 
         settings.alpha = flags.alpha;
         settings.seed = flags.seed;
         const RightLaw law = measure_right(flags.first, flags.right, settings, watch);
-        for (const std::string& text : law.said) watch.say(text);
+        for (const std::string& text : law.said) watch.log(text);
         out += (law.full ? "\n### Full mode\n\n" : "\n### Quick mode\n\n") + right_law_text(law);
         kept = kept && keeps_promise(law);
     }
@@ -109,7 +109,7 @@ int check_error_rates(const CheckFlags& flags, ProgressMonitor& watch) {
     std::string told;
     const std::size_t right = std::max<std::size_t>(flags.right, 100);
     const std::size_t found = count_false_diagnoses(flags.first, right, flags.seed, told);
-    if (!told.empty()) watch.say(told);
+    if (!told.empty()) watch.log(told);
     print(explained_text(causes, found, right));
     return kept && found == 0 ? held : failed;
 }

@@ -86,7 +86,7 @@ void Progress::draw() {
     drawn_ = true;
 }
 
-void Progress::say(std::string_view line) {
+void Progress::log(std::string_view line) {
     if (style_ == Style::silent) return;
     clear();
     const std::lock_guard lock(drawing_);

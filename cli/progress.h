@@ -20,7 +20,7 @@ public:
     void begin(std::string_view what, double total) override;
     void advance(double units) override;
     void skip(double units) override;
-    void say(std::string_view line) override;
+    void log(std::string_view line) override;
     /// Takes the bar off the terminal.
     void clear();
 

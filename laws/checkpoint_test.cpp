@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Listener : ProgressMonitor {
     std::string said;
-    void say(std::string_view line) override { said += std::string(line) + "\n"; }
+    void log(std::string_view line) override { said += std::string(line) + "\n"; }
 };
 
 class Keeping : public testing::Test {

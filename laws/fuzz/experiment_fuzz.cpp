@@ -45,7 +45,7 @@ template <class F> void refuses_or_reads(F&& read) {
     try {
         read();
     } catch (const InputError& error) {
-        ensure(!error.complaints().empty() && !error.complaints().front().say.empty(), "a refusal says why");
+        ensure(!error.diagnostics().empty() && !error.diagnostics().front().message.empty(), "a refusal says why");
     }
 }
 

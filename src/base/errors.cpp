@@ -17,7 +17,7 @@ std::string join(const std::vector<Diagnostic>& all) {
     for (const Diagnostic& c : all) {
         if (!text.empty()) text += '\n';
         const std::string at = printable(to_string(c.at));
-        text += at.empty() ? c.say : at + ": " + c.say;
+        text += at.empty() ? c.message : at + ": " + c.message;
     }
     return text;
 }

@@ -23,7 +23,7 @@ std::string to_string(const SourceLocation& at);
 /// One mistake in the input: where, and what was expected.
 struct Diagnostic {
     SourceLocation at;
-    std::string say;
+    std::string message;
 };
 
 /// The input is wrong. Carries every mistake that was found, in file order.
@@ -31,9 +31,10 @@ class InputError : public std::invalid_argument {
 public:
     /// what() has a line a mistake.
     explicit InputError(std::vector<Diagnostic> all);
-    InputError(const SourceLocation& at, const std::string& say) : InputError(std::vector<Diagnostic>{{at, say}}) {}
+    InputError(const SourceLocation& at, const std::string& message)
+        : InputError(std::vector<Diagnostic>{{at, message}}) {}
     /// In file order; at least one.
-    const std::vector<Diagnostic>& complaints() const { return all_; }
+    const std::vector<Diagnostic>& diagnostics() const { return all_; }
 
 private:
     std::vector<Diagnostic> all_;

@@ -144,7 +144,7 @@ void Staging::commit(ProgressMonitor& watch) {
     publication.publish(std::move(names_), kind_, watch.outputs);
     names_.clear();
     said_.insert(said_.end(), publication.said().begin(), publication.said().end());
-    for (const std::string& line : said_) watch.say(line);
+    for (const std::string& line : said_) watch.log(line);
     said_.clear();
 }
 

@@ -104,7 +104,7 @@ void Journal::append(const std::vector<Bytes>& parts) {
         written = written && ftruncate(file_, 0) == 0 && write({bytes_of(key_)});
     }
     if (written && write(parts)) return;
-    watch_.say(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", path_,
+    watch_.log(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", path_,
         std::strerror(errno)));
     remove();
     off_ = true;

@@ -14,7 +14,7 @@ using Texts = std::vector<std::string>;
 
 struct Listener : ProgressMonitor {
     int said = 0;
-    void say(std::string_view) override { ++said; }
+    void log(std::string_view) override { ++said; }
 };
 
 class Journals : public testing::Test {

@@ -43,7 +43,7 @@ public:
         const Guard guard(lock_);
         state_.total -= units;
     }
-    void say(std::string_view line) override {
+    void log(std::string_view line) override {
         const Guard guard(lock_);
         lines_.emplace_back(line);
     }

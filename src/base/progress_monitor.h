@@ -27,7 +27,7 @@ public:
     /// `units` of the total were done by an earlier run.
     virtual void skip(double /*units*/) {}
     /// A line worth keeping in a log.
-    virtual void say(std::string_view /*line*/) {}
+    virtual void log(std::string_view /*line*/) {}
 
     /// The flag kernels poll; set from a signal handler.
     std::atomic<bool> stop{false};

@@ -20,10 +20,10 @@ using html::words;
 
 std::string lead(const CompareResult& result) {
     std::string out;
-    if (!result.say.empty())
+    if (!result.sentence.empty())
         out += html::element("p",
                    result.state == CompareResult::State::fails ? "class=\"verdict bad\"" : "class=\"verdict\"",
-                   escape(result.say)) +
+                   escape(result.sentence)) +
             "\n";
     else if (!result.assertions.empty()) out += "<p class=\"verdict good\">All assertions hold.</p>\n";
     std::vector<std::string> found;

@@ -81,17 +81,17 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
     for (const AssertionResult& a : result.assertions)
         if (!a.pass)
             result.state = State::fails,
-            result.say = std::isnan(a.measured) || std::isnan(a.bound)
+            result.sentence = std::isnan(a.measured) || std::isnan(a.bound)
                 ? fmt::format("An assertion does not pass: {}: a side of it was not measured.", a.text)
                 : fmt::format(
                       "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
     if (plan.expect != Expectation::same) return;
     for (const BiasResult& bias : result.bias)
-        if (bias.differs()) result.state = State::fails, result.say = bias.sentence;
+        if (bias.differs()) result.state = State::fails, result.sentence = bias.sentence;
     for (const BiasResult& bias : result.bias) {
         const std::string why = not_seen(plan, bias);
         if (why.empty() || result.state != State::holds) continue;
-        result.state = State::inconclusive, result.say = "Whether they are the same cannot be said: " + why + ".";
+        result.state = State::inconclusive, result.sentence = "Whether they are the same cannot be said: " + why + ".";
     }
 }
 

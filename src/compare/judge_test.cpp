@@ -68,7 +68,7 @@ TEST(CompareJudges, EventsThatNoRenderMetAreSaidAndABoundAllowsForThem) {
         EXPECT_LT(told.unless->size, event_size(w.a));
         EXPECT_FALSE(allowed.differs()) << allowed.sentence;
         EXPECT_THAT(allowed.sentence, HasSubstr("heavy tail: a is darker by "));
-        EXPECT_EQ(with.state, State::inconclusive) << with.say;
+        EXPECT_EQ(with.state, State::inconclusive) << with.sentence;
     }
     EXPECT_GE(missed, 3);
 }

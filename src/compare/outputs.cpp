@@ -121,8 +121,8 @@ const char* word_of(CompareResult::State state) {
 std::string compare_json(
     const ComparePlan& plan, const Readings& all, const CompareResult& result, const Provenance& p) {
     Json out = {{"format", "crescent comparison 1"}, {"title", plan.title}, {"width", all.width},
-        {"height", all.height}, {"state", word_of(result.state)}, {"say", result.say}, {"alpha", number(plan.alpha)},
-        {"trim", number(plan.trim)}};
+        {"height", all.height}, {"state", word_of(result.state)}, {"say", result.sentence},
+        {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
     for (std::size_t a = 0; a < result.arms.size(); ++a)
         out["arms"].push_back(arm_json(result.arms[a], all.arms[a], all.regions, all.reference.has_value()));
     out["reference"] = nullptr;
@@ -172,7 +172,7 @@ std::string compare_junit(const ComparePlan& plan, const CompareResult& result) 
         add(a.name, a.pass,
             fmt::format("{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound)));
     if (plan.expect == Expectation::same)
-        add("the arms are the same", result.state == CompareResult::State::holds, result.say);
+        add("the arms are the same", result.state == CompareResult::State::holds, result.sentence);
     return junit_text(suite);
 }
 
@@ -180,7 +180,7 @@ std::string compare_summary(
     const ComparePlan& plan, const Readings& all, const CompareResult& result, const std::string& out_dir) {
     std::string out = plan.title + "\n";
     for (const std::string& w : result.warnings) out += "warning: " + w + "\n";
-    if (!result.say.empty()) out += result.say + "\n";
+    if (!result.sentence.empty()) out += result.sentence + "\n";
     else if (!result.assertions.empty())
         out += fmt::format(
             "{} assertion{}.\n", result.assertions.size(), result.assertions.size() == 1 ? " holds" : "s hold");

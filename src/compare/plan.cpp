@@ -93,34 +93,34 @@ void check_names(ParseContext& context, const ComparePlan& plan) {
     for (const Region& r : plan.regions) regions.push_back(r.name);
     for (const MaskPlan& m : plan.masks) {
         if (std::count(regions.begin(), regions.end(), m.name))
-            context.complain("masks." + m.name, m.at, fmt::format("the name '{}' is a region already", m.name));
+            context.report("masks." + m.name, m.at, fmt::format("the name '{}' is a region already", m.name));
         regions.push_back(m.name);
     }
     for (const Region& r : plan.regions)
         if (r.name == whole_frame)
-            context.complain("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
+            context.report("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
     for (const RenderArm& a : plan.arms) arms.push_back(a.name);
     for (const AssertionPlan& a : plan.assertions) {
         std::string why;
         const auto check = parse_comparison(a.left, why, compare_words());
         if (!check) {
-            context.complain(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
+            context.report(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
             continue;
         }
         for (const ParsedQuantity* q : {&check->left, &check->right}) {
             if (q->number) continue;
             if (!std::count(arms.begin(), arms.end(), q->subject))
-                context.complain(a.name, a.at,
+                context.report(a.name, a.at,
                     fmt::format("{}: no arm '{}': expected one of {}{}", a.left, q->subject, listed(arms, ", "),
                         hint(q->subject, arms)));
             if (!std::count(regions.begin(), regions.end(), q->region))
-                context.complain(a.name, a.at,
+                context.report(a.name, a.at,
                     fmt::format("{}: no region '{}': expected one of {}{}", a.left, q->region, listed(regions, ", "),
                         hint(q->region, regions)));
         }
     }
     if (plan.expect == Expectation::same && plan.arms.size() < 2 && plan.reference.empty())
-        context.complain("expect", "expect = \"same\": expected two arms, or an arm and a reference");
+        context.report("expect", "expect = \"same\": expected two arms, or an arm and a reference");
 }
 
 ComparePlan read_plan(Node root, ParseContext& context, const std::vector<CompareFlag>& flags) {
@@ -129,8 +129,8 @@ ComparePlan read_plan(Node root, ParseContext& context, const std::vector<Compar
     ComparePlan plan;
     plan.file = context.e.file;
     read_tree(context, compare_schema(), root, &plan);
-    if (context.complaints.empty()) check_names(context, plan);
-    throw_if_any(std::move(context.complaints));
+    if (context.diagnostics.empty()) check_names(context, plan);
+    throw_if_any(std::move(context.diagnostics));
     for (AssertionPlan& a : plan.assertions) {
         std::string why;
         const auto check = parse_comparison(a.left, why, compare_words());
@@ -146,7 +146,7 @@ ComparePlan plan_of(const std::vector<CompareFlag>& flags, const std::string& fi
     context.e.file = file.empty() ? "crescent compare" : file;
     Node root;
     if (!file.empty()) {
-        root = read_toml(read_text(file, "a compare file"), file, &context.complaints);
+        root = read_toml(read_text(file, "a compare file"), file, &context.diagnostics);
         from_folder(root, file);
     }
     return read_plan(std::move(root), context, flags);

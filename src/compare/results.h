@@ -144,7 +144,7 @@ struct CompareResult {
     /// Some pair of arms, or an arm and the reference, differs.
     bool differs() const;
     enum class State { holds, fails, inconclusive } state = State::holds;
-    std::string say;  // one sentence for the state
+    std::string sentence;  // one for the state
 };
 
 }  // namespace crescent::inline comparing

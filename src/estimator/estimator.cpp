@@ -79,20 +79,20 @@ void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments&
     for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
 }
 
-void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* keeper,
+void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* checkpoint,
     const std::function<double(std::size_t)>& work) {
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (watch.stop.load(std::memory_order_relaxed) || (keeper && keeper->holds(k))) return;
+        if (watch.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
         const double units = work(k);
         if (watch.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
         watch.advance(units);
-        if (keeper) keeper->add(k, units);
+        if (checkpoint) checkpoint->add(k, units);
     });
     watch.check();
 }
 
 std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* keeper) {
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* checkpoint) {
     const Image& image = scene.image();
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
@@ -101,10 +101,10 @@ std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const 
         films[r].directions = directions_per_sample(arm.sampler);
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
-    if (keeper) keeper->begin(tiles, outputs_of(films, bad));
+    if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));
     PerThread<std::vector<Moments>> scratch(
         [&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
-    for_each_tile(tiles, watch, keeper, [&](std::size_t k) {
+    for_each_tile(tiles, watch, checkpoint, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
         for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {

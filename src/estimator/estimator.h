@@ -14,9 +14,9 @@
 
 namespace crescent::inline estimator {
 
-/// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best. `keeper`: keeps finished tiles.
+/// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best. `checkpoint` keeps finished tiles.
 std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* keeper = nullptr);
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* checkpoint = nullptr);
 
 /// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.
 void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film);
@@ -33,9 +33,9 @@ std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std:
 Moments estimate_sites(const ShadingPoints& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples = nullptr);
 
-/// Calls work(k) for every tile k on all cores, except for those that the keeper holds; it returns what the tile was
-/// worth in units of progress. Stops early when the watch says so.
-void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* keeper,
+/// Calls work(k) for every tile k on all cores, except for those that the checkpoint holds; it returns what the tile
+/// was worth in units of progress. Stops early when the watch says so.
+void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* checkpoint,
     const std::function<double(std::size_t)>& work);
 
 }  // namespace crescent::inline estimator

@@ -19,7 +19,7 @@ void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path
             why = resolve_quantity(check->right, context.e);
     if (why.empty() && plan.median && (check->left.word == "tail" || check->right.word == "tail"))
         why = "expected over = \"seed\": tails are measured at the experiment's seed alone";
-    if (!why.empty()) return context.complain(path, fmt::format("{}: {}", path, why));
+    if (!why.empty()) return context.report(path, fmt::format("{}: {}", path, why));
     plan.left = to_string(check->left);
     plan.op = check->op;
     plan.right = to_string(check->right);

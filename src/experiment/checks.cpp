@@ -29,10 +29,9 @@ void check_camera(ParseContext& context) {
     if (!context.is_valid("camera") || !context.is_valid("camera.eye") || !context.is_valid("camera.target")) return;
     const Vec3d view = c.target - c.eye;
     if (length(view) < 1e-9)
-        return context.complain(
-            "camera.target", "camera.target: expected a point other than camera.eye, found the same");
+        return context.report("camera.target", "camera.target: expected a point other than camera.eye, found the same");
     if (context.is_valid("camera.up") && length(cross(view, c.up)) < parallel * length(view))
-        context.complain(
+        context.report(
             "camera.up", "camera.up: expected a direction that is not parallel to the view from eye to target");
 }
 
@@ -42,7 +41,7 @@ void check_box_on_image(ParseContext& context, const std::string& path, const Bo
         !context.is_valid("image.height"))
         return;
     if (box.x0 >= 0 && box.y0 >= 0 && box.x1 < image.width && box.y1 < image.height) return;
-    context.complain(path,
+    context.report(path,
         fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
             image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
 }
@@ -57,7 +56,7 @@ template <class Any> void check_form(ParseContext& context, const std::string& p
                     if (!context.is_valid(fmt::format("{}.{}", path, parameter.name))) return;
                 if (const std::optional<Mistake> mistake = kind.mistake()) {
                     const std::string key = fmt::format("{}.{}", path, mistake->key);
-                    context.complain(key, fmt::format("{}: {}", key, mistake->says));
+                    context.report(key, fmt::format("{}: {}", key, mistake->says));
                 }
             }
         },
@@ -71,11 +70,11 @@ void check_material(ParseContext& context, const Shape& shape) {
     const LobeInfo& lobe = lobe_info(m.brdf);
     const bool by_alpha = lobe.parameter == LobeParameter::alpha;
     if (by_alpha && !m.alpha && context.is_valid(path + ".alpha"))
-        context.complain(path + ".alpha",
+        context.report(path + ".alpha",
             fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, above 0, up to 1", path,
                 lobe.name));
     if (!by_alpha && !m.s && context.is_valid(path + ".s"))
-        context.complain(path + ".s",
+        context.report(path + ".s",
             fmt::format(
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
 }
@@ -84,8 +83,8 @@ void check_light(ParseContext& context) {
     const auto& disks = context.e.disks;
     const auto& lights = context.e.lights;
     if (const std::size_t all = disks.size() + lights.size(); all > most_lights)
-        context.complain(disks.size() > most_lights ? "disks." + disks[most_lights].name
-                                                    : "lights." + lights[most_lights - disks.size()].name,
+        context.report(disks.size() > most_lights ? "disks." + disks[most_lights].name
+                                                  : "lights." + lights[most_lights - disks.size()].name,
             fmt::format("disks and lights: expected at most {}, found {}", most_lights, all));
     for (const Light& light : lights) check_form(context, "lights." + light.name, light.form);
     const Rgb& fill = context.e.fill;
@@ -96,18 +95,17 @@ void check_light(ParseContext& context) {
         std::all_of(disks.begin(), disks.end(), is_dark) && std::all_of(lights.begin(), lights.end(), is_dark);
     if (dark && context.is_valid("disks") && context.is_valid("lights") && context.is_valid("fill") &&
         context.is_valid("fill.radiance") && fill[0] + fill[1] + fill[2] <= 0)
-        context.complain("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
+        context.report("fill.radiance", "no light: expected a disk, a light or the fill with a radiance above 0");
 }
 
 void check_outside_arms(ParseContext& context) {
     for (const ArmPlan& arm : context.e.arms) {
         const std::string path = "arms." + arm.name;
         if (int(arm.exec.has_value()) + int(arm.plugin.has_value()) + int(!arm.sampler.empty()) > 1)
-            context.complain(path, fmt::format("{}: expected one of sampler, exec and plugin, found several", path));
+            context.report(path, fmt::format("{}: expected one of sampler, exec and plugin, found several", path));
         for (const auto& [key, text] : {std::pair("exec", arm.exec), std::pair("plugin", arm.plugin)})
             if (text && text->empty())
-                context.complain(
-                    path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
+                context.report(path + "." + key, fmt::format("{}.{}: expected a text, found an empty one", path, key));
     }
 }
 
@@ -121,7 +119,7 @@ void check_film_files(ParseContext& context) {
                 taken.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
     for (const ArmPlan& arm : e.arms)
         if (const auto other = taken.find(arm.name); other != taken.end())
-            context.complain("arms." + arm.name,
+            context.report("arms." + arm.name,
                 fmt::format("arms.{}: films/{}.exr is where those of {} go: expected another name", arm.name, arm.name,
                     other->second));
 }
@@ -146,7 +144,7 @@ void check_names(ParseContext& context) {
         const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
-        context.complain(r.path,
+        context.report(r.path,
             fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64), listed(valid, ", "),
                 hint(r.name, valid)));
     }
@@ -154,7 +152,7 @@ void check_names(ParseContext& context) {
     check_outside_arms(context);
     const auto unlike_shapes = [&](const char* what, const std::string& path, const std::string& name) {
         if (const Shape* shape = context.e.find_shape(name))
-            context.complain(path + name,
+            context.report(path + name,
                 fmt::format("duplicate name '{}': expected a {} to be named unlike the shape at {}", name, what,
                     to_string(shape->at)));
     };
@@ -163,7 +161,7 @@ void check_names(ParseContext& context) {
         unlike_shapes("light", "lights.", light.name);
         for (const DiskLight& disk : context.e.disks)
             if (disk.name == light.name)
-                context.complain("lights." + light.name,
+                context.report("lights." + light.name,
                     fmt::format("duplicate name '{}': expected a light to be named unlike the disk at {}", light.name,
                         to_string(disk.at)));
     }

@@ -19,7 +19,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     ParseContext context;
     context.e.file = name;
     context.e.overrides = overrides;
-    Node root = read_toml(text, name, &context.complaints);
+    Node root = read_toml(text, name, &context.diagnostics);
     apply_overrides(context, root, overrides);
     read_tree(context, root);
     check_geometry(context);
@@ -42,13 +42,13 @@ void throw_if_any(std::vector<Diagnostic> all) {
     std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted;  // equals keep their order
     for (Diagnostic& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
     all.clear();
-    for (auto& [key, complaint] : sorted) all.push_back(std::move(complaint));
+    for (auto& [key, diagnostic] : sorted) all.push_back(std::move(diagnostic));
     throw InputError(std::move(all));
 }
 
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {
     ParseContext context = draft_of(text, name, overrides);
-    throw_if_any(std::move(context.complaints));
+    throw_if_any(std::move(context.diagnostics));
     return std::move(context.e);
 }
 
@@ -63,9 +63,9 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
     if (context.e.published) {
         try {
             context.e.figures = load_published(*context.e.published);
-        } catch (const InputError& error) { context.complain("published", fmt::format("published: {}", error.what())); }
+        } catch (const InputError& error) { context.report("published", fmt::format("published: {}", error.what())); }
     }
-    throw_if_any(std::move(context.complaints));
+    throw_if_any(std::move(context.diagnostics));
     return std::move(context.e);
 }
 

@@ -69,7 +69,7 @@ struct Mistake {
     std::string old_text, new_text;  // an edit of the good file
     unsigned line, column;
     std::string phrase;
-    std::size_t complaints = 1;
+    std::size_t mistakes = 1;
 };
 void PrintTo(const Mistake& m, std::ostream* out) { *out << "'" << m.old_text << "' -> '" << m.new_text << "'"; }
 
@@ -89,10 +89,10 @@ TEST_P(AMistake, IsFoundWhereItStandsInWordsThatHelp) {
         (void)parse(edited(m), "x.toml");
         FAIL() << "accepted: " << m.new_text;
     } catch (const InputError& error) {
-        const Diagnostic& first = error.complaints().front();
+        const Diagnostic& first = error.diagnostics().front();
         EXPECT_EQ(to_string(first.at), to_string(SourceLocation{"x.toml", m.line, m.column})) << error.what();
-        EXPECT_THAT(first.say, HasSubstr(m.phrase)) << error.what();
-        EXPECT_EQ(error.complaints().size(), m.complaints) << error.what();
+        EXPECT_THAT(first.message, HasSubstr(m.phrase)) << error.what();
+        EXPECT_EQ(error.diagnostics().size(), m.mistakes) << error.what();
     }
 }
 
@@ -240,7 +240,7 @@ TEST(Mistakes, AllAreReportedAtOnceInFileOrder) {
         FAIL();
     } catch (const InputError& error) {
         std::vector<std::string> at;
-        for (const Diagnostic& c : error.complaints()) at.push_back(to_string(c.at));
+        for (const Diagnostic& c : error.diagnostics()) at.push_back(to_string(c.at));
         EXPECT_THAT(
             at, testing::ElementsAre("x.toml:4:9", "x.toml:29:8", "x.toml:31:1", "x.toml:43:7", "--set seed=-1"));
     }
@@ -256,7 +256,7 @@ TEST(Mistakes, ANameGivenTwiceDoesNotHideTheRest) {
         FAIL();
     } catch (const InputError& error) {
         std::vector<std::string> at;
-        for (const Diagnostic& c : error.complaints()) at.push_back(to_string(c.at));
+        for (const Diagnostic& c : error.diagnostics()) at.push_back(to_string(c.at));
         EXPECT_THAT(at, testing::ElementsAre("x.toml:4:9", "x.toml:11:12", "x.toml:24:1")) << error.what();
     }
 }

@@ -88,7 +88,7 @@ public:
     }
 
 private:
-    void fail(const std::string& say) { draft_.complain(written_, place_, say); }
+    void fail(const std::string& say) { draft_.report(written_, place_, say); }
 
     /// TOML where it is TOML, else the bare words as text.
     bool parse_value(const std::string& text, Node& value) {
@@ -99,7 +99,7 @@ private:
         } catch (const InputError& error) {
             if (text.empty()) return fail("expected a value after '='"), false;
             if (std::string_view("[{\"'").find(text[0]) != std::string_view::npos)
-                return fail(fmt::format("the value: {}", error.complaints().front().say)), false;
+                return fail(fmt::format("the value: {}", error.diagnostics().front().message)), false;
             value.kind = Node::Kind::text, value.text = text;
         }
         move_to(value, place_);

@@ -3,11 +3,13 @@
 
 namespace crescent::inline experiment {
 
-void ParseContext::complain(const std::string& path, const SourceLocation& at, const std::string& say) {
-    complaints.push_back({at, say});
+void ParseContext::report(const std::string& path, const SourceLocation& at, const std::string& message) {
+    diagnostics.push_back({at, message});
     invalid_paths.insert(path);
 }
 
-void ParseContext::complain(const std::string& path, const std::string& say) { complain(path, e.place_of(path), say); }
+void ParseContext::report(const std::string& path, const std::string& message) {
+    report(path, e.place_of(path), message);
+}
 
 }  // namespace crescent::inline experiment

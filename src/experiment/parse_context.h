@@ -20,12 +20,12 @@ struct Reference {
 
 struct ParseContext {
     Experiment e;
-    std::vector<Diagnostic> complaints;
+    std::vector<Diagnostic> diagnostics;
     std::set<std::string> invalid_paths;  // paths whose values cannot be used
     std::vector<Reference> references;
 
-    void complain(const std::string& path, const std::string& say);
-    void complain(const std::string& path, const SourceLocation& at, const std::string& say);
+    void report(const std::string& path, const std::string& message);
+    void report(const std::string& path, const SourceLocation& at, const std::string& message);
     bool is_valid(const std::string& path) const { return !invalid_paths.contains(path); }
 };
 
@@ -37,10 +37,10 @@ bool read_value(ParseContext& context, const Key& key, const Node& node, const s
 
 /// Walks the table over the tree: unknown and missing keys, types, ranges; fills context.e.
 void read_tree(ParseContext& context, const Node& root);
-/// The same over another table: values go into `object`, places and complaints into the context.
+/// The same over another table: values go into `object`, places and diagnostics into the context.
 void read_tree(ParseContext& context, const Section& table, const Node& root, void* object);
 
-/// Throws one InputError with all complaints in file order; returns where there is none.
+/// Throws one InputError with all diagnostics in file order; returns where there is none.
 void throw_if_any(std::vector<Diagnostic> all);
 
 /// Puts "path=value" overrides into the tree.

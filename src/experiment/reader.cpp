@@ -65,7 +65,7 @@ private:
             const std::vector<std::string> valid = words_of(section, kind);
             const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
                                           : fmt::format("unknown key '{}'", member.key.substr(0, 64));
-            draft_.complain(join(path, member.key), member.at,
+            draft_.report(join(path, member.key), member.at,
                 fmt::format(
                     "{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
         }
@@ -75,7 +75,7 @@ private:
         if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is needed
         const std::string name = path.substr(path.rfind('.') + 1);
         const bool made_by_override = at.line == 0 && !siblings.empty();
-        draft_.complain(join(path, key.name), at,
+        draft_.report(join(path, key.name), at,
             fmt::format("missing key '{}' in {}: expected {}{}", key.name, where(path), expectation(key),
                 made_by_override ? hint(name, siblings) : ""));
     }
@@ -122,16 +122,16 @@ private:
         draft_.e.places[path] = member->at;
         const bool listed = section.many == Multiplicity::list || section.many == Multiplicity::titled;
         if (!node.is_table() && !(listed && node.is_array()))
-            return draft_.complain(
+            return draft_.report(
                 path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
         if (section.many == Multiplicity::list && node.is_table())
-            return draft_.complain(
+            return draft_.report(
                 path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
         if (section.many == Multiplicity::one)
             return table(section, node, path, member->at,
                 section.family.add ? section.family.add(object, "", member->at) : object);
         if (section.need == Requirement::required && node.members.empty())
-            return draft_.complain(
+            return draft_.report(
                 path, member->at, fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
         elements(section, node, path, object);
     }
@@ -144,7 +144,7 @@ private:
 
     void absent(const Section& section, const std::string& path, const SourceLocation& parent_at, void* object) {
         if (section.need == Requirement::required)
-            return draft_.complain(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
+            return draft_.report(path, parent_at, fmt::format("missing {}: {}", form(section, path), section.means));
         const bool all_default = std::none_of(
             section.keys.begin(), section.keys.end(), [](const Key& k) { return k.need == Requirement::required; });
         if (section.many == Multiplicity::one && all_default)
@@ -154,7 +154,7 @@ private:
 
     void elements(const Section& section, const Node& node, const std::string& path, void* object) {
         if (node.members.size() > most_elements)
-            return draft_.complain(path, node.at,
+            return draft_.report(path, node.at,
                 fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
         std::vector<std::string> names;
         for (const Member& member : node.members) names.push_back(member.key);
@@ -172,7 +172,7 @@ private:
         std::size_t index, void* object) {
         const std::string label = node.is_array() ? fmt::format("{}.{}", path, index) : join(path, member.key);
         if (!member.value.is_table())
-            return draft_.complain(label, node.is_array() ? member.value.at : member.at,
+            return draft_.report(label, node.is_array() ? member.value.at : member.at,
                 fmt::format("{}: expected {}, found {}", label,
                     section.many == Multiplicity::list ? "a table" : form(section, path), describe(member.value)));
         std::string name = member.key;
@@ -181,12 +181,12 @@ private:
         const std::string own =
             section.many == Multiplicity::list ? fmt::format("{}.{}", path, index) : join(path, name);
         if (section.many == Multiplicity::named && !file_safe(name))
-            draft_.complain(own, at,
+            draft_.report(own, at,
                 fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
                             "letter, digit or '_' first: names become file names",
                     name.substr(0, 64), where(path)));
         if (section.many == Multiplicity::titled && !one_line(name))
-            draft_.complain(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
+            draft_.report(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
         draft_.e.places[own] = at;
         in_list_ = node.is_array();
         table(section, member.value, own, at, section.family.add(object, name, at));
@@ -198,7 +198,7 @@ private:
         const Member* own = member.value.find("name");
         at = member.value.at;
         if (!own || own->value.kind != Node::Kind::text) {
-            draft_.complain(fmt::format("{}.{}", path, index), own ? own->value.at : at,
+            draft_.report(fmt::format("{}.{}", path, index), own ? own->value.at : at,
                 fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'",
                     path, own ? ", found " + describe(own->value) : ""));
             return false;
@@ -207,7 +207,7 @@ private:
         at = own->value.at;
         const auto [first, fresh] = titles_.emplace(name, at);
         if (!fresh)
-            draft_.complain(fmt::format("{}.{}", path, index), at,
+            draft_.report(fmt::format("{}.{}", path, index), at,
                 fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first stands at {}", name, path,
                     to_string(first->second)));
         return fresh;

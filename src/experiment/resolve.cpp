@@ -17,7 +17,7 @@ void resolve_s(ParseContext& context) {
     if (e.exponent && context.is_valid("exponent.shape")) {
         const Shape* shape = e.find_shape(e.exponent->shape);
         if (shape && !shape->material.s && context.is_valid("shapes." + shape->name + ".s"))
-            context.complain("exponent.shape",
+            context.report("exponent.shape",
                 fmt::format(
                     "exponent.shape: expected a shape with an s of its own, found '{}' without one", shape->name));
     }
@@ -31,7 +31,7 @@ void resolve_s(ParseContext& context) {
         return;
     for (const ArmPlan& arm : e.arms)
         if (const ArmInfo* info = find_arm_info(arm.sampler); info && info->needs_s)
-            context.complain("arms." + arm.name,
+            context.report("arms." + arm.name,
                 fmt::format("the arm '{}' needs an exponent: expected a key 's' in one of the shapes", arm.name));
 }
 
@@ -41,7 +41,7 @@ void resolve_ladders(ParseContext& context) {
         if (!arm.n.empty() || !context.is_valid(path + ".n") || !context.is_valid("n")) continue;
         if (context.e.n > 0) arm.n = {context.e.n};
         else
-            context.complain(path + ".n",
+            context.report(path + ".n",
                 fmt::format("missing key 'n' in [{}]: expected ascending integers from 1 to "
                             "16777216 (samples/pixel), or an n for the whole experiment",
                     path));
@@ -54,7 +54,7 @@ std::uint64_t rung(ParseContext& context, const std::string& path, const std::st
     if (!arm || arm->n.empty()) return n;
     if (n == 0) return context.e.n_of(*arm);
     if (!std::count(arm->n.begin(), arm->n.end(), n))
-        context.complain(path,
+        context.report(path,
             fmt::format(
                 "{}: the arm '{}' has no rung n = {}: expected one of {}", path, arm_name, n, listed(arm->n, ", ")));
     return n;
@@ -62,7 +62,7 @@ std::uint64_t rung(ParseContext& context, const std::string& path, const std::st
 
 void check_s(ParseContext& context, const std::string& path, const PlateRun& run) {
     std::string why = why_not_run(context.e, run.arm, run.n, run.s);
-    if (!why.empty()) context.complain(path, fmt::format("{}: {}", path, why));
+    if (!why.empty()) context.report(path, fmt::format("{}: {}", path, why));
 }
 
 void resolve_plate(ParseContext& context, PlatePlan& plate) {
@@ -72,7 +72,7 @@ void resolve_plate(ParseContext& context, PlatePlan& plate) {
     if (plate.runs.size() < kind.least || plate.runs.size() > kind.most) {
         const std::string many =
             kind.least == kind.most ? fmt::format("{}", kind.least) : fmt::format("{} to {}", kind.least, kind.most);
-        context.complain(path + ".runs",
+        context.report(path + ".runs",
             fmt::format(
                 "{}.runs: expected {} for a plate of kind {}, found {}", path, many, kind.name, plate.runs.size()));
     }

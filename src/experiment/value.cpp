@@ -55,12 +55,12 @@ public:
 
 private:
     bool fail(const Node& node, const std::string& more = "") {
-        draft_.complain(
+        draft_.report(
             path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
         return false;
     }
     bool fail(const std::string& say) {
-        draft_.complain(path_, fmt::format("{}: {}", path_, say));
+        draft_.report(path_, fmt::format("{}: {}", path_, say));
         return false;
     }
 
@@ -131,7 +131,7 @@ private:
         for (std::size_t i = 1; i < value_.numbers.size(); ++i) {
             const double before = value_.numbers[i - 1], now = value_.numbers[i];
             if (now > before) continue;
-            draft_.complain(path_, node.members[i].value.at,
+            draft_.report(path_, node.members[i].value.at,
                 fmt::format("{}: expected {}, found {} after {}", path_, expectation(key_),
                     now == before ? fmt::format("{} again", now) : fmt::format("{}", now), before));
             return false;

@@ -97,10 +97,10 @@ Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot) {
     return r;
 }
 
-Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& say) {
+Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& why) {
     sheet.canvas.fill(slot, panel);
     sheet.canvas.outline(slot.inset(0.5), rule, 1);
-    sheet.canvas.text(slot.inset(12), say, with_lines(with(with(body_text, Align::centre), Vertical::middle), 3));
+    sheet.canvas.text(slot.inset(12), why, with_lines(with(with(body_text, Align::centre), Vertical::middle), 3));
     return slot;
 }
 

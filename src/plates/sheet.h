@@ -42,7 +42,7 @@ void finish(Sheet& sheet);
 /// leaves a framed note. Returns the rectangle of the picture.
 Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& slot);
 /// A framed empty picture that says what is missing.
-Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& say);
+Rect paint_missing(Sheet& sheet, const Rect& slot, const std::string& why);
 /// Paints a block centred across the slot at its top, with a hairline around it.
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
 

@@ -19,7 +19,7 @@ bool has_section(const std::string& html, const std::string& id) {
     return html.find("<section id=\"" + id + "\"") != std::string::npos;
 }
 
-TEST(ReportHtml, IsWellFormed) { EXPECT_EQ(xml_complaint(Sample().html()), ""); }
+TEST(ReportHtml, IsWellFormed) { EXPECT_EQ(xml_error(Sample().html()), ""); }
 
 TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     Sample s;
@@ -35,7 +35,7 @@ TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     for (BandMeter& b : s.metrics.bands)
         b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.meter = b.meter == "rmse.H" ? "rmse." + bad : b.meter;
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
-    EXPECT_EQ(xml_complaint(s.html()), "");
+    EXPECT_EQ(xml_error(s.html()), "");
     EXPECT_THAT(s.html(), Not(HasSubstr("<script")));
 }
 
@@ -67,7 +67,7 @@ TEST(ReportHtml, SectionsVanishWithoutTheirData) {
     for (BandMeter& b : s.metrics.bands) b.published.reset();
     for (RunMeter& r : s.metrics.runs) r.regions.clear();
     const std::string html = s.html();
-    EXPECT_EQ(xml_complaint(html), "");
+    EXPECT_EQ(xml_error(html), "");
     for (const char* id : {"failure-a", "failure-b", "ladders", "exponent", "furnaces", "reference", "wrong",
              "disagreements", "assertions"}) {
         EXPECT_FALSE(has_section(html, id)) << id;
@@ -83,7 +83,7 @@ TEST(ReportHtml, StandsWithAnEmptyRun) {
     s.evidence = {};
     s.experiment = {};
     s.plates.clear();
-    EXPECT_EQ(xml_complaint(s.html()), "");
+    EXPECT_EQ(xml_error(s.html()), "");
 }
 
 TEST(ReportHtml, EachPointOfTheNoteNeedsItsMeasurement) {
@@ -123,7 +123,7 @@ TEST(ReportHtml, TellsOfTwoTechniquesAndOfLightThatAnArmCannotReach) {
     s.experiment.fill = {1, 1, 1};
     EXPECT_THAT(
         s.html(), HasSubstr("<b>lamp</b> is biased in this scene: it cannot reach light that comes from no disk"));
-    EXPECT_EQ(xml_complaint(s.html()), "");
+    EXPECT_EQ(xml_error(s.html()), "");
 }
 
 TEST(ReportHtml, NamesTheExponentWhereItSaysSomething) {
@@ -185,7 +185,7 @@ TEST(ReportHtml, NumbersThatAreNoneDoNotBreakThePage) {
     for (BandMeter& b : s.metrics.bands) b.measured = nan, b.band.median = inf;
     for (Ladder& l : s.metrics.ladders) l.rmse = {nan, 0}, l.slope = nan;
     const std::string html = s.html();
-    EXPECT_EQ(xml_complaint(html), "");
+    EXPECT_EQ(xml_error(html), "");
     EXPECT_THAT(html, HasSubstr("30 samples"));
     EXPECT_THAT(html, Not(HasSubstr("d=\"Mnan")));
 }
@@ -227,7 +227,7 @@ TEST(Charts, PointsThatALogAxisCannotShowAreLeftOut) {
     chart.dots({{1, 0}, {2, -1}, {3, 4}}, "c0");
     const std::string svg = chart.str();
     EXPECT_EQ(svg.find("<circle"), svg.rfind("<circle"));
-    EXPECT_EQ(xml_complaint(svg), "");
+    EXPECT_EQ(xml_error(svg), "");
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ TEST(JunitXml, IsWellFormedAndEscapedWhateverTheNames) {
     s.metrics.assertions[0].name = "a < b & \"c\"";
     s.metrics.assertions[0].pass = false;
     const std::string xml = junit_xml(s.inputs());
-    EXPECT_EQ(xml_complaint(xml), "");
+    EXPECT_EQ(xml_error(xml), "");
     EXPECT_EQ(xml.find('\x01'), std::string::npos);
     EXPECT_NE(xml.find("name=\"a &lt; b &amp; &quot;c&quot;\""), std::string::npos);
 }

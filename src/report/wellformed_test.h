@@ -9,7 +9,7 @@
 namespace crescent::testing {
 
 /// "" where the text is well-formed, else what is wrong, where, and what stands there.
-inline std::string xml_complaint(const std::string& text) {
+inline std::string xml_error(const std::string& text) {
     const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate("UTF-8"), XML_ParserFree);
     if (XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), 1) == XML_STATUS_OK) return "";
     const auto at = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser.get()));

@@ -94,12 +94,12 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrume
             if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
     });
     written_ = meters_.size();
-    if (holds_files(folder_)) watch_.say("resuming from the checkpoint in " + folder_);
+    if (holds_files(folder_)) watch_.log("resuming from the checkpoint in " + folder_);
 }
 
 Checkpoint::~Checkpoint() {
     if (holds_files(folder_))
-        watch_.say("partial results saved in " + folder_ + ": the same command resumes from them");
+        watch_.log("partial results saved in " + folder_ + ": the same command resumes from them");
 }
 
 TileCheckpoint Checkpoint::tiles(const Job& job) {
@@ -138,7 +138,7 @@ void Checkpoint::discard() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
     if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;
-    watch_.say("what another, unfinished run kept is still in " + all_);
+    watch_.log("what another, unfinished run kept is still in " + all_);
 }
 
 }  // namespace crescent::inline runs

@@ -32,22 +32,22 @@ std::vector<RunMeter> meters_of(
 
 void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& watch,
     bool keep_films, Checkpoint* checkpoint, JobResult& out) {
-    std::unique_ptr<TileCheckpoint> keeper;
+    std::unique_ptr<TileCheckpoint> tiles;
     if (checkpoint) {
         out.meters = checkpoint->meters(out.job);
-        keeper.reset(new TileCheckpoint(checkpoint->tiles(out.job)));
+        tiles.reset(new TileCheckpoint(checkpoint->tiles(out.job)));
     }
     if (keep_films || out.meters.empty()) {
         const Scene scene = prepared.scene.with_s(out.job.s);
-        std::vector<Film> films = engine.instrument->films(scene, out.job, watch, keeper.get());
+        std::vector<Film> films = engine.instrument->films(scene, out.job, watch, tiles.get());
         const auto all = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
-        out.samples = all - (keeper ? keeper->restored() : 0);
+        out.samples = all - (tiles ? tiles->restored() : 0);
         const bool fresh = out.meters.empty();
         if (fresh) out.meters = meters_of(plan, prepared, out.job, films);
         if (fresh && checkpoint) checkpoint->add(out.meters);
         if (keep_films) out.films = std::move(films);
     }
-    if (!keep_films && keeper) keeper->remove();
+    if (!keep_films && tiles) tiles->remove();
 }
 
 }  // namespace
@@ -88,12 +88,12 @@ void add_references(
     const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& watch, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
     const auto pixels = static_cast<double>(prepared.shapes.shape.size());
-    const auto keeper = [&](const char* name) {
+    const auto tiles_of_pass = [&](const char* name) {
         return std::unique_ptr<TileCheckpoint>(checkpoint ? new TileCheckpoint(checkpoint->tiles(name)) : nullptr);
     };
     prepared.stopped = !unless_stopped(with.threads, watch, [&] {
         watch.begin("reference by quadrature", pixels);
-        const std::unique_ptr<TileCheckpoint> quadrature = keeper("quadrature"), note = keeper("note");
+        const std::unique_ptr<TileCheckpoint> quadrature = tiles_of_pass("quadrature"), note = tiles_of_pass("note");
         prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, watch, quadrature.get());
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;

@@ -86,15 +86,15 @@ template <class F> struct Split {
 };
 template <class F> CRESCENT_INLINE F upper_half(F x) { return from_bits<F>(bits(x) & UintOf<F>(0xfffff000u)); }
 
-/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute; `near` is x - 1, used where x is close to 1;
+/// log2(x) for normal x > 0 as hi + lo, good to about 2^-33 absolute. x - 1 is used where x is close to 1:
 /// pass a more accurate value than the rounded x gives where there is one. After FreeBSD's e_log2f.c (log(1+f) by
 /// atanh-like series in f/(2+f), Remez), with f^2 split so that nothing is lost for f near the ends.
-template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F near) {
+template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F x_minus_1) {
     using U = UintOf<F>;
     const U t = bits(x) + U(0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
     const F e = to_float<F>(shift_right<23>(t)) - number<F>(127);
     const F m = from_bits<F>((t & U(0x007fffffu)) + U(0x3f3504f3u));
-    const F f = select(e == number<F>(0), near, m - number<F>(1));
+    const F f = select(e == number<F>(0), x_minus_1, m - number<F>(1));
     const F s = f / (number<F>(2) + f);
     const F z = s * s;
     const F R = atanh_series(z);
@@ -123,11 +123,11 @@ inline double log_one_minus(double u) { return math::log1p(-u); }
 
 /// x^y and 1 - x^y for x in [0, 1], y > 0, given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
 /// result under 2^-126.
-template <class F> CRESCENT_INLINE Power<F> power(F x, F near, F y) {
+template <class F> CRESCENT_INLINE Power<F> power(F x, F x_minus_1, F y) {
     const F none = number<F>(0);
     const F tiny = number<F>(1.17549435e-38);  // smallest normal
     const auto positive = x > tiny;
-    const Split<F> l = log2_split(select(positive, x, number<F>(1)), select(positive, near, none));
+    const Split<F> l = log2_split(select(positive, x, number<F>(1)), select(positive, x_minus_1, none));
     const F yh = upper_half(y);
     const F high = yh * l.hi;  // exact: 12 x 12 bits
     const F low = yh * l.lo + (y - yh) * (l.hi + l.lo);
@@ -167,8 +167,8 @@ inline Power<double> root(double u, double y) {
 /// (a.b)_+^s for unit a and b, through 1 - a.b = |a - b|^2 / 2, which loses nothing where a sharp lobe peaks.
 template <class F> CRESCENT_INLINE F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
     const Vec3<F> d = a - b;
-    const F near = number<F>(-0.5) * dot(d, d);
-    return power(number<F>(1) + near, near, s).value;
+    const F cos_minus_1 = number<F>(-0.5) * dot(d, d);
+    return power(number<F>(1) + cos_minus_1, cos_minus_1, s).value;
 }
 
 /// The functions above in double: the reference and the verdicts use them.
@@ -187,8 +187,8 @@ inline Power<double> power(double x, double y) {
 /// (a.b)_+^s for unit a and b.
 inline double cosine_power(Vec3<double> a, Vec3<double> b, double s) {
     const Vec3<double> d = a - b;
-    const double near = -0.5 * dot(d, d);
-    return near > -1 ? math::exp(s * math::log1p(near)) : 0.0;
+    const double cos_minus_1 = -0.5 * dot(d, d);
+    return cos_minus_1 > -1 ? math::exp(s * math::log1p(cos_minus_1)) : 0.0;
 }
 
 template <class F> CRESCENT_INLINE Vec3<F> normalize(Vec3<F> a) {

@@ -143,10 +143,10 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
 }
 
 std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* keeper) {
+    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* checkpoint) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     return by_tiles(
-        scene.image(), exponents, watch, keeper, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+        scene.image(), exponents, watch, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < scenes.size(); ++e) {
                 for (const ShadingPoints& sites : sites_of(scenes[e], tile, nullptr)) {
                     if (e > 0 && sites.lobe < 0) {

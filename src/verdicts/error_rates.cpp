@@ -57,7 +57,7 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
             work.redraw(seed_of(settings.seed, static_cast<std::uint32_t>(k)));
             if (const std::optional<Verdict> v = accusation(work)) {
                 ++alarms[k];
-                watch.say(fmt::format("seed {}: {} [{}] {}: {}", k, v->arm, v->trial, v->name, v->say));
+                watch.log(fmt::format("seed {}: {} [{}] {}: {}", k, v->arm, v->trial, v->name, v->say));
             }
             watch.advance(1);
         }

@@ -14,8 +14,8 @@ namespace crescent::inline verdicts {
 struct Complaints {
     std::string path;
     std::vector<Diagnostic> all;
-    void add(unsigned line, unsigned column, const std::string& say) {
-        all.push_back({{path, line, column}, say});
+    void add(unsigned line, unsigned column, const std::string& message) {
+        all.push_back({{path, line, column}, message});
         if (all.size() >= 10) throw InputError(all);
     }
     void settle() const {
