@@ -120,8 +120,8 @@ void Pass::gather(std::size_t first_light, int samples) {
             }
             for (std::size_t k = 0; k < lights; ++k) {
                 const float* pair = met_[k / 2].data() + at + 2 * (k % 2);
-                m.disk_g[first_light + k][i] += static_cast<double>(pair[0]),
-                    m.disk_g_lobe[first_light + k][i] += static_cast<double>(pair[1]);
+                m.light_g[first_light + k][i] += static_cast<double>(pair[0]),
+                    m.light_g_lobe[first_light + k][i] += static_cast<double>(pair[1]);
             }
         }
     });

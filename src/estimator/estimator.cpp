@@ -49,12 +49,12 @@ private:
     Rgb radiance(std::size_t i, double n) const {
         double fill_g = m_.g[i], fill_lobe = m_.g_lobe[i];
         Rgb diffuse{}, lobe{};
-        for (std::size_t k = 0; k < m_.disk_g.size(); ++k) {
-            fill_g -= m_.disk_g[k][i];
-            fill_lobe -= m_.disk_g_lobe[k][i];
+        for (std::size_t k = 0; k < m_.light_g.size(); ++k) {
+            fill_g -= m_.light_g[k][i];
+            fill_lobe -= m_.light_g_lobe[k][i];
             for (std::size_t c = 0; c < 3; ++c) {
-                diffuse[c] += scene_.lights()[k].radiance[c] * m_.disk_g[k][i];
-                lobe[c] += scene_.lights()[k].radiance[c] * m_.disk_g_lobe[k][i];
+                diffuse[c] += scene_.lights()[k].radiance[c] * m_.light_g[k][i];
+                lobe[c] += scene_.lights()[k].radiance[c] * m_.light_g_lobe[k][i];
             }
         }
         Rgb out{};

@@ -11,11 +11,11 @@ KernelTable scalar_kernels();
 CRESCENT_ISAS(CRESCENT_DECLARE)
 #undef CRESCENT_DECLARE
 
-void Moments::resize(std::size_t sites, std::size_t disks) {
+void Moments::resize(std::size_t sites, std::size_t lights) {
     for (auto* sums : {&g, &g_lobe, &spread}) sums->resize(sites);
-    for (auto* sums : {&disk_g, &disk_g_lobe}) {
-        sums->resize(disks);
-        for (std::vector<double>& of_disk : *sums) of_disk.resize(sites);
+    for (auto* sums : {&light_g, &light_g_lobe}) {
+        sums->resize(lights);
+        for (std::vector<double>& of_light : *sums) of_light.resize(sites);
     }
     largest.resize(sites);
     for (auto* counts : {&horizon, &hits, &bad}) counts->resize(sites);

@@ -22,13 +22,13 @@ namespace crescent::inline estimator {
 
 /// Moments of n samples, one entry a site; sums are kept in double.
 struct Moments {
-    std::vector<double> g, g_lobe;                         // sum of g and of g * lobe over all samples
-    std::vector<std::vector<double>> disk_g, disk_g_lobe;  // over the samples that met light k, disks first
-    std::vector<double> spread;                            // sum of (X - mean X)^2
-    std::vector<float> largest;                            // largest X
+    std::vector<double> g, g_lobe;                           // sum of g and of g * lobe over all samples
+    std::vector<std::vector<double>> light_g, light_g_lobe;  // over the samples that met light k, disks first
+    std::vector<double> spread;                              // sum of (X - mean X)^2
+    std::vector<float> largest;                              // largest X
     std::vector<std::uint32_t> horizon, hits, bad;
     /// Entries that are new are 0; kernels write all of them.
-    void resize(std::size_t sites, std::size_t disks);
+    void resize(std::size_t sites, std::size_t lights);
 };
 
 /// What a kernel needs for each light of a scene, in bytes.

@@ -102,8 +102,8 @@ template <class F> struct LightTotals {
     /// What met them so far, with the block that is not full.
     void write(const Lights<F>& lights, Moments& out) const {
         for (std::size_t k = 0; k < lights.light_count; ++k) {
-            add_lanes(lights.met.light_g[k], g + k * count, out.disk_g[k].data() + lights.at);
-            add_lanes(lights.met.light_g_lobe[k], g_lobe + k * count, out.disk_g_lobe[k].data() + lights.at);
+            add_lanes(lights.met.light_g[k], g + k * count, out.light_g[k].data() + lights.at);
+            add_lanes(lights.met.light_g_lobe[k], g_lobe + k * count, out.light_g_lobe[k].data() + lights.at);
         }
         store(lights.met.hits, out.hits.data() + lights.at);
     }

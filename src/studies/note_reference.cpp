@@ -89,9 +89,9 @@ public:
             lobe_ = estimate_sites(only_lobe(sites), lobe_info(static_cast<LobeKind>(sites.lobe)).own_arm,
                 plan.lobe_spp, seed(0), isa, &watch.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
-        disk_n_ = static_cast<double>(plan.disk_spp);
+        light_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.lights().size(); ++k)
-            disks_.push_back(estimate_sites(only_light(scene, sites, k), "light-area", plan.disk_spp,
+            lights_.push_back(estimate_sites(only_light(scene, sites, k), "light-area", plan.disk_spp,
                 seed(static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
     }
 
@@ -106,15 +106,16 @@ public:
         Rgb out{};
         double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.spread[i], lobe_n_) : 0;
         for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (sites_.rho_d[i][c] + rho_s * tint[c] * lobe);
-        for (std::size_t k = 0; k < disks_.size(); ++k) {
+        for (std::size_t k = 0; k < lights_.size(); ++k) {
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
                 part[c] = (scene_.lights()[k].radiance[c] - fill[c]) *
-                    (sites_.rho_d[i][c] / pi * disks_[k].disk_g[k][i] + rho_s * tint[c] * disks_[k].disk_g_lobe[k][i]);
-                out[c] += part[c] / disk_n_;
+                    (sites_.rho_d[i][c] / pi * lights_[k].light_g[k][i] +
+                        rho_s * tint[c] * lights_[k].light_g_lobe[k][i]);
+                out[c] += part[c] / light_n_;
             }
-            variance += variance_of_mean(disks_[k].spread[i], disk_n_);
-            if (sites_.lobe >= 0 && may_be_missed(sites_, i, k, disk_n_))
+            variance += variance_of_mean(lights_[k].spread[i], light_n_);
+            if (sites_.lobe >= 0 && may_be_missed(sites_, i, k, light_n_))
                 variance += sqr(rho_s * (tinted(scene_.lights()[k].radiance) - tinted(fill)));
         }
         store_pixel(film, sites_.pixel[i], out, std::sqrt(variance));
@@ -124,8 +125,8 @@ private:
     const Scene& scene_;
     const ShadingPoints& sites_;
     Moments lobe_;
-    std::vector<Moments> disks_;
-    double lobe_n_ = 1, disk_n_ = 1;
+    std::vector<Moments> lights_;
+    double lobe_n_ = 1, light_n_ = 1;
 };
 
 }  // namespace
