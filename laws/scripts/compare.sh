@@ -60,7 +60,7 @@ expect 0 "$CRESCENT" compare ladder.toml --spp u-16=16 --spp u-4=4 --out bare --
 expect 0 /usr/bin/python3 - <<'END'
 import json, math, re
 bare = json.load(open("bare/metrics.json"))
-figures = re.findall("<figure>.*?</figure>", open("bare/index.html").read(), re.S)
+figures = re.findall("<figure>.*?</figure>", open("bare/report.html").read(), re.S)
 figure = next(f for f in figures if "The standard deviation of" in f)
 assert ">standard deviation</text>" in figure and ">variance</text>" not in figure, figure
 ticks = re.findall(r'M58.0 ([\d.]+) H.*?text-anchor="end">([\d.e-]+)</text>', figure)
