@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "laws/planted/planted.h"
-#include "laws/right/right.h"
+#include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "simd/frame.h"
 #include "verdicts/judge.h"
@@ -168,6 +168,94 @@ TEST(Diagnosis, NamesTheChannelWhoseWeightIsOff) {
     const Said said = first_said(judged(r, 45));
     EXPECT_EQ(said.diagnosis, "channel 3") << said.say;
     EXPECT_NE(said.say.find("the weight of channel 3 is f cos / p times a constant 2"), std::string::npos) << said.say;
+}
+
+/// Factors by name, and constants by theirs, of one cause each.
+TEST(Diagnosis, NamesCausesInWordsThatReadOneWay) {
+    for (const bool over : {false, true}) {
+        Recipe r{"cosine", "", {}, {}, {}};
+        r.pdf = [over](Vec3d o, Vec3d i) { return i.z > 0 ? i.z / pi * (over ? 1 / o.z : o.z) : 0; };
+        r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+            const Vec3d i = spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]);
+            return Draw{i, p(o, i), {}, {}};
+        };
+        const Said said = first_said(judged(r, 40));
+        EXPECT_NE(said.say.find(over ? " = cos theta_o." : " = 1/(cos theta_o)."), std::string::npos) << said.say;
+    }
+    RoughGlass glass{0.2, 1.5};
+    Recipe r = recipe_of(glass);
+    r.pdf = [glass](Vec3d o, Vec3d i) {
+        const Vec3d m = glass.half(o, i);
+        return glass.pdf(o, i) * (glass.across(o, i) ? std::fabs(dot(o, m) / dot(i, m)) : 1);
+    };
+    r.sample = [glass, p = r.pdf](Vec3d o, const Numbers& u) {
+        Draw d = glass.sample(o, u);
+        if (d.pdf > 0) d.pdf = p(o, d.wi);
+        return d;
+    };
+    EXPECT_EQ(first_said(judged(r, 60)).diagnosis, "1 / ((w_o.m) / (w_i.m)) across the surface");
+}
+
+/// At the normal next to nothing is reflected, and what is refracted is off by eta^2 all the same.
+TEST(Diagnosis, NamesWhatIsOffAcrossTheSurfaceWhereHardlyADrawIsReflected) {
+    RoughGlass glass{0.2, 1.33};
+    Recipe r = recipe_of(glass);
+    const auto eta2 = [](Vec3d o) { return o.z > 0 ? 1.33 * 1.33 : 1 / (1.33 * 1.33); };
+    r.pdf = [=](Vec3d o, Vec3d i) { return glass.pdf(o, i) / (glass.across(o, i) ? eta2(o) : 1); };
+    r.sample = [glass, p = r.pdf](Vec3d o, const Numbers& u) {
+        Draw d = glass.sample(o, u);
+        if (d.pdf > 0) d.pdf = p(o, d.wi);
+        return d;
+    };
+    for (double theta : {0.0, 60.0, 180.0}) {
+        const Said said = first_said(judged(r, theta));
+        EXPECT_EQ(said.diagnosis, "eta^2 across the surface") << theta << ": " << said.say;
+    }
+}
+
+/// An alias table sends several u to one direction, so that bins alone tell; of a sky they name the sine by its
+/// constant.
+TEST(Diagnosis, NamesTheSineThatAnAliasTableLeavesOut) {
+    Dice dice(5);
+    const std::shared_ptr<const Sky> sky = sky_with_sun(dice, 64, 128, 0.3, true);
+    for (const double constant : {1.0, pi / 2}) {
+        Recipe r = recipe_of(sky);
+        r.pdf = [=](Vec3d, Vec3d i) { return constant * sky->pdf(i) * std::sqrt(std::max(1 - i.z * i.z, 0.0)); };
+        r.sample = [sky, p = r.pdf](Vec3d o, const Numbers& u) {
+            Draw d = sky->sample(u);
+            d.pdf = p(o, d.wi);
+            return d;
+        };
+        const Said said = first_said(judged(r));
+        EXPECT_EQ(said.diagnosis, "1 / (sin theta_i)") << said.say;
+        EXPECT_EQ(said.say.find("= 2/pi") == std::string::npos, constant == 1) << said.say;
+    }
+}
+
+/// A fibre along x, its lobe exponential in x and logistic about it, whose pdf has the cosine about its own axis too
+/// much: that is nearly 1 / cos theta_i with a constant, which is not the cause.
+TEST(Diagnosis, NamesNoFactorByBinsWhoseConstantNobodyKnows) {
+    Recipe r{"fibre", "", {}, {}, {}};
+    r.traits.numbers = 3;
+    r.traits.wo = Traits::Asked::both;
+    constexpr double v = 0.01, width = 0.15;
+    const double trim = std::tanh(pi / (2 * width));
+    const auto angle_of = [](Vec3d w) { return math::atan2(w.z, w.y); };
+    r.pdf = [=](Vec3d o, Vec3d i) {
+        const double along = std::copysign(i.x, -o.x * i.x), phi = angle_of(i) - angle_of(o) - pi;
+        const double e = math::exp(-std::fabs(phi - 2 * pi * std::round(phi / (2 * pi))) / width);
+        return math::exp((along - 1) / v) / (v * -math::expm1(-2 / v)) * e / (width * sqr(1 + e)) / trim *
+            std::sqrt(std::max(1 - i.x * i.x, 0.0));
+    };
+    r.sample = [=, p = r.pdf](Vec3d o, const Numbers& u) {
+        const double x = 1 + v * math::log(u[0] + (1 - u[0]) * math::exp(-2 / v)), y = 0.5 * (1 - trim) + u[1] * trim;
+        const double phi = angle_of(o) + pi + width * math::log(y / (1 - y)), c = std::sqrt(std::max(1 - x * x, 0.0));
+        const Vec3d i{std::copysign(x, -o.x), c * math::cos(phi), c * math::sin(phi)};
+        return Draw{i, p(o, i), {}, {}};
+    };
+    const Said said = first_said(judged(r, 89));
+    EXPECT_EQ(said.state, State::wrong) << said.say;
+    EXPECT_EQ(said.diagnosis, "none") << said.say;
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "laws/right/right.h"
+#include "math/functions.h"
+#include "simd/random.h"
 #include "verdicts/builtin.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
@@ -75,6 +77,52 @@ TEST(SmallFaults, ASunThatThePdfDoesNotKnowIsFoundByTheDrawsThatCrowdThere) {
     EXPECT_NE(v.say.find("crowd"), std::string::npos) << v.say;
     const auto& w = v.evidence.at("clump").at("w");
     EXPECT_GT(dot(tilt(50, 30), Vec3d{w[0], w[1], w[2]}), 0.9999);
+}
+
+/// A sampler that draws numbers of its own, of 24 bits each.
+Recipe with_numbers_of_its_own(Recipe r) {
+    r.traits.own_random = true;
+    r.sample = [right = r.sample](Vec3d wo, const Numbers& u) {
+        const auto bits = [](double x) { return static_cast<std::uint32_t>(x * 0x1p24); };
+        const auto h = pcg4d<std::uint32_t>({bits(u[0]), bits(u[1]), 7, 77});
+        return right(wo, Vec2d{(h.x >> 8) * 0x1p-24, (h.y >> 8) * 0x1p-24});
+    };
+    return r;
+}
+
+/// u moves nothing there, and its steps are no cause.
+TEST(SmallFaults, OfASamplerWithNumbersOfItsOwnAreFoundByTheDrawsThatCrowd) {
+    Recipe r = light("even, with a sun");
+    r.sample = [](Vec3d, const Numbers& u) {
+        constexpr double share = 1.0 / 1500;
+        if (u[0] < share) return Draw{about(tilt(50, 30), 1 - u[0] / share * 1.1e-5, u[1]), 1 / (4 * pi), {}, {}};
+        return Draw{spherical(1 - 2 * (u[0] - share) / (1 - share), u[1]), 1 / (4 * pi), {}, {}};
+    };
+    const Verdict v = named(judged(trial_of_subject(subject_of(with_numbers_of_its_own(r)), 0, 0)), "density");
+    EXPECT_EQ(v.state, State::wrong) << v.say;
+    EXPECT_NE(v.say.find("crowd"), std::string::npos) << v.say;
+    Recipe bent = cosine();
+    bent.pdf = [](Vec3d, Vec3d wi) { return wi.z > 0 ? 1.5 * wi.z * wi.z / pi : 0; };
+    const Verdict b = named(judged(trial_of_subject(subject_of(with_numbers_of_its_own(bent)), 45, 130)), "density");
+    EXPECT_EQ(b.state, State::wrong) << b.say;
+    EXPECT_EQ(b.say.find("2^-24"), std::string::npos) << b.say;
+}
+
+/// A lobe of which floats round the cosine: its draws near the axis are few directions, and nobody's fault.
+TEST(SmallFaults, OfRoundingAreNoneWhereASamplerHasNumbersOfItsOwn) {
+    constexpr double power = 1e4;
+    Recipe r{"lobe in floats", "", {}, {}, {}};
+    r.traits.wo = Traits::Asked::none;
+    r.pdf = [](Vec3d, Vec3d wi) { return wi.z > 0 ? (power + 1) / (2 * pi) * math::exp(power * math::log(wi.z)) : 0; };
+    r.sample = [pdf = r.pdf](Vec3d wo, const Numbers& u) {
+        const float cos = static_cast<float>(math::exp(math::log(1 - u[0]) / (power + 1)));
+        const float sin = std::sqrt(std::max(1 - cos * cos, 0.0f)), phi = static_cast<float>(2 * pi * u[1]);
+        const Vec3d wi{double(sin * std::cos(phi)), double(sin * std::sin(phi)), double(cos)};
+        return Draw{wi, pdf(wo, wi), {}, {}};
+    };
+    const Trial trial = trial_of_subject(subject_of(with_numbers_of_its_own(r)), 0, 0);
+    const Verdict v = named(judged(trial, std::uint64_t{1} << 17), "density");
+    EXPECT_EQ(v.state, State::right) << v.say;
 }
 
 TEST(SmallFaults, ANumberClampedAtOneThousandthPutsARingOfDrawsInOnePlace) {

@@ -70,6 +70,32 @@ TEST(SmoothParts, GoAnywhereWhereNoIndexIsTold) {
     EXPECT_NE(judged(r, 30).state, State::wrong);
 }
 
+/// Smooth glass that reflects nothing, the normal of its boundary `m`, bent by the index `drawn`, 1.5 being told.
+Recipe passed_on(double drawn, Vec3d m) {
+    Recipe r = smooth_glass(1.5);
+    r.sample = [=](Vec3d o, const Numbers&) {
+        const double e = dot(o, m) > 0 ? drawn : 1 / drawn, c = dot(o, m), rest = 1 - (1 - c * c) / (e * e);
+        if (rest < 0) return Draw{{0, 0, 1}, 0, {}, {}};
+        Draw d{m * (c / e - std::copysign(std::sqrt(rest), c)) - o * (1 / e), 0, {}, {}};
+        d.delta = 1;
+        d.weight = o.z > 0 ? 1 / (1.5 * 1.5) : 1.5 * 1.5;
+        return d;
+    };
+    return r;
+}
+
+TEST(SmoothParts, AreRefractedByTheIndexThatIsToldWhereNothingIsMirrored) {
+    for (double theta : {0.0, 30.0, 85.0, 150.0}) {
+        EXPECT_EQ(judged(passed_on(1.5, {0, 0, 1}), theta).state, State::right) << theta;
+        const Judgement askew = judged(passed_on(1.5, tilt(4, 130)), theta);
+        EXPECT_NE(named(askew, "physics").state, State::wrong) << theta << what_is_wrong(askew);
+    }
+    const Judgement other = judged(passed_on(1.4, {0, 0, 1}), 30), turned = judged(passed_on(1 / 1.5, {0, 0, 1}), 30);
+    EXPECT_EQ(named(other, "physics").state, State::wrong) << named(other, "physics").say;
+    EXPECT_EQ(other.verdicts[5].evidence.value("diagnosis", "none"), "none");
+    EXPECT_EQ(named(turned, "physics").evidence.value("diagnosis", ""), "1 / eta");
+}
+
 /// Half goes straight through with `open` of its light, half is reflected by Lambert of 0.5.
 Recipe mask(double open) {
     Recipe r{"mask", "", {}, {}, {}};
@@ -101,9 +127,9 @@ TEST(SmoothParts, ThatGoStraightOnCarryNoMoreThanArrives) {
 }
 
 /// Henyey & Greenstein 1941; drawn with g, p and f with their own.
-Recipe phase(double drawn, double claimed, double scale) {
+Recipe phase(double drawn, double claimed, double scale, Traits::Asked wo = Traits::Asked::both) {
     Recipe r{"phase", "", {}, {}, {}};
-    r.traits.wo = Traits::Asked::both;
+    r.traits.wo = wo;
     const auto p = [](double g, Vec3d o, Vec3d i) {
         return (1 - g * g) / (4 * pi * math::pow(1 + g * g + 2 * g * dot(o, i), 1.5));
     };
@@ -128,6 +154,17 @@ TEST(PhaseFunctions, AreReciprocalAsFTimesTheCosine) {
             EXPECT_EQ(j.state, State::right) << theta << " " << g << what_is_wrong(j);
             EXPECT_NE(named(j, "physics").say.find("as a phase function does"), std::string::npos);
         }
+}
+
+/// A renderer's adaptor may answer for w_o above the surface alone, of which a phase function has none.
+TEST(PhaseFunctions, AreReciprocalWhereOnlyWoAboveIsAnsweredFor) {
+    for (double theta : {0.0, 60.0, 85.0}) {
+        const Judgement j = judged(phase(0.75, 0.75, 1, Traits::Asked::upper), theta);
+        EXPECT_EQ(j.state, State::right) << theta << what_is_wrong(j);
+        EXPECT_NE(named(j, "physics").say.find("as a phase function does"), std::string::npos);
+    }
+    const Judgement bright = judged(phase(0.6, 0.6, 1.05, Traits::Asked::upper), 60);
+    EXPECT_EQ(named(bright, "physics").state, State::wrong) << named(bright, "physics").say;
 }
 
 TEST(PhaseFunctions, OfTheOtherSignOrThatIntegrateToMoreAreWrong) {

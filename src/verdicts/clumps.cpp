@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 #include "math/distributions.h"
 #include "math/functions.h"
@@ -107,11 +108,33 @@ void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
     }
 }
 
+/// How far apart directions lie that come again and again, as those of a warp do that rounds: median over `draws` of
+/// the way to the nearest other one that came twice. 0 where there is none such.
+double grain_of(const SampleBatch& b, std::span<const std::size_t> draws) {
+    std::vector<Vec3d> all, again;
+    for (const Draw& d : b.draws)
+        if (d.pdf > 0 && is_finite(d.wi)) all.push_back(d.wi);
+    const auto key = [](Vec3d w) { return std::tuple(w.x, w.y, w.z); };
+    std::sort(all.begin(), all.end(), [&](Vec3d x, Vec3d y) { return key(x) < key(y); });
+    for (std::size_t i = 1; i < all.size(); ++i)
+        if (key(all[i]) == key(all[i - 1]) && (again.empty() || key(again.back()) != key(all[i])))
+            again.push_back(all[i]);
+    std::vector<double> apart;
+    for (std::size_t i : draws) {
+        double least = 2;
+        for (Vec3d w : again)
+            if (const double far = length(w - b.draws[i].wi); far > 0) least = std::min(least, far);
+        apart.push_back(least < 2 ? least : 0);
+    }
+    return median_of(std::move(apart));
+}
+
 }  // namespace
 
 double least_step(const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws) {
     const int numbers = work.traits.numbers;
     if (draws.empty() || b.u.size() != b.draws.size() || !work.subject.draws_at_will()) return 0;
+    if (work.traits.own_random) return grain_of(b, draws);  // no step of u moves it
     struct Move {
         std::size_t draw;
         int axis;

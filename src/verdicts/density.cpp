@@ -199,10 +199,11 @@ std::string grain_of_u(const TrialContext& work, int technique, const Density& d
                  sin = std::sqrt(std::max(to * (2 - to), 0.0)),
                  least = std::min(wide, 2 * pi * sin / static_cast<double>(d.sectors));
     if (!(step > 0.5 * least)) return "";
-    return fmt::format(
-        " u comes in steps of 2^-24, of which one moves the direction there by {:.2g} deg, through a bin "
-        "{:.2g} deg wide: it may be the steps of u alone that the draws show, not p.",
-        step * 180 / pi, least * 180 / pi);
+    const bool own = work.traits.own_random;
+    return fmt::format(" {} {:.2g} deg, through a bin {:.2g} deg wide: it may be {} alone that the draws show, not p.",
+        own ? "Directions that come again lie apart there by"
+            : "u comes in steps of 2^-24, of which one moves the direction there by",
+        step * 180 / pi, least * 180 / pi, own ? "such steps" : "the steps of u");
 }
 
 Verdict judge(TrialContext& work) {

@@ -114,7 +114,9 @@ std::optional<Diagnosis> explain_one_side(const TrialContext& work, std::span<co
         for (const Ratio& r : ratios) (((r.wi.z * wo.z < 0) == across) ? off : right).push_back(r);
         std::size_t one = 0;
         for (const Ratio& r : right) one += std::fabs(r.value - 1) <= close + 2 * r.error;
-        if (off.size() < least / 4 || right.size() < least / 4 || mostly_one(off)) continue;
+        // Few may be on the side that is right, as at the normal of glass: what it comes to is looked at with every
+        // draw.
+        if (off.size() < least / 4 || right.empty() || mostly_one(off)) continue;
         if (static_cast<double>(one) < enough * static_cast<double>(right.size())) continue;
         for (const Factor& factor : factors_of_side(work, across)) {
             const Fitted f = fit(factor, off);

@@ -37,8 +37,8 @@ std::vector<Factor> usual_factors(const TrialContext& work);
 void add_whole_factors(std::vector<Factor>& out, const TrialContext& work);
 /// Those of what is reflected alone (across: of what is refracted), where the index is told.
 std::vector<Factor> factors_of_side(const TrialContext& work, bool across);
-/// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows.
-std::string name_of_constant(const TrialContext& work, double constant);
+/// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows. known_to: relative.
+std::string name_of_constant(const TrialContext& work, double constant, double known_to = 1e-3);
 /// "4 (w_o.m) and a constant 0.5 = 1/2".
 std::string factor_text(const TrialContext& work, const std::string& name, double constant);
 /// The first factor that explains nine of ten ratios; none where nothing differs, or nothing explains it.

@@ -17,7 +17,7 @@ constexpr double close = 2e-3;  // relative
 /// Draws in each bin weighed by 1 / g, beside the mass that p has there.
 struct Binned {
     std::vector<double> sum, squares, count, variance;
-    double constant = 1, relative_se = 0, statistic = 0, degrees = 0, off = 0;
+    double constant = 1, relative_se = 0, statistic = 0, degrees = 0;
 };
 
 Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
@@ -45,7 +45,6 @@ Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
         out.variance[k] =
             std::max(out.squares[k] / sqr(out.constant), due / n) + sqr(3 * d.mass.bin_errors[k]) + sqr(close * due);
         out.statistic += sqr(seen - due) / out.variance[k];
-        out.off += std::fabs(seen - due);
         ++out.degrees;
     }
     return out;
@@ -109,6 +108,22 @@ bool bins_show_a_constant(const TrialContext& work, int technique, const Binned&
     return !name_of_constant(work, as_is.constant).empty() || std::fabs(math::log(as_is.constant)) > 4 * unseen;
 }
 
+/// What is left of the difference, in amplitude: chi-square beyond its degrees goes with its square.
+double unexplained(const Binned& by, const Binned& as_is) {
+    return std::sqrt(std::max(by.statistic - by.degrees, 0.0) / (as_is.statistic - as_is.degrees));
+}
+/// The same at most, by two standard errors of the chi-square.
+double left_of(const Binned& by, const Binned& as_is) {
+    return std::sqrt(
+        (std::max(by.statistic - by.degrees, 0.0) + 2 * std::sqrt(2 * by.degrees)) / (as_is.statistic - as_is.degrees));
+}
+
+/// Bins tell a factor from one that is nearly it, of other coordinates, by its constant alone.
+bool is_known(const TrialContext& work, const Binned& by) {
+    const double known_to = std::max(close, 3 * by.relative_se);
+    return std::fabs(math::log(by.constant)) < known_to || !name_of_constant(work, by.constant, known_to).empty();
+}
+
 }  // namespace
 
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique) {
@@ -126,14 +141,13 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
         // NaN where the factor is none of the w_i that were drawn.
         if (!(by.statistic <= 1.5 * by.degrees) || !(by.constant > 0) || by.degrees < 8) continue;
         if (shape &&
-            (factor.name == "a constant" ||
-                by.off > 0.1 * as_is.off + 2 / std::sqrt(static_cast<double>(b.draws.size()))))
+            (factor.name == "a constant" || left_of(by, as_is) > 0.3 || !is_even(d, by) || !is_known(work, by)))
             continue;
         if (!shape && factor.name != "a constant") continue;
         if (!shape &&
             (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by) || !is_even(d, by)))
             return {};
-        return Diagnosis{factor.name, by.constant, shape ? std::max(1 - by.off / as_is.off, 0.0) : 1,
+        return Diagnosis{factor.name, by.constant, shape ? 1 - unexplained(by, as_is) : 1,
             "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant), factor.g};
     }
     return {};

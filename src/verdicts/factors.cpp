@@ -17,14 +17,21 @@ std::optional<double> parameter(const TrialContext& work, std::string_view name)
     return {};
 }
 
+/// "(s+1)", but not "(n.m) / (w_o.m)".
+bool in_brackets(const std::string& s) { return s.front() == '(' && s.find(')') == s.size() - 1; }
+
+/// "1 / n.m", "1 / (cos theta_i)", "1 / ((n.m) / (w_o.m))".
+std::string one_over(const std::string& name) {
+    return "1 / " + (name.find(' ') == std::string::npos || in_brackets(name) ? name : "(" + name + ")");
+}
+
 /// A factor and its inverse: forgotten, or counted once too often.
 void add(std::vector<Factor>& out, const std::string& name, std::function<double(Vec3d)> g) {
     out.push_back({name, g});
-    out.push_back(
-        {"1 / " + (name.find(' ') == std::string::npos || name.front() == '(' ? name : "(" + name + ")"), [g](Vec3d w) {
-             const double v = g(w);
-             return v > 0 ? 1 / v : 0;
-         }});
+    out.push_back({one_over(name), [g](Vec3d w) {
+                       const double v = g(w);
+                       return v > 0 ? 1 / v : 0;
+                   }});
 }
 
 void add_microfacets(std::vector<Factor>& out, const TrialContext& work) {
@@ -124,9 +131,7 @@ namespace {
 
 /// "1/pi", "1/(2 pi)", "(s+1)/(s+2)" for (s+2)/(s+1), "cos theta_o" for 1/(cos theta_o).
 std::string inverse_of(const std::string& name) {
-    const auto bare = [](const std::string& s) {
-        return s.size() > 2 && s.front() == '(' && s.find(')') == s.size() - 1 ? s.substr(1, s.size() - 2) : s;
-    };
+    const auto bare = [](const std::string& s) { return in_brackets(s) ? s.substr(1, s.size() - 2) : s; };
     const std::size_t slash = name.find('/');
     if (slash == std::string::npos) return "1/" + (name.find(' ') == std::string::npos ? name : "(" + name + ")");
     const std::string over = name.substr(0, slash), under = name.substr(slash + 1);
@@ -147,9 +152,9 @@ std::string name_of_share(const Density& d, double c) {
 
 }  // namespace
 
-std::string name_of_constant(const TrialContext& work, double c) {
+std::string name_of_constant(const TrialContext& work, double c, double known_to) {
     std::vector<std::pair<std::string, double>> known = {
-        {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}};
+        {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}, {"pi/2", pi / 2}, {"2 pi^2", 2 * pi * pi}};
     if (const std::optional<double> s = parameter(work, "s")) {
         known.push_back({"(s+2)/(s+1)", (*s + 2) / (*s + 1)});
         known.push_back({"(s+2)/(s+1)^2", (*s + 2) / sqr(*s + 1)});
@@ -164,15 +169,16 @@ std::string name_of_constant(const TrialContext& work, double c) {
         if (const std::string share = name_of_share(work.density(t), c); !share.empty()) return share;
     for (const auto& [name, value] : known) {
         if (std::fabs(value - 1) < 1e-3) continue;
-        if (std::fabs(c / value - 1) < 1e-3) return name;
-        if (std::fabs(c * value - 1) < 1e-3) return inverse_of(name);
+        if (std::fabs(c / value - 1) < known_to) return name;
+        if (std::fabs(c * value - 1) < known_to) return inverse_of(name);
     }
     return "";
 }
 
 std::string factor_text(const TrialContext& work, const std::string& name, double constant) {
     const std::string known = name_of_constant(work, constant);
-    const std::string number = fmt::format("{:.5g}", constant) + (known.empty() ? "" : " = " + known);
+    const std::string figures = fmt::format("{:.5g}", constant),
+                      number = figures + (known.empty() || known == figures ? "" : " = " + known);
     if (name == "a constant") return "a constant " + number;
     return std::fabs(constant - 1) < 2e-3 ? name : fmt::format("{} and a constant {}", name, number);
 }

@@ -1,5 +1,5 @@
 // Where delta parts go: a smooth boundary mirrors, and refracts by the index that is told (Snell); a thin wall lets
-// straight through.
+// straight through. Where nothing is mirrored, that the boundary lies flat is seen by turning w_o about n.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -48,6 +48,20 @@ std::string told(Vec3d wo, Vec3d wi, Vec3d eta) {
     return out + ", and straight through it is not either.";
 }
 
+/// A boundary lies flat where it sends a turned w_o to where it sends w_o, turned: one that lies askew does not.
+bool turns_with_wo(const TrialContext& work, Vec3d wi) {
+    constexpr std::size_t tried = 256;
+    constexpr double angle = 2.4;  // no symmetry of a pattern
+    const SampleBatch& b = work.first(0);
+    if (!work.subject.draws_at_will() || b.u.empty()) return false;
+    const auto turned = [c = math::cos(angle), s = math::sin(angle)](
+                            Vec3d w) { return Vec3d{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
+    std::vector<Draw> there(std::min(tried, b.u.size()));
+    work.subject.sample(0, turned(work.trial.wo), std::span(b.u).first(there.size()), there);
+    return std::any_of(
+        there.begin(), there.end(), [due = turned(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, due); });
+}
+
 }  // namespace
 
 bool refracts_elsewhere(const TrialContext& work, Verdict& v) {
@@ -63,9 +77,10 @@ bool refracts_elsewhere(const TrialContext& work, Verdict& v) {
         if (through && std::none_of(across.begin(), across.end(), known)) across.push_back(p.wi);
     }
     const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
-    if (!mirrored || across.size() > indices) return false;
+    if (across.size() > indices) return false;
     for (Vec3d wi : across) {
         if (near(wi, -wo) || is_refracted(wo, wi, eta, false)) continue;
+        if (!mirrored && !turns_with_wo(work, wi)) continue;
         v.state = State::wrong;
         v.say = told(wo, wi, eta);
         v.evidence["delta_part"] = {wi.x, wi.y, wi.z};
