@@ -5,6 +5,7 @@
 
 #include "disk.h"
 #include "laws/planted/planted.h"
+#include "pause.h"
 
 namespace crescent::web {
 
@@ -39,7 +40,8 @@ ordered_json told_verdict(const Verdict& v) {
 CRESCENT_EXPORT(judged)()->void {
     const ordered_json asked = request();
     const std::string name = asked.at("sampler").get<std::string>();
-    const std::vector<Trial> trials = trials_named(name, asked.at("theta").get<double>());
+    std::vector<Trial> trials = trials_named(name, asked.at("theta").get<double>());
+    for (Trial& t : trials) t.subject = paused(t.subject);
     ProgressMonitor watch;
     const Judgement judgement = judge(trials, TestSettings::quick(), watch);
     ordered_json out = {{"name", name}, {"state", word(State::right)}, {"cases", ordered_json::array()}};

@@ -36,9 +36,13 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
 }
 
+const unwinding = 1, rewinding = 2; // what asyncify_get_state() says
+
 export class Door {
   private readonly calls: Record<string, Call>;
   private readonly memory: WebAssembly.Memory;
+  private paused: (() => number) | undefined; // goes on with a call that left the module, web/pause.h
+  private room = 0; // where that call keeps its locals
 
   constructor(module: WebAssembly.Module) {
     const memory = (): WebAssembly.Memory => this.memory;
@@ -46,7 +50,12 @@ export class Door {
       throw new DoorError(this.words(kind, kindSize), this.words(at, size));
     };
     const system = wasi(memory);
-    const imports: WebAssembly.Imports = { door: { failed }, wasi_snapshot_preview1: {} };
+    const pause = (): void => {
+      const call = this.calls;
+      if (call["asyncify_get_state"]!() === rewinding) call["asyncify_stop_rewind"]!();
+      else call["asyncify_start_unwind"]!((this.room = call["pause_room"]!()));
+    };
+    const imports: WebAssembly.Imports = { door: { failed, pause }, wasi_snapshot_preview1: {} };
     for (const { module: from, name } of WebAssembly.Module.imports(module))
       if (from === "wasi_snapshot_preview1") imports[from]![name] = system[name]!;
     const instance = new WebAssembly.Instance(module, imports);
@@ -65,7 +74,9 @@ export class Door {
   /** A call that takes and returns numbers. A trap becomes an error with a sentence. */
   number(name: string, ...given: number[]): number {
     try {
-      return this.calls[name]!(...given);
+      const told = this.calls[name]!(...given);
+      if (this.calls["asyncify_get_state"]!() === unwinding) this.pauseIn(name, given);
+      return told;
     } catch (error) {
       if (error instanceof DoorError) throw error;
       const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
@@ -73,16 +84,30 @@ export class Door {
     }
   }
 
+  private pauseIn(name: string, given: number[]): void {
+    this.calls["asyncify_stop_unwind"]!();
+    this.paused = (): number => {
+      this.paused = undefined;
+      this.calls["asyncify_start_rewind"]!(this.room);
+      return this.number(name, ...given);
+    };
+  }
+
+  /** Whether a call waits to go on: nothing but that may be asked then. */
+  get waits(): boolean { return this.paused !== undefined; }
+
   private request(request: unknown): void {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
     const at = this.number("room", bytes.length);
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
   }
 
-  /** A call that answers in words. */
+  /** A call that answers in words. One that paused says that more is left, as what has parts does. */
   say(name: string, request?: unknown, ...given: number[]): string {
     if (request !== undefined) this.request(request);
-    this.number(name, ...given);
+    if (this.paused && name === "go_on") this.paused();
+    else this.number(name, ...given);
+    if (this.paused) return '{"more":1}';
     return this.words(this.number("said_at"), this.number("said_size"));
   }
 

@@ -61,6 +61,7 @@ export class Answering {
   begin(job: Job): Answer | undefined {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
+    if (this.door.waits) this.renew();
     return this.part(() => {
       if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) {
         this.here = undefined;
@@ -82,10 +83,14 @@ export class Answering {
       this.most = Math.max(this.most, this.door.number("worked"));
       return goesOn(answer) ? undefined : answer;
     } catch (error) {
-      this.door = new Door(this.module);
-      this.here = undefined;
+      this.renew();
       throw error;
     }
+  }
+
+  private renew(): void {
+    this.door = new Door(this.module);
+    this.here = undefined;
   }
 }
 

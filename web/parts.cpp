@@ -54,6 +54,7 @@ Box asked_box(const ordered_json& asked) {
 TileBox tile_of(const Box& box) { return {box.x0, box.y0, box.x1 + 1, box.y1 + 1}; }
 
 void count_work(std::uint64_t samples) { done += static_cast<double>(samples); }
+double work_of_part() { return done; }
 
 std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {
     const auto most = static_cast<int>(std::clamp<std::uint64_t>(most_of_part / cost_of_pixel, 1, 4096));

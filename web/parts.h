@@ -1,6 +1,6 @@
 // Work in parts of bounded size: a page without workers answers to its reader between two of them. Work is counted in
-// samples of a pixel; a part of a film, of a reference, of a tail or of what a lesson asks has at most most_of_part.
-// The verdicts on a sampler (judged) are one part whatever they take.
+// samples of a pixel; a part of a film, of a reference, of a tail, of what a lesson asks, of the verdicts on a sampler
+// (pause.h) has at most most_of_part.
 #pragma once
 
 #include <functional>
@@ -22,6 +22,7 @@ std::uint64_t pixels_of(const TileBox& box);
 
 /// Adds to what was done since the page asked last.
 void count_work(std::uint64_t samples);
+double work_of_part();
 
 /// A box in boxes whose pixels cost at most most_of_part together, row by row from the bottom.
 std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel);

@@ -188,7 +188,8 @@ def slices_without_workers(driver):
     most = 100_000  # samples of one part; a pixel of the reference counts as a thousand
     browser.wait(driver, "!document.getElementById('pictures').textContent.includes('being measured')")  # tails
     parts = [driver.execute_script("return Number(document.documentElement.dataset.part)")]
-    for lesson, guess in (("four-times", "2"), ("sparkle", "380,140,420,190"), ("firefly", "f"), ("furnace", "bug")):
+    for lesson, guess in (("four-times", "2"), ("sparkle", "380,140,420,190"), ("firefly", "f"), ("furnace", "bug"),
+                          ("unbiased", "right"), ("fault", "b")):
         browser.open_page(driver, page, f"#lesson={lesson}&answer={lesson}:{guess}",
                           until="document.getElementById('reveal') || document.querySelector('#lessons .bad')")
         assert not driver.find_elements(By.CSS_SELECTOR, "#lessons .bad"), browser.text(driver, "#lessons")

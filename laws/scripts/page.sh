@@ -38,6 +38,13 @@ diff native node >difference || die "films differ in node: $(head -n 12 differen
 wait "$programs" && diff native.json "$CRESCENT_SOURCE/web/native.json" >difference ||
     die "web/native.json is not the program's (node web/native.mjs build/crescent): $(cat native.log difference)"
 
+# The verdicts, which pause in the page.
+esbuild "$CRESCENT_SOURCE/web/door.ts" --format=esm --target=es2022 --log-level=warning --outfile=door.mjs || die "door.ts"
+"$CRESCENT" check phong --wo 60 --quiet --json phong.json >/dev/null
+expect 0 node --no-warnings "$CRESCENT_SOURCE/laws/page/verdicts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+    phong.json 60
+cat printed
+
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&
     $python -c 'import selenium' 2>/dev/null || skip "no Chromium that can be driven"

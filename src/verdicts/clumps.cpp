@@ -37,9 +37,13 @@ double solid_angle(const Rect& r, double rounding) {
 /// The least likely of the blocks that it is shown.
 class Search {
 public:
-    Search(double draws, double mass, double rounding) : per_sr_(draws / mass), rounding_(rounding) {}
+    Search(const TrialContext& work, double draws, double mass, double rounding)
+        : work_(work), per_sr_(draws / mass), rounding_(rounding) {}
+    /// Before as much as it takes to sort so many draws, or to look at them.
+    void make_way(std::size_t draws) const { work_.subject.make_way(draws); }
     void look(const Rect& r, std::span<const Spot> inside) {
         if (inside.size() < fewest) return;
+        make_way(inside.size());
         ++tried_;
         double highest = 0;
         for (const Spot& s : inside) highest = std::max(highest, s.p);
@@ -64,6 +68,7 @@ public:
     }
 
 private:
+    const TrialContext& work_;
     double per_sr_, rounding_, least_ = 1, tried_ = 0;
     Clump found_;
     Vec2d at_{};
@@ -82,6 +87,7 @@ void look_at_blocks(const Rect& r, std::span<Spot> inside, Search& search) {
     const bool along_a = (r.a1 - r.a0) / sin > 2 * pi * (r.b1 - r.b0) * sin;
     const std::size_t half = inside.size() / 2;
     const auto mid = inside.begin() + static_cast<std::ptrdiff_t>(half);
+    search.make_way(half / 8);
     Rect low = r, high = r;
     if (along_a) {
         std::nth_element(inside.begin(), mid, inside.end(), lower);
@@ -94,9 +100,24 @@ void look_at_blocks(const Rect& r, std::span<Spot> inside, Search& search) {
     look_at_blocks(high, inside.subspan(half + 1), search);
 }
 
+/// In halves first where they are many: it makes way between them.
+template <class Order> void sort(std::span<Spot> spots, const Order& order, const Search& search) {
+    constexpr std::size_t most = 1 << 13;
+    if (spots.size() <= most) {
+        search.make_way(spots.size());
+        std::sort(spots.begin(), spots.end(), order);
+        return;
+    }
+    const std::size_t half = spots.size() / 2;
+    search.make_way(half / 8);
+    std::nth_element(spots.begin(), spots.begin() + static_cast<std::ptrdiff_t>(half), spots.end(), order);
+    sort(spots.first(half), order, search);
+    sort(spots.subspan(half), order, search);
+}
+
 /// Rings, or sectors, of so many draws each between those they are cut at.
 void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
-    std::sort(spots.begin(), spots.end(), rings ? lower : before);
+    sort(spots, rings ? lower : before, search);
     const auto place = [&](std::size_t i) { return rings ? spots[i].a : spots[i].b; };
     for (std::size_t draws : {2 * fewest, 16 * fewest}) {
         double from = 0;
@@ -179,13 +200,14 @@ Clump densest_clump(const TrialContext& work, int technique, const Density& d, c
     std::vector<Spot> spots;
     spots.reserve(b.draws.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        work.subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
         spots.push_back({at.x, at.y, b.pdf[i] + work.subject.doubt(b.draws[i].wi), i});
     }
     double rounding = 4 * std::max(work.direction_resolution(), 0x1p-24);  // u itself is a multiple of 2^-24
     for (int turn = 0;; ++turn) {
-        Search search(static_cast<double>(spots.size()), d.mass.value, rounding);
+        Search search(work, static_cast<double>(spots.size()), d.mass.value, rounding);
         look_at_blocks({0, 2, 0, 1, 0}, spots, search);
         for (bool rings : {true, false}) look_at_slices(spots, rings, search);
         const Clump found = search.found(d.map);

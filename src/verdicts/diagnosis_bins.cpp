@@ -20,13 +20,16 @@ struct Binned {
     double constant = 1, relative_se = 0, statistic = 0, degrees = 0;
 };
 
-Binned weigh(const Density& d, const SampleBatch& b, const Factor& factor) {
+Binned weigh(const TrialContext& work, int technique, const Factor& factor) {
+    const Density& d = work.density(technique);
+    const SampleBatch& b = work.first(technique);
     Binned out;
     out.sum.resize(d.mass.bins.size());
     out.squares = out.count = out.variance = out.sum;
     const double n = static_cast<double>(b.draws.size());
     double total = 0, squares = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        work.subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const double g = factor.g(b.draws[i].wi);
         if (!(g > 0) || !std::isfinite(g)) continue;
@@ -131,13 +134,13 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
     const SampleBatch& b = work.first(technique);
     if (!(d.mass.value > 0) || !std::isfinite(d.mass.value)) return {};
     const Factor one{"a constant", [](Vec3d) { return 1.0; }};
-    const Binned as_is = weigh(d, b, one);
+    const Binned as_is = weigh(work, technique, one);
     if (as_is.degrees < 8) return {};
     const double norm = std::fabs(as_is.constant - 1);
     const bool shape = as_is.statistic > 3 * as_is.degrees;
     if (!shape && norm < std::max(0.005, 6 * as_is.relative_se)) return {};
     for (const Factor& factor : usual_factors(work)) {
-        const Binned by = weigh(d, b, factor);
+        const Binned by = weigh(work, technique, factor);
         // NaN where the factor is none of the w_i that were drawn.
         if (!(by.statistic <= 1.5 * by.degrees) || !(by.constant > 0) || by.degrees < 8) continue;
         if (shape &&
@@ -157,7 +160,7 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
 /// there.
 bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& found) {
     if (!found.g) return false;
-    const Binned by = weigh(work.density(technique), work.first(technique), {found.name, found.g});
+    const Binned by = weigh(work, technique, {found.name, found.g});
     return std::fabs(by.constant / found.constant - 1) < 2e-3 + 5 * by.relative_se;
 }
 
@@ -167,7 +170,7 @@ std::string spread_told(const TrialContext& work, Verdict& v) {
     for (int t = 0; t < work.subject.techniques() && out.empty(); ++t) {
         const double mass = work.density(t).mass.value;
         if (!(mass > 0) || !std::isfinite(mass)) continue;
-        const Binned by = weigh(work.density(t), work.first(t), {"a constant", [](Vec3d) { return 1.0; }});
+        const Binned by = weigh(work, t, {"a constant", [](Vec3d) { return 1.0; }});
         const ByWarp warp = look_at_warp(work, t, by);
         const auto quantile = [&](double q) {
             return warp.known[static_cast<std::size_t>(q * static_cast<double>(warp.known.size() - 1))];

@@ -115,6 +115,8 @@ public:
     virtual bool draws_at_will() const { return true; }
     /// What was asked of a program so far, and how long that took.
     virtual Spending spending() const { return {}; }
+    /// Told by what computes long between two questions, before so many steps: a page may answer its reader meanwhile.
+    virtual void make_way(std::size_t /*steps*/) const {}
     /// Only one thread may call.
     virtual bool serial() const { return false; }
 };

@@ -1,0 +1,98 @@
+#include "pause.h"
+
+#include <array>
+
+#include "parts.h"
+
+namespace crescent::web {
+
+namespace {
+
+/// The page's: leaves the module, unless it comes back to it.
+extern "C" __attribute__((import_module("door"), import_name("pause"))) void door_pause();
+
+/// What they count, in samples of a pixel: an answer of a sampler, which is asked in double and one by one, and a step
+/// of what is computed between two questions.
+constexpr std::uint64_t answer_cost = 40, step_cost = 10;
+constexpr std::size_t most_answers = most_of_part / answer_cost / 4;
+
+void make_room(std::uint64_t cost) {
+    if (work_of_part() + static_cast<double>(cost) > static_cast<double>(most_of_part)) door_pause();
+    count_work(cost);
+}
+
+/// ask(from, count) for all of `size` in blocks.
+template <class Ask> void in_blocks(std::size_t size, const Ask& ask) {
+    for (std::size_t from = 0; from < size; from += most_answers) {
+        const std::size_t count = std::min(most_answers, size - from);
+        make_room(count * answer_cost);
+        ask(from, count);
+    }
+}
+
+class Paused : public JudgedSampler {
+public:
+    explicit Paused(std::shared_ptr<const JudgedSampler> inner) : inner_(std::move(inner)) {}
+    std::string name() const override { return inner_->name(); }
+    Traits traits() const override { return inner_->traits(); }
+    int techniques() const override { return inner_->techniques(); }
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        in_blocks(u.size(), [&](std::size_t from, std::size_t count) {
+            inner_->sample(t, wo, u.subspan(from, count), out.subspan(from, count));
+        });
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner_->pdf(t, a, o); });
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner_->exact_pdf(t, a, o); });
+    }
+    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner_->mis_weight(t, a, o); });
+    }
+    bool has_f() const override { return inner_->has_f(); }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner_->f(a, o); });
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner_->f_channels(a, o); });
+    }
+    bool has_true_f() const override { return inner_->has_true_f(); }
+    void true_f(std::span<const Pair> at, std::span<double> out) const override {
+        ask(at, out, [&](auto a, auto o) { inner_->true_f(a, o); });
+    }
+    bool has_drawn_f() const override { return inner_->has_drawn_f(); }
+    std::vector<TabulationError> doubts() const override { return inner_->doubts(); }
+    double doubt(Vec3d w) const override { return inner_->doubt(w); }
+    std::string place(int round, std::size_t draw) const override { return inner_->place(round, draw); }
+    bool draws_at_will() const override { return inner_->draws_at_will(); }
+    Spending spending() const override { return inner_->spending(); }
+    void make_way(std::size_t steps) const override { make_room(steps * step_cost); }
+    bool serial() const override { return inner_->serial(); }
+
+private:
+    template <class Value, class Ask>
+    void ask(std::span<const Pair> at, std::span<Value> out, const Ask& answer) const {
+        in_blocks(at.size(),
+            [&](std::size_t from, std::size_t count) { answer(at.subspan(from, count), out.subspan(from, count)); });
+    }
+    std::shared_ptr<const JudgedSampler> inner_;
+};
+
+/// Where a call that is paused keeps its locals: two addresses, from and to, then the room between them.
+alignas(16) std::array<std::uint32_t, 1 << 15> kept;
+
+}  // namespace
+
+std::shared_ptr<const JudgedSampler> paused(std::shared_ptr<const JudgedSampler> sampler) {
+    return std::make_shared<Paused>(std::move(sampler));
+}
+
+/// That room, empty.
+CRESCENT_EXPORT(pause_room)()->const void* {
+    kept[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(kept.data() + 4));
+    kept[1] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(kept.data() + kept.size()));
+    return kept.data();
+}
+
+}  // namespace crescent::web
