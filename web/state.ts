@@ -24,6 +24,7 @@ export interface State {
 }
 
 const path = /^(?!__)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){0,3}$/;
+const own = /^(n|arms\.[^.]+\.n|reference\.kind)$/; // what the page sets itself
 const keys = ["experiment", "arms", "n", "view", "set", "pixel", "arm", "part", "lesson", "answer"];
 const number = "-?(\\d+\\.?\\d*|\\.\\d+)([eE][-+]?\\d{1,3})?";
 const value = new RegExp(`^(${number}|\\[ *${number}( *, *${number}){0,7} *\\]|"[a-z-]{1,40}")$`);
@@ -86,7 +87,8 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   for (const text of asked.getAll("set")) {
     const at = text.indexOf("=");
     const key = text.slice(0, at), to = text.slice(at + 1);
-    if (at > 0 && path.test(key) && value.test(to)) state.set[key] = to;
+    if (own.test(key)) said.push(`The address says set=${text.slice(0, 60)}, which the page sets itself: it is left out.`);
+    else if (at > 0 && path.test(key) && value.test(to)) state.set[key] = to;
     else said.push(`The address says set=${text.slice(0, 60)}, which is no setting: it is left out.`);
   }
   const pixel = asked.get("pixel");
@@ -99,7 +101,9 @@ export function read(hash: string, sources: Record<string, Source>, samplers: st
   if (Number.isInteger(arm) && arm >= 0 && arm < state.arms.length) state.arm = arm;
   else wrong("arm", "the first one is shown");
   readLessons(asked, state, sources[first]!.size, said, wrong);
-  for (const key of new Set(asked.keys())) if (!keys.includes(key)) wrong(key, "it is left out");
+  for (const key of new Set(asked.keys()))
+    if (!keys.includes(key)) wrong(key, "it is left out");
+    else if (key !== "set" && key !== "answer" && asked.getAll(key).length > 1) said.push(`The address says ${key} twice: the first one counts.`);
   return state;
 }
 

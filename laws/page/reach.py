@@ -126,6 +126,17 @@ def laws(page, folder):
                     name = "heat" if "heat" in address else "lesson" if "lesson" in address else "bench"
                     shot(driver, f"{name}-{scheme}-{width}")
 
+    def rows_stand_beside_each_other(driver):
+        """Meters of arms that stand side by side have one line each, however long the words above them are."""
+        browser.open_page(driver, page, "#experiment=three-glosses&n=4&arms=uniform,cosine,phong")
+        for width in (700, 1000, 1280, 1600, 3840):
+            browser.size(driver, width, 900)
+            tops = driver.execute_script(
+                "return [...document.querySelectorAll('#pictures .shown')].map((f) => [f, f.querySelector('tr')].map("
+                "(e) => Math.round(e.getBoundingClientRect().top)))")
+            for top, row in tops:
+                assert all(r == row for t, r in tops if t == top), f"rows at {width} px: {tops}"
+
     def other_colours_and_no_motion(driver):
         """Forced colours keep borders, outlines and focus; with reduced motion, as without, nothing moves by itself."""
         browser.media(driver, forced_colors="active", prefers_reduced_motion="reduce")
@@ -249,5 +260,5 @@ def laws(page, folder):
                     and not n.get("name", {}).get("value")]
         assert nameless == [], nameless[:3]
 
-    return [lessons_by_keyboard, sheet_for_teachers, fits_every_screen, other_colours_and_no_motion, tab_order,
-            regions_are_drawn, nothing_for_axe, everything_has_a_name]
+    return [lessons_by_keyboard, sheet_for_teachers, fits_every_screen, rows_stand_beside_each_other,
+            other_colours_and_no_motion, tab_order, regions_are_drawn, nothing_for_axe, everything_has_a_name]
