@@ -19,7 +19,7 @@ export class Picture {
   constructor(readonly index: number, private readonly d: Described, private readonly picking: Picking) {
     this.frame = new Frame(d, picking);
     this.canvas.tabIndex = 0;
-    this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, this.frame.root, this.words, this.versus, this.aim, this.table);
+    this.root = el("figure", { class: index < 0 ? "reference" : "shown" }, this.frame.root, this.words, el("div", {}, this.versus, this.aim), this.table);
   }
 
   get canvas(): HTMLCanvasElement { return this.frame.canvas; }

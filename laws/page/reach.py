@@ -136,6 +136,11 @@ def laws(page, folder):
                 "(e) => Math.round(e.getBoundingClientRect().top)))")
             for top, row in tops:
                 assert all(r == row for t, r in tops if t == top), f"rows at {width} px: {tops}"
+        browser.open_page(driver, page, "#experiment=three-glosses&n=4&arms=uniform,phong&view=heat")
+        apart = driver.execute_script(
+            "const [words, bar] = ['.reference figcaption', '.bar'].map((css) => document.querySelector(css));"
+            "return bar.getBoundingClientRect().top - words.getBoundingClientRect().bottom")
+        assert 0 <= apart < 24, f"the scale stands {apart} px under the reference's name"
 
     def other_colours_and_no_motion(driver):
         """Forced colours keep borders, outlines and focus; with reduced motion, as without, nothing moves by itself."""
