@@ -77,7 +77,8 @@ def address_is_data(driver):
                       until="document.getElementById('wrong').textContent.includes('sphere.s')")
     said = browser.text(driver, "#wrong")
     for word in ("experiment=", "arms=", "n=7", "view=", "set=", "pixel=", "arm=", "part=q", "unknown=1",
-                 "n twice", "set=n=[3]", "set=arms.phong.n=[3]", "set=reference.kind=", "answer=sparkle:evil", "answer=firefly:l", "answer=four-times:99", "answer=sparkle:1,1,960,9"):
+                 "n twice", "set=n=[3]", "set=arms.phong.n=[3]", "set=reference.kind=", "answer=sparkle:evil",
+                 "answer=firefly:l", "answer=four-times:99", "answer=sparkle:1,1,960,9"):
         assert word in said, f"{word} is not told: {said}"
     browser.open_page(driver, page, "#lesson=none", until="document.getElementById('wrong').textContent")
     assert "lesson=none" in browser.text(driver, "#wrong")

@@ -39,7 +39,8 @@ wait "$programs" && diff native.json "$CRESCENT_SOURCE/web/native.json" >differe
     die "web/native.json is not the program's (node web/native.mjs build/crescent): $(cat native.log difference)"
 
 # The verdicts, which pause in the page.
-esbuild "$CRESCENT_SOURCE/web/door.ts" --format=esm --target=es2022 --log-level=warning --outfile=door.mjs || die "door.ts"
+esbuild "$CRESCENT_SOURCE/web/door.ts" --format=esm --target=es2022 --log-level=warning --outfile=door.mjs ||
+    die "door.ts"
 "$CRESCENT" check phong --wo 60 --quiet --json phong.json >/dev/null
 expect 0 node --no-warnings "$CRESCENT_SOURCE/laws/page/verdicts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
     phong.json 60
