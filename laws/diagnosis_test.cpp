@@ -258,5 +258,25 @@ TEST(Diagnosis, NamesNoFactorByBinsWhoseConstantNobodyKnows) {
     EXPECT_EQ(said.diagnosis, "none") << said.say;
 }
 
+/// Two u reach each direction, so that no point of the warp speaks; along sectors the ratio goes up and down by a
+/// tenth, which is lost among all bins.
+TEST(Diagnosis, NamesNoConstantWhereSectorsDiffer) {
+    for (const double uneven : {0.0, 0.1}) {
+        Recipe r{"cosine", "", {}, {}, {}};
+        r.traits.numbers = 3;
+        r.pdf = [=](Vec3d, Vec3d i) {
+            const double sin = std::max(math::hypot(i.x, i.y), 1e-9);
+            return i.z > 0 ? 2 * i.z / pi * (1 + uneven * i.x / sin) : 0;
+        };
+        r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+            const double turn = u[2] < 0.5 ? 0 : pi;
+            const Vec3d i = spherical(std::sqrt(1 - u[0]), 2 * pi * u[1] + turn);
+            return Draw{i, p(o, i), {}, {}};
+        };
+        const Said said = first_said(judged(r, 45));
+        EXPECT_EQ(said.diagnosis, uneven > 0 ? "none" : "a constant") << said.say;
+    }
+}
+
 }  // namespace
 }  // namespace crescent
