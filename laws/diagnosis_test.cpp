@@ -278,5 +278,22 @@ TEST(Diagnosis, NamesNoConstantWhereSectorsDiffer) {
     }
 }
 
+/// A pdf with a bump of 3 % about one direction, which the rest makes up for by one per mille: no turn of w_o, on which
+/// it does not depend, explains it.
+TEST(Diagnosis, NamesNoTurnThatLeavesThePdfAsItIs) {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d i) {
+        const double c = dot(i, tilt(40, 20)), near = std::clamp((c - std::cos(0.3)) / (1 - std::cos(0.3)), 0.0, 1.0);
+        return std::max(i.z, 0.0) / pi * (1 + 0.03 * sqr(near) * (3 - 2 * near)) * 0.9988;
+    };
+    r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+        const Vec3d i = spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]);
+        return Draw{i, p(o, i), {}, {}};
+    };
+    const Said said = first_said(judged(r, 45));
+    EXPECT_EQ(said.state, State::wrong) << said.say;
+    EXPECT_EQ(said.diagnosis, "none") << said.say;
+}
+
 }  // namespace
 }  // namespace crescent

@@ -37,6 +37,10 @@ std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::sp
     const std::size_t n = std::min<std::size_t>(points.size(), 256);
     const std::vector<Ratio> as_it_is = drawn_over_claimed(work, technique);
     if (mostly_one(std::span(as_it_is).first(n))) return {};
+    const auto is_one = [](double off, double error) { return std::fabs(off - 1) <= close + 2 * error; };
+    std::size_t one = 0;  // as it is: a turn that leaves p alone explains none of the rest
+    for (std::size_t i = 0; i < n; ++i) one += is_one(1 / as_it_is[i].value, points[i].error);
+    if (2 * one >= n) return {};
     for (const Turn& turn : turns)
         for (int which = 1; which < 4; ++which) {
             if (!can_be_turned(work, turn, which)) continue;
@@ -47,8 +51,7 @@ std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::sp
             std::vector<double> p(n);
             work.subject.pdf(technique, at, p);
             std::size_t same = 0;
-            for (std::size_t i = 0; i < n; ++i)
-                same += std::fabs(p[i] * points[i].jacobian - 1) <= close + 2 * points[i].error;
+            for (std::size_t i = 0; i < n; ++i) same += is_one(p[i] * points[i].jacobian, points[i].error);
             if (static_cast<double>(same) < enough * static_cast<double>(n)) continue;
             const char* of[] = {"", " for w_o", " for w_i", ""};
             const std::string name = std::string(turn.name) + of[which];
