@@ -7,6 +7,7 @@
 #include "math/functions.h"
 #include "verdicts/diagnosis.h"
 #include "verdicts/ordered.h"
+#include "verdicts/pooled.h"
 
 namespace crescent::inline verdicts {
 
@@ -111,6 +112,13 @@ bool bins_show_a_constant(const TrialContext& work, int technique, const Binned&
     return !name_of_constant(work, as_is.constant).empty() || std::fabs(math::log(as_is.constant)) > 4 * unseen;
 }
 
+/// What no constant changes: where along p the draws fall. Each is a standard normal deviate where p is off by one.
+bool contrasts_differ(const Density& d, const SampleBatch& b) {
+    constexpr double most = 3;
+    const Contrasts z = contrasts_of(d, b);
+    return std::any_of(z.begin(), z.end(), [](double v) { return std::fabs(v) > most; });
+}
+
 /// What is left of the difference, in amplitude: chi-square beyond its degrees goes with its square.
 double unexplained(const Binned& by, const Binned& as_is) {
     return std::sqrt(std::max(by.statistic - by.degrees, 0.0) / (as_is.statistic - as_is.degrees));
@@ -148,7 +156,8 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
             continue;
         if (!shape && factor.name != "a constant") continue;
         if (!shape &&
-            (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by) || !is_even(d, by)))
+            (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by) ||
+                !is_even(d, by) || contrasts_differ(d, b)))
             return {};
         return Diagnosis{factor.name, by.constant, shape ? 1 - unexplained(by, as_is) : 1,
             "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant), factor.g};
