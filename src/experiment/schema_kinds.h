@@ -25,15 +25,33 @@ template <class... Kind> constexpr std::size_t parameter_count(KindList<Kind...>
     return (Kind::parameters().size() + ... + 0);
 }
 
-/// Calls f(member) for the parameter of that name, where the kind that `any` holds has it.
-template <class Any, class F> void with_parameter(Any& any, std::string_view name, F&& f) {
+/// A parameter of an object, whatever its kind; empty where its kind has no parameter of that name.
+using AnyParameter = std::variant<std::monostate, double*, bool*, Vec3d*, std::optional<Rgb>*>;
+
+/// The parameter of that name of the kind that `any` holds.
+template <class Any> AnyParameter parameter_named(Any& any, std::string_view name) {
+    AnyParameter found;
     std::visit(
         [&](auto& kind) {
-            using Kind = std::remove_cvref_t<decltype(kind)>;
-            for (const Parameter<Kind>& parameter : Kind::parameters())
-                if (parameter.name == name) std::visit([&](auto member) { f(kind.*member); }, parameter.member);
+            for (const auto& parameter : std::remove_cvref_t<decltype(kind)>::parameters())
+                if (parameter.name == name) std::visit([&](auto member) { found = &(kind.*member); }, parameter.member);
         },
         any);
+    return found;
+}
+inline void assign(const AnyParameter& to, const Value& value) {
+    std::visit(
+        [&]<class T>(T at) {
+            if constexpr (std::is_pointer_v<T>) assign(*at, value);
+        },
+        to);
+}
+inline bool fetch(const AnyParameter& from, Value& value) {
+    const auto read = [&]<class T>(T at) {
+        if constexpr (std::is_pointer_v<T>) return fetch(*at, value);
+        else return false;
+    };
+    return std::visit(read, from);
 }
 
 /// The key `kind` of objects whose member Form is one of these kinds.
@@ -49,18 +67,16 @@ template <class List, auto Form> constexpr Slot kind_slot = {[](void* object, co
     }};
 
 /// The parameter at `index` of whichever kind the object holds.
-template <class List, auto Form, std::size_t index>
-constexpr Slot parameter_slot = {[](void* object, const Value& value) {
-                                     using Owner = typename OwnerOf<decltype(Form)>::type;
-                                     with_parameter(static_cast<Owner*>(object)->*Form, parameter_name(List{}, index),
-                                         [&](auto& member) { assign(member, value); });
-                                 },
+template <class List, auto Form, std::size_t index> constexpr Slot parameter_slot = {
+    [](void* object, const Value& value) {
+        using Owner = typename OwnerOf<decltype(Form)>::type;
+        assign(parameter_named(static_cast<Owner*>(object)->*Form, parameter_name(List{}, index)), value);
+    },
     [](const void* object, Value& value) {
         using Owner = typename OwnerOf<decltype(Form)>::type;
-        bool given = false;
-        with_parameter(static_cast<const Owner*>(object)->*Form, parameter_name(List{}, index),
-            [&](const auto& member) { given = fetch(member, value); });
-        return given;
+        // A member is found in what may be written; it is only read here.
+        auto& form = const_cast<Owner*>(static_cast<const Owner*>(object))->*Form;
+        return fetch(parameter_named(form, parameter_name(List{}, index)), value);
     }};
 
 template <class List, auto Form> Key kind_key() {
