@@ -61,7 +61,7 @@ mkdir -p "$tree"
 done
 
 expect 0 cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
+    -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DCMAKE_UNITY_BUILD=ON \
     -DCRESCENT_SCALAR=ON -DCRESCENT_GL=OFF -DCRESCENT_FILM=OFF -DCRESCENT_TESTS=ON
 expect 0 cmake --build "$build" --target extending
 expect 0 "$build/laws/extending" tent half-power

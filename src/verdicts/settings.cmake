@@ -6,3 +6,5 @@ target_include_directories(crescent_verdicts PRIVATE ${PROJECT_SOURCE_DIR})
 if(CRESCENT_PRECOMPILED)
   target_precompile_headers(crescent_verdicts PRIVATE <nlohmann/json.hpp>)
 endif()
+# Every verdict has a `judge` of its own, many faults a `Bend`.
+set_target_properties(crescent_verdicts PROPERTIES UNITY_BUILD OFF)
