@@ -5,18 +5,13 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/right.h"
 #include "verdicts/against.h"
 #include "verdicts/samples.h"
 
 namespace crescent {
 namespace {
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
-}
 
 std::vector<Trial> trials(const std::string& arm, const std::string& brdf, double theta) {
     std::vector<Trial> all = trials_of(arm, {}, false, {{theta, 40}});

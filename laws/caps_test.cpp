@@ -2,6 +2,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/right.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
@@ -33,11 +34,7 @@ Recipe cones(int count, double half_angle, double claimed = 1) {
     return r;
 }
 
-Judgement judged(const Recipe& r) {
-    ProgressMonitor watch;
-    const Trial trial = trial_of_subject(subject_of(r), 45, 130);
-    return judge({&trial, 1}, TestSettings::quick(), watch);
-}
+Judgement judged(const Recipe& r) { return judged_at(subject_of(r), 45, TestSettings::quick()); }
 
 State state_of(const Judgement& j, std::string_view name) {
     for (const Verdict& v : j.verdicts)

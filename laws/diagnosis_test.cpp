@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
@@ -20,9 +21,7 @@ Vec3d spherical(double cos, double phi) {
 }
 
 Judgement judged(const Recipe& recipe, double theta = 0) {
-    const Trial trial = trial_of_subject(subject_of(recipe), theta, 0);
-    ProgressMonitor watch;
-    return judge({&trial, 1}, TestSettings::quick(), watch);
+    return judged_at(subject_of(recipe), theta, TestSettings::quick(), 0);
 }
 
 struct Said {

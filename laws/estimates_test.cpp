@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/renderers.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
@@ -83,19 +84,10 @@ private:
 };
 
 Judgement judged(std::shared_ptr<const JudgedSampler> subject, double theta = 45) {
-    ProgressMonitor watch;
-    TestSettings settings;
-    settings.draws = 8192;
+    TestSettings settings = of_draws(8192);
     settings.evaluations = 20000;
     settings.questions = 200000;
-    const Trial trial = trial_of_subject(std::move(subject), theta, 130);
-    return judge({&trial, 1}, settings, watch);
-}
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
+    return judged_at(std::move(subject), theta, settings);
 }
 
 std::string all_said(const Judgement& j) {

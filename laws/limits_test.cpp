@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/errors.h"
+#include "laws/judged.h"
 #include "laws/right/right.h"
 #include "verdicts/list.h"
 #include "verdicts/pipe.h"
@@ -89,9 +90,7 @@ TEST(Limits, AccuseASamplerThatLeavesOutWhatItClaims) {
 }
 
 Judgement judged(std::shared_ptr<const JudgedSampler> subject, TestSettings settings) {
-    ProgressMonitor watch;
-    const Trial trial = trial_of_subject(subject, 45, 130);
-    return judge({&trial, 1}, settings, watch);
+    return judged_at(std::move(subject), 45, settings);
 }
 
 /// One verdict after the other is brought to where it cannot tell.

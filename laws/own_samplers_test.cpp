@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <mutex>
 
+#include "laws/judged.h"
 #include "laws/right/right.h"
 #include "verdicts/error_rates.h"
 #include "verdicts/list.h"
@@ -16,15 +17,7 @@ namespace crescent {
 namespace {
 
 Judgement judged(std::shared_ptr<const JudgedSampler> subject, double theta = 45) {
-    ProgressMonitor watch;
-    const Trial trial = trial_of_subject(subject, theta, 130);
-    return judge({&trial, 1}, TestSettings::quick(), watch);
-}
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
+    return judged_at(std::move(subject), theta, TestSettings::quick());
 }
 
 Recipe cosine() {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/renderers.h"
 #include "verdicts/list.h"
 #include "verdicts/pipe.h"
@@ -12,17 +13,7 @@ namespace crescent {
 namespace {
 
 Judgement judged(const Recipe& recipe, double theta = 45) {
-    ProgressMonitor watch;
-    TestSettings settings;
-    settings.draws = 8192;
-    const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
-    return judge({&trial, 1}, settings, watch);
-}
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
+    return judged_at(subject_of(recipe), theta, of_draws(8192));
 }
 
 TEST(Renderers, GlassIsJudgedFromBothSides) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
 #include "simd/random.h"
@@ -16,16 +17,7 @@ namespace crescent {
 namespace {
 
 Judgement judged(const Trial& trial, std::uint64_t draws = std::uint64_t{1} << 15) {
-    ProgressMonitor watch;
-    TestSettings settings;
-    settings.draws = draws;
-    return judge({&trial, 1}, settings, watch);
-}
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
+    return judged_alone(trial, of_draws(draws));
 }
 
 Vec3d spherical(double cos, double turns) { return about({0, 0, 1}, cos, turns); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "simd/frame.h"
@@ -14,19 +15,7 @@
 namespace crescent {
 namespace {
 
-Judgement judged(const Recipe& recipe, double theta) {
-    ProgressMonitor watch;
-    TestSettings settings;
-    settings.draws = 16384;
-    const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
-    return judge({&trial, 1}, settings, watch);
-}
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
-}
+Judgement judged(const Recipe& recipe, double theta) { return judged_at(subject_of(recipe), theta, of_draws(16384)); }
 
 /// Smooth glass of 1.5 whose refracted direction is `bent`.
 Recipe glass_towards(std::function<Vec3d(Vec3d wo, Vec3d wi)> bent, double weight_through = 0) {

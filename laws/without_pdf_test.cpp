@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
 #include "verdicts/judge.h"
@@ -13,17 +14,7 @@ namespace crescent {
 namespace {
 
 Judgement judged(const Recipe& recipe, double theta = 45) {
-    ProgressMonitor watch;
-    TestSettings settings;
-    settings.draws = 16384;
-    const Trial trial = trial_of_subject(subject_of(recipe), theta, 130);
-    return judge({&trial, 1}, settings, watch);
-}
-
-const Verdict& named(const Judgement& j, std::string_view name) {
-    for (const Verdict& v : j.verdicts)
-        if (v.name == name) return v;
-    throw std::runtime_error("no such verdict");
+    return judged_at(subject_of(recipe), theta, of_draws(16384));
 }
 
 Vec3d cosine(double u1, double u2) {

@@ -1,0 +1,39 @@
+// One sampler judged at one w_o, and one of its verdicts by name: what laws on verdicts share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "verdicts/judge.h"
+#include "verdicts/list.h"
+
+namespace crescent {
+
+/// The usual settings with so many draws a w_o.
+inline TestSettings of_draws(std::uint64_t draws) {
+    TestSettings settings;
+    settings.draws = draws;
+    return settings;
+}
+
+inline Judgement judged_alone(const Trial& trial, const TestSettings& settings) {
+    ProgressMonitor watch;
+    return judge({&trial, 1}, settings, watch);
+}
+/// w_o at (theta, phi), degrees.
+inline Judgement judged_at(
+    std::shared_ptr<const JudgedSampler> subject, double theta, const TestSettings& settings, double phi = 130) {
+    return judged_alone(trial_of_subject(std::move(subject), theta, phi), settings);
+}
+
+/// The first verdict of that name. Throws std::runtime_error where there is none.
+inline const Verdict& named(const Judgement& j, std::string_view name) {
+    for (const Verdict& v : j.verdicts)
+        if (v.name == name) return v;
+    throw std::runtime_error("no verdict '" + std::string(name) + "'");
+}
+
+}  // namespace crescent
