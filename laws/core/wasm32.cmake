@@ -6,5 +6,3 @@ set(CMAKE_CXX_COMPILER clang++-19)
 set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -mno-relaxed-simd")
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
-# Of a link of its own accord clang would have wasm-opt optimise, where that is installed.
-set(CMAKE_EXE_LINKER_FLAGS_INIT -O0)

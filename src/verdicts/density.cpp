@@ -65,9 +65,10 @@ struct Fit {
     std::vector<double> observed, expected;
 };
 
-std::vector<double> count(const Density& d, const SampleBatch& b, double& nothing) {
+std::vector<double> count(const TrialContext& work, const Density& d, const SampleBatch& b, double& nothing) {
     std::vector<double> bins(d.mass.bins.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        work.subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) {
             ++nothing;
             continue;
@@ -82,7 +83,7 @@ Fit fit(const TrialContext& work, int technique, const Density& d, const SampleB
     const bool estimates = work.scatter().pdf();
     if (!estimates) out.clump = densest_clump(work, technique, d, b);  // which needs p itself at the draws
     double nothing = 0;
-    out.observed = count(d, b, nothing);
+    out.observed = count(work, d, b, nothing);
     const double n = static_cast<double>(b.draws.size());
     const std::size_t sectors = static_cast<std::size_t>(d.sectors), rings = d.rings.size() - 1;
     // Left by p: what draws nothing. Scaled to the share that was drawn, so that the normalisation is not judged twice.

@@ -140,6 +140,7 @@ SamplesPerBin TrialContext::witnesses_of(int technique, const Density& d) const 
     out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
     out.total = static_cast<double>(b.draws.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
         out.bins[d.bin_of(at)].push_back({at, 2 * pi * b.pdf[i]});
