@@ -23,3 +23,18 @@ dpkg_says "ii  cmake" "rc  g++"
     die "missing: $(missing cmake g++ ninja-build | xargs)"
 dpkg_says "ii  cmake" "ii  g++"
 [ -z "$(missing cmake g++)" ] || die "missing: $(missing cmake g++ | xargs)"
+
+# What the configuration cannot do without is installed by ./run as well, which configures the tests with the rest.
+key() { tr '[:upper:]' '[:lower:]' <<<"$1" | sed -E 's/^lib//; s/-dev$//; s/[^a-z]//g'; }
+cd "$CRESCENT_SOURCE" || exit 1
+needs=$(cat CMakeLists.txt {cmake,src/*}/*.cmake {cli,explainer,gl,laws}/CMakeLists.txt |
+    grep -oE '(find_package|pkg_check_modules)\(\w+ REQUIRED( IMPORTED_TARGET [^)]+)?' |
+    sed -E 's/.*\(//; s/ REQUIRED$//; s/.*IMPORTED_TARGET //')
+[ "$(wc -w <<<"$needs")" -ge 15 ] || die "too few libraries are found to be needed: $needs"
+for need in $needs; do
+    found=
+    for package in $(packages_of build); do
+        [[ $(key "$need") == "$(key "$package")"* ]] && found=$package
+    done
+    [ -n "$found" ] || die "$need is needed to configure, and no package of the group 'build' is it"
+done
