@@ -9,6 +9,7 @@
 #include "base/machine.h"
 #include "films/film.h"
 #include "run/plan.h"
+#include "scene/scene.h"
 
 namespace crescent::inline runs {
 
@@ -41,7 +42,8 @@ std::uint64_t memory_needed(const Experiment& experiment) {
     const double again = experiment.seeds > 1 ? most : 0;
     const double a_pixel =
         film * (rungs + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
-    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel);
+    const double hits = pixels <= static_cast<double>(Scene::whole_hits) ? pixels * sizeof(Hit) : 0;
+    return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits);
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {

@@ -50,13 +50,22 @@ Vec3d Scene::Made::nearest_seen() const {
 void Scene::remember_primaries() {
     const std::size_t width = static_cast<std::size_t>(image().width),
                       height = static_cast<std::size_t>(image().height);
-    auto all = std::make_shared<std::vector<std::int32_t>>(width * height, -1);
-    parallel_for(std::size_t{0}, height, [&](std::size_t j) {
-        for (std::size_t i = 0; i < width; ++i)
-            if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j)))
-                (*all)[j * width + i] = hit->shape;
-    });
-    primary_ = std::move(all);
+    const auto remember = [&](auto& all, const auto& what) {
+        parallel_for(std::size_t{0}, height, [&](std::size_t j) {
+            for (std::size_t i = 0; i < width; ++i)
+                if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j)))
+                    all[j * width + i] = what(*hit);
+        });
+    };
+    if (width * height <= whole_hits) {
+        auto all = std::make_shared<std::vector<Hit>>(width * height);
+        remember(*all, [](const Hit& hit) { return hit; });
+        hits_ = std::move(all);
+    } else {
+        auto all = std::make_shared<std::vector<std::int32_t>>(width * height, -1);
+        remember(*all, [](const Hit& hit) { return hit.shape; });
+        shapes_ = std::move(all);
+    }
 }
 
 Scene Scene::with_s(double s) const {
@@ -66,9 +75,11 @@ Scene Scene::with_s(double s) const {
 }
 
 std::optional<Hit> Scene::primary(int i, int j) const {
-    if (!primary_) return made_->trace(i, j);
-    const int shape = (*primary_)[static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) +
-        static_cast<std::size_t>(i)];
+    const std::size_t at =
+        static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) + static_cast<std::size_t>(i);
+    if (hits_) return (*hits_)[at].shape < 0 ? std::nullopt : std::optional<Hit>((*hits_)[at]);
+    if (!shapes_) return made_->trace(i, j);
+    const int shape = (*shapes_)[at];
     if (shape < 0) return {};
     const Vec3d d = made_->towards(i, j);
     return made_->hit(shape, d, intersect(shapes()[static_cast<std::size_t>(shape)], camera().eye, d));

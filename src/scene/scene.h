@@ -29,9 +29,11 @@ public:
 
     /// The ray through the centre of pixel (i, j), counted from the bottom-left.
     std::optional<Hit> primary(int i, int j) const;
-    /// Traces every pixel once and remembers which shape it meets, 4 bytes a pixel, for as long as the scene and its
-    /// copies live: primary() then asks that shape alone.
+    /// Traces every pixel once and remembers what it meets, for as long as the scene and its copies live: the whole hit
+    /// where the image has at most whole_hits pixels, else the shape, 4 bytes a pixel, which primary() then asks alone.
     void remember_primaries();
+    /// 84 MB. A hit that is computed again costs as much as ten samples of a pixel, a sixth of a film of 64.
+    static constexpr std::size_t whole_hits = std::size_t{1} << 20;
     /// The same view with another exponent, on the shape whose s is the scene's and on all that inherit it. All but the
     /// exponent is shared.
     Scene with_s(double s) const;
@@ -72,8 +74,9 @@ private:
     };
     std::shared_ptr<const Made> made_;
     double s_ = 0;
-    bool other_s_ = false;                                      // s_ is not what the data says
-    std::shared_ptr<const std::vector<std::int32_t>> primary_;  // a pixel's shape; -1: nothing met
+    bool other_s_ = false;                                     // s_ is not what the data says
+    std::shared_ptr<const std::vector<Hit>> hits_;             // a pixel's hit; shape -1: nothing met
+    std::shared_ptr<const std::vector<std::int32_t>> shapes_;  // the same of a larger image
 };
 
 }  // namespace crescent::inline scene
