@@ -77,15 +77,16 @@ CRESCENT_EXPORT(drawn)()->void {
     say(out);
 }
 
-/// The density that a sampler claims at theta, as a picture `size` pixels across; the sampler's name is the request.
-CRESCENT_EXPORT(density_disk)(double theta, int size)->const void* {
-    const Trial trial = trials_named(request().get<std::string>(), theta).front();
-    return Disk({-trial.wo.x, -trial.wo.y, trial.wo.z}).paint(size, [&](Vec3d wi) {
+/// {sampler, theta, size} -> the density that it claims there, as a picture for disk(), `size` pixels across.
+CRESCENT_EXPORT(density_disk)()->void {
+    const ordered_json asked = request();
+    const Trial trial = trials_named(asked.at("sampler").get<std::string>(), asked.at("theta").get<double>()).front();
+    begin(painted(Disk({-trial.wo.x, -trial.wo.y, trial.wo.z}), asked.at("size").get<int>(), [=](Vec3d wi) {
         const Pair at{trial.wo, wi};
         double p = 0;
         trial.subject->exact_pdf(0, {&at, 1}, {&p, 1});
         return p;
-    });
+    }));
 }
 
 }  // namespace crescent::web

@@ -2,7 +2,7 @@
 // that they claim.
 import { Asker } from "./answers";
 import { choice } from "./controls";
-import { el } from "./dom";
+import { el, minus } from "./dom";
 import { Lesson } from "./lessons";
 import { Model } from "./model";
 
@@ -14,7 +14,7 @@ const size = 176, draws = 512;
 
 function table(one: Judged["cases"][number]): HTMLElement {
   const rows = one.verdicts.map((v) => el("tr", {}, el("th", { scope: "row" }, v.name),
-    el("td", { class: v.state === "wrong" ? "bad" : "" }, v.state), el("td", {}, v.say)));
+    el("td", { class: v.state === "wrong" ? "bad" : "" }, v.state), el("td", {}, minus(v.say))));
   return el("table", { class: "verdicts" }, el("caption", {}, one.trial), el("tbody", {}, ...rows));
 }
 
@@ -43,20 +43,29 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
       el("button", { type: "button", id: "check", onclick: () => void judge() }, "Check")), out);
 }
 
-function picture(model: Model, { value, words }: Option, theta: number): HTMLElement {
-  const { draws: points, trial } = model.door.ask<{ draws: [number, number][]; trial: string }>("drawn", { sampler: value, theta, n: draws });
-  const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": `${words}: ${points.length} draws over the density that it claims, ${trial}` });
+/** Paints a sampler's density and its draws when there is room for it; what is no longer on the page is left out. */
+async function paint(model: Model, canvas: HTMLCanvasElement, { value, words }: Option, theta: number): Promise<void> {
+  const wanted = (): boolean => canvas.isConnected;
+  const density = await model.disk(wanted, "density_disk", { sampler: value, theta }, size);
+  const drawn = await model.parts<{ draws: [number, number][]; trial: string }>(wanted, "drawn", { sampler: value, theta, n: draws });
+  if (!density || !drawn) return;
+  canvas.setAttribute("aria-label", `${words}: ${drawn.draws.length} draws over the density that it claims, ${drawn.trial}`);
   const pen = canvas.getContext("2d")!;
-  pen.putImageData(new ImageData(new Uint8ClampedArray(model.door.bytesAbout("density_disk", value, 4 * size * size, theta, size)), size, size), 0, 0);
+  pen.putImageData(density, 0, 0);
   pen.fillStyle = "#ffffff";
   pen.strokeStyle = "#141517";
-  for (const [x, y] of points) {
+  for (const [x, y] of drawn.draws) {
     pen.beginPath();
     pen.arc((size * (1 + x)) / 2, (size * (1 - y)) / 2, 1.6, 0, 2 * Math.PI);
     pen.fill();
     pen.stroke();
   }
-  return el("figure", {}, canvas, el("figcaption", {}, el("b", {}, words)));
+}
+
+function picture(model: Model, option: Option, theta: number): HTMLElement {
+  const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": `${option.words}: its draws` });
+  void Promise.resolve().then(() => paint(model, canvas, option, theta)).catch(() => {}); // once it is on the page; the question stands without it
+  return el("figure", {}, canvas, el("figcaption", {}, el("b", {}, option.words)));
 }
 
 /** Each sampler's draws as points over its density, four decades of it. */

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "door.h"
+#include "parts.h"
 
 namespace crescent::web {
 
@@ -27,11 +27,13 @@ public:
         const double by = std::sqrt(2 - r2);
         return Vec3d{(c_ * x - s_ * y) * by, (c_ * y + s_ * x) * by, 1 - r2};
     }
-    /// A picture `size` pixels across: values through turbo on a logarithmic scale of four decades below the largest.
-    const void* paint(int size, const std::function<double(Vec3d)>& value) const;
 
 private:
     double c_ = 1, s_ = 0;
 };
+
+/// A picture of a disk `size` pixels across, for disk(): values through turbo on a logarithmic scale of four decades
+/// below the largest. The parts of a question, parts.h; the last one says {}.
+Parts painted(const Disk& disk, int size, const std::function<double(Vec3d)>& value);
 
 }  // namespace crescent::web

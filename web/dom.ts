@@ -21,6 +21,9 @@ export function made(markup: string): DocumentFragment {
   return holder.content;
 }
 
+/** Numbers in words with their minus sign; commands, which are typed, keep the hyphen. */
+export const minus = (words: string): string => words.replace(/(^|[\s(=,[±])-(?=\.?\d)/g, "$1−");
+
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }

@@ -95,6 +95,7 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     Bench& b = bench();
     Film& film = slot(index).film;
     const TileBox box = box_of(x0, y0, x1, y1);
+    count_work(pixels_of(box) * put_cost);
     const std::byte* from = scratch<std::byte>().data();
     put_planes(film, box, from);
     const std::byte* rest = from + pixels_of(box) * 4 * film.planes().size();
@@ -114,7 +115,9 @@ CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
     Bench& b = bench();
     if (b.reference.size() == 0)
         b.reference = ReferenceFilm(b.experiment.image.width, b.experiment.image.height, b.scene.s());
-    put_planes(b.reference, box_of(x0, y0, x1, y1), scratch<std::byte>().data());
+    const TileBox box = box_of(x0, y0, x1, y1);
+    count_work(pixels_of(box) * put_cost);
+    put_planes(b.reference, box, scratch<std::byte>().data());
 }
 
 /// The hash of film `index`, of the reference for -1.

@@ -1,7 +1,7 @@
 // Furnaces to play with: other exponents, other numbers of samples, read anew.
 import { Asker } from "./answers";
 import { choice } from "./controls";
-import { el } from "./dom";
+import { el, minus } from "./dom";
 import { Lesson } from "./lessons";
 
 /** An s and an N to choose, and what each furnace reads with them. */
@@ -14,7 +14,7 @@ export function furnacePanel(asker: Asker, lesson: Lesson): HTMLElement {
     out.replaceChildren(el("p", {}, "Being read …"));
     try {
       const found = await asker.furnaces(lesson, s, n);
-      if (mine === asked) out.replaceChildren(el("p", {}, `s = ${s}, N = ${n}: `, el("b", {}, words(found.answer))), el("ul", {}, ...found.lines.map((line) => el("li", {}, line))));
+      if (mine === asked) out.replaceChildren(el("p", {}, `s = ${s}, N = ${n}: `, el("b", {}, words(found.answer))), el("ul", {}, ...found.lines.map((line) => el("li", {}, minus(line)))));
     } catch (error) {
       out.replaceChildren(el("p", { class: "bad" }, `They could not be read: ${error instanceof Error ? error.message : error}.`));
     }

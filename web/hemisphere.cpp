@@ -42,6 +42,58 @@ std::string mean_chart(const std::vector<double>& mean, std::optional<double> re
     return chart.str();
 }
 
+constexpr std::uint64_t draw_cost = 400;  // of a draw that is told one by one, in samples of a pixel
+
+/// What is told of an open pixel, part by part.
+struct Told {
+    std::shared_ptr<const OpenPixel> open;
+    Disk view;
+    std::string css;
+    std::vector<PixelSample> all;
+    ordered_json out = {};
+    const PixelSample* largest = nullptr;
+    std::uint64_t under = 0;
+
+    void draw(const std::string& sampler, std::uint64_t n) {
+        count_work(n * directions_per_sample(sampler));
+        all = open->samples(sampler, n, bench().experiment.seed);
+        const auto most = std::ranges::max_element(all, {}, &PixelSample::x);
+        if (most != all.end() && most->x > 0) largest = &*most;
+        const auto shape = static_cast<std::size_t>(open->shape());
+        out = {{"shape", bench().experiment.shapes.at(shape).name}, {"mirror", view.place(open->mirror())},
+            {"draws", ordered_json::array()}};
+    }
+    void tell_draws(std::size_t from, std::size_t to) {
+        count_work((to - from) * draw_cost);
+        for (const PixelSample& s : std::span(all).subspan(from, to - from)) {
+            if (s.wi.z <= 0) ++under;
+            ordered_json at = view.place({s.wi.x, s.wi.y, s.wi.z});
+            at.push_back(
+                largest && s.x > 0 ? std::sqrt(double(s.x) / double(largest->x)) : 0);  // its area is its weight
+            at.push_back(s.wi.z > 0 ? s.disk : -2);
+            out["draws"].push_back(std::move(at));
+        }
+    }
+    void tell_mean(const std::optional<double>& reference) {
+        const std::vector<double> mean = running_mean(all);
+        out["mean"] = mean.empty() ? "0" : figures(mean.back());
+        if (reference) out["reference"] = figures(*reference);
+        out["chart"] = mean_chart(mean, reference, css);
+    }
+    void tell() {
+        out["under"] = under;
+        out["lights"] = ordered_json::array();
+        for (const PixelDisk& disk : open->disks()) {
+            ordered_json rim = ordered_json::array();
+            for (const Vec3d& w : disk.rim)
+                if (w.z > 0) rim.push_back(view.place(w));
+            out["lights"].push_back({{"name", disk.name}, {"rim", rim}, {"angle", disk.angular_radius}});
+        }
+        if (largest) out["largest"] = largest_in_parts(*largest, *open);
+        say(out);
+    }
+};
+
 }  // namespace
 
 /// {i, j, arm, n, css, reference: whether it is computed} -> draws, lights, the running mean and the largest sample; {}
@@ -49,56 +101,36 @@ std::string mean_chart(const std::vector<double>& mean, std::optional<double> re
 CRESCENT_EXPORT(pixel)()->void {
     const ordered_json asked = request();
     const int i = asked.at("i").get<int>(), j = asked.at("j").get<int>();
-    const auto open = open_pixel(i, j);
+    const std::shared_ptr<const OpenPixel> open = open_pixel(i, j);
     if (!open) return say(ordered_json::object());
-    const Bench& b = bench();
-    const Disk view(open->mirror());
+    const auto of = std::make_shared<Told>(Told{open, Disk(open->mirror()), asked.at("css").get<std::string>(), {}});
     const auto n = asked.at("n").get<std::uint64_t>();
     const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
-    const std::vector<PixelSample> all = open->samples(sampler, n, b.experiment.seed);
-    ordered_json out = {{"shape", b.experiment.shapes.at(static_cast<std::size_t>(open->shape())).name}};
-    out["mirror"] = view.place(open->mirror());
-    out["draws"] = ordered_json::array();
-    const auto by_x = [](const PixelSample& s) { return s.x; };
-    const auto most = std::ranges::max_element(all, {}, by_x);
-    const PixelSample* largest = most != all.end() && most->x > 0 ? &*most : nullptr;
-    std::uint64_t under = 0;
-    for (const PixelSample& s : all) {
-        if (s.wi.z <= 0) ++under;
-        ordered_json at = view.place({s.wi.x, s.wi.y, s.wi.z});
-        at.push_back(largest && s.x > 0 ? std::sqrt(double(s.x) / double(largest->x)) : 0);  // its side: area is weight
-        at.push_back(s.wi.z > 0 ? s.disk : -2);
-        out["draws"].push_back(at);
-    }
-    out["under"] = under;
-    out["lights"] = ordered_json::array();
-    for (const PixelDisk& disk : open->disks()) {
-        ordered_json rim = ordered_json::array();
-        for (const Vec3d& w : disk.rim)
-            if (w.z > 0) rim.push_back(view.place(w));
-        out["lights"].push_back({{"name", disk.name}, {"rim", rim}, {"angle", disk.angular_radius}});
-    }
-    std::optional<double> reference;
-    if (asked.at("reference").get<bool>())
-        reference = b.reference.y.at(static_cast<std::size_t>(j) * b.width() + static_cast<std::size_t>(i));
-    const std::vector<double> mean = running_mean(all);
-    out["mean"] = mean.empty() ? "0" : figures(mean.back());
-    if (reference) out["reference"] = figures(*reference);
-    out["chart"] = mean_chart(mean, reference, asked.at("css").get<std::string>());
-    if (largest) out["largest"] = largest_in_parts(*largest, *open);
-    say(out);
+    const bool known = asked.at("reference").get<bool>();
+    Parts parts{[=] { of->draw(sampler, n); }};
+    const std::size_t draws = n * directions_per_sample(sampler), block = most_of_part / draw_cost;
+    for (std::size_t from = 0; from < draws; from += block)
+        parts.emplace_back([=] { of->tell_draws(from, std::min(draws, from + block)); });
+    parts.emplace_back([=] {
+        const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
+        of->tell_mean(known ? std::optional<double>(bench().reference.y.at(at)) : std::nullopt);
+    });
+    parts.emplace_back([=] { of->tell(); });
+    begin(std::move(parts));
 }
 
-/// A square picture of a hemisphere, `size` pixels across: what = 0: f L cos, 1: the arm's density (of an arm of two
-/// techniques, of the first), each through turbo on a logarithmic scale of four decades below its largest value.
-CRESCENT_EXPORT(hemisphere)(int i, int j, int arm, int what, int size)->const void* {
-    const auto open = open_pixel(i, j);
-    if (!open) return Disk({0, 0, 1}).paint(size, [](Vec3d) { return 0; });
-    const Disk view(open->mirror());
-    const std::string& sampler = bench().experiment.arms.at(static_cast<std::size_t>(arm)).sampler;
-    return view.paint(size, [&](Vec3d wi) {
-        return what == 1 ? open->pdf(sampler, wi) : open->f(wi, open->disk_met(wi)) * open->light(wi) * wi.z;
-    });
+/// {i, j, arm, what, size} -> the picture of a hemisphere for disk(), `size` pixels across: f L cos, or where `what` is
+/// "pdf" the arm's density (of an arm of two techniques, of the first).
+CRESCENT_EXPORT(hemisphere)()->void {
+    const ordered_json asked = request();
+    const std::shared_ptr<const OpenPixel> open = open_pixel(asked.at("i").get<int>(), asked.at("j").get<int>());
+    const int size = asked.at("size").get<int>();
+    if (!open) return begin(painted(Disk({0, 0, 1}), size, [](Vec3d) { return 0; }));
+    const std::string sampler = arm_of(asked.at("arm").get<std::string>()).sampler;
+    const bool pdf = asked.at("what").get<std::string>() == "pdf";
+    begin(painted(Disk(open->mirror()), size, [=](Vec3d wi) {
+        return pdf ? open->pdf(sampler, wi) : open->f(wi, open->disk_met(wi)) * open->light(wi) * wi.z;
+    }));
 }
 
 }  // namespace crescent::web

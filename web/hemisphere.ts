@@ -13,12 +13,7 @@ interface Opened {
 const size = 288;
 const ground = "#141517", light = "#ffffff", point = "#ffffff";
 
-function disk(model: Model, i: number, j: number, arm: number, what: number): HTMLCanvasElement {
-  const canvas = el("canvas", { width: size, height: size, class: "disk", role: "img" });
-  const bytes = model.door.bytes("hemisphere", 4 * size * size, i, j, arm, what, size);
-  canvas.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(bytes), size, size), 0, 0);
-  return canvas;
-}
+const disk = (label: string): HTMLCanvasElement => el("canvas", { width: size, height: size, class: "disk", role: "img", "aria-label": label });
 
 const onDisk = (x: number, y: number): [number, number] => [(size * (1 + x)) / 2, (size * (1 - y)) / 2];
 
@@ -68,20 +63,16 @@ function largestTable(parts: Record<string, string>): HTMLElement {
     el("tr", {}, el("th", { scope: "row" }, name), el("td", { class: "n" }, value)))));
 }
 
-/** Fills `root` with pixel (i, j) under an arm. Throws DoorError. */
-export function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number): void {
-  const pixel = model.door.ask<Opened>("pixel", { i, j, arm: name, n, css: `c${arm % 6}`, reference: model.referenceDone });
+/** Fills `root` with pixel (i, j) under an arm, where that is still wanted; show(): once its words are there. Throws DoorError. */
+export async function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number, wanted: () => boolean, show: () => void): Promise<void> {
+  const pixel = await model.parts<Opened>(wanted, "pixel", { i, j, arm: name, n, css: `c${arm % 6}`, reference: model.referenceDone });
+  if (!pixel) return;
   if (!pixel.shape) {
     root.replaceChildren(el("p", {}, `Pixel (${i}, ${j}) sees nothing: there is no hemisphere over it.`));
-    return;
+    return show();
   }
-  const integrand = disk(model, i, j, arm, 0), density = disk(model, i, j, arm, 1);
-  integrand.setAttribute("aria-label", `f L cos over the hemisphere of pixel ${i}, ${j}, with the light's edge`);
-  density.setAttribute("aria-label", `the density of ${name} over the same hemisphere with its ${pixel.draws.length} draws`);
-  marks(integrand.getContext("2d")!, pixel);
-  const pen = density.getContext("2d")!;
-  points(pen, pixel);
-  marks(pen, pixel);
+  const integrand = disk(`f L cos over the hemisphere of pixel ${i}, ${j}, with the light's edge`);
+  const density = disk(`the density of ${name} over the same hemisphere with its ${pixel.draws.length} draws`);
   const under = pixel.under > 0 ? ` ${pixel.under} of them fell under the horizon and weigh 0.` : "";
   root.replaceChildren(
     el("p", {}, el("b", {}, `Pixel (${i}, ${j}), ${pixel.shape}. `), `After ${n} samples ${name} reads `, el("b", { class: "v" }, pixel.mean),
@@ -91,6 +82,15 @@ export function showPixel(root: HTMLElement, model: Model, i: number, j: number,
       el("figure", {}, density, el("figcaption", {}, el("b", {}, `p of ${name}`), " with its draws, made of the same random numbers for every arm: area is weight, squares met a light")),
       el("figure", {}, made(pixel.chart), el("figcaption", {}, pixel.reference === undefined ? "The mean so far." : "The mean so far, and the reference.")),
       pixel.largest ? el("figure", {}, largestTable(pixel.largest), el("figcaption", {}, "The largest sample: X = f L cos θ / p.")) : undefined));
+  show();
+  for (const [canvas, what] of [[integrand, "f L cos"], [density, "pdf"]] as const) {
+    const painted = await model.disk(wanted, "hemisphere", { i, j, arm: name, what }, size);
+    if (!painted) return;
+    const pen = canvas.getContext("2d")!;
+    pen.putImageData(painted, 0, 0);
+    if (canvas === density) points(pen, pixel);
+    marks(pen, pixel);
+  }
 }
 
 export function pixelFailed(root: HTMLElement, error: unknown): void {

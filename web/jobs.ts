@@ -42,7 +42,9 @@ export class Answering {
   private door: Door;
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the door
-  most = 0; // the work of the largest part so far, in samples
+  private opened: Job | undefined; // what was opened for it, and is to be done next
+  worked = 0; // the work of the last part, in samples, and of the largest so far
+  most = 0;
 
   constructor(private readonly module: WebAssembly.Module) {
     this.door = new Door(module);
@@ -57,31 +59,41 @@ export class Answering {
     return answer;
   }
 
+  /** What jobs are about that name no opening. */
+  about(opening: Opening): void { this.last = opening; }
+
   /** The first part of a job; undefined where more are left. What was not finished before is dropped. */
   begin(job: Job): Answer | undefined {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
     if (this.door.waits) this.renew();
+    this.opened = undefined;
     return this.part(() => {
-      if (about && about !== this.here && JSON.stringify(about) !== JSON.stringify(this.here)) {
-        this.here = undefined;
-        this.door.ask("open", about);
-        this.here = about;
-      }
-      return job.kind === "open" ? {} : perform(this.door, job);
+      if (!about || about === this.here || JSON.stringify(about) === JSON.stringify(this.here)) return this.done(job);
+      this.here = undefined;
+      this.door.ask("open", about);
+      this.here = about;
+      this.opened = job;
+      return undefined;
     });
   }
 
   /** The next part of the job that was begun. */
   goOn(): Answer | undefined {
-    return this.part(() => ({ said: this.door.ask("go_on") }));
+    const job = this.opened;
+    this.opened = undefined;
+    return this.part(() => (job ? this.done(job) : { said: this.door.ask("go_on") }));
   }
 
-  private part(work: () => Answer): Answer | undefined {
+  private done(job: Job): Answer { return job.kind === "open" ? {} : perform(this.door, job); }
+
+  private part(work: () => Answer | undefined): Answer | undefined {
+    this.worked = 0;
     try {
       const answer = work();
-      this.most = Math.max(this.most, this.door.number("worked"));
-      return goesOn(answer) ? undefined : answer;
+      this.worked = this.door.number("worked");
+      this.most = Math.max(this.most, this.worked);
+      return answer && !goesOn(answer) ? answer : undefined;
     } catch (error) {
       this.renew();
       throw error;

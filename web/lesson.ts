@@ -3,7 +3,7 @@
 import { Asker, Found } from "./answers";
 import { boxQuestion } from "./box";
 import { checkPanel, samplerPictures } from "./check";
-import { el, made } from "./dom";
+import { el, made, minus } from "./dom";
 import { furnacePanel } from "./furnace";
 import { Lesson, lessons } from "./lessons";
 import { Model } from "./model";
@@ -73,7 +73,7 @@ function revealed(model: Model, lesson: Lesson, answer: string, found: Found, co
   const again = commands.length > 0 ? [el("p", { class: "again" }, "The same numbers from the program: ", ...commands.flatMap((words, k) => [k > 0 ? ", " : "", el("code", {}, words)]))] : [];
   return el("div", { class: "reveal", id: "reveal", tabindex: -1 },
     el("p", {}, "You said ", el("b", {}, worded(lesson, answer)), "; measured here: ", el("b", {}, worded(lesson, found.answer)), "."),
-    el("ul", {}, ...found.lines.map((line) => el("li", {}, line))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? unsaid)), ...again);
+    el("ul", {}, ...found.lines.map((line) => el("li", {}, minus(line)))), el("p", { "data-kind": found.kind }, set(model, lesson.says[found.kind] ?? unsaid)), ...again);
 }
 
 export function showLesson(to: Lessons, lesson: Lesson, given: string | undefined): void {
@@ -117,7 +117,7 @@ export function showSheet(root: HTMLElement, model: Model, asker: Asker): void {
     for (const { lesson, place, say } of articles) {
       try {
         const found = await asker.find(lesson);
-        place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}${lesson.ask.kind === "region" ? ` in ${lesson.answer.by === "largest" ? lesson.answer.of[0]!.region : ""}` : ""}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, line))));
+        place.replaceChildren(el("p", {}, el("b", {}, "Expected. "), `${worded(lesson, found.answer)}${lesson.ask.kind === "region" ? ` in ${lesson.answer.by === "largest" ? lesson.answer.of[0]!.region : ""}` : ""}.`), el("ul", {}, ...found.lines.map((line) => el("li", {}, minus(line)))));
         say.replaceChildren(el("b", {}, "Say. "), set(model, lesson.says[found.kind] ?? unsaid));
       } catch (error) {
         place.textContent = `This could not be measured: ${error instanceof Error ? error.message : error}.`;

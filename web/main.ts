@@ -4,10 +4,17 @@ import { Data, Page } from "./page";
 
 declare const DecompressionStream: new (format: "gzip") => ReadableWritablePair<Uint8Array, Uint8Array>;
 
+/** What base64 stands for. */
+function bytesOf(base64: string): Uint8Array {
+  const plain = atob(base64), bytes = new Uint8Array(plain.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = plain.charCodeAt(k);
+  return bytes;
+}
+
 async function main(): Promise<void> {
   const words = (id: string): string => byId(id).textContent ?? "";
   try {
-    const packed = Uint8Array.from(atob(words("module")), (c) => c.charCodeAt(0));
+    const packed = bytesOf(words("module"));
     const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
     const module = await WebAssembly.compile(await new Response(unpacked).arrayBuffer());
     await new Page(JSON.parse(words("data")) as Data).start(module, words("worker"));

@@ -141,7 +141,7 @@ CRESCENT_EXPORT(measure)()->void {
     const auto m = std::make_shared<Measuring>(asked);
     Parts parts;
     for (const TileBox& part : parts_of(m->box, reference_cost)) parts.emplace_back([=] { m->add_reference(part); });
-    for (const TileBox& part : parts_of(m->box, m->n * directions_per_sample(m->sampler)))
+    for (const TileBox& part : parts_of(m->box, cost_of(m->sampler, m->n)))
         for (std::size_t k = 0; k < m->y.size(); ++k) parts.emplace_back([=] { m->add_film(part, k); });
     parts.emplace_back([=] { m->tell(); });
     begin(std::move(parts));
@@ -154,7 +154,7 @@ CRESCENT_EXPORT(firefly)()->void {
     const auto n = asked.at("n").get<std::uint64_t>();
     const auto most = std::make_shared<Largest>();
     Parts parts;
-    for (const TileBox& part : parts_of(tile_of(asked_box(asked)), n * directions_per_sample(sampler)))
+    for (const TileBox& part : parts_of(tile_of(asked_box(asked)), cost_of(sampler, n)))
         parts.emplace_back([=] { most->look(part, sampler, n); });
     parts.emplace_back([=] { most->tell(sampler, n); });
     begin(std::move(parts));

@@ -29,7 +29,7 @@ std::string class_of(const std::string& arm) {
 /// The largest samples of a box beside those of the boxes before it.
 void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
     const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
-    count_work(pixels_of(box) * plan.n * directions_per_sample(sampler));
+    count_work(pixels_of(box) * cost_of(sampler, tail_cost * plan.n));
     ProgressMonitor watch;
     std::uint64_t drawn = 0;
     const std::vector<float> here =
@@ -55,13 +55,8 @@ void say_tail(std::vector<float>& largest) {
         {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
 }
 
-}  // namespace
-
-/// Film `index` -> {key, meters: {"rmse.H": {value, text, published}, ...}, pixels, largest, bad, hash,
-/// reference_share}.
-CRESCENT_EXPORT(meters)(int index)->void {
+ordered_json meters_of(const Slot& s) {
     const Bench& b = bench();
-    const Slot& s = slot(index);
     const RunMeter run = measure(b.experiment, s.key, s.film, b.reference, b.shapes);
     ordered_json out = {{"key", to_string(s.key)}, {"largest", told(run.largest)}, {"bad", run.bad}};
     for (const auto& [name, info] : meter_names(b.experiment))
@@ -71,8 +66,23 @@ CRESCENT_EXPORT(meters)(int index)->void {
         const double rmse = run.region(region.name)->rmse;
         if (error > most_error_share * rmse) out["unsure"].push_back(region.name);
     }
-    out["hash"] = hash(s.film);
-    say(out);
+    return out;
+}
+
+}  // namespace
+
+/// Film `index` -> {key, meters: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
+CRESCENT_EXPORT(meters)(int index)->void {
+    const auto out = std::make_shared<ordered_json>();
+    begin({[=] {
+               *out = meters_of(slot(index));
+               count_work(bench().pixels() * meter_cost / 2);
+           },
+        [=] {
+            (*out)["hash"] = hash(slot(index).film);
+            count_work(bench().pixels() * meter_cost / 2);
+            say(*out);
+        }});
 }
 
 /// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: how heavy the tail of the arm's samples is in a box.
@@ -84,7 +94,7 @@ CRESCENT_EXPORT(tail)()->void {
     const auto largest = std::make_shared<std::vector<float>>();
     Parts parts;
     if (plan.kept > 0)
-        for (const TileBox& part : parts_of(tile_of(box), plan.n * directions_per_sample(sampler)))
+        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
             parts.emplace_back([=] { keep_largest(part, sampler, plan, *largest); });
     parts.emplace_back([=] { say_tail(*largest); });
     begin(std::move(parts));

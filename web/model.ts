@@ -3,6 +3,7 @@
 import { Box, Door, DoorError, pixelsOf } from "./door";
 import { Opening } from "./jobs";
 import { Pool } from "./pool";
+import { Turns } from "./turns";
 
 export interface Arm {
   name: string; sampler: string; n: number[]; techniques: number; summary: string; formula: string; misses: string;
@@ -48,22 +49,42 @@ export class Model {
   startedAt = 0;
   took = 0; // ms to the last meter, and to the last film
   filmsTook = 0;
-  private readonly most: number; // samples of one part, and what a pixel of the reference counts among them
+  private readonly most: number; // samples of one part, and what a pixel counts: of the reference; of a film, its samples apart
   private readonly referenceCost: number;
+  private readonly filmCost: number;
   private era = 0;
+  private asking: Promise<unknown> = Promise.resolve(); // what is asked in parts, one after another
   private tiles: { key: string; parts: { box: Box; bytes: ArrayBuffer }[] } = { key: "", parts: [] };
 
-  constructor(private readonly module: WebAssembly.Module, readonly pool: Pool, private readonly viewer: Viewer) {
-    this.door = new Door(module);
+  /** `door`: an instance of the module for the page's own thread. */
+  constructor(private readonly module: WebAssembly.Module, door: Door, readonly pool: Pool, readonly turns: Turns, private readonly viewer: Viewer) {
+    this.door = door;
     this.most = this.door.number("most_of_part");
     this.referenceCost = this.door.number("reference_cost");
+    this.filmCost = this.door.number("film_cost");
   }
 
   private boxes(cost: number, [width, height]: readonly [number, number] = [this.described.width, this.described.height]): Box[] {
     return this.pool.tiles(width, height, cost, this.most);
   }
   private cost(shown: Shown[], n: number): number {
-    return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques, 0);
+    return shown.reduce((sum, { arm }) => sum + n * this.described.arms[arm]!.techniques + this.filmCost, 0);
+  }
+
+  /** A call in parts, each in a turn that has room: one question after another. `take`: what is done with the answer before
+      the next. Undefined where it is no longer wanted. */
+  parts<T, R = T>(wanted: () => boolean, call: string, request?: unknown, given: number[] = [], take = (answer: T): R => answer as unknown as R): Promise<R | undefined> {
+    const done = this.asking.then(async () => {
+      for (let next = call; ; next = "go_on") {
+        await this.turns.pass();
+        if (!wanted()) return undefined;
+        const said = next === call ? this.door.ask<T | { more: number }>(call, request, ...given) : this.door.ask<T | { more: number }>(next);
+        this.turns.count(this.door.number("worked"));
+        if (!(said as object).hasOwnProperty("more")) return take(said as T);
+      }
+    });
+    this.asking = done.catch(() => {}); // whoever asked is told
+    return done;
   }
 
   /** Opens, and begins to compute up to n samples a pixel of these arms; throws DoorError for settings that are wrong. */
@@ -78,7 +99,11 @@ export class Model {
         const arm = this.described.arms.findIndex((a) => a.name === name);
         return { arm, name, n: 0, rungs: [], tails: {} };
       });
-      this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, rungs[0]!));
+      for (const [index, s] of this.shown.entries()) {
+        await this.turns.pass(); // a first film takes its memory
+        if (era !== this.era) return;
+        this.door.number("begin", index, s.arm, rungs[0]!);
+      }
     } catch (error) {
       this.door = new Door(this.module); // a call that failed leaves its instance as it was in the midst of it
       throw error;
@@ -107,6 +132,7 @@ export class Model {
     await this.reference(era);
     for (const n of early.slice(0, -1)) await this.again(era, n);
     for (const n of late) await this.rung(era, n);
+    if (era !== this.era) return;
     if (late.length > 0) this.filmsTook = performance.now() - this.startedAt;
     this.finished = true;
     this.took = performance.now() - this.startedAt;
@@ -115,6 +141,7 @@ export class Model {
   }
 
   private async rung(era: number, n: number): Promise<void> {
+    if (era !== this.era) return;
     this.shown.forEach((s, index) => this.door.number("begin", index, s.arm, n));
     const boxes = this.boxes(this.cost(this.shown, n));
     let left = boxes.length;
@@ -123,7 +150,7 @@ export class Model {
       this.shown.forEach((_, index) => this.viewer.painted(index, box));
       if (--left > 0) return;
       for (const s of this.shown) s.n = n;
-      if (this.referenceDone) this.measure();
+      if (this.referenceDone) await this.measure(era);
     }));
   }
 
@@ -131,10 +158,13 @@ export class Model {
   private async again(era: number, n: number): Promise<void> {
     const spare = this.shown.length;
     for (const s of this.shown) {
+      await this.turns.pass();
+      if (era !== this.era) return;
       this.door.number("begin", spare, s.arm, n);
       await Promise.all(this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
-      if (era !== this.era) return;
-      s.rungs.push({ n, meters: this.door.ask<Meters>("meters", undefined, spare) });
+      const meters = await this.metersOf(era, spare);
+      if (!meters) return;
+      s.rungs.push({ n, meters });
       s.rungs.sort((a, b) => a.n - b.n);
     }
   }
@@ -147,13 +177,29 @@ export class Model {
       this.door.give(bytes[k]!);
       this.door.number("put", film, box.x0, box.y0, box.x1, box.y1);
     });
+    this.turns.count(this.door.number("worked"));
     return true;
   }
 
+  private metersOf(era: number, film: number): Promise<Meters | undefined> { return this.parts<Meters>(() => era === this.era, "meters", undefined, [film]); }
+
   /** The meters of every arm at the rung that is complete. */
-  private measure(): void {
-    this.shown.forEach((s, index) => s.rungs.push({ n: s.n, meters: this.door.ask<Meters>("meters", undefined, index) }));
+  private async measure(era: number): Promise<void> {
+    const all = await Promise.all(this.shown.map((_, index) => this.metersOf(era, index)));
+    if (era !== this.era) return;
+    this.shown.forEach((s, index) => s.rungs.push({ n: s.n, meters: all[index]! }));
     this.viewer.measured();
+  }
+
+  /** Where the scale of maps ends. */
+  async top(): Promise<number> {
+    const { era } = this;
+    return (await this.parts<{ top: number }>(() => era === this.era, "scale", undefined, [this.shown.length]))?.top ?? 1;
+  }
+
+  /** A disk that `call` paints, RGBA, `size` pixels across. */
+  disk(wanted: () => boolean, call: string, request: Record<string, unknown>, size: number): Promise<ImageData | undefined> {
+    return this.parts(wanted, call, { ...request, size }, [], () => new ImageData(new Uint8ClampedArray(this.door.bytes("disk", 4 * size * size)), size, size));
   }
 
   /** The reference is kept where only seeds, arms, regions or k have changed; whether all of it is there. */
@@ -170,9 +216,14 @@ export class Model {
     const put = (box: Box, bytes: ArrayBuffer): void => {
       this.door.give(bytes);
       this.door.number("put_reference", box.x0, box.y0, box.x1, box.y1);
+      this.turns.count(this.door.number("worked"));
       this.viewer.painted(-1, box);
     };
-    for (const { box, bytes } of parts) put(box, bytes);
+    for (const { box, bytes } of parts) {
+      await this.turns.pass();
+      if (era !== this.era) return;
+      put(box, bytes);
+    }
     const have = new Set(parts.map(({ box }) => `${box.x0} ${box.y0}`));
     const missing = this.referenceBoxes().filter((box) => !have.has(`${box.x0} ${box.y0}`));
     await Promise.all(missing.map(async (box) => {
@@ -183,7 +234,7 @@ export class Model {
     }));
     if (era !== this.era) return;
     this.referenceDone = true;
-    if (this.shown[0]!.n > 0) this.measure();
+    if (this.shown[0]!.n > 0) await this.measure(era);
   }
 
   /** Once the hand rests, and one after another: each takes a worker for a while, and a new setting is to find one free. */
@@ -215,6 +266,7 @@ export class Model {
   pixels(picture: number, index: number, other: number, top: number, box: Box): ImageData {
     const size = 4 * pixelsOf(box), { x0, y0, x1, y1 } = box;
     const bytes = this.door.bytes("paint", size, picture, index, other, top, x0, y0, x1, y1);
+    this.turns.count(this.door.number("worked"));
     return new ImageData(new Uint8ClampedArray(bytes), x1 - x0, y1 - y0);
   }
 }

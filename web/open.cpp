@@ -105,8 +105,12 @@ CRESCENT_EXPORT(open)()->void {
             throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
     const std::string published = asked.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);
-    opened.reset();  // two images of the largest size would not fit beside each other
+    std::vector<Slot> films;  // room that was taken serves again; two images of the largest size would not fit
+    if (opened && e.image.width == opened->experiment.image.width && e.image.height == opened->experiment.image.height)
+        films = std::move(opened->slots);
+    opened.reset();
     opened = std::make_unique<Bench>(std::move(e));
+    opened->slots = std::move(films);
     say(described(opened->experiment));
 }
 

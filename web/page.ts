@@ -2,7 +2,7 @@
 import { showChoices } from "./choices";
 import { choice, controlRows } from "./controls";
 import { Asker } from "./answers";
-import { Box, DoorError } from "./door";
+import { Box, Door, DoorError } from "./door";
 import { byId, copied, el, made, Speaker } from "./dom";
 import { pixelFailed, showPixel } from "./hemisphere";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
@@ -10,6 +10,7 @@ import { Lesson, lessons, onBench } from "./lessons";
 import { Described, Model, Shown, Viewer } from "./model";
 import { byArrow, drawnRegion, Picture } from "./pictures";
 import { Pool } from "./pool";
+import { Turns } from "./turns";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
@@ -25,6 +26,8 @@ export class Page implements Viewer {
   private top = 1;
   private timer = 0;
   private openedAt = 0;
+  private painting = 0; // counts pictures that are painted anew, and pixels that are opened: the last one goes on
+  private opening = 0;
   private movedAt = 0; // when a hand changed what is not yet open
   private awaited = 0; // and what is not yet painted
   private said: string[] = []; // of the address, until something is opened
@@ -37,8 +40,9 @@ export class Page implements Viewer {
 
   async start(module: WebAssembly.Module, worker: string): Promise<void> {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
-    const pool = await Pool.start(module, worker, count);
-    this.model = new Model(module, pool, this);
+    const door = new Door(module), turns = new Turns(door.number("most_of_part"));
+    const pool = await Pool.start(module, worker, count, turns);
+    this.model = new Model(module, door, pool, turns, this);
     document.documentElement.dataset["workers"] = String(pool.workers);
     this.samplers = this.model.door.ask<Sampler[]>("samplers");
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
@@ -164,9 +168,8 @@ export class Page implements Viewer {
   tailed(): void { this.model.shown.forEach((_, index) => this.meters(index)); }
 
   measured(): void {
-    const { shown } = this.model;
+    const { shown } = this.model, painted = this.model.referenceDone && this.state.view !== "photograph" ? this.repaint() : undefined;
     this.tailed();
-    if (this.model.referenceDone && this.state.view !== "photograph") this.repaint();
     const region = this.model.described.regions[0]?.name;
     const lines = shown.filter((s) => s.rungs.length > 0).map((s) => {
       const last = s.rungs.at(-1)!;
@@ -174,14 +177,22 @@ export class Page implements Viewer {
     });
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
-    document.documentElement.dataset["films"] = String(Math.round(this.model.filmsTook));
-    document.documentElement.dataset["memory"] = `${this.model.door.size} ${this.model.pool.size}`; // of the page's instance, of the workers
-    document.documentElement.dataset["took"] = String(Math.round(this.model.took));
-    this.charts();
-    if (this.state.pixel) this.openPixel();
+    void this.finished(Promise.all([painted, this.charts(), this.state.pixel && this.openPixel()]));
   }
 
-  private charts(): void {
+  /** Tells the tests, once all of it is shown. */
+  private async finished(shown: Promise<unknown>): Promise<void> {
+    const { described, took } = this.model, told = document.documentElement.dataset;
+    told["films"] = String(Math.round(this.model.filmsTook));
+    await shown;
+    if (described !== this.model.described || this.idle) return;
+    told["memory"] = `${this.model.door.size} ${this.model.pool.size}`; // of the page's instance, of the workers
+    told["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
+    told["took"] = String(Math.round(took));
+  }
+
+  private async charts(): Promise<void> {
+    await this.model.turns.pass();
     const charts = this.model.described.regions.map(({ name }) => {
       const series = this.model.shown.map((s) => ({ arm: s.name, points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)) }));
       return el("figure", { class: "narrow" }, made(this.model.door.say("ladder_chart", { region: name, series })));
@@ -189,36 +200,44 @@ export class Page implements Viewer {
     byId("charts").replaceChildren(...charts);
   }
 
-  private repaint(): void {
-    const { width, height } = this.model.described;
-    this.top = this.model.referenceDone ? this.model.door.number("scale", this.model.shown.length) : 1;
-    for (const picture of this.pictures) picture.paint(this.model, this.state, this.top, { x0: 0, y0: 0, x1: width, y1: height });
-    this.pictures.at(-1)?.legend(this.model, this.state, this.top);
+  /** All pictures, unless others are wanted meanwhile. */
+  private async repaint(): Promise<void> {
+    const { pictures, model } = this, mine = ++this.painting;
+    const stands = (): boolean => mine === this.painting && pictures === this.pictures;
+    const top = model.referenceDone ? await model.top() : 1;
+    if (!stands()) return;
+    this.top = top;
+    pictures.at(-1)?.legend(model, this.state, top);
+    for (const picture of pictures) await picture.repaint(model, this.state, top, stands);
   }
 
   private choose(pixel: [number, number]): void {
     this.state.pixel = pixel;
     history.replaceState(null, "", write(this.state));
     for (const picture of this.pictures) picture.outlines(pixel);
-    this.openPixel();
+    void this.openPixel();
   }
 
-  private openPixel(): void {
-    const { pixel } = this.state, { described: d } = this.model;
+  private async openPixel(): Promise<void> {
+    const { pixel } = this.state, { described: d } = this.model, mine = ++this.opening;
     if (!pixel) return;
     const [i, j] = [Math.min(pixel[0], d.width - 1), Math.min(pixel[1], d.height - 1)];
-    const inside = el("div");
-    try {
-      const s = this.model.shown[this.state.arm] ?? this.model.shown[0]!;
-      showPixel(inside, this.model, i, j, s.arm, s.name, this.state.n);
-    } catch (error) { pixelFailed(inside, error); }
-    const arms = this.state.arms.map((arm, k): [string, string] => [String(k), arm]);
-    byId("pixel").replaceChildren(choice("whose", "draws of", arms, String(this.state.arm), (value) => {
+    const inside = el("div"), arms = this.state.arms.map((arm, k): [string, string] => [String(k), arm]);
+    const whose = choice("whose", "draws of", arms, String(this.state.arm), (value) => {
       this.state.arm = Number(value);
       history.replaceState(null, "", write(this.state));
-      this.openPixel();
-      byId("whose").focus();
-    }), inside);
+      void this.openPixel();
+    });
+    const s = this.model.shown[this.state.arm] ?? this.model.shown[0]!;
+    const show = (): void => { // what stood there stands until this one has its words
+      if (inside.isConnected) return;
+      const held = document.activeElement?.id === "whose";
+      byId("pixel").replaceChildren(whose, inside);
+      if (held) byId("whose").focus();
+    };
+    try {
+      await showPixel(inside, this.model, i, j, s.arm, s.name, this.state.n, () => mine === this.opening && d === this.model.described, show);
+    } catch (error) { pixelFailed(inside, error); show(); }
   }
 
   /** A sentence with what to do; `all`: there is nothing to show of these settings but their command. */

@@ -72,9 +72,13 @@ void begin(Parts parts) {
     next_part();
 }
 
+std::uint64_t cost_of(const std::string& sampler, std::uint64_t n) {
+    return n * directions_per_sample(sampler) + film_cost;
+}
+
 Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed) {
     Film film(box.x1 - box.x0, box.y1 - box.y0, n);
-    count_work(pixels_of(box) * n * directions_per_sample(sampler));
+    count_work(pixels_of(box) * cost_of(sampler, n));
     for (ShadingPoints& sites : sites_seen(box)) {
         const Moments moments = estimate_sites(sites, sampler, n, seed, "", nullptr);
         const std::vector<std::uint32_t> of_image = sites.pixel;
@@ -97,8 +101,9 @@ void reference_over(const TileBox& box, ReferenceFilm& film) {
 CRESCENT_EXPORT(go_on)()->void { next_part(); }
 /// Samples that were drawn, or what cost as much, since the last call.
 CRESCENT_EXPORT(worked)()->double { return std::exchange(done, 0.0); }
-/// The most that one part may do, and what a pixel of a reference counts.
+/// The most that one part may do, and what a pixel counts of a reference, and of a film beside its samples.
 CRESCENT_EXPORT(most_of_part)()->double { return static_cast<double>(most_of_part); }
 CRESCENT_EXPORT(reference_cost)()->double { return static_cast<double>(reference_cost); }
+CRESCENT_EXPORT(film_cost)()->double { return static_cast<double>(film_cost); }
 
 }  // namespace crescent::web

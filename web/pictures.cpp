@@ -1,7 +1,9 @@
 // Films -> pixels for a canvas: photographs through the display chain, instruments through turbo or through two hues.
 // Rows run from the top, four bytes a pixel: R, G, B, 255.
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "disk.h"
 
@@ -46,26 +48,97 @@ void put(std::byte* to, const Srgb8& colour) {
     to[3] = std::byte{255};
 }
 
+std::vector<std::byte> disk_pixels;
+constexpr std::uint64_t direction_cost = 20;  // of a density or of f L, in samples of a pixel
+
+/// A disk and its values row by row from the top, -1 outside.
+struct Shade {
+    Disk disk;
+    std::size_t side;
+    std::function<double(Vec3d)> value;
+    std::vector<double> values;
+    double largest = 0;
+
+    void look(std::size_t from, std::size_t to) {
+        count_work((to - from) * side * direction_cost);
+        const auto size = static_cast<double>(side);
+        for (std::size_t k = from * side; k < to * side; ++k) {
+            const double x = (2 * double(k % side) + 1) / size - 1, y = 1 - (2 * double(k / side) + 1) / size;
+            if (const auto wi = disk.direction(x, y)) values[k] = value(*wi);
+            if (std::isfinite(values[k])) largest = std::max(largest, values[k]);
+        }
+    }
+    void colour(std::size_t from, std::size_t to) const {
+        count_work((to - from) * side * colour_cost);
+        if (from == 0) disk_pixels.assign(values.size() * 4, std::byte{0});
+        for (std::size_t k = from * side; k < to * side; ++k) {
+            if (values[k] < 0) continue;
+            const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
+            put(&disk_pixels[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
+        }
+        if (to == side) say(ordered_json::object());
+    }
+};
+
+/// The 98th percentile of |Y - Y_ref| over the geometry pixels of some films, in parts: values by the first 16 bits of
+/// a double, which order numbers that are not negative as their values do; then those of the place's bin.
+class Percentile {
+public:
+    void count(int film, std::size_t from, std::size_t to) {
+        each(film, from, to, [&](double v) { ++sizes_[bin_of(v)]; });
+    }
+    void keep(int film, std::size_t from, std::size_t to) {
+        if (!found_) find();
+        each(film, from, to, [&](double v) {
+            if (bin_of(v) == bin_) kept_.push_back(v);
+        });
+    }
+    double value() {
+        if (kept_.empty()) return 1;
+        const auto place = kept_.begin() + static_cast<std::ptrdiff_t>(place_);
+        std::nth_element(kept_.begin(), place, kept_.end());
+        return *place > 0 ? *place : 1;
+    }
+
+private:
+    static std::size_t bin_of(double v) { return std::bit_cast<std::uint64_t>(v) >> 48; }
+    template <class Take> void each(int film, std::size_t from, std::size_t to, const Take& take) const {
+        count_work((to - from) * scale_cost);
+        for (std::size_t at = from; at < to; ++at) {
+            if (bench().shapes.shape[at] < 0) continue;
+            if (const double v = residual(slot(film).film, at); std::isfinite(v)) take(v);
+        }
+    }
+    /// The bin in which the place lies, and the place within it.
+    void find() {
+        found_ = true;
+        const std::size_t all = std::accumulate(sizes_.begin(), sizes_.end(), std::size_t{0});
+        if (all == 0) return;
+        place_ = static_cast<std::size_t>(0.98 * static_cast<double>(all - 1));
+        while (place_ >= sizes_[bin_]) place_ -= sizes_[bin_++];
+    }
+    std::vector<std::size_t> sizes_ = std::vector<std::size_t>(1 << 16);
+    std::vector<double> kept_;
+    std::size_t bin_ = 0, place_ = 0;
+    bool found_ = false;
+};
+
 }  // namespace
 
-const void* Disk::paint(int size, const std::function<double(Vec3d)>& value) const {
+Parts painted(const Disk& disk, int size, const std::function<double(Vec3d)>& value) {
     const auto side = static_cast<std::size_t>(size);
-    std::vector<std::byte>& out = scratch<std::byte>();
-    out.assign(side * side * 4, std::byte{0});
-    std::vector<double> values(side * side, -1);
-    double largest = 0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        const double x = (2 * double(k % side) + 1) / size - 1, y = 1 - (2 * double(k / side) + 1) / size;
-        if (const auto wi = direction(x, y)) values[k] = value(*wi);
-        if (std::isfinite(values[k])) largest = std::max(largest, values[k]);
-    }
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        if (values[k] < 0) continue;
-        const double t = values[k] > 0 && largest > 0 ? 1 + math::log10(values[k] / largest) / 4 : 0;
-        put(&out[4 * k], turbo(std::clamp(t, 0.0, 1.0)));
-    }
-    return out.data();
+    const auto of = std::make_shared<Shade>(Shade{disk, side, value, std::vector<double>(side * side, -1)});
+    Parts parts;
+    const std::size_t rows = std::max<std::size_t>(1, most_of_part / direction_cost / side);
+    for (std::size_t from = 0; from < side; from += rows)
+        parts.emplace_back([=] { of->look(from, std::min(side, from + rows)); });
+    for (std::size_t from = 0; from < side; from += rows)
+        parts.emplace_back([=] { of->colour(from, std::min(side, from + rows)); });
+    return parts;
 }
+
+/// The disk that was painted last.
+CRESCENT_EXPORT(disk)()->const void* { return disk_pixels.data(); }
 
 /// The scale of maps as a row of `size` pixels: turbo, or for 2 the two hues with neither in the middle.
 CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
@@ -83,7 +156,8 @@ CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
 CRESCENT_EXPORT(paint)
 (int picture, int index, int other, double top, int x0, int y0, int x1, int y1)->const void* {
     std::vector<std::byte>& out = scratch<std::byte>();
-    out.resize(static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0) * 4);
+    out.resize(pixels_of({x0, y0, x1, y1}) * 4);
+    count_work(pixels_of({x0, y0, x1, y1}) * colour_cost);
     const bool needs_reference = picture != 0 || index < 0;
     if (needs_reference && bench().reference.size() == 0) {
         std::fill(out.begin(), out.end(), std::byte{0});
@@ -99,19 +173,18 @@ CRESCENT_EXPORT(paint)
     return out.data();
 }
 
-/// Where the scale of maps ends: the 98th percentile of |Y - Y_ref| over the geometry pixels of the first `count`
-/// films.
-CRESCENT_EXPORT(scale)(int count)->double {
-    std::vector<double> all;
-    const Bench& b = bench();
-    for (int k = 0; k < count; ++k)
-        for (std::size_t at = 0; at < b.pixels(); ++at)
-            if (b.shapes.shape[at] >= 0) all.push_back(residual(slot(k).film, at));
-    std::erase_if(all, [](double v) { return !std::isfinite(v); });
-    if (all.empty()) return 1;
-    const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(all.size() - 1));
-    std::nth_element(all.begin(), place, all.end());
-    return *place > 0 ? *place : 1;
+/// Where the scale of maps ends, {"top": ...}: the 98th percentile of |Y - Y_ref| over the geometry pixels of the first
+/// `count` films.
+CRESCENT_EXPORT(scale)(int count)->void {
+    const auto of = std::make_shared<Percentile>();
+    const std::size_t pixels = bench().pixels(), most = most_of_part / scale_cost;
+    Parts parts;
+    for (const auto step : {&Percentile::count, &Percentile::keep})
+        for (int film = 0; film < count; ++film)
+            for (std::size_t from = 0; from < pixels; from += most)
+                parts.emplace_back([=] { ((*of).*step)(film, from, std::min(pixels, from + most)); });
+    parts.emplace_back([=] { say(ordered_json{{"top", of->value()}}); });
+    begin(std::move(parts));
 }
 
 }  // namespace crescent::web

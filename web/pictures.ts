@@ -1,11 +1,12 @@
 // The pictures side by side, each with its meters, the hash of its film and the program's.
 import { Box } from "./door";
-import { el, made } from "./dom";
+import { el, made, minus } from "./dom";
 import { Arm, Described, Meter, Model, Shown } from "./model";
 import { byKey, Frame, Outlined, Picking } from "./frame";
 import { State } from "./state";
 
 const mine = "mine";
+const strip = 8; // rows that are painted at once
 
 /** One picture: index of its film, or -1 for the reference. */
 export class Picture {
@@ -58,6 +59,15 @@ export class Picture {
     this.canvas.getContext("2d")!.putImageData(pixels, box.x0, this.d.height - box.y1);
   }
 
+  /** All of it, strip by strip from the top, while that is wanted. */
+  async repaint(model: Model, state: State, top: number, wanted: () => boolean): Promise<void> {
+    for (let y1 = this.d.height; y1 > 0; y1 -= strip) {
+      await model.turns.pass();
+      if (!wanted()) return;
+      this.paint(model, state, top, { x0: 0, y0: Math.max(0, y1 - strip), x1: this.d.width, y1 });
+    }
+  }
+
   private beside(hash: string, program: string | undefined): (Node | string)[] {
     if (!program) return [];
     const verdict = hash === program ? ": the same bits" : el("b", { class: "bad" }, ": not the same bits");
@@ -72,9 +82,9 @@ export class Picture {
     const row = (name: string, meter: Meter | undefined = last ? undefined : waiting, note = ""): void => {
       if (!meter) return;
       const room = this.d.source !== "" && !note; // for what was published, where anything was
-      const published = meter.published || room ? el("small", {}, meter.published ? `published ${meter.published}` : "\u00a0") : undefined;
+      const published = meter.published || room ? el("small", {}, meter.published ? `published ${minus(meter.published)}` : "\u00a0") : undefined;
       rows.push(el("tr", {}, el("th", { scope: "row" }, name),
-        el("td", { class: "n" }, meter.text, published)));
+        el("td", { class: "n" }, minus(meter.text), published)));
       if (note) rows.push(el("tr", { class: "note" }, el("td", { colspan: 2 }, note)));
     };
     for (const { name } of this.d.regions) {

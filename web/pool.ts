@@ -2,13 +2,13 @@
 // all that was asked before it: what is under way is dropped when it comes.
 import { Box, DoorError } from "./door";
 import { Answer, Answering, failure, Job, Opening, Reply } from "./jobs";
+import { Turns } from "./turns";
 
 type Done = (answer: Answer) => void;
 type Failed = (error: DoorError) => void;
 interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
 
 const underWay = 2; // jobs that a worker holds, so that it never waits for the page
-const sliceMs = 10;
 const side = 64; // of a tile, in pixels
 
 class Hand {
@@ -43,12 +43,12 @@ class Lane {
   get busy(): boolean { return this.current !== undefined || this.queue.length > 0; }
   drop(): void { this.queue = []; this.current = undefined; }
 
-  /** One part of a job. */
-  part(): void {
+  /** One part of a job; the work that it was, in samples. */
+  part(): number {
     const fresh = this.current === undefined, waiting = (this.current ??= this.queue.shift()!);
     try {
       const answer = fresh ? this.answering.begin(waiting.job) : this.answering.goOn();
-      if (!answer) return;
+      if (!answer) return this.answering.worked;
       this.current = undefined;
       waiting.done(answer);
     } catch (error) {
@@ -56,6 +56,7 @@ class Lane {
       const { kind, text } = failure(error);
       waiting.failed(new DoorError(kind, text));
     }
+    return this.answering.worked;
   }
 }
 
@@ -64,13 +65,13 @@ export class Pool {
   private alone: { lasting: Lane; passing: Lane } | undefined; // what is opened meanwhile breaks no lasting question
   private queue: Waiting[] = [];
   private era = 0;
-  private timer = 0;
+  private slicing = false;
 
-  private constructor(private readonly module: WebAssembly.Module) {}
+  private constructor(private readonly module: WebAssembly.Module, private readonly turns: Turns) {}
 
   /** `source`: the worker's script. */
-  static async start(module: WebAssembly.Module, source: string, count: number): Promise<Pool> {
-    const pool = new Pool(module);
+  static async start(module: WebAssembly.Module, source: string, count: number, turns: Turns): Promise<Pool> {
+    const pool = new Pool(module, turns);
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     const starting = Array.from({ length: count }, () => pool.startOne(url));
     const started = await Promise.all(starting);
@@ -112,7 +113,7 @@ export class Pool {
   async open(opening: Opening): Promise<void> {
     this.cancel();
     const job: Job = { kind: "open", opening };
-    if (this.alone) { this.alone.passing.answering.answer(job); return; }
+    if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that asks it
     for (const hand of this.hands) hand.give({ job, lasting: true, done: () => {}, failed: () => {} });
   }
 
@@ -143,18 +144,23 @@ export class Pool {
 
   private pump(): void {
     if (this.alone) {
-      if (!this.timer) this.timer = window.setTimeout(() => this.slice(), 0);
+      void this.slices();
       return;
     }
     for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.queue.shift()!);
   }
   private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
 
-  private slice(): void {
-    this.timer = 0;
-    const until = performance.now() + sliceMs, { lasting, passing } = this.alone!;
-    while ((lasting.busy || passing.busy) && performance.now() < until) (lasting.busy ? lasting : passing).part();
-    document.documentElement.dataset["part"] = String(this.most);
-    if (lasting.busy || passing.busy) this.pump();
+  /** Parts of jobs, as many in each turn as it has room for. */
+  private async slices(): Promise<void> {
+    if (this.slicing) return;
+    this.slicing = true;
+    const { lasting, passing } = this.alone!, told = document.documentElement.dataset;
+    while (lasting.busy || passing.busy) {
+      await this.turns.pass();
+      if (lasting.busy || passing.busy) this.turns.count((lasting.busy ? lasting : passing).part());
+      told["part"] = String(this.most);
+    }
+    this.slicing = false;
   }
 }

@@ -98,3 +98,9 @@ def requests(driver):
 
 def text(driver, css):
     return driver.execute_script("return document.querySelector(arguments[0]).innerText", css)
+
+
+def shown(driver):
+    """Hashes of the films that stand under the pictures."""
+    return driver.execute_script(
+        "return [...document.querySelectorAll('[data-hash]')].map((e) => e.textContent).sort()")

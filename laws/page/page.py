@@ -21,6 +21,7 @@ from selenium.webdriver.common.keys import Keys
 import browser
 import reach
 import steady
+import turns
 
 group, page_path, bundle, native_path, *experiments = sys.argv[1:]
 page = pathlib.Path(page_path).resolve().as_uri()
@@ -110,11 +111,6 @@ def faults_are_sentences(driver):
     assert browser.text(driver, "#wrong") == "" and driver.find_elements(By.CSS_SELECTOR, "[data-hash]")
 
 
-def shown(driver):
-    return driver.execute_script(
-        "return [...document.querySelectorAll('[data-hash]')].map((e) => e.textContent).sort()")
-
-
 def number_of(run, name):
     """What metrics.json has of a number that the page shows."""
     if name in ("fireflies", "under the horizon", "mean Y"):
@@ -128,7 +124,7 @@ def reads_as(text, number):
     """Whether a number is this one for its reader, who sees two digits of a tail's k and four of others."""
     if number is None:
         return text == "–"
-    k = text.split(" ± ")
+    k = text.replace("−", "-").split(" ± ")
     return math.isclose(float(k[0]), number, rel_tol=0.051 if len(k) > 1 else 1e-3, abs_tol=1e-9)
 
 
@@ -142,7 +138,7 @@ def the_link_back(driver):
               "&set=ball.s=77&set=ball.rho_d=[0.3,0.1,0.2]&set=ball.rho_s=0.35&set=firefly_k=1.5")
     for state in states:
         browser.open_page(driver, page, state)
-        films, words = shown(driver), browser.text(driver, "#command")
+        films, words = browser.shown(driver), browser.text(driver, "#command")
         assert words.startswith("./run experiments/"), words
         assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
         driver.execute_script("document.getElementById('copy').click()")
@@ -189,32 +185,6 @@ def a_lesson_is_confirmed(driver):
         band = next(b for b in bands if (b["arm"], b["n"], b["s"], b["meter"]) == (arm, 64, 32, "rmse.mine"))
         for text, name in zip(numbers, ("median", "q05", "q95")):
             assert math.isclose(float(text), band[name], rel_tol=1e-3), f"{arm}, {name}: {text}, not {band[name]}"
-
-
-def slices_without_workers(driver):
-    """The program's hash stands under the picture; where workers are refused, the same come in slices."""
-    found = []
-    for refuse in (False, True):
-        if refuse:
-            script = driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
-                "source": "window.Worker = function () { throw new Error('refused'); };"})
-        browser.open_page(driver, page, "#experiment=three-glosses&n=16", 120)
-        workers = driver.execute_script("return document.documentElement.dataset.workers")
-        assert (workers == "0") == refuse, workers
-        found.append(shown(driver))
-    most = 100_000  # samples of one part; a pixel of the reference counts as a thousand
-    browser.wait(driver, "!document.getElementById('pictures').textContent.includes('being measured')")  # tails
-    parts = [driver.execute_script("return Number(document.documentElement.dataset.part)")]
-    for lesson, guess in (("four-times", "2"), ("sparkle", "380,140,420,190"), ("firefly", "f"), ("furnace", "bug"),
-                          ("unbiased", "right"), ("fault", "b")):
-        browser.open_page(driver, page, f"#lesson={lesson}&answer={lesson}:{guess}",
-                          until="document.getElementById('reveal') || document.querySelector('#lessons .bad')")
-        assert not driver.find_elements(By.CSS_SELECTOR, "#lessons .bad"), browser.text(driver, "#lessons")
-        parts.append(driver.execute_script("return Number(document.documentElement.dataset.part)"))
-    driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
-    assert os.environ["SHOWN"] in found[0] and found[0] == found[1], found
-    assert all(0 < part <= most for part in parts), f"parts of {parts} samples, not at most {most}"
-    print(f"  without workers: parts of at most {max(parts):.0f} samples")
 
 
 def kept(driver):
@@ -270,7 +240,7 @@ def two_hundred_settings(driver):
 
 laws = {
     "numbers": [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
-                a_lesson_is_confirmed, slices_without_workers, two_hundred_settings],
+                a_lesson_is_confirmed, *turns.laws(page), two_hundred_settings],
     "readers": [*reach.laws(page, pathlib.Path(page_path).resolve().parent), *steady.laws(page)],
 }[group]
 driver = browser.chromium()

@@ -32,10 +32,11 @@ def laws(page):
     def a_pixel_before_its_reference(driver):
         """A pixel is opened as soon as there is a picture; what the reference says of it comes when there is one."""
         browser.open_page(driver, page, "#n=4&arms=cosine", until="document.querySelector('#pictures canvas')")
-        said, disks = driver.execute_script(
+        said = driver.execute_async_script(
             "document.querySelector('#pictures canvas').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));"
-            "return [document.getElementById('pixel').innerText, document.querySelectorAll('#pixel .disk').length]")
-        assert "the reference is being computed" in said and disks == 2, said
+            "const look = () => document.querySelectorAll('#pixel .disk').length === 2"
+            " ? arguments[0](document.getElementById('pixel').innerText) : setTimeout(look); look()")
+        assert "the reference is being computed" in said, said
         browser.wait(driver, "/, the reference [0-9.]+/.test(document.getElementById('pixel').textContent)")
 
     def nothing_moves(driver):
