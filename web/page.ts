@@ -26,6 +26,7 @@ export class Page implements Viewer {
   private top = 1;
   private timer = 0;
   private openedAt = 0;
+  private seen: Described | undefined; // what the pictures are of; the model may have opened another
   private painting = 0; // counts pictures that are painted anew, and pixels that are opened: the last one goes on
   private opening = 0;
   private movedAt = 0; // when a hand changed what is not yet open
@@ -110,6 +111,7 @@ export class Page implements Viewer {
 
   opened(d: Described, shown: Shown[]): void {
     if (this.movedAt) (this.awaited = this.movedAt), (this.movedAt = 0);
+    this.seen = d;
     delete document.documentElement.dataset["took"];
     const at = this.state.pixel;
     if (at && (at[0] >= d.width || at[1] >= d.height)) {
@@ -192,9 +194,11 @@ export class Page implements Viewer {
   }
 
   private async charts(): Promise<void> {
+    const { described, shown } = this.model;
     await this.model.turns.pass();
-    const charts = this.model.described.regions.map(({ name }) => {
-      const series = this.model.shown.map((s) => ({ arm: s.name, points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)) }));
+    if (described !== this.model.described) return;
+    const charts = described.regions.map(({ name }) => {
+      const series = shown.map((s) => ({ arm: s.name, points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)) }));
       return el("figure", { class: "narrow" }, made(this.model.door.say("ladder_chart", { region: name, series })));
     });
     byId("charts").replaceChildren(...charts);
@@ -202,8 +206,9 @@ export class Page implements Viewer {
 
   /** All pictures, unless others are wanted meanwhile. */
   private async repaint(): Promise<void> {
-    const { pictures, model } = this, mine = ++this.painting;
-    const stands = (): boolean => mine === this.painting && pictures === this.pictures;
+    const { pictures, model, seen } = this, mine = ++this.painting;
+    const stands = (): boolean => mine === this.painting && pictures === this.pictures && seen === model.described;
+    if (!stands()) return;
     const top = model.referenceDone ? await model.top() : 1;
     if (!stands()) return;
     this.top = top;

@@ -55,4 +55,27 @@ def laws(page):
             setTimeout(() => arguments[0]([first, top()]), 400);""")
         assert tops[0] == tops[1], f"the page scrolls on after the focus: {tops}"
 
-    return [back_and_forward, a_pixel_before_its_reference, nothing_moves]
+    def changed_in_the_midst(driver):
+        """Another experiment, another map, another pixel while pictures are painted strip by strip: the last one stands,
+        and nothing is told to the console."""
+        browser.open_page(driver, page, small + "&view=heat")
+        driver.execute_async_script("""
+            const done = arguments[0];
+            const choose = (id, value) => {
+                const at = document.getElementById(id);
+                at.value = value;
+                at.dispatchEvent(new Event('change'));
+            };
+            const turn = (k) => {
+                if (k === 60) return done();
+                if (k % 4 === 0) choose('experiment', k % 8 ? 'three-glosses' : 'two-lamps');
+                else choose('view', ['photograph', 'heat', 'signed'][k % 3]);
+                document.querySelector('#pictures canvas')?.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));
+                setTimeout(() => turn(k + 1), (k * 7) % 41);
+            };
+            turn(0);""")
+        browser.wait(driver, f"{browser.FINISHED} && document.querySelectorAll('#pixel .disk').length === 2")
+        assert browser.text(driver, "#wrong") == "", browser.text(driver, "#wrong")
+        assert "two-lamps" in driver.execute_script("return location.hash")
+
+    return [changed_in_the_midst, back_and_forward, a_pixel_before_its_reference, nothing_moves]
