@@ -6,13 +6,26 @@ namespace crescent::cli {
 
 namespace {
 
-constexpr const char* check_footer = R"(Nine verdicts, in order: valid, support, normalised, density, identity, physics,
-tail, mean, efficiency. Without ARM every built-in arm is judged, and 0 means that
-each gets the verdicts expected of it. Else: 0 right, 1 wrong, 3 error (the
-sampler crashed, stopped answering or broke the protocol), 4 inconclusive: something
-could not be decided, or was not examined. Wrong comes before error, error before
+constexpr const char* check_footer =
+    R"(Without ARM every built-in arm is judged, and 0 means that each gets the
+verdicts expected of it. Else: 0 right, 1 wrong, 3 error (the sampler crashed,
+stopped answering or broke the protocol), 4 inconclusive: something could not be
+decided, or was not examined. Wrong comes before error, error before
 inconclusive. docs/verdicts.md says what each verdict means, and how a program
 behind --exec is asked.)";
+
+/// "Verdicts, in order: valid, ...", in lines of at most 80 columns.
+std::string verdicts_in_order() {
+    std::string out = "Verdicts, in order:";
+    std::size_t column = out.size();
+    for (const std::string_view name : verdict_names) {
+        const std::string word = std::string(name) + (name == verdict_names.back() ? "." : ",");
+        const bool fits = column + 1 + word.size() <= 80;
+        out += (fits ? ' ' : '\n') + word;
+        column = (fits ? column + 1 : 0) + word.size();
+    }
+    return out + '\n';
+}
 
 /// --against.
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
@@ -37,11 +50,13 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
 
 /// The files that a call writes.
 std::vector<CLI::Option*> outputs(CLI::App& c, CheckFlags& f) {
-    return {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes")
-                ->type_name("FILE"),
-        c.add_option("--timing", f.timing, "write what each verdict and each sample took")->type_name("FILE"),
-        c.add_option("--junit", f.junit, "write for a build server")->type_name("FILE"),
-        c.add_option("--html", f.html, "write one page with maps, histograms and roses")->type_name("FILE")};
+    std::vector<CLI::Option*> files = {
+        c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
+        c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
+        c.add_option("--junit", f.junit, "write for a build server"),
+        c.add_option("--html", f.html, "write one page with maps, histograms and roses")};
+    for (CLI::Option* file : files) file->type_name("FILE")->check(told);
+    return files;
 }
 
 }  // namespace
@@ -49,7 +64,7 @@ std::vector<CLI::Option*> outputs(CLI::App& c, CheckFlags& f) {
 void add_check(CLI::App& app, Work& work) {
     std::shared_ptr<CheckFlags> f;
     CLI::App* c = command(app, work, "check", "Judge samplers by themselves, without a picture.", check, f);
-    c->footer(check_footer);
+    c->footer(verdicts_in_order() + check_footer);
     auto* arm = c->add_option("ARM", f->arm, "a built-in arm; without it, all")->type_name("");
     auto* set = c->add_option("--set", f->settings, "s, alpha, rho_d or rho_s; may be given again")
                     ->type_name("KEY=VALUE")

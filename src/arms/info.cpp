@@ -1,6 +1,7 @@
 #include "arms/info.h"
 
 #include "arms/all.h"
+#include "base/formula_words.h"
 #include "math/functions.h"
 
 namespace crescent::inline arms {
@@ -10,6 +11,11 @@ namespace {
 template <template <class> class A> constexpr ArmInfo info_of() {
     static_assert(A<float>::manual.label.find(A<float>::name) != std::string_view::npos,
         "an arm goes by one name everywhere: its label holds it");
+    constexpr ArmManual manual = A<float>::manual;
+    static_assert(formula::is_formula(manual.formula) && formula::is_formula(manual.density),
+        "formula and density of an arm are TeX in the words of base/formula_words.h");
+    static_assert(formula::has_formulas(manual.draw) && formula::has_formulas(manual.axis),
+        "draw and axis of an arm are words, with TeX of base/formula_words.h between dollar signs");
     ArmInfo out{A<float>::manual, A<float>::name};
     if constexpr (requires { A<float>::techniques; }) out.techniques = A<float>::techniques;
     if constexpr (requires { A<float>::theory; }) out.theory = A<float>::theory;

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cctype>
 #include <utility>
 #include <vector>
 
 #include "base/errors.h"
+#include "base/formula_words.h"
 
 namespace crescent::formula {
 
@@ -15,41 +15,11 @@ namespace {
 
 /// A piece of a formula. Its parts: of a row all, of a fraction two, of a root one, of a script base, sub and sup.
 struct Node {
-    enum class Kind { letter, number, sign, word, space, row, paren, bars, fraction, root, script };
     Kind kind = Kind::row;
     std::string text{};  // UTF-8
     std::vector<Node> parts{};
     bool empty() const { return kind == Kind::row && parts.empty(); }
 };
-using Kind = Node::Kind;
-
-struct Word {
-    std::string_view name, text;
-    Kind kind;
-};
-constexpr auto words = std::to_array<Word>({
-    {"alpha", "α", Kind::letter},
-    {"beta", "β", Kind::letter},
-    {"theta", "θ", Kind::letter},
-    {"rho", "ρ", Kind::letter},
-    {"omega", "ω", Kind::letter},
-    {"phi", "φ", Kind::letter},
-    {"pi", "π", Kind::letter},
-    {"Lambda", "Λ", Kind::letter},
-    {"sigma", "σ", Kind::letter},
-    {"infty", "∞", Kind::number},
-    {"cos", "cos", Kind::word},
-    {"sin", "sin", Kind::word},
-    {"tan", "tan", Kind::word},
-    {"exp", "exp", Kind::word},
-    {"log", "log", Kind::word},
-    {"min", "min", Kind::word},
-    {"max", "max", Kind::word},
-    {"cdot", "·", Kind::sign},
-    {"le", "≤", Kind::sign},
-    {"propto", "∝", Kind::sign},
-    {"chi", "χ", Kind::letter},
-});
 
 class Reader {
 public:
@@ -99,7 +69,7 @@ private:
                 digits += tex_[at_++];
             return {Kind::number, digits, {}};
         }
-        ensure(std::string_view("+-=<>,;/").find(c) != std::string_view::npos, "a formula has no other signs");
+        ensure(signs.find(c) != signs.npos, "a formula has no other signs");
         return {Kind::sign, c == '-' ? "−" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c), {}};
     }
 
@@ -219,16 +189,30 @@ void put_in(Node& n, const Value& value) {
             n.parts.erase(n.parts.begin() + static_cast<std::ptrdiff_t>(k) + 1,
                 n.parts.begin() + static_cast<std::ptrdiff_t>(k) + 3);
         }
+    for (std::size_t k = 1; k < n.parts.size() && n.kind == Kind::row; ++k)  // 2s is 2·40, and not 240
+        if (is_letter(n.parts[k]) && n.parts[k - 1].kind == Kind::number)
+            n.parts.insert(n.parts.begin() + static_cast<std::ptrdiff_t>(k), Node{Kind::sign, "·", {}});
     for (Node& each : n.parts) put_in(each, value);
     if (is_letter(n)) n = {Kind::number, value.number, {}};
 }
 
 }  // namespace
 
-std::string mathml(std::string_view tex) { return as_mathml(Reader(tex).row()); }
+namespace {
+
+Node read(std::string_view tex) {
+    if (!is_formula(tex))
+        throw Bug(std::source_location::current(),
+            "a formula that is not in the words of base/formula_words.h: " + std::string(tex));
+    return Reader(tex).row();
+}
+
+}  // namespace
+
+std::string mathml(std::string_view tex) { return as_mathml(read(tex)); }
 
 std::string pango(std::string_view tex, const Value& value) {
-    Node all = Reader(tex).row();
+    Node all = read(tex);
     if (value.letter != 0) put_in(all, value);
     return as_pango(all);
 }

@@ -1,7 +1,7 @@
 // Formulas are written once, in a small part of TeX, and set in two ways: as presentation MathML (MathML Core) for
 // pages and as one line of Pango markup for plates. Letters, digits, + - = < > , ; / ( ) and
 //   \frac{a}{b}  \sqrt{a}  x_i  x^2  {group}  \lvert a \rvert  \mathrm{word}  \,  \cdot  \le  \infty  \propto
-//   \cos \sin \tan \exp \log \min \max  and Greek letters by name.
+//   \cos \sin \tan \exp \ln \log \min \max  and Greek letters by name: the list is in base/formula_words.h.
 #pragma once
 
 #include <string>

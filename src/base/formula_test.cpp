@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "base/formula_words.h"
 
 namespace crescent::formula {
 namespace {
@@ -28,11 +29,23 @@ TEST(Formulas, TakeNumbersInPlaceOfALetterAndOfItsSuccessor) {
     EXPECT_EQ(pango(tex), "(s+1)/(2π) (ω·R)<sup>s</sup>");
     EXPECT_EQ(pango(tex, {'s', "32", "33"}), "33/(2π) (ω·R)<sup>32</sup>");
     EXPECT_EQ(pango("u^{1/(s+1)}", {'s', "32", "33"}), "u<sup>1/(33)</sup>");
+    EXPECT_EQ(pango("e^{-2s}", {'s', "40", "41"}), "e<sup>−2·40</sup>");
 }
 
 TEST(Formulas, OfWordsThatAreNotKnownAreABug) {
     EXPECT_THROW(mathml(R"(\unknown)"), Bug);
     EXPECT_THROW(mathml("(a"), Bug);
+}
+
+TEST(Formulas, ThatCannotBeSetAreKnownWhereTheyAreCompiled) {
+    for (const char* tex :
+        {R"(\unknown)", "(a", "a^", R"(\frac{a})", R"(\mathrm{a)", "a!", R"(\lvert a)", "a)", "{a"}) {
+        EXPECT_THROW(mathml(tex), Bug) << tex;
+        EXPECT_FALSE(is_formula(tex)) << tex;
+    }
+    static_assert(is_formula(R"(\frac{s+2}{2\pi}\,(\omega_i\cdot R)_+^s)"));
+    static_assert(has_formulas(R"(about $n$, $\ln u_1\ge0.5$)") && !has_formulas("about $n") && !has_formulas("$(a$"));
+    for (const Word& word : words) EXPECT_FALSE(mathml("\\" + std::string(word.name)).empty()) << word.name;
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // Bodies of every size that the schema permits, as kernels test them in single precision, against long double: rays
-// that begin near a surface or an edge of a large body, and rays to small bodies far away. Lengths in m.
+// that begin near a surface or an edge of a large body, and rays to small bodies far away. Lengths in m. Kinds without
+// a form here (`Crosses`, `Draw::body`) are left to every_body_test.cpp, at sizes of about 1 m.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "estimator/disk_hit.h"
 
@@ -65,6 +68,18 @@ struct Crosses {
     bool operator()(const shapes::Plane& o) const { return in(on_plane(long_of(o.point), long_of(o.normal))); }
 };
 
+/// The kinds that have a form here, by their indices among Bodies.
+std::vector<std::size_t> known_bodies() {
+    std::vector<std::size_t> out;
+    for (std::size_t kind = 0; kind < Bodies::count; ++kind)
+        std::visit(
+            [&](const auto& body) {
+                if constexpr (std::is_invocable_v<const Crosses&, decltype(body)>) out.push_back(kind);
+            },
+            Bodies::make(kind));
+    return out;
+}
+
 class Draw {
 public:
     explicit Draw(unsigned seed) : next_(seed) {}
@@ -117,7 +132,13 @@ struct Count {
         const Vec3l way = (1 / size) * long_of(exact(d)), from = long_of(origin) + long_of(exact(offset));
         const auto truth = [&](Vec3l by, Long end) {
             const Long far = static_cast<Long>(distance);
-            return std::visit(Crosses{from + by, way, 1e-5L * far + end, (1 - 1e-5L) * far - end}, body);
+            const Crosses crosses{from + by, way, 1e-5L * far + end, (1 - 1e-5L) * far - end};
+            return std::visit(
+                [&](const auto& form) {
+                    if constexpr (std::is_invocable_v<const Crosses&, decltype(form)>) return crosses(form);
+                    else return false;
+                },
+                body);
         };
         const bool is = truth({}, 0);
         for (const Vec3l by : {Vec3l{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
@@ -135,7 +156,7 @@ std::string called(std::size_t kind, double size) {
 TEST(BodiesInKernels, OfAnySizeHideWhatTheyHide) {
     Draw draw(5);
     for (const Vec3d origin : {Vec3d{0, 0, 0}, {-4e5, 3e5, 1e5}})
-        for (std::size_t kind = 0; kind < Bodies::count; ++kind)
+        for (const std::size_t kind : known_bodies())
             for (const double size : {1e-2, 1.0, 30.0, 1e3, 1e4, 1e6}) {
                 Count count;
                 for (int k = 0; k < 3000; ++k) {
@@ -154,7 +175,7 @@ TEST(BodiesInKernels, OfAnySizeHideWhatTheyHide) {
 TEST(BodiesInKernels, ThatAreSmallAndFarHideWhatTheyHide) {
     Draw draw(6);
     for (const double far : {1e2, 1e4, 3e5})
-        for (std::size_t kind = 0; kind < Bodies::count; ++kind) {
+        for (const std::size_t kind : known_bodies()) {
             Count count;
             const double size = 1e-3 * far;
             for (int k = 0; k < 3000; ++k) {

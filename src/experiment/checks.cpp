@@ -145,8 +145,8 @@ void check_names(ParseContext& context) {
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
         context.report(r.path,
-            fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64), listed(valid, ", "),
-                hint(r.name, valid)));
+            fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64),
+                valid.empty() ? "(none)" : listed(valid, ", "), hint(r.name, valid)));
     }
     check_film_files(context);
     check_outside_arms(context);

@@ -118,13 +118,14 @@ const Mistake keys_and_types[] = {
     {"kind = \"box\"", "kind = \"mesh\"", 19, 8, "README.md says what a scene can be"},
     {"kind = \"box\"", "kind = 3", 19, 8, "expected one of sphere, box"},
     {"min = [-1, 0, -1]", "min = [-1, 0, -1]\nradius = 1", 21, 1, "a box has no key 'radius'"},
+    {"min = [-1, 0, -1]", "min = [1e300, 0, -1]", 20, 8, "found 1e+300"},
     {"runs = [{", "runs = [3, {", 50, 9, "plates.pair.runs.0: expected a table, found 3"},
     {"n = 4 }]", "n = 4, m = 2 }]", 50, 53, "unknown key 'm' in [plates.pair.runs.1]"},
     {"runs = [{ arm = \"cosine\" }, { arm = \"phong\", n = 4 }]", "runs = 3", 50, 8,
         "expected a list of tables, found 3"},
     {"[regions.H]", "[regions.\"H/I\"]", 42, 10, "become file names", 2},
     {"[regions.H]", "[regions.\"../H\"]", 42, 10, "become file names", 2},
-    {"", "over = 3\n", 53, 1, "expected tables [assertions.NAME], found 3"},
+    {"", "over = 3\n", 53, 1, "expected a table [assertions.over], found 3"},
     {"", "[[plates.pair.extra]]\n", 53, 15, "unknown key 'extra' in [plates.pair]"},
     {"rho_s = 0.1", "rho_s =", 16, 8, "not TOML"},
     {"", "[assertions.a]\ncheck = \"y_mean(cosine) > 0\"\nname = \"b\"\n", 55, 1,
@@ -222,7 +223,6 @@ const Mistake checks[] = {
         "[[assertions]]\nname = \"a\"\ncheck = \"bad(phong) == 0\"\n[[assertions]]\nname = \"a\"\ncheck", 55, 8,
         "the first stands at x.toml:52:8"},
 };
-
 INSTANTIATE_TEST_SUITE_P(KeysAndTypes, AMistake, testing::ValuesIn(keys_and_types));
 INSTANTIATE_TEST_SUITE_P(Values, AMistake, testing::ValuesIn(values));
 INSTANTIATE_TEST_SUITE_P(Names, AMistake, testing::ValuesIn(names));

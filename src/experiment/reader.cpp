@@ -174,7 +174,7 @@ private:
         if (!member.value.is_table())
             return draft_.report(label, node.is_array() ? member.value.at : member.at,
                 fmt::format("{}: expected {}, found {}", label,
-                    section.many == Multiplicity::list ? "a table" : form(section, path), describe(member.value)));
+                    node.is_array() ? "a table" : fmt::format("a table [{}]", label), describe(member.value)));
         std::string name = member.key;
         SourceLocation at = member.at;
         if (section.many == Multiplicity::titled && node.is_array() && !title(member, path, index, name, at)) return;

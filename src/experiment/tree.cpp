@@ -117,8 +117,9 @@ std::string describe(const Node& node) {
                                          : fmt::format("the text '{}'", node.text);
         case Node::Kind::integer: return fmt::format("{}", node.integer);
         case Node::Kind::number:
-            return node.number == std::floor(node.number) ? fmt::format("{:.1f}", node.number)
-                                                          : fmt::format("{}", node.number);
+            return node.number == std::floor(node.number) && std::fabs(node.number) < 1e15
+                ? fmt::format("{:.1f}", node.number)
+                : fmt::format("{}", node.number);
         case Node::Kind::flag: return node.flag ? "true" : "false";
         case Node::Kind::date: return "a date or time";
     }

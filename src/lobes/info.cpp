@@ -1,6 +1,7 @@
 #include "lobes/info.h"
 
 #include "base/errors.h"
+#include "base/formula_words.h"
 #include "lobes/all.h"
 
 namespace crescent::inline lobes {
@@ -8,6 +9,8 @@ namespace crescent::inline lobes {
 namespace {
 
 template <template <class> class L> LobeInfo info_of(LobeKind kind) {
+    static_assert(formula::is_formula(L<double>::manual.formula),
+        "the formula of a lobe is TeX in the words of base/formula_words.h");
     LobeInfo out{L<double>::manual, L<double>::name, kind};
     out.exponent = L<double>::exponent;
     out.width = L<double>::width;

@@ -29,7 +29,7 @@ Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
 RunMeter run(const std::string& arm, std::uint64_t n, std::uint32_t seed, double rmse) {
     RunMeter r;
     r.key = {arm, n, 32, seed};
-    r.regions = {{"H", rmse, rmse * rmse, 8, std::nullopt}};
+    r.regions = {{.region = "H", .rmse = rmse, .var = rmse * rmse, .pixels = 8, .tail = std::nullopt}};
     r.fireflies = seed;
     return r;
 }

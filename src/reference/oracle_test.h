@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "color/rgb.h"
 #include "lobes/all.h"
+#include "scene/figure.h"
 #include "scene/scene.h"
 
 namespace crescent::test {
@@ -51,6 +53,8 @@ struct Crosses {
         return in(t) && dot(p, p) <= sqr(o.radius);
     }
     bool operator()(const shapes::Plane& o) const { return in(on_plane(o.point, o.normal)); }
+    /// A kind that has no form here: where a camera's ray from lo on meets it.
+    bool operator()(const auto& o) const { return o.intersect(x + lo * d, d).t < hi - lo; }
 };
 
 struct Opinion {
@@ -158,6 +162,14 @@ private:
         return towards(ball.center + ball.radius * polar(z, std::sqrt(1 - z * z)));
     }
     Vec3d on(const lights::Rectangle& r) { return towards(r.corner + u() * r.edge_u + u() * r.edge_v); }
+    /// A kind that has no form here: on the figure that it is seen as.
+    Vec3d on(const auto& light) {
+        const auto among = [&]<class Figure>(const Figure& f) {
+            if constexpr (std::is_same_v<Figure, shapes::Disk>) return on(lights::Disk{f.center, f.normal, f.radius});
+            else return towards(f.corner + u() * f.edge_u + u() * f.edge_v);
+        };
+        return std::visit(among, light.seen_from(hit_.x));
+    }
     Vec3d on_light(std::size_t k) {
         return std::visit([&](const auto& light) { return on(light); }, scene_.lights()[k].form);
     }
@@ -193,6 +205,15 @@ private:
         if (!(half2 > 0) || !(foot > 0) || dot(c, c) <= sqr(l.radius)) return {};
         const double half = std::sqrt(half2), cos = half / l.radius, area = 4 * pi * sqr(l.radius);
         return {foot - half, (sqr(foot - half) + sqr(foot + half)) / (cos * area)};  // both of its sides are drawn
+    }
+    Lit lit(const auto& light, Vec3d d) const {
+        if (!light.shines_on(hit_.x)) return {};
+        const Figure figure = light.seen_from(hit_.x);
+        const auto holds_it = [&](Vec3d p) {  // p from its middle
+            const Vec3d n = normal_of(figure);
+            return std::visit(Crosses{middle_of(figure) + p - n, n, 0, 2}, body_of(figure));
+        };
+        return flat(d, middle_of(figure), normal_of(figure), radius_of(figure), true, pi * disk_area(figure), holds_it);
     }
     Lit lit(const Light& light, Vec3d d) const {
         return std::visit([&](const auto& form) { return lit(form, d); }, light.form);
