@@ -56,8 +56,8 @@ def laws(page):
         assert tops[0] == tops[1], f"the page scrolls on after the focus: {tops}"
 
     def changed_in_the_midst(driver):
-        """Another experiment, another map, another pixel while pictures are painted strip by strip: the last one stands,
-        and nothing is told to the console."""
+        """Another experiment, another map, another pixel while pictures are painted strip by strip: the last one
+        stands, and nothing is told to the console."""
         browser.open_page(driver, page, small + "&view=heat")
         driver.execute_async_script("""
             const done = arguments[0];
@@ -70,7 +70,8 @@ def laws(page):
                 if (k === 60) return done();
                 if (k % 4 === 0) choose('experiment', k % 8 ? 'three-glosses' : 'two-lamps');
                 else choose('view', ['photograph', 'heat', 'signed'][k % 3]);
-                document.querySelector('#pictures canvas')?.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));
+                const up = new KeyboardEvent('keydown', {key: 'ArrowUp'});
+                document.querySelector('#pictures canvas')?.dispatchEvent(up);
                 setTimeout(() => turn(k + 1), (k * 7) % 41);
             };
             turn(0);""")
