@@ -238,7 +238,11 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
     PipeLimits limits;
     limits.stop = &watch.stop;
     if (flags.patience > 0) limits.total_seconds = flags.patience;
-    return sampler_against(start_pipe(flags.against, limits), a);
+    try {
+        return sampler_against(start_pipe(flags.against, limits), a);
+    } catch (const InputError&) {  // start_pipe calls it --exec
+        throw InputError({"--against " + flags.against, 0, 0}, "neither a built-in arm nor a command of the shell");
+    }
 }
 
 std::vector<std::string> names_of(std::span<const Trial> trials) {

@@ -1,4 +1,6 @@
 // The flags of `crescent check`.
+#include <filesystem>
+
 #include "crescent.h"
 #include "grammar.h"
 
@@ -43,6 +45,9 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
             "a verdict that is known not to be right, or a file of such lines; same: with --against, a difference "
             "fails")
         ->type_name("'[ARM ]VERDICT=STATE: REASON'|FILE|same")
+        ->check([](const std::string& text) {
+            return std::filesystem::is_directory(text) ? "expected a file, found the folder " + printable(text) : "";
+        })
         ->take_all()
         ->expected(1)
         ->allow_extra_args(false);

@@ -32,11 +32,14 @@ for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(pri
     LC_ALL=C grep -q "$(printf '[\001-\010\013-\037\177]')" said && die "a control character is shown: $(cat -v said)"
     LC_ALL=C grep -q "$(printf '\302[\200-\237]')" said && die "a C1 control character is shown: $(cat -v said)"
 done
-# A file without a name.
+# A file without a name, a folder in place of one, a command that is not there: by the flag that named it.
 for flag in --json --html --junit --timing; do
     expect 2 "$CRESCENT" check cosine "$flag" ""
     grep -q -- "$flag" said || die "no flag: $(cat said)"
 done
+expect 2 "$CRESCENT" check cosine --expect .
+expect 2 "$CRESCENT" check cosine --against ./absent
+grep -q '^--against ./absent: ' said || die "another flag than --against: $(cat said)"
 "$CRESCENT" check --help | tr '\n' ' ' >manual  # every verdict of the list, in its order
 grep -qF "$("$CRESCENT" list verdicts | awk '{ printf "%s%s", NR == 1 ? "" : ", ", $1 }')." manual ||
     die "crescent check --help has other verdicts than the list: $(cat manual)"
