@@ -152,6 +152,30 @@ std::uint64_t tests_against(std::span<const Trial> a, std::span<const Trial> b) 
     return tests;
 }
 
+/// The three verdicts of a w_o at which a sampler broke off.
+std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFault& fault) {
+    const Cut cut = cut_by(fault);
+    std::vector<Verdict> out;
+    for (const char* name : compared_by) {
+        Verdict v;
+        v.arm = a.arm + " against " + b.arm;
+        v.trial = a.text();
+        v.name = name;
+        v.state = cut.state;
+        v.say = cut.first;
+        if (v.state == State::inconclusive) v.settle = "More time (--patience), or a program that answers faster.";
+        out.push_back(std::move(v));
+    }
+    return out;
+}
+
+/// That of all: the worst of them.
+State state_of(const std::vector<Verdict>& verdicts) {
+    for (State s : {State::wrong, State::error, State::inconclusive})
+        if (std::ranges::any_of(verdicts, [s](const Verdict& v) { return v.state == s; })) return s;
+    return State::right;
+}
+
 }  // namespace
 
 Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& given, bool expect_same,
@@ -172,20 +196,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
             const auto stream = static_cast<std::uint32_t>(i);
             all[i] = compare_one(
                 asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, tally);
-        } catch (const SubjectFault& fault) {
-            const Cut cut = cut_by(fault);
-            for (const char* name : compared_by) {
-                Verdict v;
-                v.arm = a[i].arm + " against " + b[i].arm;
-                v.trial = a[i].text();
-                v.name = name;
-                v.state = cut.state;
-                v.say = cut.first;
-                if (v.state == State::inconclusive)
-                    v.settle = "More time (--patience), or a program that answers faster.";
-                all[i].push_back(std::move(v));
-            }
-        }
+        } catch (const SubjectFault& fault) { all[i] = broken_off(a[i], b[i], fault); }
         watch.advance(1);
     };
     bool serial = false;
@@ -203,13 +214,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
             a[i].subject->spending().answers + (a[i].subject == b[i].subject ? 0 : b[i].subject->spending().answers));
         for (Verdict& v : all[i]) out.verdicts.push_back(std::move(v));
     }
-    const auto has = [&](State s) {
-        return std::any_of(out.verdicts.begin(), out.verdicts.end(), [s](const Verdict& v) { return v.state == s; });
-    };
-    out.state = has(State::wrong)  ? State::wrong
-        : has(State::error)        ? State::error
-        : has(State::inconclusive) ? State::inconclusive
-                                   : State::right;
+    out.state = state_of(out.verdicts);
     out.as_expected = out.state == State::right;
     return out;
 }

@@ -84,6 +84,60 @@ void measure_costs(std::span<const Trial> trials, const TestSettings& settings, 
     }
 }
 
+namespace {
+
+/// Arms on the same surface, light and w_o beside one, by variance times time.
+struct Ranks {
+    std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
+};
+
+Ranks ranks_of(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency> all) {
+    Ranks out;
+    for (const Efficiency& o : all) {
+        if (o.trial == e.trial || !(o.nanoseconds > 0) || o.whole != e.whole ||
+            company_of(trials[o.trial]) != company_of(trials[e.trial]))
+            continue;
+        const bool level = o.heavy || (o.low() <= e.high() && e.low() <= o.high());
+        (level ? out.level : e.high() < o.low() ? out.better : out.worse).push_back(trials[o.trial].arm);
+    }
+    return out;
+}
+
+std::string told(const Efficiency& e, const Ranks& ranks) {
+    std::string say = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
+    if (!ranks.better.empty())
+        say += fmt::format("; variance x time is better than that of {}", fmt::join(ranks.better, ", "));
+    if (!ranks.worse.empty()) say += fmt::format("; worse than that of {}", fmt::join(ranks.worse, ", "));
+    if (!ranks.level.empty())
+        say +=
+            fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(ranks.level, ", "));
+    return say + ".";
+}
+
+/// Of a trial whose weights were looked at.
+void judge_one(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency> all, Verdict& v) {
+    v.evidence["variance"] = e.variance;
+    v.evidence["variance_relative_se"] = e.relative_se;
+    if (!e.fault.empty()) {
+        v.state = State::error;
+        v.evidence["first_fault"] = e.fault;
+        v.say = "The sampler broke off: " + e.fault + ".";
+        return;
+    }
+    v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
+    if (e.heavy) {
+        v.state = State::inconclusive;
+        v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
+        v.settle = "What settles the tail.";
+        return;
+    }
+    v.state = State::right;
+    v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
+    if (e.nanoseconds > 0) v.say_timed = told(e, ranks_of(e, trials, all));
+}
+
+}  // namespace
+
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all) {
     std::vector<Verdict> out(trials.size());
     for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -93,45 +147,7 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         out[i].state = State::skipped;
         out[i].say = "There are no weights to take a variance of.";
     }
-    for (const Efficiency& e : all) {
-        Verdict& v = out[e.trial];
-        v.evidence["variance"] = e.variance;
-        v.evidence["variance_relative_se"] = e.relative_se;
-        if (!e.fault.empty()) {
-            v.state = State::error;
-            v.evidence["first_fault"] = e.fault;
-            v.say = "The sampler broke off: " + e.fault + ".";
-            continue;
-        }
-        v.timing = {
-            {"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
-        if (e.heavy) {
-            v.state = State::inconclusive;
-            v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
-            v.settle = "What settles the tail.";
-            continue;
-        }
-        std::vector<std::string> better, worse, level;
-        for (const Efficiency& o : all) {
-            if (o.trial == e.trial || !(o.nanoseconds > 0) || o.whole != e.whole ||
-                company_of(trials[o.trial]) != company_of(trials[e.trial]))
-                continue;
-            const std::string& name = trials[o.trial].arm;
-            if (o.heavy || (o.low() <= e.high() && e.low() <= o.high())) level.push_back(name);
-            else (e.high() < o.low() ? better : worse).push_back(name);
-        }
-        v.state = State::right;
-        v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
-        if (!(e.nanoseconds > 0)) continue;
-        v.say_timed = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
-        if (!better.empty())
-            v.say_timed += fmt::format("; variance x time is better than that of {}", fmt::join(better, ", "));
-        if (!worse.empty()) v.say_timed += fmt::format("; worse than that of {}", fmt::join(worse, ", "));
-        if (!level.empty())
-            v.say_timed +=
-                fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(level, ", "));
-        v.say_timed += ".";
-    }
+    for (const Efficiency& e : all) judge_one(e, trials, all, out[e.trial]);
     return out;
 }
 

@@ -1,17 +1,13 @@
 // identity: what the sampler says twice, it says alike: pdf with the draw and pdf(w); weight and f cos / p; f and what
-// f ought to be; MIS weights that sum to one; and p |Jacobian| of the warp (jacobian.cpp).
+// f ought to be; MIS weights that sum to one; and p |Jacobian| of the warp (warp.cpp).
 //
 // Tolerance: 1e-4, and what p itself moves by when the components of wi and wo move by four roundings ("conditioning"):
 // (w.R)^s moves by s eps when w.R does by eps, so a float sampler at s = 1e5 may differ from itself by per cents and be
 // right.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
-#include "verdicts/delta.h"
-#include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"
 
@@ -145,37 +141,6 @@ Verdict wrong(const TrialContext& work, Verdict v, const Mismatch& m, std::strin
     return v;
 }
 
-/// What the warp's derivatives say against p: true where it is wrong, which `v` then tells.
-bool warp_is_wrong(const TrialContext& work, const WarpFinding& warp, const std::string& tag, Verdict& v) {
-    const auto tell = [&v](std::string say) {
-        v.state = State::wrong;
-        v.say = std::move(say);
-        return true;
-    };
-    if (warp.below >= 3 && static_cast<double>(warp.below) > 5e-3 * static_cast<double>(warp.usable)) {
-        v.evidence["smallest_p_jacobian"] = warp.smallest;
-        return tell(
-            fmt::format("p |Jacobian of the warp| is below 1 at {} of {} points, least at {}: {:.6g}. The sampler "
-                        "is denser there than p says{}.",
-                warp.below, warp.usable, told(warp.at, work.traits.numbers, 4), warp.smallest,
-                work.traits.numbers > 2 ? "; what chooses was held, and its share counts" : ""));
-    }
-    v.evidence["p_jacobian_third_quartile" + tag] = warp.nowhere_above;
-    if (warp.nowhere_above < 1 - 1.5 * tolerance)  // what normalised grants p, and half as much
-        return tell(
-            fmt::format("p |Jacobian of the warp| is {:.6g} or less at three of four points: the sampler is denser "
-                        "nearly everywhere than p says, and what is left over of p is never drawn.",
-                warp.nowhere_above));
-    v.evidence["steps_of_u" + tag] = warp.steps_tried;
-    v.evidence["steps_without_a_move" + tag] = warp.stuck;
-    if (warp.steps_tried >= 40 && static_cast<double>(warp.stuck) > 0.4 * static_cast<double>(warp.steps_tried))
-        return tell(
-            fmt::format("The direction stands still for {} of {} moves of u by 2^-19: u is used with too few "
-                        "bits, and only a grid of directions is ever drawn.",
-                warp.stuck, warp.steps_tried));
-    return false;
-}
-
 /// The pdf, the weights and f beside one another, draw by draw; of what is a random estimate in the mean. True where
 /// something is wrong, which `v` then tells.
 bool answers_are_wrong(const TrialContext& work, int t, Verdict& v) {
@@ -220,69 +185,27 @@ std::string told_of(const TrialContext& work, bool estimated_weights) {
     return out + ", the weight f cos / p" + in_every + (scatter.f() || estimated_weights ? " in the mean" : "");
 }
 
+bool mis_weights_are_off(const TrialContext& work, const SampleBatch& b, Verdict& v) {
+    if (work.subject.techniques() == 1) return false;
+    const Mismatch m = mis_sum(work, b);
+    if (m.matters()) v = wrong(work, v, m, "The sum of the MIS weights", "1");
+    return m.matters();
+}
+
 Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("identity", State::right, "");
-    double one_to_one = 1;
-    int choosers = 0;
     const bool loose = work.traits.own_random || work.scatter().any();
+    WarpSummary warps;
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const SampleBatch& b = work.first(t);
-        const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
-        if (const Repeated r = ask_again(work, t); r.other > 0) {
-            v.state = State::wrong;
-            v.evidence["asked_again"] = r.tried;
-            v.evidence["answered_otherwise"] = r.other;
-            v.say = fmt::format(
-                "The same u gives another answer when it is asked again, {} of {} times; at {} first "
-                "({:.6g}, {:.6g}, {:.6g}), then ({:.6g}, {:.6g}, {:.6g}). The sampler is no function of w_o and u: it "
-                "keeps a "
-                "state, draws random numbers of its own (a sampler that says so, random=own, is judged without what "
-                "needs u), "
-                "or answers out of turn.",
-                r.other, r.tried, told(r.u, work.traits.numbers), r.first.x, r.first.y, r.first.z, r.again.x, r.again.y,
-                r.again.z);
+        if (answers_otherwise(work, t, v) || repeats_directions(work, b, v) || answers_are_wrong(work, t, v) ||
+            (!loose && has_uneven_deltas(work, b, v)) || mis_weights_are_off(work, b, v) ||
+            warp_is_wrong(work, t, warps, v))
             return v;
-        }
-        if (const std::size_t repeats = repeated_directions(work, b); repeats > 0) {
-            v.state = State::wrong;
-            v.evidence["repeated_directions"] = repeats;
-            v.say = fmt::format(
-                "{} of {} draws have the very direction of another draw: only a grid of directions is ever drawn, and "
-                "p is a density.",
-                repeats, b.draws.size());
-            return v;
-        }
-        if (answers_are_wrong(work, t, v)) return v;
-        if (const std::size_t uneven = loose ? 0 : uneven_deltas(work, b); uneven > 0) {
-            v.state = State::wrong;
-            v.evidence["uneven_deltas"] = uneven;
-            v.say =
-                fmt::format("{} draws of a delta part come with another weight than the first of that part.", uneven);
-            return v;
-        }
-        if (work.subject.techniques() > 1)
-            if (const Mismatch m = mis_sum(work, b); m.matters())
-                return wrong(work, v, m, "The sum of the MIS weights", "1");
-        const WarpFinding& warp = study_warp(work, t);
-        v.evidence["warp_points" + tag] = warp.usable;
-        v.evidence["p_jacobian_is_1" + tag] = warp.one_to_one;
-        one_to_one = std::min(one_to_one, warp.one_to_one);
-        choosers = std::max(choosers, warp.choosers);
-        if (warp_is_wrong(work, warp, tag, v)) return v;
     }
     v.say = told_of(work, v.evidence.contains("weights_are_estimates"));
     if (work.subject.techniques() > 1) v.say += ", the MIS weights sum to 1";
-    if (!work.traits.has_pdf) v.say += "; there is no pdf to hold the warp against";
-    else if (work.scatter().pdf()) v.say += "";  // said already
-    else if (!work.subject.draws_at_will()) v.say += "; the warp itself is not at hand";
-    else if (work.traits.own_random)
-        v.say += "; the sampler draws random numbers of its own, so that the warp was not looked at";
-    else if (choosers > 1) v.say += "; several random numbers choose among lobes, so that the warp was not looked at";
-    else if (one_to_one > 0.99)
-        v.say += choosers > 0 ? ", and p |Jacobian of the warp| is 1 on every branch of the choosing number"
-                              : ", and p |Jacobian of the warp| is 1";
-    else v.say += ", and p |Jacobian of the warp| is nowhere below 1";
-    v.say += ".";
+    v.say += told_of_warp(work, warps) + ".";
     return v;
 }
 

@@ -10,6 +10,49 @@ namespace crescent::inline verdicts {
 
 namespace {
 
+/// A tail that allows no test of the mean.
+void tell_heavy(const Spread& s, const Integral& expected, std::size_t draws, Verdict& v) {
+    v.state = State::inconclusive;
+    v.settle = "What settles the tail.";
+    v.say = fmt::format(
+        "inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a right "
+        "sampler as readily as a wrong one.",
+        draws, s.mean, expected.value);
+}
+
+/// The mean beside the integral: how far off where it is wrong, else how likely.
+std::string told(const Spread& s, const Integral& expected, double p, bool wrong) {
+    const std::optional<double> z = told_z(s, expected);
+    const std::string off = expected.value > 0 ? fmt::format("{:+.3g} %", 100 * (s.mean / expected.value - 1))
+                                               : fmt::format("off by {:.3g}", s.mean - expected.value);
+    const std::string both =
+        fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: ", s.mean, expected.value);
+    if (wrong)
+        return both + off + (z ? fmt::format(", z = {:.4g}", *z) : " where every weight is alike") +
+            ", and again on a fresh seed. The estimator is biased.";
+    return both + (z ? fmt::format("z = {:.2f}, p = {:.3g}.", *z, p) : off + " where every weight is alike.");
+}
+
+/// Both stages of the test, and without a pdf the same under lights from other sides.
+void judge_mean(const TrialContext& work, const Spread& s, const Integral& expected, Verdict& v) {
+    const double p = mean_p(s, expected);
+    if (const std::optional<double> z = told_z(s, expected)) v.evidence["z"] = *z;
+    v.evidence["p"] = p;
+    if (has_unmet_tail(work, false)) {
+        const std::size_t draws = work.first_weights(false).size();
+        v.say = fmt::format("{} samples read {:.6g} where quadrature says {:.6g}. ", draws, s.mean, expected.value);
+        tell_unmet(v, work.unmet(false), expected, draws);
+        return;
+    }
+    const bool wrong = mean_fails(work, p, expected, false);
+    if (!wrong && !work.traits.has_pdf && directions_are_off(work, v)) return;
+    v.state = wrong ? State::wrong : State::right;
+    v.say = told(s, expected, p, wrong);
+    if (!wrong && !work.traits.has_pdf)
+        v.say += fmt::format(" So it is under {} lights from other sides.", v.evidence["lights"].get<std::size_t>());
+    if (wrong && weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
+}
+
 Verdict judge(TrialContext& work) {
     if (!work.subject.has_f())
         return work.verdict("mean", State::skipped,
@@ -25,41 +68,8 @@ Verdict judge(TrialContext& work) {
     v.evidence["quadrature"] = expected.value;
     v.evidence["quadrature_error"] = expected.error;
     v.evidence["skewness"] = s.skew;
-    if (!mean_is_testable(s, tail_of(x), work.trial.theory)) {
-        if (!work.traits.has_pdf && directions_are_off(work, v)) return v;
-        v.state = State::inconclusive;
-        v.settle = "What settles the tail.";
-        v.say = fmt::format(
-            "inconclusive: heavy tail. {} samples read {:.5g} where quadrature says {:.5g}; a z-test would accuse a "
-            "right sampler as readily as a wrong one.",
-            x.size(), s.mean, expected.value);
-        return v;
-    }
-    const double p = mean_p(s, expected);
-    const std::optional<double> z = told_z(s, expected);
-    if (z) v.evidence["z"] = *z;
-    v.evidence["p"] = p;
-    if (has_unmet_tail(work, false)) {
-        v.say = fmt::format("{} samples read {:.6g} where quadrature says {:.6g}. ", x.size(), s.mean, expected.value);
-        tell_unmet(v, work.unmet(false), expected, x.size());
-        return v;
-    }
-    const bool wrong = mean_fails(work, p, expected, false);
-    if (!wrong && !work.traits.has_pdf && directions_are_off(work, v)) return v;
-    v.state = wrong ? State::wrong : State::right;
-    v.say = fmt::format("The mean of f L cos / p is {:.6g}, quadrature says {:.6g}: ", s.mean, expected.value);
-    const std::string off = expected.value > 0 ? fmt::format("{:+.3g} %", 100 * (s.mean / expected.value - 1))
-                                               : fmt::format("off by {:.3g}", s.mean - expected.value);
-    if (wrong)
-        v.say += off +
-            (z ? fmt::format(", z = {:.4g}, and again on a fresh seed.", *z)
-               : std::string(" where every weight is alike, and again on a fresh seed.")) +
-            " The estimator is biased.";
-    else if (z) v.say += fmt::format("z = {:.2f}, p = {:.3g}.", *z, p);
-    else v.say += fmt::format("{} where every weight is alike.", off);
-    if (!wrong && !work.traits.has_pdf)
-        v.say += fmt::format(" So it is under {} lights from other sides.", v.evidence["lights"].get<std::size_t>());
-    if (wrong && weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
+    if (mean_is_testable(s, tail_of(x), work.trial.theory)) judge_mean(work, s, expected, v);
+    else if (work.traits.has_pdf || !directions_are_off(work, v)) tell_heavy(s, expected, x.size(), v);
     return v;
 }
 

@@ -1,7 +1,9 @@
 // normalised: p integrates to one, or to one less the share of samples that draw nothing.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {
@@ -18,72 +20,92 @@ bool is_off(const TrialContext& work, int technique, double excess) {
     return student_p(excess / se, 15) < work.settings.screen * work.settings.confirm;
 }
 
+/// What the difference from one may be before anybody is accused.
+double granted(const Density& d, const Integral& m) {
+    return granted_mass + d.doubts + std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se);
+}
+
+/// What the cubature and its audit leave of the difference.
+double excess(const Density& d, const Integral& m) {
+    const double sum = m.value + d.nothing, looked = m.second + d.nothing;
+    return std::max(std::min(std::fabs(sum - 1), std::fabs(looked - 1)) - granted(d, m), 0.0);
+}
+
+/// Of two quadratures the one closer to a right sampler.
+const Integral& mass_of(const TrialContext& work, int technique) {
+    const Density& d = work.density(technique);
+    const bool second =
+        is_off(work, technique, excess(d, d.mass)) && d.second && excess(d, *d.second) < excess(d, d.mass);
+    return second ? *d.second : d.mass;
+}
+
+void note(const Density& d, const Integral& mass, const std::string& tag, Verdict& v) {
+    if (d.doubts > 0) v.evidence["table_known_to" + tag] = d.doubts;
+    v.evidence["integral" + tag] = mass.value;
+    v.evidence["quadrature_error" + tag] = mass.error;
+    v.evidence["evaluations" + tag] = mass.evaluations;
+    v.evidence["audit" + tag] = mass.second;
+    v.evidence["audit_se" + tag] = mass.second_se;
+    if (d.second) v.evidence["second_quadrature" + tag] = &mass == &d.mass ? d.second->value : d.mass.value;
+    v.evidence["unseen" + tag] = granted(d, mass);
+    v.evidence["drawn_nothing" + tag] = d.nothing;
+    v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
+    v.evidence["drawn_delta" + tag] = d.delta;
+}
+
+std::string told(const Density& d, const Integral& mass) {
+    const std::string integral = fmt::format("p integrates to {:.6f} over the sphere", mass.value);
+    if (!(d.nothing > 0)) return integral;
+    const char* rest = d.delta == 0 ? "draw nothing"
+        : d.delta == d.nothing      ? "are of delta parts"
+                                    : "draw nothing or a delta part";
+    return integral +
+        fmt::format(" and {:.6f} of the samples {}, together {:.6f}", d.nothing, rest, mass.value + d.nothing);
+}
+
+/// A sum that is not accused: one, or known too badly to say so.
+void tell_sum(const TrialContext& work, const Density& d, const Integral& mass, Verdict& v) {
+    if (mass.sampled && mass.error < 0.02) {
+        v.say = told(d, mass) +
+            fmt::format(", known to {:.2g}: {}", mass.error,
+                work.scatter().pdf()
+                    ? fmt::format("the mean of p over {} points; each is a random estimate.", mass.evaluations)
+                    : fmt::format(
+                          "p is a table of more cells than were asked for; {} points were. --full sums every cell.",
+                          mass.evaluations));
+        return;
+    }
+    if (v.state != State::right) return;  // an earlier technique has been told of
+    if (!mass.settled && mass.error > granted_mass) {
+        v.state = State::inconclusive;
+        v.say = told(d, mass) +
+            fmt::format(", but the quadrature itself is only good to {:.2g} after {} evaluations.", mass.error,
+                mass.evaluations);
+        v.settle = work.settings.full
+            ? "More evaluations (TestSettings::evaluations), or a p that jumps along fewer curves."
+            : "--full, with twelve times as many evaluations.";
+    } else if (d.doubts > granted_mass) {
+        v.say = told(d, mass) + fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.doubts);
+        if (d.doubts > 0.05) v.state = State::inconclusive, v.settle = "A finer table.";
+    } else {
+        v.say = told(d, mass) + ": one, as a density must.";
+    }
+}
+
 Verdict judge(TrialContext& work) {
     if (!work.traits.has_pdf) return work.verdict("normalised", State::skipped, "There is no pdf(w) to integrate.");
     Verdict v = work.verdict("normalised", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
-        constexpr double allowed = 1e-4;
-        const auto granted = [&](const Integral& m) {
-            return allowed + d.doubts + std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se);
-        };
-        const auto excess_of = [&](const Integral& m) {  // what the cubature and its audit leave of the difference
-            const double sum = m.value + d.nothing, looked = m.second + d.nothing;
-            return std::max(std::min(std::fabs(sum - 1), std::fabs(looked - 1)) - granted(m), 0.0);
-        };
-        const bool second = is_off(work, t, excess_of(d.mass)) && d.second && excess_of(*d.second) < excess_of(d.mass);
-        const Integral& mass = second ? *d.second : d.mass;  // the one closer to a right sampler
-        const double sum = mass.value + d.nothing;
-        const std::string tag = work.subject.techniques() > 1 ? fmt::format("_{}", t + 1) : "";
-        if (d.doubts > 0) v.evidence["table_known_to" + tag] = d.doubts;
-        v.evidence["integral" + tag] = mass.value;
-        v.evidence["quadrature_error" + tag] = mass.error;
-        v.evidence["evaluations" + tag] = mass.evaluations;
-        v.evidence["audit" + tag] = mass.second;
-        v.evidence["audit_se" + tag] = mass.second_se;
-        if (d.second) v.evidence["second_quadrature" + tag] = second ? d.mass.value : d.second->value;
-        v.evidence["unseen" + tag] = granted(mass);
-        v.evidence["drawn_nothing" + tag] = d.nothing;
-        v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
-        v.evidence["drawn_delta" + tag] = d.delta;
-        const char* rest = d.delta == 0 ? "draw nothing"
-            : d.delta == d.nothing      ? "are of delta parts"
-                                        : "draw nothing or a delta part";
-        const std::string told = d.nothing > 0
-            ? fmt::format("p integrates to {:.6f} over the sphere and {:.6f} of the samples {}, together {:.6f}",
-                  mass.value, d.nothing, rest, sum)
-            : fmt::format("p integrates to {:.6f} over the sphere", mass.value);
+        const Integral& mass = mass_of(work, t);
+        note(d, mass, work.suffix(t), v);
         ++work.tally.tests;
-        if (!std::isfinite(sum) || is_off(work, t, excess_of(mass))) {
+        if (const double sum = mass.value + d.nothing; !std::isfinite(sum) || is_off(work, t, excess(d, mass))) {
             v.state = State::wrong;
-            v.say = told + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
+            v.say = told(d, mass) + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
             return v;
         }
-        if (mass.sampled && mass.error < 0.02) {
-            v.say = told +
-                fmt::format(", known to {:.2g}: {}", mass.error,
-                    work.scatter().pdf()
-                        ? fmt::format("the mean of p over {} points; each is a random estimate.", mass.evaluations)
-                        : fmt::format("p is a table of more cells than were asked for; {} points were. --full sums "
-                                      "every cell.",
-                              mass.evaluations));
-            continue;
-        }
-        if (!mass.settled && mass.error > allowed && v.state == State::right) {
-            v.state = State::inconclusive;
-            v.say = told +
-                fmt::format(", but the quadrature itself is only good to {:.2g} after {} evaluations.", mass.error,
-                    mass.evaluations);
-            v.settle = work.settings.full
-                ? "More evaluations (TestSettings::evaluations), or a p that jumps along fewer curves."
-                : "--full, with twelve times as many evaluations.";
-        }
-        if (v.state == State::right && d.doubts > allowed) {
-            v.say = told + fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.doubts);
-            if (d.doubts > 0.05) v.state = State::inconclusive, v.settle = "A finer table.";
-        } else if (v.state == State::right) {
-            v.say = told + ": one, as a density must.";
-        }
+        tell_sum(work, d, mass, v);
     }
     return v;
 }

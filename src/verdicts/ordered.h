@@ -11,6 +11,9 @@ namespace crescent::inline verdicts {
 
 struct VerdictKind;
 
+/// What the sum of p over the sphere may differ from one by.
+inline constexpr double granted_mass = 1e-4;
+
 /// What is wrong with the first of these draws that cannot be used, "" where all can.
 std::string first_fault(const TrialContext& work, int technique, const SampleBatch& b);
 /// Faults at corners of u, and how often a generator of 24 bits comes upon such a u.
@@ -71,14 +74,6 @@ void tell_unmet(Verdict& v, const Unmet& unmet, const Integral& expected, std::s
 double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, double p);
 double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, int channel = 0);
 
-/// See repeats.cpp.
-/// The same u in the opposite order: answers that differ come from something else than wo and u.
-struct Repeated {
-    std::size_t tried = 0, other = 0;
-    Numbers u{};
-    Vec3d first{}, again{};
-};
-
 /// Whether two samplers are of one f; see against_f.cpp. A difference is told, and is wrong where none is expected.
 Verdict same_f(const TrialContext& a, const TrialContext& b, bool expect_same);
 /// Which of two samplers of one f has the smaller variance; see against_variance.cpp.
@@ -90,9 +85,20 @@ std::span<const VerdictKind* const> judged_alone();
 /// weights_in_the_mean.cpp.
 bool weights_are_off(const TrialContext& work, int technique, Verdict& v);
 
-Repeated ask_again(const TrialContext& work, int technique);
-std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b);
-std::size_t uneven_deltas(const TrialContext& work, const SampleBatch& b);
+/// The same u is answered otherwise, the very direction comes again, or a delta part comes with another weight; says
+/// so. See repeats.cpp.
+bool answers_otherwise(const TrialContext& work, int technique, Verdict& v);
+bool repeats_directions(const TrialContext& work, const SampleBatch& b, Verdict& v);
+bool has_uneven_deltas(const TrialContext& work, const SampleBatch& b, Verdict& v);
+/// What p |Jacobian of the warp| says of all techniques.
+struct WarpSummary {
+    double one_to_one = 1;  // the least share of points at which it is 1
+    int choosers = 0;       // the most numbers that choose
+};
+/// It accuses a technique, which it says, or is added to the summary; and what the summary says of a sampler that none
+/// accuses. See warp.cpp.
+bool warp_is_wrong(const TrialContext& work, int technique, WarpSummary& all, Verdict& v);
+std::string told_of_warp(const TrialContext& work, const WarpSummary& warps);
 
 /// What the draws of a sampler without pdf(w) imply of its density, as a map and a table; see implied.cpp.
 Verdict implied_density(TrialContext& work, Verdict v);

@@ -53,8 +53,7 @@ std::vector<Pair> pairs_of(const TrialContext& work, bool phase) {
 /// below, for radiance, and one over that for importance (Veach 1997, (5.14)).
 double due_ratio(const TrialContext& work, const Pair& p, int channel) {
     if (p.wo.z * p.wi.z > 0 || !work.traits.eta) return 1;
-    const Vec3d eta = *work.traits.eta;
-    const double eta2 = sqr(channel == 0 ? eta.x : channel == 1 ? eta.y : eta.z);
+    const double eta2 = sqr(channel_of(*work.traits.eta, channel));
     return (p.wo.z > 0) == !work.traits.importance ? eta2 : 1 / eta2;
 }
 
@@ -70,45 +69,56 @@ std::vector<Vec3d> f_of(const TrialContext& work, const std::vector<Pair>& pairs
     return out;
 }
 
+/// f(a, b) and f(b, a) of one channel, each times what makes them equal.
+struct BothWays {
+    double one = 0, other = 0;
+    double factor_one = 1, factor_other = 1;  // that are in them
+    double off() const { return std::fabs(one - other); }
+    double size() const { return std::max(std::fabs(one), std::fabs(other)); }
+};
+
+BothWays both_ways(const TrialContext& work, bool phase, const Pair& p, int channel, Vec3d there, Vec3d back) {
+    const double factor_one = phase ? std::fabs(p.wi.z) : due_ratio(work, p, channel),
+                 factor_other = phase ? std::fabs(p.wo.z) : 1;
+    return {
+        factor_one * channel_of(there, channel), factor_other * channel_of(back, channel), factor_one, factor_other};
+}
+
+/// They differ by more than the rounding of the directions explains.
+bool is_broken(const TrialContext& work, const Pair& p, const BothWays& f, int channel) {
+    if (f.off() <= 1e-4 * f.size() + 1e-30) return false;
+    const double loose = f.factor_one * f_conditioning(work, p.wo, p.wi, f.one / f.factor_one, channel) +
+        f.factor_other * f_conditioning(work, p.wi, p.wo, f.other / f.factor_other, channel);
+    return !(f.off() <= 1e-4 * f.size() + loose);
+}
+
 Reciprocity reciprocity(const TrialContext& work) {
     Reciprocity out;
     if (!work.traits.reciprocal || work.scatter().f()) return out;
     out.phase = is_phase_function(work);
     std::vector<Pair> pairs = pairs_of(work, out.phase), swapped;
     for (const Pair& p : pairs) swapped.push_back({p.wi, p.wo});
-    const std::vector<Vec3d> one = f_of(work, pairs), two = f_of(work, swapped);
+    const std::vector<Vec3d> there = f_of(work, pairs), back = f_of(work, swapped);
     double worst = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Pair& p = pairs[i];
         ++out.tried;
-        out.across += pairs[i].wo.z * pairs[i].wi.z < 0;
-        if (const Pair& p = pairs[i]; p.wo.z * p.wi.z < 0 && one[i].x > 0 && two[i].x > 0) {
+        out.across += p.wo.z * p.wi.z < 0;
+        if (p.wo.z * p.wi.z < 0 && there[i].x > 0 && back[i].x > 0) {
             const double down = p.wo.z > 0 ? 1 : -1;
-            out.off.push_back(down * math::log(two[i].x / (due_ratio(work, p, 0) * one[i].x)));
+            out.off.push_back(down * math::log(back[i].x / (due_ratio(work, p, 0) * there[i].x)));
             out.cosines.push_back(down * math::log(std::fabs(p.wo.z / p.wi.z)));
         }
         bool broken = false;
         for (int c = 0; c < work.traits.channels; ++c) {
-            const double back = out.phase ? std::fabs(pairs[i].wo.z) : 1;
-            const double k = out.phase ? std::fabs(pairs[i].wi.z) : due_ratio(work, pairs[i], c);
-            const double a = k *
-                (c == 0          ? one[i].x
-                        : c == 1 ? one[i].y
-                                 : one[i].z),
-                         b = back *
-                (c == 0          ? two[i].x
-                        : c == 1 ? two[i].y
-                                 : two[i].z);
-            const double off = std::fabs(a - b), size = std::max(std::fabs(a), std::fabs(b));
-            if (off <= 1e-4 * size + 1e-30) continue;
-            const double loose = k * f_conditioning(work, pairs[i].wo, pairs[i].wi, a / k, c) +
-                back * f_conditioning(work, pairs[i].wi, pairs[i].wo, b / back, c);
-            if (off <= 1e-4 * size + loose) continue;
+            const BothWays f = both_ways(work, out.phase, p, c, there[i], back[i]);
+            if (!is_broken(work, p, f, c)) continue;
             broken = true;
-            if (off / size <= worst) continue;
-            worst = off / size;
-            out.worst = pairs[i];
-            out.one = out.phase ? a : a / k;
-            out.other = b;
+            if (f.off() / f.size() <= worst) continue;
+            worst = f.off() / f.size();
+            out.worst = p;
+            out.one = out.phase ? f.one : f.one / f.factor_one;
+            out.other = f.other;
             out.channel = c;
         }
         out.broken += broken;
@@ -135,6 +145,81 @@ std::string missing_across(const TrialContext& work, const Reciprocity& r) {
     return "";
 }
 
+/// Says which pair is the worst of those that break reciprocity, and what explains them.
+void tell_broken(const TrialContext& work, const Reciprocity& r, Verdict& v) {
+    const Vec3d a = r.worst.wo, b = r.worst.wi;
+    const bool across = a.z * b.z < 0;
+    v.state = State::wrong;
+    v.say = fmt::format(
+        "f{} is not reciprocal{}: f(a, b) = {:.6g} but f(b, a) = {:.6g}{}, with a = ({:.4g}, {:.4g}, {:.4g}), b = "
+        "({:.4g}, {:.4g}, {:.4g}), and for {} of {} pairs.",
+        r.phase ? " |cos|" : "", work.traits.channels == 3 ? fmt::format(" in channel {}", r.channel + 1) : "", r.one,
+        r.other,
+        across && !r.phase
+            ? fmt::format(" and not {:.6g} times that, as the index has it", due_ratio(work, r.worst, r.channel))
+            : "",
+        a.x, a.y, a.z, b.x, b.y, b.z, r.broken, r.tried);
+    if (const std::string factor = missing_across(work, r); !factor.empty()) {
+        v.evidence["diagnosis"] = factor;
+        v.say +=
+            fmt::format(" What explains it: {} is left out of f across the surface, or stands there twice.", factor);
+    }
+}
+
+std::string told_of(const TrialContext& work, const Reciprocity& r) {
+    if (work.scatter().f()) return "f is a random estimate, whose reciprocity was not looked at,";
+    if (r.phase)
+        return fmt::format(
+            "f |cos| depends on the angle between w_o and w_i alone, as a phase function does, and is reciprocal over "
+            "{} pairs",
+            r.tried);
+    return work.traits.reciprocal ? fmt::format("f is reciprocal over {} pairs", r.tried)
+                                  : "f is said not to be reciprocal, which was not looked at";
+}
+
+/// What f reflects of an even light, and what it lets through.
+std::string given_back(const TrialContext& work, const Reciprocity& r, const Integral& albedo) {
+    const bool over = work.trial.wo.z > 0;
+    const double mirrored = luminance(delta_parts(work, work.first(0)).energy(over ? 1 : -1));
+    if (!work.whole()) return fmt::format(" and reflects {:.6f} of an even light", albedo.value + mirrored);
+    const std::string both =
+        fmt::format(" and reflects {:.6f} of an even light, and lets {:.6f} of one from {} through",
+            albedo.bins[over ? 0 : 1] + mirrored, albedo.bins[over ? 1 : 0], over ? "below" : "above");
+    if (r.phase) return both;
+    if (r.across > 0) return both + fmt::format(" ({} pairs across the surface, with eta^2)", r.across);
+    if (!work.traits.reciprocal) return both;
+    return both +
+        (work.traits.eta ? " (reciprocity across the surface is not looked at: w_o below it is not answered for)"
+                         : " (reciprocity across the surface is not looked at: the index is not known)");
+}
+
+/// The mean of the weights under L = 1 beside the quadrature, where their tail allows it.
+void judge_furnace(const TrialContext& work, const Spread& s, Verdict& v) {
+    const std::vector<double>& x = work.first_weights(true);
+    const bool even = work.trial.light.fill > 0;  // an arm that aims at disks alone is not asked for an even light
+    if (!even || !mean_is_testable(s, tail_of(x), work.trial.theory)) {
+        v.say += even ? fmt::format("; the arm's white furnace reads {:.4g}, with too heavy a tail for a test.", s.mean)
+                      : ".";
+        return;
+    }
+    const Integral reached = due_mean(work, true);
+    const double p = mean_p(s, reached);
+    v.evidence["furnace_expected"] = reached.value;
+    v.evidence["furnace_p"] = p;
+    v.say += fmt::format(
+        "; the arm's white furnace reads {:.6g} where quadrature says {:.6g} (p = {:.3g}).", s.mean, reached.value, p);
+    if (has_unmet_tail(work, true)) {
+        v.say += " ";
+        tell_unmet(v, work.unmet(true), reached, x.size());
+        return;
+    }
+    if (!mean_fails(work, p, reached, true)) return;
+    v.state = State::wrong;
+    v.say = fmt::format(
+        "The white furnace reads {:.6g}, quadrature says {:.6g}, and again on a fresh seed.", s.mean, reached.value);
+    if (weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
+}
+
 Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("physics", State::right, "");
     if (refracts_elsewhere(work, v)) return v;
@@ -146,77 +231,16 @@ Verdict judge(TrialContext& work) {
     v.evidence["albedo"] = albedo.value;
     v.evidence["albedo_error"] = albedo.error;
     if (r.broken > 0) {
-        v.state = State::wrong;
-        const bool across = r.worst.wo.z * r.worst.wi.z < 0;
-        v.say = fmt::format(
-            "f{} is not reciprocal{}: f(a, b) = {:.6g} but f(b, a) = {:.6g}{}, with a = ({:.4g}, {:.4g}, {:.4g}), b = "
-            "({:.4g}, {:.4g}, {:.4g}), and for {} of {} pairs.",
-            r.phase ? " |cos|" : "", work.traits.channels == 3 ? fmt::format(" in channel {}", r.channel + 1) : "",
-            r.one, r.other,
-            across && !r.phase
-                ? fmt::format(" and not {:.6g} times that, as the index has it", due_ratio(work, r.worst, r.channel))
-                : "",
-            r.worst.wo.x, r.worst.wo.y, r.worst.wo.z, r.worst.wi.x, r.worst.wi.y, r.worst.wi.z, r.broken, r.tried);
-        if (const std::string factor = missing_across(work, r); !factor.empty()) {
-            v.evidence["diagnosis"] = factor;
-            v.say += fmt::format(
-                " What explains it: {} is left out of f across the surface, or stands there twice.", factor);
-        }
+        tell_broken(work, r, v);
         return v;
     }
     if (creates_energy(work, albedo, v)) return v;
-    const std::vector<double>& x = work.first_weights(true);
-    const Spread s = spread(x);
+    const Spread s = spread(work.first_weights(true));
     v.evidence["furnace_mean"] = s.mean;
     v.evidence["furnace_standard_error"] = s.sd / std::sqrt(s.n);
-    v.say = work.scatter().f() ? "f is a random estimate, whose reciprocity was not looked at,"
-        : r.phase              ? fmt::format(
-                        "f |cos| depends on the angle between w_o and w_i alone, as a phase "
-                                     "function does, and is reciprocal over {} pairs",
-                        r.tried)
-        : work.traits.reciprocal ? fmt::format("f is reciprocal over {} pairs", r.tried)
-                                 : "f is said not to be reciprocal, which was not looked at";
-    const Vec3d mirrored = delta_parts(work, work.first(0)).energy(work.trial.wo.z > 0 ? 1 : -1);
-    if (!work.whole()) {
-        v.say += fmt::format(" and reflects {:.6f} of an even light", albedo.value + luminance(mirrored));
-    } else {
-        const bool over = work.trial.wo.z > 0;
-        v.say += fmt::format(" and reflects {:.6f} of an even light, and lets {:.6f} of one from {} through",
-            albedo.bins[over ? 0 : 1] + luminance(mirrored), albedo.bins[over ? 1 : 0], over ? "below" : "above");
-        if (r.phase) v.say += "";
-        else if (r.across > 0) v.say += fmt::format(" ({} pairs across the surface, with eta^2)", r.across);
-        else if (work.traits.reciprocal)
-            v.say += work.traits.eta
-                ? " (reciprocity across the surface is not looked at: w_o below it is not answered for)"
-                : " (reciprocity across the surface is not looked at: the index is not known)";
-    }
-    if (!work.weighs()) {
-        v.say += "; there is nothing to weigh draws by, hence no furnace.";
-        return v;
-    }
-    const bool even = work.trial.light.fill > 0;  // an arm that aims at disks alone is not asked for an even light
-    if (!even || !mean_is_testable(s, tail_of(x), work.trial.theory)) {
-        v.say += even ? fmt::format("; the arm's white furnace reads {:.4g}, with too heavy a tail for a test.", s.mean)
-                      : ".";
-        return v;
-    }
-    const Integral reached = due_mean(work, true);
-    const double p = mean_p(s, reached);
-    v.evidence["furnace_expected"] = reached.value;
-    v.evidence["furnace_p"] = p;
-    v.say += fmt::format(
-        "; the arm's white furnace reads {:.6g} where quadrature says {:.6g} (p = {:.3g}).", s.mean, reached.value, p);
-    if (has_unmet_tail(work, true)) {
-        v.say += " ";
-        tell_unmet(v, work.unmet(true), reached, x.size());
-        return v;
-    }
-    if (mean_fails(work, p, reached, true)) {
-        v.state = State::wrong;
-        v.say = fmt::format("The white furnace reads {:.6g}, quadrature says {:.6g}, and again on a fresh seed.",
-            s.mean, reached.value);
-        if (weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
-    }
+    v.say = told_of(work, r) + given_back(work, r, albedo);
+    if (work.weighs()) judge_furnace(work, s, v);
+    else v.say += "; there is nothing to weigh draws by, hence no furnace.";
     return v;
 }
 

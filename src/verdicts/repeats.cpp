@@ -5,8 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <fmt/format.h>
 
 #include "verdicts/delta.h"
+#include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
@@ -40,6 +42,8 @@ std::size_t met_before(const std::vector<std::array<double, 3>>& all) {
 
 }  // namespace
 
+namespace {
+
 /// Draws with the very direction of another, where that is no chance: rounding brings together as many pairs as N^2 / 2
 /// times the mean of p times the solid angle of a rounding. 0: none worth telling.
 std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b) {
@@ -58,14 +62,6 @@ std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b) 
     return static_cast<double>(out) > std::max(64.0, 20 * chance + 1e-3 * n) ? out : 0;
 }
 
-std::size_t uneven_deltas(const TrialContext& work, const SampleBatch& b) {
-    std::size_t out = 0;
-    for (const DeltaPart& p : delta_parts(work, b).parts) out += p.otherwise;
-    return out;
-}
-
-namespace {
-
 /// Loops over packs treat the last few of a block by other instructions: last bits may differ, and what hangs on them.
 /// Estimates may hang on these by a hash of the directions; `estimates`: the densities are not compared.
 bool same_answer(const Draw& x, const Draw& y, bool estimates) {
@@ -78,7 +74,12 @@ bool same_answer(const Draw& x, const Draw& y, bool estimates) {
     return nothing || length(x.wi - y.wi) <= apart;
 }
 
-}  // namespace
+/// Answers to the same u that differ.
+struct Repeated {
+    std::size_t tried = 0, other = 0;
+    Numbers u{};
+    Vec3d first{}, again{};
+};
 
 /// The same u in the opposite order: answers that differ by more than rounding come from something else than wo and u.
 Repeated ask_again(const TrialContext& work, int technique) {
@@ -98,6 +99,46 @@ Repeated ask_again(const TrialContext& work, int technique) {
         out.again = y.wi;
     }
     return out;
+}
+
+}  // namespace
+
+bool answers_otherwise(const TrialContext& work, int technique, Verdict& v) {
+    const Repeated r = ask_again(work, technique);
+    if (r.other == 0) return false;
+    v.state = State::wrong;
+    v.evidence["asked_again"] = r.tried;
+    v.evidence["answered_otherwise"] = r.other;
+    v.say = fmt::format(
+        "The same u gives another answer when it is asked again, {} of {} times; at {} first ({:.6g}, {:.6g}, {:.6g}), "
+        "then ({:.6g}, {:.6g}, {:.6g}). The sampler is no function of w_o and u: it keeps a state, draws random "
+        "numbers of its own (a sampler that says so, random=own, is judged without what needs u), or answers out of "
+        "turn.",
+        r.other, r.tried, told(r.u, work.traits.numbers), r.first.x, r.first.y, r.first.z, r.again.x, r.again.y,
+        r.again.z);
+    return true;
+}
+
+bool repeats_directions(const TrialContext& work, const SampleBatch& b, Verdict& v) {
+    const std::size_t repeats = repeated_directions(work, b);
+    if (repeats == 0) return false;
+    v.state = State::wrong;
+    v.evidence["repeated_directions"] = repeats;
+    v.say = fmt::format(
+        "{} of {} draws have the very direction of another draw: only a grid of directions is ever drawn, and p is a "
+        "density.",
+        repeats, b.draws.size());
+    return true;
+}
+
+bool has_uneven_deltas(const TrialContext& work, const SampleBatch& b, Verdict& v) {
+    std::size_t uneven = 0;
+    for (const DeltaPart& p : delta_parts(work, b).parts) uneven += p.otherwise;
+    if (uneven == 0) return false;
+    v.state = State::wrong;
+    v.evidence["uneven_deltas"] = uneven;
+    v.say = fmt::format("{} draws of a delta part come with another weight than the first of that part.", uneven);
+    return true;
 }
 
 }  // namespace crescent::inline verdicts

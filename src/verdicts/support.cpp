@@ -9,22 +9,35 @@ namespace {
 
 std::string told(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
 
+/// f is not 0 under the surface, and the sampler never goes there.
+Verdict unreached_below(const TrialContext& work) {
+    const TrialContext::Below& below = work.below();
+    Verdict v = work.verdict("support", State::inconclusive,
+        fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f "
+                    "transmits and none of that light is ever found, or f ought to return 0 there.",
+            below.f, told(below.at)));
+    v.settle = "An f that returns 0 under the surface, or a sampler that draws there.";
+    v.evidence["f_below"] = below.f;
+    return v;
+}
+
+/// p is a random estimate that was 0 wherever it was asked over part of f L cos.
+Verdict perhaps_lost(const TrialContext& work, double fraction) {
+    Verdict v = work.verdict("support", State::inconclusive,
+        fmt::format("pdf(w) is a random estimate, and came out as 0 seventeen times over directions that carry {:.4g} "
+                    "% of f L cos: it may be 0 there, or may seldom be anything else.",
+            100 * fraction));
+    v.settle = "A pdf(w) that is not 0 wherever it may be positive.";
+    v.evidence["lost_fraction"] = fraction;
+    return v;
+}
+
 Verdict judge(TrialContext& work) {
     if (!work.traits.has_pdf)
         return work.verdict("support", State::skipped, "There is no pdf(w) to tell where it is 0.");
     if (!work.subject.has_f())
         return work.verdict("support", State::skipped, "There is no BRDF to compare the support of p with.");
-    const TrialContext::Below& below = work.below();
-    if (below.transmits && !below.reached) {
-        Verdict v = work.verdict("support", State::inconclusive,
-            fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f "
-                        "transmits and none of that light is ever found, "
-                        "or f ought to return 0 there.",
-                below.f, told(below.at)));
-        v.settle = "An f that returns 0 under the surface, or a sampler that draws there.";
-        v.evidence["f_below"] = below.f;
-        return v;
-    }
+    if (work.below().transmits && !work.below().reached) return unreached_below(work);
     const Integral all = work.incoming(TrialContext::Where::everywhere, false);
     const Integral lost = work.incoming(TrialContext::Where::lost, false);
     if (!(all.value > 0))
@@ -32,6 +45,7 @@ Verdict judge(TrialContext& work) {
     const double fraction = lost.value / all.value;
     constexpr double negligible = 1e-6;  // below what a float estimate of the mean can show
     const bool wrong = fraction > negligible;
+    if (wrong && work.scatter().pdf()) return perhaps_lost(work, fraction);
     std::string say = wrong
         ? fmt::format("p is 0 over directions that carry {:.4g} % of f L cos: no number of samples ever finds it.",
               100 * fraction)
@@ -40,15 +54,6 @@ Verdict judge(TrialContext& work) {
     if (wrong && theory.lost)
         say += fmt::format(" Theory: {:.4g} % of the diffuse part, (1 - cos theta_R)/2; measured: {:.4g} %.",
             100 * *theory.lost, 100 * lost.value / theory.lost_of);
-    if (wrong && work.scatter().pdf()) {
-        Verdict v = work.verdict("support", State::inconclusive,
-            fmt::format("pdf(w) is a random estimate, and came out as 0 seventeen times over directions that carry "
-                        "{:.4g} % of f L cos: it may be 0 there, or may seldom be anything else.",
-                100 * fraction));
-        v.settle = "A pdf(w) that is not 0 wherever it may be positive.";
-        v.evidence["lost_fraction"] = fraction;
-        return v;
-    }
     Verdict v = work.verdict("support", wrong ? State::wrong : State::right, say);
     v.evidence["lost_fraction"] = fraction;
     v.evidence["quadrature_error"] = (lost.error + all.error * fraction) / all.value;

@@ -63,64 +63,78 @@ std::string samples_for(double sd, double mean) {
     return fmt::format("{:.3g}", std::max(n, 1.0));
 }
 
-Verdict judge(TrialContext& work) {
-    if (!work.subject.has_drawn_f())
-        return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
-    if (!work.weighs()) return work.verdict("tail", State::skipped, no_weights);
-    std::vector<double> x = work.first_weights(false);
-    const Spread s = spread(x);
-    const std::optional<Tail> tail = tail_of(x);
-    const double highest = *std::max_element(x.begin(), x.end());
-    const ExpectedBehaviour& theory = work.trial.theory;
-    Verdict v = work.verdict("tail", State::right, "");
-    // A program is asked for the picture in any case: what it is asked does not depend on what is written.
-    if (work.settings.pictures || work.subject.serial()) work.pictures.push_back(picture(work, x, tail));
-    v.evidence["relative_sd"] = s.mean > 0 ? s.sd / s.mean : 0;
-    v.evidence["largest_over_mean"] = s.mean > 0 ? highest / s.mean : 0;
-    if (theory.bounded) v.evidence["theory"] = "bounded";
-    if (theory.tail_k) v.evidence["theory_k"] = *theory.tail_k;
-    const bool infinite = theory.tail_k && *theory.tail_k >= 0.5;
+/// The fit to the largest weights, or that there is nothing to fit.
+void tell_fit(const std::optional<Tail>& tail, std::span<const double> x, const ExpectedBehaviour& theory, Verdict& v) {
     if (!tail) {
         const std::size_t times = times_largest(x);
         v.evidence["times_largest"] = times;
         v.say = times == x.size() || times < 20
             ? "The largest weights are all alike: no tail to speak of. "
             : fmt::format("The largest weight was drawn {} times: no tail to speak of. ", times);
-    } else {
-        v.evidence["k"] = tail->k;
-        v.evidence["se"] = tail->se;
-        v.evidence["exceedances"] = tail->exceedances;
-        v.say =
-            fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", tail->k, tail->se, tail->exceedances);
-        if (theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *theory.tail_k);
-        v.say += ". ";
+        return;
     }
-    const bool bounded = !infinite && is_bounded(s);
+    v.evidence["k"] = tail->k;
+    v.evidence["se"] = tail->se;
+    v.evidence["exceedances"] = tail->exceedances;
+    v.say = fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", tail->k, tail->se, tail->exceedances);
+    if (theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *theory.tail_k);
+    v.say += ". ";
+}
+
+/// No finite variance, or none that these draws show.
+void tell_heavy(const TrialContext& work, bool infinite, Verdict& v) {
+    v.state = State::inconclusive;
+    v.evidence["samples_for_1_percent"] = "no finite answer";
+    v.say += infinite || !work.trial.theory.bounded
+        ? "Heavy tail: the variance is infinite or looks so, no number of samples gives 1 %, and no interval means "
+          "anything."
+        : "Heavy tail at this number of samples; the weight is bounded, so the variance is finite, but it is not seen "
+          "yet.";
+    v.settle = infinite ? "No number of draws: an arm whose p falls off no faster than f L cos."
+                        : more_draws(work) + ", or an arm whose p falls off no faster than f L cos.";
+}
+
+/// Whether the variance is finite, and how many samples give 1 % where it is.
+void judge_variance(const TrialContext& work, const Spread& s, const std::optional<Tail>& tail, Verdict& v) {
+    const ExpectedBehaviour& theory = work.trial.theory;
+    const std::size_t n = work.first_weights(false).size();
+    const bool infinite = theory.tail_k && *theory.tail_k >= 0.5, bounded = !infinite && is_bounded(s);
     if (bounded)
-        v.say +=
-            fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", x.size(), s.largest / s.mean);
+        v.say += fmt::format("The largest of {} weights is {:.3g} means: they are bounded. ", n, s.largest / s.mean);
     if (!infinite && work.subject.has_f() && mean_is_testable(s, tail, theory) && has_unmet_tail(work, false)) {
         v.evidence["samples_for_1_percent"] = "not known";
-        tell_unmet(v, work.unmet(false), due_mean(work, false), x.size());
+        tell_unmet(v, work.unmet(false), due_mean(work, false), n);
     } else if (!bounded && (infinite || (tail && tail->k - 2 * tail->se >= 0.5))) {
-        v.state = State::inconclusive;
-        v.evidence["samples_for_1_percent"] = "no finite answer";
-        v.say += infinite || !theory.bounded ? "Heavy tail: the variance is infinite or looks so, no number of samples "
-                                               "gives 1 %, and no interval means anything."
-                                             : "Heavy tail at this number of samples; the weight is bounded, so the "
-                                               "variance is finite, but it is not seen yet.";
-        v.settle = infinite ? "No number of draws: an arm whose p falls off no faster than f L cos."
-                            : more_draws(work) + ", or an arm whose p falls off no faster than f L cos.";
+        tell_heavy(work, infinite, v);
     } else if (!bounded && tail && tail->k + 2 * tail->se >= 0.5) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
         v.say += "Too close to 1/2 to tell whether the variance is finite.";
         v.settle = more_draws(work) + ".";
     } else {
-        v.evidence["samples_for_1_percent"] = std::stod(samples_for(s.sd, s.mean > 0 ? s.mean : 1));
-        v.say += fmt::format(
-            "The variance is finite: about {} samples give 1 %.", samples_for(s.sd, s.mean > 0 ? s.mean : 1));
+        const std::string samples = samples_for(s.sd, s.mean > 0 ? s.mean : 1);
+        v.evidence["samples_for_1_percent"] = std::stod(samples);
+        v.say += fmt::format("The variance is finite: about {} samples give 1 %.", samples);
     }
+}
+
+Verdict judge(TrialContext& work) {
+    if (!work.subject.has_drawn_f())
+        return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
+    if (!work.weighs()) return work.verdict("tail", State::skipped, no_weights);
+    const std::vector<double>& x = work.first_weights(false);
+    const Spread s = spread(x);
+    const std::optional<Tail> tail = tail_of(x);
+    const ExpectedBehaviour& theory = work.trial.theory;
+    Verdict v = work.verdict("tail", State::right, "");
+    // A program is asked for the picture in any case: what it is asked does not depend on what is written.
+    if (work.settings.pictures || work.subject.serial()) work.pictures.push_back(picture(work, x, tail));
+    v.evidence["relative_sd"] = s.mean > 0 ? s.sd / s.mean : 0;
+    v.evidence["largest_over_mean"] = s.mean > 0 ? s.largest / s.mean : 0;
+    if (theory.bounded) v.evidence["theory"] = "bounded";
+    if (theory.tail_k) v.evidence["theory_k"] = *theory.tail_k;
+    tell_fit(tail, x, theory, v);
+    judge_variance(work, s, tail, v);
     return v;
 }
 

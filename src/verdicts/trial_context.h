@@ -109,6 +109,8 @@ public:
     /// A program is asked no more than its answers are worth: integrals are known to a fifth of what the tests grant.
     bool thrifty() const { return subject.serial() && !settings.full; }
     double tolerance() const { return thrifty() ? 2e-5 : 5e-6; }
+    /// The error of a mass that is looked at no further.
+    double enough() const { return thrifty() ? 8e-5 : 5e-5; }
 
     /// Fresh draws for another seed; bins and integrals stay.
     void redraw(std::uint32_t seed);
@@ -169,6 +171,10 @@ public:
     Integral albedo_of(int channel) const;
 
     Verdict verdict(std::string_view name, State state, std::string say) const;
+    /// Of the keys of what is measured of each technique: "_1", "_2"; "" where there is one alone.
+    std::string suffix(int technique) const {
+        return subject.techniques() > 1 ? "_" + std::to_string(technique + 1) : "";
+    }
     /// Both stages of a statistical test: p(round) is its p-value on that round's draws.
     template <class P> bool fails(double p_first, P&& p_of_round) const {
         ++tally.tests;
@@ -214,6 +220,13 @@ private:
     void find_rims(int technique);
     bool has_pole_at(const SphereMap& map, double height) const;
     void add_rims(Density& d) const;
+    struct Lobe;
+    static Lobe lobe_of(const SampleBatch& b);
+    Density density_of(int technique);
+    std::optional<Integral> mass_by_caps(int technique, const Density& bins) const;
+    bool measure_by_caps(int technique, Density& d) const;
+    void measure_about_others(int technique, const Lobe& lobe, Density& d) const;
+    void measure_further(int technique, Density& d) const;
     std::optional<Density> table_density(int technique);
     Density density_of_estimates(int technique, Vec3d axis);
     std::vector<Rect> cells_of(const Density& d) const;

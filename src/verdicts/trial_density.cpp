@@ -10,6 +10,8 @@ namespace crescent::inline verdicts {
 
 namespace {
 
+constexpr Vec3d normal{0, 0, 1};
+
 struct OutOfQuestions {};
 
 void sort_edges(std::vector<double>& rings) {
@@ -27,88 +29,101 @@ void TrialContext::measure_density() {
             (density_.back().rings.size() - 1) * static_cast<std::size_t>(settings.sectors), 0.0);
         return;
     }
-    for (int t = 0; t < subject.techniques(); ++t) {
-        const SampleBatch& b = first(t);
-        Vec3d mean{};
-        Vec3d peak{0, 0, 1};
-        double highest = 0, count = 0;
-        for (std::size_t i = 0; i < std::min<std::size_t>(b.draws.size(), 4096); ++i) {
-            const Draw& d = b.draws[i];
-            if (!(d.pdf > 0)) continue;
-            mean = mean + d.wi;
-            ++count;
-            if (d.pdf > highest) {
-                highest = d.pdf;
-                peak = d.wi;
-            }
+    for (int t = 0; t < subject.techniques(); ++t) density_.push_back(density_of(t));
+}
+
+/// Where the draws of a technique go.
+struct TrialContext::Lobe {
+    Vec3d mean{}, peak{0, 0, 1};  // mean: of a sharp one; peak: where p is highest
+    bool sharp = false;           // they crowd about the mean
+};
+
+TrialContext::Lobe TrialContext::lobe_of(const SampleBatch& b) {
+    Lobe out;
+    Vec3d sum{};
+    double highest = 0, count = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(b.draws.size(), 4096); ++i) {
+        const Draw& d = b.draws[i];
+        if (!(d.pdf > 0)) continue;
+        sum = sum + d.wi;
+        ++count;
+        if (d.pdf > highest) {
+            highest = d.pdf;
+            out.peak = d.wi;
         }
-        const bool sharp = count > 0 && length(mean) / count > 0.9;
-        const Vec3d n{0, 0, 1};
-        if (scatter_.pdf()) {
-            density_.push_back(density_of_estimates(t, sharp ? normalize(mean) : n));
-            continue;
-        }
-        if (std::optional<Density> table = table_density(t)) {
-            density_.push_back(std::move(*table));
-            continue;
-        }
-        const Vec3d axis = banded_.value_or(n);
-        Density d = sharp ? density_about(t, normalize(mean), false, settings.evaluations)
-                          : density_about(t, axis, axis.z == 1, settings.evaluations);
-        const double enough = thrifty() ? 8e-5 : 5e-5;
-        const auto by_caps = [&](const Density& bins) {
-            const std::size_t evaluations = affordable(settings.evaluations, for_later());
-            return integrate_caps(
-                *this, t, bins, guided(cells_of(bins), bins.map, guides_), {tolerance(), evaluations, 5e-5});
-        };
-        bool capped = false;
-        if (d.mass.error > 10 * enough && !pole_)  // far from it: many rims
-            if (std::optional<Integral> mass = by_caps(d); mass && mass->error < d.mass.error)
-                d.mass = std::move(*mass), capped = d.mass.error <= enough;
-        const std::size_t look = thrifty() ? settings.evaluations / 3 : settings.evaluations;  // at other coordinates
-        const bool nearly = thrifty() && d.mass.error < 3e-4;  // it is finer cells that are missing
-        if (d.mass.error > enough && circle_ && !nearly) {
-            Density other = density_about(t, *circle_, false, look);
-            if (other.mass.error < d.mass.error) d = std::move(other);
-        }
-        if (d.mass.error > enough) {
-            Density other = nearly ? d
-                : sharp            ? density_about(t, n, true, look)
-                                   : density_about(t, normalize(peak), false, look);
-            if (other.mass.error < d.mass.error) d = std::move(other);
-            if (d.mass.error > 1e-4) {
-                // A program answered for most of the cells so far, which cost nothing now.
-                const std::size_t known = thrifty() ? d.mass.evaluations : 0;
-                const Batch ask = batch_of(t, d.map);
-                const auto while_affordable = [&](std::span<const Vec2d> at, std::span<double> out) {
-                    if (affordable(at.size() + 2000, for_later()) < at.size() + 2000) throw OutOfQuestions{};
-                    ask(at, out);
-                };
-                other = d;
-                const SamplesPerBin seen = witnesses_of(t, d);
-                try {
-                    other.mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
-                        while_affordable,
-                        {tolerance(), affordable(6 * settings.evaluations, for_later()) + known,
-                            thrifty() ? 5e-5 : 1e-4},
-                        &seen);
-                    if (other.mass.error < d.mass.error) d = std::move(other);
-                } catch (const OutOfQuestions&) {}  // what is known so far stays
-            }
-            if (d.mass.error > 1e-4 && !thrifty()) {  // built-in arms answer at once: finer along jumps
-                other = density_about(t, d.map.frame.n, d.about_n, 6 * settings.evaluations, 2e-5);
-                if (other.mass.error < d.mass.error) d = std::move(other);
-            }
-        }
-        share_nothing(t, d);
-        // A failure needs a second quadrature that confirms it; a sum over bands in which p is constant does not.
-        const bool summed = banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6;
-        if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se)
-            d.second = capped
-                ? by_caps(bins_about(d.about_n ? normalize(peak) : n, !d.about_n))
-                : density_about(t, d.about_n ? normalize(peak) : n, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
-        density_.push_back(std::move(d));
     }
+    out.sharp = count > 0 && length(sum) / count > 0.9;
+    if (out.sharp) out.mean = normalize(sum);
+    return out;
+}
+
+Density TrialContext::density_of(int t) {
+    const Lobe lobe = lobe_of(first(t));
+    if (scatter_.pdf()) return density_of_estimates(t, lobe.sharp ? lobe.mean : normal);
+    if (std::optional<Density> table = table_density(t)) return std::move(*table);
+    const Vec3d axis = banded_.value_or(normal);
+    Density d = lobe.sharp ? density_about(t, lobe.mean, false, settings.evaluations)
+                           : density_about(t, axis, axis.z == 1, settings.evaluations);
+    const bool capped = measure_by_caps(t, d);
+    measure_about_others(t, lobe, d);
+    share_nothing(t, d);
+    // A failure needs a second quadrature that confirms it; a sum over bands in which p is constant does not.
+    const bool summed = banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6;
+    if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se) {
+        const Vec3d other = d.about_n ? normalize(lobe.peak) : normal;
+        d.second = capped ? mass_by_caps(t, bins_about(other, !d.about_n))
+                          : density_about(t, other, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
+    }
+    return d;
+}
+
+std::optional<Integral> TrialContext::mass_by_caps(int t, const Density& bins) const {
+    const std::size_t evaluations = affordable(settings.evaluations, for_later());
+    return integrate_caps(*this, t, bins, guided(cells_of(bins), bins.map, guides_), {tolerance(), evaluations, 5e-5});
+}
+
+/// Where the mass is far from known: many rims. Returns whether caps alone make it known.
+bool TrialContext::measure_by_caps(int t, Density& d) const {
+    if (!(d.mass.error > 10 * enough()) || pole_) return false;
+    std::optional<Integral> mass = mass_by_caps(t, d);
+    if (!mass || !(mass->error < d.mass.error)) return false;
+    d.mass = std::move(*mass);
+    return d.mass.error <= enough();
+}
+
+/// Until the mass is known well enough: about the axis of a circular rim, about the normal or the peak, and with more
+/// evaluations. What is known best stays.
+void TrialContext::measure_about_others(int t, const Lobe& lobe, Density& d) const {
+    const auto keep_better = [&d](Density other) {
+        if (other.mass.error < d.mass.error) d = std::move(other);
+    };
+    const std::size_t look = thrifty() ? settings.evaluations / 3 : settings.evaluations;
+    const bool nearly = thrifty() && d.mass.error < 3e-4;  // it is finer cells that are missing
+    if (d.mass.error > enough() && circle_ && !nearly) keep_better(density_about(t, *circle_, false, look));
+    if (!(d.mass.error > enough())) return;
+    if (!nearly)
+        keep_better(
+            lobe.sharp ? density_about(t, normal, true, look) : density_about(t, normalize(lobe.peak), false, look));
+    if (d.mass.error > 1e-4) measure_further(t, d);
+    if (d.mass.error > 1e-4 && !thrifty())  // built-in arms answer at once: finer along jumps
+        keep_better(density_about(t, d.map.frame.n, d.about_n, 6 * settings.evaluations, 2e-5));
+}
+
+/// In the same cells for as long as questions are left. A program answered for most of them, which cost nothing now.
+void TrialContext::measure_further(int t, Density& d) const {
+    const std::size_t known = thrifty() ? d.mass.evaluations : 0;
+    const Batch ask = batch_of(t, d.map);
+    const auto while_affordable = [&](std::span<const Vec2d> at, std::span<double> out) {
+        if (affordable(at.size() + 2000, for_later()) < at.size() + 2000) throw OutOfQuestions{};
+        ask(at, out);
+    };
+    const SamplesPerBin seen = witnesses_of(t, d);
+    try {
+        Integral mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
+            while_affordable,
+            {tolerance(), affordable(6 * settings.evaluations, for_later()) + known, thrifty() ? 5e-5 : 1e-4}, &seen);
+        if (mass.error < d.mass.error) d.mass = std::move(mass);
+    } catch (const OutOfQuestions&) {}  // what is known so far stays
 }
 
 /// p that is a random estimate, by points at random; a second time about other coordinates where it does not come to

@@ -1,0 +1,136 @@
+// Counts by bin, ring and sector beside what p has due there.
+#include "verdicts/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "math/distributions.h"
+
+namespace crescent::inline verdicts {
+
+namespace {
+
+/// Draws by bin. slack: what `due` is known to, by cubature and where p was tabulated.
+struct Counts {
+    std::vector<double> seen, due, slack;
+    explicit Counts(std::size_t bins) : seen(bins), due(bins), slack(bins) {}
+};
+
+struct Binned {
+    Counts bins, rings, sectors;
+};
+
+/// Pools neighbours until 5 are expected. What cannot reach 5 in the end joins the last pool. The slack is taken off
+/// the difference.
+Pearson pearson(const Counts& counts) {
+    struct Pool {
+        double seen = 0, due = 0, slack = 0;
+        void add(const Pool& other) { seen += other.seen, due += other.due, slack += other.slack; }
+    };
+    std::vector<Pool> pools;
+    Pool last;
+    Pearson out;
+    for (std::size_t i = 0; i < counts.due.size(); ++i) {
+        const Pool bin{counts.seen[i], std::max(counts.due[i], 0.0), counts.slack[i]};
+        if (counts.due[i] < 1e-6) {
+            ++out.empty;
+            out.empty_observed += bin.seen;
+            out.empty_expected += bin.due;
+        }
+        last.add(bin);
+        if (last.due >= 5) pools.push_back(std::exchange(last, {}));
+    }
+    if (pools.empty()) return out;
+    pools.back().add(last);
+    for (const Pool& p : pools) out.statistic += sqr(std::max(std::fabs(p.seen - p.due) - p.slack, 0.0)) / p.due;
+    out.pools = pools.size();
+    out.degrees = static_cast<double>(pools.size()) - 1;
+    out.p = chi_squared_p(out.statistic, out.degrees);
+    return out;
+}
+
+std::vector<double> count(const TrialContext& work, const Density& d, const SampleBatch& b, double& nothing) {
+    std::vector<double> bins(d.mass.bins.size());
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        work.subject.make_way(1);
+        if (is_null_sample(b.draws[i], b.pdf[i])) {
+            ++nothing;
+            continue;
+        }
+        ++bins[d.bin_of(d.map.coordinates(b.draws[i].wi))];
+    }
+    return bins;
+}
+
+/// Of n draws those due for a mass of one. What draws nothing is left by p, and the share that was drawn is what p is
+/// scaled to, so that the normalisation is not judged twice. The sum of a table says less than its bins.
+double due_for_one(const Density& d, double n) {
+    const bool table = d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;
+    return table ? n : n * (1 - d.nothing) / d.mass.value;
+}
+
+/// What the draws of each bin, ring and sector are beside those due; of a p that is a random estimate with three
+/// standard errors each, of points of their own.
+Binned binned(const Density& d, const std::vector<double>& seen, double due_for_one, bool estimates) {
+    const std::size_t sectors = static_cast<std::size_t>(d.sectors);
+    Binned out{Counts(seen.size()), Counts(d.rings.size() - 1), Counts(sectors)};
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const double due = due_for_one * d.mass.bins[i],
+                     slack = due_for_one *
+            ((d.doubt.empty() ? 0 : d.doubt[i]) + (estimates ? 1 : 3) * d.mass.bin_errors[i] +
+                2 * d.nothing_se * d.mass.bins[i]);
+        const auto add = [&](Counts& to, std::size_t k, double of_slack) {
+            to.seen[k] += seen[i], to.due[k] += due, to.slack[k] += of_slack;
+        };
+        add(out.bins, i, slack);
+        add(out.rings, i / sectors, estimates ? sqr(slack) : slack);
+        add(out.sectors, i % sectors, estimates ? sqr(slack) : slack);
+    }
+    if (estimates)
+        for (Counts* sums : {&out.rings, &out.sectors})
+            for (double& v : sums->slack) v = std::sqrt(v);
+    return out;
+}
+
+/// Rings that expect next to nothing: the Poisson law; the error of p is granted, which no bin states so far out.
+void set_apart(const Density& d, double n, Binned& counts, Fit& out) {
+    const std::size_t sectors = static_cast<std::size_t>(d.sectors);
+    for (std::size_t i = 0; i < counts.rings.due.size(); ++i) {
+        if (counts.rings.due[i] >= std::max(1.0, 1e-5 * n)) continue;
+        out.outside_seen += std::exchange(counts.rings.seen[i], 0);
+        out.outside_due += std::exchange(counts.rings.due[i], 0);
+        for (std::size_t k = i * sectors; k < (i + 1) * sectors; ++k) {
+            counts.sectors.seen[k % sectors] -= std::exchange(counts.bins.seen[k], 0);
+            counts.sectors.due[k % sectors] -= std::exchange(counts.bins.due[k], 0);
+        }
+    }
+    if (out.outside_seen > 0)
+        out.outside_p = math::poisson_tail(out.outside_due + n * (1e-4 + d.mass.error + d.doubts), out.outside_seen);
+}
+
+}  // namespace
+
+Fit fit(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
+    Fit out;
+    const bool estimates = work.scatter().pdf();
+    if (!estimates) out.clump = densest_clump(work, technique, d, b);  // which needs p itself at the draws
+    double nothing = 0;
+    out.observed = count(work, d, b, nothing);
+    const double n = static_cast<double>(b.draws.size());
+    Binned counts = binned(d, out.observed, due_for_one(d, n), estimates);
+    out.expected = counts.bins.due;
+    set_apart(d, n, counts, out);
+    if (n * d.nothing >= 5) {  // nothing drawn is one more bin
+        counts.bins.seen.insert(counts.bins.seen.begin(), nothing);
+        counts.bins.due.insert(counts.bins.due.begin(), n * d.nothing);
+        counts.bins.slack.insert(counts.bins.slack.begin(), 2 * n * d.nothing_se);
+    }
+    out.joint = pearson(counts.bins);
+    out.rings = pearson(counts.rings);
+    out.sectors = pearson(counts.sectors);
+    out.joint.empty_observed += out.outside_seen;
+    return out;
+}
+
+}  // namespace crescent::inline verdicts

@@ -1,0 +1,28 @@
+// Draws held against a density, by Pearson's chi-square over bins whose expected counts come from adaptive cubature in
+// double; bins are pooled along their ring, then outwards, until 5 are expected in each.
+#pragma once
+
+#include <vector>
+
+#include "verdicts/ordered.h"
+
+namespace crescent::inline verdicts {
+
+struct Pearson {
+    double statistic = 0, degrees = -1;  // one degree goes to the total
+    double p = 1;
+    std::size_t pools = 0, empty = 0;  // pools tested; bins with an expectation below 1e-6
+    double empty_observed = 0, empty_expected = 0;
+};
+
+struct Fit {
+    Pearson joint, rings, sectors;
+    double outside_p = 1;  // of as many draws where p integrates to next to nothing
+    double outside_seen = 0, outside_due = 0;
+    Clump clump;
+    std::vector<double> observed, expected;
+};
+
+Fit fit(const TrialContext& work, int technique, const Density& d, const SampleBatch& b);
+
+}  // namespace crescent::inline verdicts
