@@ -64,6 +64,30 @@ std::vector<CLI::Option*> outputs(CLI::App& c, CheckFlags& f) {
     return files;
 }
 
+/// A sampler of the caller's own.
+struct Own {
+    CLI::Option *exec, *plugin, *samples;
+};
+
+Own own_samplers(CLI::App& c, CheckFlags& f) {
+    return {c.add_option("--exec", f.exec, "judge a program that answers over a pipe")
+                ->type_name("'PROGRAM ARGS'")
+                ->check(told),
+        c.add_option("--plugin", f.plugin, "judge a shared library, see docs/plugins.md")
+            ->type_name("FILE")
+            ->check(told),
+        c.add_option("--samples", f.samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told)};
+}
+
+/// How long a program may take.
+void limits(CLI::App& c, CheckFlags& f, CLI::Option* exec) {
+    c.add_option("--patience", f.patience, "s that --exec may take in all; default 120, with --full 3600")
+        ->type_name("SECONDS")
+        ->needs(exec)
+        ->check(CLI::Range(0.01, 1e6));
+    c.add_flag("--accept-few", f.accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, Work& work) {
@@ -89,19 +113,8 @@ void add_check(CLI::App& app, Work& work) {
                       ->excludes(arm)
                       ->excludes(set)
                       ->excludes(planted);
-    auto* exec = c->add_option("--exec", f->exec, "judge a program that answers over a pipe")
-                     ->type_name("'PROGRAM ARGS'")
-                     ->check(told);
-    auto* plugin = c->add_option("--plugin", f->plugin, "judge a shared library, see docs/plugins.md")
-                       ->type_name("FILE")
-                       ->check(told);
-    auto* samples =
-        c->add_option("--samples", f->samples, "judge samples in a .csv or .npy file")->type_name("FILE")->check(told);
-    c->add_option("--patience", f->patience, "s that --exec may take in all; default 120, with --full 3600")
-        ->type_name("SECONDS")
-        ->needs(exec)
-        ->check(CLI::Range(0.01, 1e6));
-    c->add_flag("--accept-few", f->accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
+    const auto [exec, plugin, samples] = own_samplers(*c, *f);
+    limits(*c, *f, exec);
     auto* right =
         c->add_option("--right", f->right,
              "judge so many right samplers at random parameters; with --error-rates in quick and in full mode")

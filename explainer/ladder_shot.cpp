@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "drawing.h"
 #include "formulas.h"
@@ -40,6 +41,26 @@ std::vector<std::size_t> shown_of(const Ladder& ladder) {
     return out;
 }
 
+/// An arm's rungs in the chart.
+struct Line {
+    std::vector<Point> points;
+    Words name;
+    Colour ink;
+};
+
+Line line_of(const Data& data, const std::string& arm, const LogPlot& plot) {
+    return {points_of(ladder_of(data, arm), plot), Words(data.arm(arm)), data.ink(arm)};
+}
+
+/// One that stood there before.
+void draw_dim(Frame& f, const Line& old) {
+    const double in = f.ease(0.6, 1.2);
+    f.polyline(old.points, old.ink, 4, 0.55 * in);
+    for (const Point& p : old.points) f.dot(p, 7, old.ink, 0.55 * in);
+    f.text({old.points.back().x - 250, old.points.back().y - 96, 270, 44}, old.name,
+        with(with(label_text, old.ink), Align::right), in);
+}
+
 }  // namespace
 
 const Ladder& ladder_of(const Data& data, const std::string& arm) {
@@ -69,46 +90,40 @@ Shot ladder_shot(const Data& data, const LadderStory& story) {
         blocks.push_back(photograph_of(data, plates::view(data.film(key)), crop.box));
         labels.push_back(Words("N\u00a0=\u00a0", data.n_of(key), ", off by ", data.rmse(key, data.cast.highlight)));
     }
-    const std::vector<Point> points = points_of(ladder, plot);
-    std::vector<Point> old;
-    if (!story.before.empty()) old = points_of(ladder_of(data, story.before), plot);
-    const Words slope = slope_words(ladder), name(data.arm(story.arm)),
-                old_name(story.before.empty() ? Words() : Words(data.arm(story.before)));
-    const Colour ink = data.ink(story.arm), old_ink = story.before.empty() ? ink : data.ink(story.before);
+    const Line line = line_of(data, story.arm, plot);
+    std::optional<Line> old;
+    if (!story.before.empty()) old = line_of(data, story.before, plot);
+    const Words slope = slope_words(ladder);
     std::vector<std::uint64_t> ticks = ladder.n;
 
     Shot shot;
     shot.kind = Kind::photograph;
-    const double line = first + each * double(blocks.size());
+    const double stands = first + each * double(blocks.size());
     shot.cues = {{0.5, story.opening}};
-    for (std::size_t k = 0; k < story.after.size(); ++k) shot.cues.push_back({line + 5.4 * double(k), story.after[k]});
-    shot.seconds = line + 5.4 * double(story.after.size());
+    for (std::size_t k = 0; k < story.after.size(); ++k)
+        shot.cues.push_back({stands + 5.4 * double(k), story.after[k]});
+    shot.seconds = stands + 5.4 * double(story.after.size());
     shot.still = shot.seconds - 0.8;
     shot.draw = [=](Frame& f) {
         plot.axes(f, ticks, Words("samples a pixel, N"), Words("RMSE in the highlight"), f.ease(0.4, 1));
-        if (!old.empty()) {
-            f.polyline(old, old_ink, 4, 0.55 * f.ease(0.6, 1.2));
-            for (const Point& p : old) f.dot(p, 7, old_ink, 0.55 * f.ease(0.6, 1.2));
-            f.text({old.back().x - 250, old.back().y - 96, 270, 44}, old_name,
-                with(with(label_text, old_ink), Align::right), f.ease(0.6, 1.2));
-        }
+        if (old && !old->points.empty()) draw_dim(f, *old);
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const double at = first + each * double(k), in = f.ease(at, at + 0.5);
             const double x = 90 + 430.0 * double(k % 2), y = 122 + 388.0 * double(k / 2);
             show(f, blocks[k], crop.times, {x, y, 380, 310}, in);
             f.text({x, y + 318, 380, 48}, labels[k], with(body_text, Vertical::middle), in);
         }
-        const int n = f.steps(first, line, static_cast<int>(points.size()));
-        f.polyline(begun(points, f.ease(line, line + 1.5)), ink, 5);
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            const double at = first + each * double(blocks.size()) * double(k) / double(points.size());
-            f.dot(points[k], 11, ink, f.ease(at + 0.4, at + 0.9));
+        const int n = f.steps(first, stands, static_cast<int>(line.points.size()));
+        f.polyline(begun(line.points, f.ease(stands, stands + 1.5)), line.ink, 5);
+        for (std::size_t k = 0; k < line.points.size(); ++k) {
+            const double at = first + each * double(blocks.size()) * double(k) / double(line.points.size());
+            f.dot(line.points[k], 11, line.ink, f.ease(at + 0.4, at + 0.9));
         }
-        if (n == 0 && points.empty()) return;
-        f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, name, with(label_text, ink),
-            f.ease(first, first + 0.6));
+        if (n == 0 && line.points.empty()) return;
+        f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, line.name,
+            with(label_text, line.ink), f.ease(first, first + 0.6));
         f.text({plot.plot.x + 30, plot.plot.bottom() - 66, plot.plot.w - 40, 48}, slope, with_px(label_text, 34),
-            f.ease(line + 1.2, line + 1.8));
+            f.ease(stands + 1.2, stands + 1.8));
     };
     return shot;
 }

@@ -39,23 +39,11 @@ Words second_answer(const Data& data, const Order& h, const Order& s) {
         " ", data.rmse(s.low, c.surround), ", ", data.arm(s.high.arm), " ", data.rmse(s.high, c.surround), ".");
 }
 
-}  // namespace
-
-Shot columns(const Data& data) {
+std::vector<Cue> cues_of(const Data& data) {
     const Cast& c = data.cast;
-    const Closeup all = whole_or_part(data, whole_slot), crop = whole_or_part(data, {0, 0, 580, 500});
-    const Block whole = photograph_of(data, plates::view(&data.reference()), all.box);
-    const std::vector<Column> cols = columns_of(data, crop.box);
     const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
     const Order s = order_of(data, data.key(c.cosine), data.key(c.phong), c.surround);
-    const Box box_h = data.box(c.highlight), box_s = data.box(c.surround);
-
-    Shot shot;
-    shot.name = "columns", shot.title = Words("Same light, same N"), shot.kind = Kind::photograph;
-    shot.seen = Words(
-        "The converged picture with two regions outlined, the highlight and the surround. Then three columns of the "
-        "same view, aimed three ways; under each its error in both regions.");
-    shot.cues = {{0.6, Words("One scene. A small bright key light, a dim even fill, and a glossy ball.")},
+    return {{0.6, Words("One scene. A small bright key light, a dim even fill, and a glossy ball.")},
         {5.4,
             Words("Each pixel gets N\u00a0=\u00a0", data.n_of(data.key(c.cosine)),
                 " rays, in one of three ways of aiming.")},
@@ -65,6 +53,23 @@ Shot columns(const Data& data) {
             Words("In the highlight, ", data.arm(h.low.arm), " is off by ", data.rmse(h.low, c.highlight), " and ",
                 data.arm(h.high.arm), " by ", data.rmse(h.high, c.highlight), ".")},
         {29, second_answer(data, h, s)}};
+}
+
+}  // namespace
+
+Shot columns(const Data& data) {
+    const Cast& c = data.cast;
+    const Closeup all = whole_or_part(data, whole_slot), crop = whole_or_part(data, {0, 0, 580, 500});
+    const Block whole = photograph_of(data, plates::view(&data.reference()), all.box);
+    const std::vector<Column> cols = columns_of(data, crop.box);
+    const Box box_h = data.box(c.highlight), box_s = data.box(c.surround);
+
+    Shot shot;
+    shot.name = "columns", shot.title = Words("Same light, same N"), shot.kind = Kind::photograph;
+    shot.seen = Words(
+        "The converged picture with two regions outlined, the highlight and the surround. Then three columns of the "
+        "same view, aimed three ways; under each its error in both regions.");
+    shot.cues = cues_of(data);
     shot.seconds = 35, shot.still = 34;
     shot.draw = [=](Frame& f) {
         const double before = 1 - f.ease(17.2, 17.7), now = f.ease(17.8, 18.5);

@@ -32,7 +32,33 @@ struct Column {
     Words name, highlight, surround;
     std::vector<Point> lobe;
     Point foot;
+    double error = 0;  // in the highlight
 };
+
+constexpr double width = 576, between = 36;
+
+/// Left edge of column k of `count`.
+double left_of(std::size_t k, std::size_t count) {
+    return (sheet_width - width * double(count) - between * double(count - 1)) / 2 + (width + between) * double(k);
+}
+
+/// The first, the middle and the last exponent.
+std::vector<Column> columns_of(const Data& data, const Box& box) {
+    const auto& control = *data.experiment.exponent;
+    const std::size_t count = std::min<std::size_t>(control.s.size(), 3);
+    const std::string sampler = data.experiment.find_arm(control.arm)->sampler, highlight = data.cast.highlight;
+    std::vector<Column> out;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double s = control.s[k * (control.s.size() - 1) / (count - 1)];
+        const RunKey key = data.key(control.arm, control.n, s);
+        const Point foot{left_of(k, count) + width / 2 - 60, 312};
+        out.push_back({photograph_of(data, plates::view(data.film(key)), box), Words("s\u00a0=\u00a0", data.s_of(key)),
+            Words("highlight ", data.rmse(key, highlight)), Words("surround ", data.rmse(key, data.cast.surround)),
+            lobe_of(plates::Density(data.experiment, sampler, s, leaning), foot, 150), foot,
+            data.region(key, highlight)->rmse});
+    }
+    return out;
+}
 
 }  // namespace
 
@@ -42,24 +68,9 @@ Shot exponent(const Data& data) {
     const auto& control = data.experiment.exponent;
     if (!control || control->s.size() < 2) return shot;
     const Closeup crop = close_up(data, data.box(c.highlight), {0, 0, 576, 396}, 1.5);
-    std::vector<Column> cols;
-    const std::size_t count = std::min<std::size_t>(control->s.size(), 3);
-    const double w = 576, between = 36, x0 = (sheet_width - w * double(count) - between * double(count - 1)) / 2;
-    std::vector<double> errors;
-    for (std::size_t k = 0; k < count; ++k) {
-        const double s = control->s[k * (control->s.size() - 1) / (count - 1)];
-        const RunKey key = data.key(control->arm, control->n, s);
-        const Point foot{x0 + (w + between) * double(k) + w / 2 - 60, 312};
-        const std::string sampler = data.experiment.find_arm(control->arm)->sampler;
-        cols.push_back(
-            {photograph_of(data, plates::view(data.film(key)), crop.box), Words("s\u00a0=\u00a0", data.s_of(key)),
-                Words("highlight ", data.rmse(key, c.highlight)), Words("surround ", data.rmse(key, c.surround)),
-                lobe_of(plates::Density(data.experiment, sampler, s, leaning), foot, 150), foot});
-        errors.push_back(data.region(key, c.highlight)->rmse);
-    }
+    const std::vector<Column> cols = columns_of(data, crop.box);
     const Colour ink = data.ink(control->arm);
-    const auto best = std::size_t(std::ranges::min_element(errors) - errors.begin());
-    const Words arm(data.arm(control->arm));
+    const auto best = std::size_t(std::ranges::min_element(cols, {}, &Column::error) - cols.begin());
 
     shot.name = "exponent", shot.title = Words("A sharper lobe"), shot.kind = Kind::photograph;
     shot.seen = Words(
@@ -75,16 +86,16 @@ Shot exponent(const Data& data) {
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < cols.size(); ++k) {
             const Column& col = cols[k];
-            const double x = x0 + (w + between) * double(k), in = f.ease(0.5 + 1.2 * double(k), 1.3 + 1.2 * double(k));
+            const double x = left_of(k, cols.size()), in = f.ease(0.5 + 1.2 * double(k), 1.3 + 1.2 * double(k));
             f.line({col.foot.x - 150, col.foot.y}, {col.foot.x + 250, col.foot.y}, muted, 3, in);
             f.polygon(col.lobe, ink, 0.3 * in);
             f.polyline(col.lobe, ink, 4, in);
             f.text({col.foot.x + 124, col.foot.y - 130, 200, 50}, col.name, with_px(title_text, 44), in);
-            show(f, col.block, crop.times, {x, 342, w, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
+            show(f, col.block, crop.times, {x, 342, width, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
             const double told = f.ease(11.5, 12.1);
-            f.text({x, 748, w, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
-            f.text(
-                {x, 796, w, 48}, col.surround, with(with(label_text, surround_ink), Align::centre), f.ease(14, 14.6));
+            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), told);
+            f.text({x, 796, width, 48}, col.surround, with(with(label_text, surround_ink), Align::centre),
+                f.ease(14, 14.6));
         }
     };
     return shot;

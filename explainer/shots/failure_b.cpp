@@ -51,6 +51,32 @@ void draw_bars(Frame& f, const std::vector<Bar>& bars, double up) {
     }
 }
 
+bool is_starved(const Data& data) {
+    const Cast& c = data.cast;
+    return order_of(data, data.key(c.cosine), data.key(c.phong), c.surround).high.arm == c.phong;
+}
+
+std::vector<Cue> cues_of(const Data& data) {
+    const Cast& c = data.cast;
+    const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
+    const double reference = mean_of(data.reference().y), phong = data.meter(data.key(c.phong))->y_mean;
+    const bool starved = is_starved(data);
+    return {
+        {0.5,
+            h.low.arm == c.phong ? Words("It wins the highlight. So why not aim along the mirror direction everywhere?")
+                                 : Words("And if every pixel is aimed along the mirror direction?"),
+            true},
+        {10.5, Words("Plinth and floor are matt: they gather light from the whole hemisphere.")},
+        {16,
+            starved ? Words("A lobe around one direction leaves the rest to rare, huge samples: specks.")
+                    : Words("Here the lobe does no worse than the cosine, at this seed.")},
+        {21.5,
+            phong < 0.9 * reference
+                ? Words("And the whole picture is too dark: ",
+                      percent(1 - phong / reference, 2, "y_mean and reference"), " of its light is missing.")
+                : Words("The mean of the frame is close to the reference, at this seed.")}};
+}
+
 }  // namespace
 
 Shot failure_b(const Data& data) {
@@ -70,10 +96,7 @@ Shot failure_b(const Data& data) {
         inks.push_back(data.ink(arm));
     }
     const std::vector<Bar> bars = bars_of(data);
-    const Order h = order_of(data, data.key(c.cosine), data.key(c.phong), c.highlight);
-    const Order s = order_of(data, data.key(c.cosine), data.key(c.phong), c.surround);
-    const double reference = mean_of(data.reference().y), phong = data.meter(data.key(c.phong))->y_mean;
-    const bool starved = s.high.arm == c.phong;
+    const bool starved = is_starved(data);
 
     Shot shot;
     shot.name = "failure-b", shot.kind = Kind::photograph;
@@ -82,20 +105,7 @@ Shot failure_b(const Data& data) {
         "The whole picture by the Phong arm. Then the surround enlarged, cosine beside Phong; then the mean of the "
         "frame as bars: "
         "reference, cosine, Phong.");
-    shot.cues = {
-        {0.5,
-            h.low.arm == c.phong ? Words("It wins the highlight. So why not aim along the mirror direction everywhere?")
-                                 : Words("And if every pixel is aimed along the mirror direction?"),
-            true},
-        {10.5, Words("Plinth and floor are matt: they gather light from the whole hemisphere.")},
-        {16,
-            starved ? Words("A lobe around one direction leaves the rest to rare, huge samples: specks.")
-                    : Words("Here the lobe does no worse than the cosine, at this seed.")},
-        {21.5,
-            phong < 0.9 * reference
-                ? Words("And the whole picture is too dark: ",
-                      percent(1 - phong / reference, 2, "y_mean and reference"), " of its light is missing.")
-                : Words("The mean of the frame is close to the reference, at this seed.")}};
+    shot.cues = cues_of(data);
     shot.seconds = 27.5, shot.still = 26.5;
     shot.draw = [=](Frame& f) {
         const double before = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), now = f.ease(10.4, 11.1);

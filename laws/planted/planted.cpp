@@ -31,39 +31,18 @@ Vec3d about(Vec3d axis, double cos, double turns) { return frame_about(axis).to_
 bool in_patch(Vec3d w) { return dot(w, tilt(40, 70)) > 0.8; }
 double rounded(double v) { return static_cast<double>(static_cast<float>(v)); }
 
+Bend with_u(std::function<Vec2d(Vec2d)> u) { return {.u = std::move(u)}; }
+Bend with_pdf(std::function<double(const Pair&, double)> pdf) { return {.pdf = std::move(pdf)}; }
+Bend with_draw(std::function<void(Vec3d, Vec2d, Draw&)> draw) { return {.draw = std::move(draw)}; }
+Bend with_f(std::function<double(const Pair&, double)> f) { return {.f = std::move(f)}; }
+Bend with_mis(std::function<double(int, const Pair&, double)> mis) { return {.mis = std::move(mis)}; }
 Bend scaled_pdf(double by) {
-    Bend b;
-    b.pdf = [by](const Pair&, double p) { return by * p; };
-    return b;
-}
-Bend with_u(std::function<Vec2d(Vec2d)> u) {
-    Bend b;
-    b.u = std::move(u);
-    return b;
-}
-Bend with_pdf(std::function<double(const Pair&, double)> pdf) {
-    Bend b;
-    b.pdf = std::move(pdf);
-    return b;
-}
-Bend with_draw(std::function<void(Vec3d, Vec2d, Draw&)> draw) {
-    Bend b;
-    b.draw = std::move(draw);
-    return b;
-}
-Bend with_f(std::function<double(const Pair&, double)> f) {
-    Bend b;
-    b.f = std::move(f);
-    return b;
-}
-Bend with_mis(std::function<double(int, const Pair&, double)> mis) {
-    Bend b;
-    b.mis = std::move(mis);
-    return b;
+    return with_pdf([by](const Pair&, double p) { return by * p; });
 }
 using S = const SurfaceSetup&;
 
-void density_faults(std::vector<Plan>& out) {
+/// Of the pdf of Phong's and the cosine lobe.
+void lobe_density_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"s+2 for s+1 in the pdf", "phong", phong, false, "fill", 32,
         [](S f) { return scaled_pdf((f.s + 2) / (f.s + 1)); }});
@@ -95,6 +74,10 @@ void density_faults(std::vector<Plan>& out) {
         [](S) { return with_pdf([](const Pair& a, double p) { return p * std::max(a.wi.z, 0.0); }); }});
     out.push_back({"cosine left out of the pdf", "cosine", phong, true, "fill", 32,
         [](S) { return with_pdf([](const Pair& a, double) { return a.wi.z > 0 ? 1 / pi : 0.0; }); }});
+}
+
+/// Of densities made from those of half vectors.
+void halfway_density_faults(std::vector<Plan>& out) {
     out.push_back({"missing 4(w.h)", "blinn", lobe_named("blinn-phong"), false, "fill", 32, [](S) {
                        return with_pdf([](const Pair& a, double p) {
                            return p * 4 * std::max(dot(a.wo, normalize(a.wo + a.wi)), 0.0);
@@ -120,6 +103,11 @@ void density_faults(std::vector<Plan>& out) {
         {"missing G1 in the density of visible normals", "ggx-vndf", lobe_named("ggx"), false, "fill", 0.5, [](S f) {
              return with_pdf([a = f.alpha](const Pair& at, double p) { return p / Ggx<double>{a}.G1(at.wo); });
          }});
+}
+
+/// Of densities over an area, about another axis, or off by little.
+void other_density_faults(std::vector<Plan>& out) {
+    const auto phong = lobe_named("phong");
     out.push_back({"area measure for solid angle", "light-area", LobeKind::none, true, "disk", 32,
         [](S) { return with_pdf([](const Pair&, double p) { return p > 0 ? 1 / (pi * 0.25) : 0.0; }); }});
     out.push_back({"light's cosine left out", "light-area", LobeKind::none, true, "disk", 32,
@@ -176,7 +164,8 @@ void several_light_faults(std::vector<Plan>& out) {
     });
 }
 
-void warp_faults(std::vector<Plan>& out) {
+/// Of what u is turned into.
+void uniform_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"phi over half a turn", "phong", phong, false, "fill", 32,
         [](S) { return with_u([](Vec2d u) { return Vec2d{u.x, 0.5 * u.y}; }); }});
@@ -200,6 +189,11 @@ void warp_faults(std::vector<Plan>& out) {
                                (std::floor(u.x * 65536) + 0.5) / 65536, (std::floor(u.y * 65536) + 0.5) / 65536};
                        });
                    }});
+}
+
+/// Of the directions that come out.
+void direction_faults(std::vector<Plan>& out) {
+    const auto phong = lobe_named("phong");
     out.push_back({"never reaches grazing", "cosine", LobeKind::none, true, "fill", 32, [](S) {
                        return with_draw([](Vec3d, Vec2d u, Draw& d) {
                            d.wi = spherical(std::max(std::sqrt(u.x), 0.08), u.y);
@@ -273,9 +267,12 @@ void weight_faults(std::vector<Plan>& out) {
 
 std::vector<PlantedFault> arm_faults(bool full) {
     std::vector<Plan> plans;
-    density_faults(plans);
+    lobe_density_faults(plans);
+    halfway_density_faults(plans);
+    other_density_faults(plans);
     several_light_faults(plans);
-    warp_faults(plans);
+    uniform_faults(plans);
+    direction_faults(plans);
     weight_faults(plans);
     std::vector<PlantedFault> out;
     for (const Plan& p : plans) {

@@ -84,6 +84,12 @@ void glass_faults(Faults& out) {
         const double share = g.across(o, i) ? 1 - f : f;
         return share > 0 ? p / share : 0;
     });
+}
+
+/// Of what chooses reflection or refraction, and of w_o below.
+void choosing_faults(Faults& out) {
+    const RoughGlass g{0.3, 1.5};
+    const char* name = "glass";
     RoughGlass half = g;
     half.reflect = [](double) { return 0.5; };
     plant(out, "lobe chosen by a half, weighed by Fresnel", name, recipe_of(half));
@@ -229,6 +235,7 @@ void state_faults(Faults& out) {
 std::vector<PlantedFault> renderer_faults() {
     Faults out;
     glass_faults(out);
+    choosing_faults(out);
     coat_faults(out);
     colour_faults(out);
     sky_faults(out);

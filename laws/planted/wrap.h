@@ -9,13 +9,13 @@
 namespace crescent {
 
 struct Bend {
-    std::function<Vec2d(Vec2d)> u;                       // before the draw
-    std::function<Vec3d(Vec3d wo)> wo;                   // what the draw believes w_o to be
-    std::function<void(Vec3d wo, Vec2d u, Draw&)> draw;  // after it
-    std::function<double(const Pair&, double p)> pdf;    // both with the draw and asked for
-    std::function<double(const Pair&, double p)> asked;  // asked for alone
-    std::function<double(const Pair&, double f)> f;
-    std::function<double(int technique, const Pair&, double w)> mis;
+    std::function<Vec2d(Vec2d)> u{};                       // before the draw
+    std::function<Vec3d(Vec3d wo)> wo{};                   // what the draw believes w_o to be
+    std::function<void(Vec3d wo, Vec2d u, Draw&)> draw{};  // after it
+    std::function<double(const Pair&, double p)> pdf{};    // both with the draw and asked for
+    std::function<double(const Pair&, double p)> asked{};  // asked for alone
+    std::function<double(const Pair&, double f)> f{};
+    std::function<double(int technique, const Pair&, double w)> mis{};
 };
 
 class Bent : public JudgedSampler {
