@@ -81,7 +81,7 @@ std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
 Work answer(std::FILE* to, const std::string& text, int code) {
     return [=] {
         if (to == stdout) print(text);
-        else complain(text);
+        else print_to_stderr(text);
         return code;
     };
 }

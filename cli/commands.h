@@ -87,6 +87,6 @@ int version(const VersionFlags& flags);
 /// anything else throws OutputError.
 void print(const std::string& text);
 /// Writes to stderr. Of both, no control character in a name, a file or a word reaches the terminal.
-void complain(const std::string& text);
+void print_to_stderr(const std::string& text);
 
 }  // namespace crescent::cli

@@ -22,7 +22,7 @@ void print(const std::string& anything) {
     if (!written && errno != EPIPE) throw OutputError(std::string("cannot write to stdout: ") + std::strerror(errno));
 }
 
-void complain(const std::string& text) { std::fputs(printable_lines(text).c_str(), stderr); }
+void print_to_stderr(const std::string& text) { std::fputs(printable_lines(text).c_str(), stderr); }
 
 namespace {
 
@@ -32,22 +32,22 @@ void open_standard_streams() {
         if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF) static_cast<void>(::open("/dev/null", O_RDWR));
 }
 
-int complain(int code, const std::string& text) {
-    cli::complain(text + "\n");
+int failed(int code, const std::string& text) {
+    print_to_stderr(text + "\n");
     return code;
 }
 
 int perform(int argc, char** argv) {
     try {
         return parse(argc, argv)();
-    } catch (const InputError& e) { return complain(misused, e.what()); } catch (const OutputError& e) {
-        return complain(unwritable, std::string("crescent: ") + e.what());
+    } catch (const InputError& e) { return failed(misused, e.what()); } catch (const OutputError& e) {
+        return failed(unwritable, std::string("crescent: ") + e.what());
     } catch (const Interrupted&) {
-        return complain(interrupted, "crescent: interrupted; existing outputs were not changed");
+        return failed(interrupted, "crescent: interrupted; existing outputs were not changed");
     } catch (const std::bad_alloc&) {
-        return complain(unwritable, "crescent: out of memory");
+        return failed(unwritable, "crescent: out of memory");
     } catch (const std::exception& e) {
-        return complain(bug, std::string("crescent: internal error, please report it: ") + e.what());
+        return failed(bug, std::string("crescent: internal error, please report it: ") + e.what());
     }
 }
 

@@ -65,7 +65,7 @@ void Progress::begin(std::string_view what, double total) {
     done_ = 0;
     total_ = total;
     start_ = Clock::now();
-    if (style_ == Style::lines) complain(what_ + "\n");
+    if (style_ == Style::lines) print_to_stderr(what_ + "\n");
     if (style_ == Style::bar) draw();
 }
 
@@ -90,7 +90,7 @@ void Progress::log(std::string_view line) {
     if (style_ == Style::silent) return;
     clear();
     const std::lock_guard lock(drawing_);
-    complain(std::string(line) + "\n");
+    print_to_stderr(std::string(line) + "\n");
 }
 
 void Progress::clear() {

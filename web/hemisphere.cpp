@@ -21,8 +21,8 @@ ordered_json largest_in_parts(const PixelSample& s, const OpenPixel& pixel) {
     ordered_json out = {{"x", figures(s.x)}, {"f", figures(s.f)}, {"light", figures(s.light)}, {"cos", figures(s.cos)},
         {"pdf", figures(s.pdf)}, {"over_p", figures(1 / double(s.pdf))}, {"angle", figures(polar, 3)}};
     if (s.weight != 1) out["weight"] = figures(s.weight);
-    out["met"] = s.disk >= 0 && static_cast<std::size_t>(s.disk) < pixel.disks().size()
-        ? pixel.disks()[static_cast<std::size_t>(s.disk)].name
+    out["met"] = s.disk >= 0 && static_cast<std::size_t>(s.disk) < pixel.lights().size()
+        ? pixel.lights()[static_cast<std::size_t>(s.disk)].name
         : "fill";
     return out;
 }
@@ -83,11 +83,11 @@ struct Told {
     void tell() {
         out["under"] = under;
         out["lights"] = ordered_json::array();
-        for (const PixelDisk& disk : open->disks()) {
+        for (const PixelLight& light : open->lights()) {
             ordered_json rim = ordered_json::array();
-            for (const Vec3d& w : disk.rim)
+            for (const Vec3d& w : light.rim)
                 if (w.z > 0) rim.push_back(view.place(w));
-            out["lights"].push_back({{"name", disk.name}, {"rim", rim}, {"angle", disk.angular_radius}});
+            out["lights"].push_back({{"name", light.name}, {"rim", rim}, {"angle", light.angular_radius}});
         }
         if (largest) out["largest"] = largest_in_parts(*largest, *open);
         say(out);

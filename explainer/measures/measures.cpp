@@ -33,7 +33,7 @@ double solid_angle(Vec3d a, Vec3d b, Vec3d c) {
     return 2 * math::atan2(std::fabs(volume), 1 + dot(a, b) + dot(b, c) + dot(c, a));
 }
 
-double solid_angle(const PixelDisk& disk) {
+double solid_angle(const PixelLight& disk) {
     double sum = 0;
     for (std::size_t k = 0; k + 1 < disk.rim.size(); ++k)
         sum += solid_angle(disk.towards, disk.rim[k], disk.rim[k + 1]);
@@ -78,8 +78,8 @@ PixelStory pixel_story(const Data& data) {
     out.reference = static_cast<double>(reference.y[std::size_t(j) * std::size_t(reference.width) + std::size_t(i)]);
     out.cosine = arm_at(data, *out.pixel, data.cast.cosine);
     out.phong = arm_at(data, *out.pixel, data.cast.phong);
-    out.disk = out.cosine.giant().disk >= 0 ? out.cosine.giant().disk : out.pixel->disks().empty() ? -1 : 0;
-    for (const PixelDisk& disk : out.pixel->disks()) out.solid_angle += disk.faces ? solid_angle(disk) : 0;
+    out.disk = out.cosine.giant().disk >= 0 ? out.cosine.giant().disk : out.pixel->lights().empty() ? -1 : 0;
+    for (const PixelLight& disk : out.pixel->lights()) out.solid_angle += disk.faces ? solid_angle(disk) : 0;
     out.by_phong = weighed(*out.pixel, out.cosine.giant(), out.phong.sampler);
     double under_fill = 0;
     const std::size_t parts = over_hemisphere([&](Vec3d w) {

@@ -57,7 +57,7 @@ TEST(Measures, TheDiskSharesOfThePixelAgreeWithDraws) {
     const PixelStory& story = test::small_data().measures->story;
     const double n = double(story.cosine.long_series), hits = n * story.cosine.share_met;
     // The disk stands where its cosine is nearly that of its centre: the share of cosine draws is its projected size.
-    const double expected = story.solid_angle * story.pixel->disks()[0].towards.z / pi;
+    const double expected = story.solid_angle * story.pixel->lights()[0].towards.z / pi;
     EXPECT_NEAR(story.cosine.share_met / expected, 1, 0.01 + 4 / std::sqrt(hits));
     double fill = 0, all = 0;
     for (const PixelSample& s : story.pixel->samples("mis-balance", 20000, 3)) {

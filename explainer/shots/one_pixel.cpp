@@ -138,7 +138,7 @@ private:
     void disk(Frame& f) const {
         const double shown = f.ease(lights + 0.9, lights + 1.5);
         if (story_.disk < 0 || shown <= 0) return;
-        const PixelDisk& disk = pixel_.disks()[std::size_t(story_.disk)];
+        const PixelLight& disk = pixel_.lights()[std::size_t(story_.disk)];
         dome_.trace(f, disk.rim, bright, 3, shown);
         const Point at = dome_.at(disk.towards), label{900, at.y + 60};
         f.line({at.x + 26, at.y + 10}, {label.x - 10, label.y}, bright, 2, shown);
@@ -194,10 +194,10 @@ std::vector<Cue> OnePixel::cues() const {
     out.push_back({reflects, Words("f: what it passes on to the eye.")});
     if (story_.disk < 0) {
         out.push_back({lights, Words("L: what comes in, here alike all round.")});
-    } else if (const std::size_t disks = pixel_.disks().size(); disks > 1) {
+    } else if (const std::size_t disks = pixel_.lights().size(); disks > 1) {
         out.push_back({lights, Words("L: what comes in, dim but for ", count(disks, "disk lights"), " disks.")});
     } else {
-        const double angle = pixel_.disks()[std::size_t(story_.disk)].angular_radius;
+        const double angle = pixel_.lights()[std::size_t(story_.disk)].angular_radius;
         out.push_back({lights,
             Words("L: what comes in, dim but for a disk of ", number(angle, 3, "angular radius of the disk light"),
                 "° radius.")});

@@ -110,7 +110,7 @@ private:
     void light(Frame& f) const {
         if (story_.disk < 0) return;
         const double shown = f.ease(appeared, appeared + 0.8);
-        const PixelDisk& disk = pixel_.disks()[std::size_t(story_.disk)];
+        const PixelLight& disk = pixel_.lights()[std::size_t(story_.disk)];
         std::vector<Point> rim;
         for (const Vec3d& w : disk.rim) rim.push_back(disc_.at(w));
         f.polyline(rim, bright, 3, shown);

@@ -101,8 +101,8 @@ double reflected(const ShadingPoints& sites, const Worth& w, float lobe, double 
 /// Makes X of a direction, in the kernels' own order of operations.
 class Carrier {
 public:
-    Carrier(const ShadingPoints& sites, const Locals& disks, const std::vector<PixelDisk>& seen, double fill)
-        : sites_(sites), disks_(disks), seen_(seen), fill_(fill) {}
+    Carrier(const ShadingPoints& sites, const Locals& disks, const std::vector<PixelLight>& seen, double fill)
+        : sites_(sites), lights_(disks), seen_(seen), fill_(fill) {}
 
     template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
         PixelSample out;
@@ -110,7 +110,7 @@ public:
         out.weight = weight, out.technique = technique;
         if (out.cos <= 0 || out.pdf == 0) return out;
         const float g = weight * (out.cos / out.pdf), lobe = lobe_of(sites_, out.wi);
-        out.disk = met_by(sites_, disks_, drawn);
+        out.disk = met_by(sites_, lights_, drawn);
         const Worth w = worth(sites_, out.disk);
         out.x = g * (w.d + lobe * w.s);
         out.light = static_cast<float>(out.disk < 0 ? fill_ : seen_[static_cast<std::size_t>(out.disk)].light);
@@ -120,8 +120,8 @@ public:
 
 private:
     const ShadingPoints& sites_;
-    const Locals disks_;
-    const std::vector<PixelDisk>& seen_;
+    const Locals lights_;
+    const std::vector<PixelLight>& seen_;
     double fill_;
 };
 
@@ -136,12 +136,12 @@ template <class Work> void with_arm(std::string_view sampler, Work&& work) {
     ensure(found, "a sampler is a word of arms/all.h");
 }
 
-PixelDisk seen_light(const Light& light, const Hit& hit) {
+PixelLight seen_light(const Light& light, const Hit& hit) {
     const Frame<double> frame = frame_about(hit.n);
     const Figure figure = light.seen_from(hit.x);
     const Vec3d c = frame.to_local(middle_of(figure) - hit.x);
     const double distance = length(c), half = math::atan2(radius_of(figure), distance) * 180 / pi;
-    PixelDisk out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, light.shines_on(hit.x)};
+    PixelLight out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, light.shines_on(hit.x)};
     constexpr int points = 96;
     const auto disk = std::get_if<shapes::Disk>(&figure);
     const std::array<Vec3d, 4> corners = corners_about(figure);
@@ -174,7 +174,7 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
       fill_(luminance(scene.fill())),
       local_(local_disks(sites_)),
       others_(local_others(sites_)) {
-    for (const Light& light : scene.lights()) disks_.push_back(seen_light(light, hit_));
+    for (const Light& light : scene.lights()) lights_.push_back(seen_light(light, hit_));
 }
 
 ShadingPoint<float> OpenPixel::aimed_from() const {
@@ -190,13 +190,13 @@ int OpenPixel::disk_met(Vec3d wi) const {
 
 double OpenPixel::light(Vec3d wi) const {
     const int disk = disk_met(wi);
-    return disk < 0 ? fill_ : disks_[static_cast<std::size_t>(disk)].light;
+    return disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
 }
 
 double OpenPixel::f(Vec3d wi, int disk) const {
     if (!(wi.z > 0)) return 0;
     const Worth w = worth(sites_, disk);
-    const double light = disk < 0 ? fill_ : disks_[static_cast<std::size_t>(disk)].light;
+    const double light = disk < 0 ? fill_ : lights_[static_cast<std::size_t>(disk)].light;
     return reflected(sites_, w, lobe_of(sites_, as<float>(wi)), light);
 }
 
@@ -214,7 +214,7 @@ double OpenPixel::pdf(std::string_view sampler, Vec3d wi) const {
 
 std::vector<PixelSample> OpenPixel::samples(std::string_view sampler, std::uint64_t n, std::uint32_t seed) const {
     const ShadingPoint<float> site = aimed_from();
-    const Carrier accumulate(sites_, {local_, others_}, disks_, fill_);
+    const Carrier accumulate(sites_, {local_, others_}, lights_, fill_);
     std::vector<PixelSample> out;
     with_arm(sampler, [&]<template <class> class A>() {
         const A<float> arm(site);

@@ -24,12 +24,12 @@ struct PixelSample {
     float pdf = 0, f = 0, light = 0, cos = 0;
     float weight = 1;  // of multiple importance sampling
     float x = 0;
-    int disk = -1;  // the disk light that was met; -1: the fill
+    int disk = -1;  // index of the light that was met; -1: the fill
     int technique = 0;
 };
 
-/// A disk light as the surface point sees it.
-struct PixelDisk {
+/// A light as the surface point sees it.
+struct PixelLight {
     std::string name;
     Vec3d towards{};            // unit, to its centre
     double angular_radius = 0;  // degrees, across the line of sight: atan(radius / distance)
@@ -54,10 +54,10 @@ public:
     const Surface& surface() const { return surface_; }
     Vec3d wo() const { return wo_; }
     Vec3d mirror() const;  // R
-    const std::vector<PixelDisk>& disks() const { return disks_; }
+    const std::vector<PixelLight>& lights() const { return lights_; }
     double fill() const { return fill_; }  // Y
 
-    /// The disk light that a direction meets before anything else; -1: none, it sees the fill.
+    /// The light that a direction meets before anything else; -1: none, it sees the fill.
     int disk_met(Vec3d wi) const;
     /// Y of the light that comes from there.
     double light(Vec3d wi) const;
@@ -77,7 +77,7 @@ private:
     Hit hit_;
     Surface surface_;
     Vec3d wo_{};
-    std::vector<PixelDisk> disks_;
+    std::vector<PixelLight> lights_;
     double fill_ = 0;
     std::vector<LocalDisk<float>> local_;
     std::vector<LocalLight<float>> others_;

@@ -88,12 +88,12 @@ TEST(OpenPixel, AsksTheFieldsWhatItDraws) {
 TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
     const Scene scene(test::small_scene());
     const OpenPixel pixel(scene, 33, 30);
-    ASSERT_EQ(pixel.disks().size(), 2u);
+    ASSERT_EQ(pixel.lights().size(), 2u);
     for (std::size_t k = 0; k < 2; ++k) {
         const lights::Disk& light = std::get<lights::Disk>(scene.lights()[k].form);
         const Vec3d to = light.center - pixel.hit().x;
-        EXPECT_NEAR(std::tan(pixel.disks()[k].angular_radius * pi / 180), light.radius / length(to), 1e-6);
-        EXPECT_NEAR(dot(pixel.disks()[k].towards, frame_about(pixel.hit().n).to_local(normalize(to))), 1, 1e-6);
+        EXPECT_NEAR(std::tan(pixel.lights()[k].angular_radius * pi / 180), light.radius / length(to), 1e-6);
+        EXPECT_NEAR(dot(pixel.lights()[k].towards, frame_about(pixel.hit().n).to_local(normalize(to))), 1, 1e-6);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/errors.h"
 #include "meters/meters.h"
+#include "meters/run_index.h"
 
 namespace crescent::inline meters {
 
@@ -41,13 +42,6 @@ double median(const std::vector<double>& values) {
     return whole ? quantile(values, 0.5) : unmeasured;
 }
 
-std::vector<std::uint32_t> seeds_of(const Metrics& metrics, std::uint32_t published) {
-    std::vector<std::uint32_t> seeds;
-    for (const RunMeter& run : metrics.runs)
-        if (!std::count(seeds.begin(), seeds.end(), run.key.seed)) seeds.push_back(run.key.seed);
-    return seeds.empty() ? std::vector{published} : seeds;
-}
-
 bool holds(double left, const std::string& op, double right) {
     if (std::isnan(left) || std::isnan(right)) return false;
     if (op == "<") return left < right;
@@ -55,6 +49,36 @@ bool holds(double left, const std::string& op, double right) {
     if (op == ">") return left > right;
     if (op == ">=") return left >= right;
     return op == "==" && left == right;
+}
+
+/// The run that a quantity is of, where it is of one.
+RunKey key_of(const ParsedQuantity& q, const Experiment& experiment, std::uint32_t seed) {
+    return {q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed};
+}
+
+/// `run`: that of its key, where it is of one.
+double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, const RunMeter* run,
+    const PlateBytes& plate_bytes) {
+    if (q.number) return *q.number;
+    switch (subject_of(q.word)) {
+        case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
+        case QuantityOf::run: return of_run(q, run);
+        case QuantityOf::furnace: return of_furnace(q, metrics);
+        case QuantityOf::compared: break;
+        case QuantityOf::shape: {
+            const auto it = metrics.shape_pixels.find(q.subject);
+            return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
+        }
+        case QuantityOf::region: {
+            const Region* region = experiment.find_region(q.subject);
+            return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
+        }
+        case QuantityOf::plate: {
+            const auto it = plate_bytes.find(q.subject);
+            return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
+        }
+    }
+    return unmeasured;
 }
 
 /// Is this no RMSE, or one that is long against the reference's own error in its region?
@@ -76,24 +100,27 @@ ParsedQuantity parsed(const std::string& text) {
     return *q;
 }
 
-/// The plates that were drawn, and whether any were to be.
-struct Drawn {
-    const PlateBytes& bytes;
-    bool any;
+/// What the checks of an experiment are held against.
+struct Measurements {
+    const Experiment& experiment;
+    const Metrics& metrics;
+    RunIndex runs;
+    const PlateBytes& plate_bytes;
+    bool drawn;  // whether any plates were to be
 };
 
 /// One side of a check: its value, and what is to be said of it.
-double side(const std::string& text, bool over_seeds, const Experiment& experiment, const Metrics& metrics,
-    const Drawn& drawn, AssertionResult& out) {
+double side(const std::string& text, bool over_seeds, const Measurements& of, AssertionResult& out) {
     ParsedQuantity q = parsed(text);
-    (void)resolve_quantity(q, experiment);  // an experiment built in code may leave n out
+    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may leave n out
     std::vector<double> values;
-    const std::vector own{experiment.seed};
-    for (const std::uint32_t seed : over_seeds ? seeds_of(metrics, experiment.seed) : own)
-        values.push_back(quantity(q, metrics, experiment, seed, drawn.bytes));
+    const std::vector own{of.experiment.seed};
+    for (const std::uint32_t seed : over_seeds && !of.runs.seeds().empty() ? of.runs.seeds() : own)
+        values.push_back(
+            value_of(q, of.metrics, of.experiment, of.runs.find(key_of(q, of.experiment, seed)), of.plate_bytes));
     const double value = median(values);
-    out.reference_good = out.reference_good && stands_out(q, value, metrics, experiment);
-    if (!drawn.any && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
+    out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
+    if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
     return value;
 }
 
@@ -108,36 +135,19 @@ bool cannot_fail(const AssertionPlan& plan) {
 
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
     const PlateBytes& plate_bytes) {
-    if (q.number) return *q.number;
-    switch (subject_of(q.word)) {
-        case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
-        case QuantityOf::run: return of_run(q, metrics.find(q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed));
-        case QuantityOf::furnace: return of_furnace(q, metrics);
-        case QuantityOf::compared: break;
-        case QuantityOf::shape: {
-            const auto it = metrics.shape_pixels.find(q.subject);
-            return it == metrics.shape_pixels.end() ? 0 : static_cast<double>(it->second);
-        }
-        case QuantityOf::region: {
-            const Region* region = experiment.find_region(q.subject);
-            return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
-        }
-        case QuantityOf::plate: {
-            const auto it = plate_bytes.find(q.subject);
-            return it == plate_bytes.end() ? 0 : static_cast<double>(it->second);
-        }
-    }
-    return unmeasured;
+    const RunKey key = key_of(q, experiment, seed);
+    return value_of(q, metrics, experiment, metrics.find(key.arm, key.n, key.s, key.seed), plate_bytes);
 }
 
 std::vector<AssertionResult> judge(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
+    const Measurements measurements{experiment, metrics, RunIndex(metrics.runs), plate_bytes, drawn};
     std::vector<AssertionResult> results;
     for (const AssertionPlan& plan : experiment.assertions) {
         AssertionResult r;
         r.name = plan.name, r.op = plan.op;
-        r.measured = side(plan.left, plan.median, experiment, metrics, {plate_bytes, drawn}, r);
-        r.bound = side(plan.right, plan.median, experiment, metrics, {plate_bytes, drawn}, r);
+        r.measured = side(plan.left, plan.median, measurements, r);
+        r.bound = side(plan.right, plan.median, measurements, r);
         r.cannot_fail = cannot_fail(plan);
         r.pass = r.skipped.empty() && r.reference_good && holds(r.measured, r.op, r.bound);
         r.text = plan.left + " " + plan.op + " " + plan.right + (plan.median ? " (medians over seeds)" : "");

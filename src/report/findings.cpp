@@ -42,10 +42,7 @@ std::uint64_t Findings::headline_n() const {
 }
 
 const RunMeter* Findings::run(const std::string& arm, std::uint64_t n, std::optional<double> s) const {
-    const RunKey key{arm, n, s.value_or(this->s()), in_.experiment.seed};
-    for (const RunMeter& run : in_.metrics.runs)
-        if (run.key == key) return &run;
-    return nullptr;
+    return runs_.find({arm, n, s.value_or(this->s()), in_.experiment.seed});
 }
 
 const BandMeter* Findings::band(
@@ -74,7 +71,7 @@ SeedCount Findings::seeds_above(
     SeedCount count;
     for (const RunMeter& a : in_.metrics.runs) {
         if (a.key.arm != arm_a || a.key.n != n || a.key.s != s()) continue;
-        const RunMeter* b = in_.metrics.find(arm_b, n, s(), a.key.seed);
+        const RunMeter* b = runs_.find({arm_b, n, s(), a.key.seed});
         const RegionMeter *in_a = a.region(region), *in_b = b ? b->region(region) : nullptr;
         if (!in_a || !in_b) continue;
         ++count.of;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "meters/run_index.h"
 #include "report/report.h"
 
 namespace crescent::inline report {
@@ -28,7 +29,7 @@ struct SeedCount {
 
 class Findings {
 public:
-    explicit Findings(const ReportInputs& in) : in_(in) {}
+    explicit Findings(const ReportInputs& in) : in_(in), runs_(in.metrics.runs) {}
 
     /// The largest n that every arm of `arms` has, 0 where they share none.
     std::uint64_t common_n(const std::vector<const ArmPlan*>& arms) const;
@@ -38,6 +39,8 @@ public:
 
     /// At the published seed and the experiment's own s unless given.
     const RunMeter* run(const std::string& arm, std::uint64_t n, std::optional<double> s = {}) const;
+    /// Null where there is no such run.
+    const RunMeter* run(const RunKey& key) const { return runs_.find(key); }
     const BandMeter* band(
         const std::string& arm, std::uint64_t n, const std::string& meter, std::optional<double> s = {}) const;
     /// RMSE in a region at the published seed.
@@ -56,6 +59,7 @@ public:
 
 private:
     const ReportInputs& in_;
+    RunIndex runs_;
 };
 
 /// Meters that stand in tables, in their order: rmse.*, var.*, fireflies, ...

@@ -88,7 +88,7 @@ double departure(const std::vector<std::uint64_t>& n, const std::vector<double>&
 std::vector<double> ladder_of(const Page& page, const ArmPlan& arm, const std::string& region, std::uint32_t seed) {
     std::vector<double> out;
     for (const std::uint64_t n : arm.n) {
-        const RunMeter* run = page.in.metrics.find(arm.name, n, page.find.s(), seed);
+        const RunMeter* run = page.find.run({arm.name, n, page.find.s(), seed});
         const RegionMeter* meter = run ? run->region(region) : nullptr;
         if (!meter || !(meter->rmse > 0)) return {};
         out.push_back(meter->rmse);
