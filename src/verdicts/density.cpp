@@ -43,30 +43,30 @@ bool deltas_are_wrong(const TrialContext& work, const DeltaParts& deltas, Verdic
     return true;
 }
 
-using OfFit = std::function<double(const Fit&)>;
+using OfFit = std::function<double(const FitToDensity&)>;
 
 std::string told(const Pearson& of, const char* where) {
     return fmt::format("{}: chi-square {:.4g} on {:g} degrees, p = {:.2g}", where, of.statistic, of.degrees, of.p);
 }
 
 /// What the least likely of the tests that failed says; "" where none did.
-std::string mismatch(const Fit& f, const std::function<bool(const OfFit&)>& fails) {
+std::string mismatch(const FitToDensity& f, const std::function<bool(const OfFit&)>& fails) {
     std::string say;
     double least = 2;
     const auto look = [&](const OfFit& p, const std::string& text) {
         if (fails(p) && p(f) < least) least = p(f), say = text;
     };
-    look([](const Fit& x) { return x.joint.p; }, told(f.joint, "over the whole sphere"));
-    look([](const Fit& x) { return x.rings.p; }, told(f.rings, "along the angle from the axis"));
-    look([](const Fit& x) { return x.sectors.p; }, told(f.sectors, "around the axis"));
-    look([](const Fit& x) { return x.outside_p; },
+    look([](const FitToDensity& x) { return x.joint.p; }, told(f.joint, "over the whole sphere"));
+    look([](const FitToDensity& x) { return x.rings.p; }, told(f.rings, "along the angle from the axis"));
+    look([](const FitToDensity& x) { return x.sectors.p; }, told(f.sectors, "around the axis"));
+    look([](const FitToDensity& x) { return x.outside_p; },
         fmt::format("where p integrates to next to nothing: {:.0f} fell there, {:.2g} are due, p = {:.2g}",
             f.outside_seen, f.outside_due, f.outside_p));
     return say;
 }
 
 /// Where one step of u takes a direction through half a bin or more, draws show no more of p than the steps of u.
-std::string grain_of_u(const TrialContext& work, int technique, const Density& d, const Fit& f) {
+std::string grain_of_u(const TrialContext& work, int technique, const Density& d, const FitToDensity& f) {
     const std::size_t worst = worst_bin(f.observed, f.expected), sectors = static_cast<std::size_t>(d.sectors),
                       ring = worst / sectors;
     const SampleBatch& b = work.first(technique);
@@ -86,7 +86,7 @@ std::string grain_of_u(const TrialContext& work, int technique, const Density& d
         step * 180 / pi, least * 180 / pi, own ? "such steps" : "the steps of u");
 }
 
-void note(const TrialContext& work, int technique, const Fit& f, Verdict& v) {
+void note(const TrialContext& work, int technique, const FitToDensity& f, Verdict& v) {
     const std::string suffix = work.suffix(technique);
     v.evidence["coordinates" + suffix] = coordinates(work.density(technique));
     v.evidence["chi2" + suffix] = f.joint.statistic;
@@ -101,12 +101,12 @@ void note(const TrialContext& work, int technique, const Fit& f, Verdict& v) {
 }
 
 /// The draws of a technique do not follow p, on the first seed and on a fresh one; says so.
-bool draws_are_off(const TrialContext& work, int t, const Fit& f, Verdict& v) {
+bool draws_are_off(const TrialContext& work, int t, const FitToDensity& f, Verdict& v) {
     const Density& d = work.density(t);
-    std::optional<Fit> fresh;
+    std::optional<FitToDensity> fresh;
     const auto fails = [&](const OfFit& p) {
         return work.fails(p(f), [&](int round) {
-            if (!fresh) fresh = fit(work, t, d, work.draw(t, round));
+            if (!fresh) fresh = fit_to_density(work, t, d, work.draw(t, round));
             return p(*fresh);
         });
     };
@@ -118,13 +118,13 @@ bool draws_are_off(const TrialContext& work, int t, const Fit& f, Verdict& v) {
         v.say += grain_of_u(work, t, d, f);
         return true;
     }
-    if (!fails([](const Fit& x) { return x.clump.p; })) return false;
+    if (!fails([](const FitToDensity& x) { return x.clump.p; })) return false;
     tell_clump(v, f.clump);
     return true;
 }
 
 /// Draws that nothing accuses: how well they fit, or that they are too few.
-void tell_fit(const TrialContext& work, int t, const Fit& f, Verdict& v) {
+void tell_fit(const TrialContext& work, int t, const FitToDensity& f, Verdict& v) {
     const std::size_t draws = work.first(t).draws.size();
     v.evidence["unseen_in_one_bin" + work.suffix(t)] =
         unseen_share(f.expected, f.joint.degrees, static_cast<double>(draws), work.settings.screen);
@@ -150,7 +150,7 @@ Verdict judge(TrialContext& work) {
         if (!(d.mass.value > 0) || !std::isfinite(d.mass.value))
             return work.verdict("density", State::skipped,
                 fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
-        const Fit f = fit(work, t, d, work.first(t));
+        const FitToDensity f = fit_to_density(work, t, d, work.first(t));
         note(work, t, f, v);
         if (work.settings.pictures && t == 0)
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d),

@@ -94,7 +94,7 @@ Binned binned(const Density& d, const std::vector<double>& seen, double due_for_
 }
 
 /// Rings that expect next to nothing: the Poisson law; the error of p is granted, which no bin states so far out.
-void set_apart(const Density& d, double n, Binned& counts, Fit& out) {
+void set_apart(const Density& d, double n, Binned& counts, FitToDensity& out) {
     const std::size_t sectors = static_cast<std::size_t>(d.sectors);
     for (std::size_t i = 0; i < counts.rings.due.size(); ++i) {
         if (counts.rings.due[i] >= std::max(1.0, 1e-5 * n)) continue;
@@ -111,8 +111,8 @@ void set_apart(const Density& d, double n, Binned& counts, Fit& out) {
 
 }  // namespace
 
-Fit fit(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
-    Fit out;
+FitToDensity fit_to_density(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
+    FitToDensity out;
     const bool estimates = work.scatter().pdf();
     if (!estimates) out.clump = densest_clump(work, technique, d, b);  // which needs p itself at the draws
     double nothing = 0;

@@ -15,7 +15,7 @@ struct Pearson {
     double empty_observed = 0, empty_expected = 0;
 };
 
-struct Fit {
+struct FitToDensity {
     Pearson joint, rings, sectors;
     double outside_p = 1;  // of as many draws where p integrates to next to nothing
     double outside_seen = 0, outside_due = 0;
@@ -23,6 +23,6 @@ struct Fit {
     std::vector<double> observed, expected;
 };
 
-Fit fit(const TrialContext& work, int technique, const Density& d, const SampleBatch& b);
+FitToDensity fit_to_density(const TrialContext& work, int technique, const Density& d, const SampleBatch& b);
 
 }  // namespace crescent::inline verdicts
