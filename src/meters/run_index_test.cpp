@@ -11,7 +11,7 @@ std::vector<RunMeter> runs_of_three_seeds() {
     for (const std::uint32_t seed : {9u, 2u, 7u})
         for (const char* arm : {"cosine", "phong"})
             for (const std::uint64_t n : {4u, 16u})
-                for (const double s : {0.0, 32.0}) runs.push_back({.key = {arm, n, s, seed}});
+                for (const double s : {0.0, 32.0}) runs.emplace_back().key = {arm, n, s, seed};
     return runs;
 }
 

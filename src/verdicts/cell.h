@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "verdicts/cubature.h"
@@ -10,18 +11,38 @@ namespace crescent::inline verdicts {
 
 inline constexpr int rule_size = 17;
 
+/// How a cell is integrated that a jump crosses: along lines of one coordinate, three in each piece of the other.
+struct Cut {
+    static constexpr std::size_t lines = 3, most_pieces = 3;
+    bool along_a = true;
+    int pieces = 0;
+    std::array<double, most_pieces + 1> ends{};  // of the pieces, ascending in [0, 1]
+    std::array<std::array<double, lines>, most_pieces> means{};
+
+    double mean() const;  // of the integrand over the cell
+    /// The mean along the line at x in [0, 1] of a piece, by the quadratic polynomial through its three.
+    double mean_at(std::size_t piece, double x) const;
+};
+
 struct Cell {
     Rect rect;
     double value = 0, error = 0;
+    double rule_error = 0;               // by the rule alone; `error` is raised by what else is known
     double low = 0, high = 0;            // of the integrand at the points tried
     std::array<double, rule_size> at{};  // of the integrand at the rule's points
-    std::array<double, 8> outer{};       // of the integrand at the rule's outermost points, four sides and four corners
+    std::array<double, 8> outer{};       // at the rule's outermost points: four sides, four corners; or at the corners
     bool split_a = true;
     bool rim_tried = false,
-         rim_jumps = false;  // whether corners and sides differ from the outermost points beside them
-    bool cut = false;        // integrated on both sides of a jump
-    bool smooth = false;     // looked at for a jump, and none is there
-    int suspected = 0;       // how often it was halved on the witnesses' word alone
+         rim_jumps = false;        // whether corners, or a side's points, differ from what the rule saw beside them
+    bool cut = false;              // integrated on both sides of a jump,
+    Cut lines;                     // along these
+    std::optional<double> second;  // the audit's estimate of its value, where it is cut and was looked at,
+    double unsure = 0;             // and what single lines differ by
+    bool looked_around = false;    // the cells beside it were asked for the jump
+    bool bent = false;             // more than one curve crosses it: to be halved before it is cut again
+    bool beside_jump = false;      // half of a cell that a jump crosses, or seems to
+    bool smooth = false;           // looked at for a jump, and none is there
+    int suspected = 0;             // how often it was halved on the witnesses' word alone
     std::vector<Witness> inside;
 
     Cell(const Rect& r, int suspicion) : rect(r), suspected(suspicion) {}
@@ -29,19 +50,25 @@ struct Cell {
     /// What a jump of the integrand inside can be worth.
     double step() const { return area() * (high - low); }
     /// A jump inside leaves per cents of itself as error where a smooth integrand leaves none.
-    bool rough() const { return high - low > 1e-3 * high && error > 0.01 * step(); }
+    bool rough() const { return high - low > 1e-3 * high && rule_error > 0.01 * step(); }
     /// A jump crosses it, or seems to.
     bool jumpy() const { return cut || rim_jumps || rough(); }
     /// A jump seems to cross it, and nobody looked yet.
     bool jumps() const { return !cut && !smooth && (rough() || rim_jumps); }
 };
 
-/// Tries corners and sides of cells that were not tried yet: a jump may cut a corner off unseen. Cells in which it does
-/// and that weigh more than edge_mass get an error that has them halved. Returns how many evaluations that took.
-std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass, bool& found);
+/// Tries the corners of cells that were not tried yet and are `asked`: a jump may cut a corner off unseen. Cells
+/// in which it does and that weigh more than edge_mass get an error that has them halved. Returns how many evaluations
+/// that took.
+std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass, bool& found,
+    const std::function<bool(const Cell&)>& asked);
 /// Integrates every line through cells that a jump crosses on both sides of the jump, which is found by bisection.
 /// Cells without one are marked smooth. Returns how many evaluations that took.
 std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edge_mass);
+
+/// Has cells beside those that were cut last halved or cut where the jump goes on in them, unseen. Returns how many
+/// evaluations that took.
+std::size_t look_around(std::vector<Cell>& cells, const Batch& g, double edge_mass, bool& found);
 
 /// A second estimate of every cell from points at random, whose mean is the integral whatever the integrand does.
 struct Audit {
@@ -51,7 +78,8 @@ struct Audit {
     std::size_t evaluations = 0;
     bool found = false;  // cells that hide more than `worth`; their errors are raised, so that they are halved
 };
-/// `room`: evaluations to spend on cells with jumps; 0: two a cell, whatever it holds.
+/// `room`: evaluations to spend on cells with jumps; 0: two a cell, whatever it holds, and cut cells are looked at
+/// once.
 Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t round, double worth, std::size_t room);
 
 }  // namespace crescent::inline verdicts

@@ -43,7 +43,7 @@ void apply_rule(Cell& cell, std::span<const double> g) {
     const double five =
         (729 - 950 * 2 + 50 * 4) / 729.0 * g[0] + 245.0 / 486 * s2 + (265 - 100 * 2) / 1458.0 * s3 + 25.0 / 729 * s4;
     cell.value = area * seven;
-    cell.error = area * std::fabs(seven - five);
+    cell.error = cell.rule_error = area * std::fabs(seven - five);
     const auto [low, high] = std::minmax_element(g.begin(), g.end());
     std::copy(g.begin() + 5, g.begin() + 13, cell.outer.begin());
     std::copy(g.begin(), g.end(), cell.at.begin());
@@ -87,6 +87,7 @@ std::array<Cell, 2> halve(Cell& cell, double total) {
     else lower.b1 = upper.b0 = 0.5 * (cell.rect.b0 + cell.rect.b1);
     const int suspected = cell.suspected + (disagreement(cell, total) > 0);
     std::array<Cell, 2> out = {Cell(lower, suspected), Cell(upper, suspected)};
+    for (Cell& half : out) half.beside_jump = cell.jumpy();
     for (const Witness& w : cell.inside)
         out[(cell.split_a ? w.at.x < lower.a1 : w.at.y < lower.b1) ? 0 : 1].inside.push_back(w);
     return out;
@@ -122,7 +123,8 @@ bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, doub
         std::vector<std::pair<double, std::size_t>> order;
         edges = false;
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const bool at_edge = cells[i].cut || (cells[i].jumps() && cells[i].step() < effort.edge_mass);
+            const bool at_edge =
+                !cells[i].bent && (cells[i].cut || (cells[i].jumps() && cells[i].step() < effort.edge_mass));
             const double urge = std::max(at_edge ? 0 : cells[i].error, disagreement(cells[i], total));
             edges = edges || (at_edge && !cells[i].cut);
             all += urge;
@@ -141,12 +143,17 @@ bool refine(std::vector<Cell>& cells, const Batch& g, const Effort& effort, doub
         }
         evaluate(fresh, g);
         out.evaluations += fresh.size() * points;
+        bool found = false;  // beside a jump a corner may be cut off
+        out.evaluations +=
+            try_rims(fresh, g, effort.edge_mass, found, [](const Cell& c) { return c.beside_jump && !c.rough(); });
         for (std::size_t k = 0; k < count; ++k) {
             Cell& parent = cells[order[k].second];
             // Both halves answer for what they differ by from the whole: a rule may be blind to a spike, two seldom
             // are.
             const double surprise = std::fabs(parent.value - fresh[2 * k].value - fresh[2 * k + 1].value) / 16;
-            for (Cell* half : {&fresh[2 * k], &fresh[2 * k + 1]}) half->error = std::max(half->error, surprise);
+            const bool neither = !fresh[2 * k].rough() && !fresh[2 * k + 1].rough();
+            for (Cell* half : {&fresh[2 * k], &fresh[2 * k + 1]})
+                if (neither || half->rough()) half->error = std::max(half->error, surprise);
             parent = std::move(fresh[2 * k]);
             cells.push_back(std::move(fresh[2 * k + 1]));
         }
@@ -188,26 +195,26 @@ Integral integrate(
     Integral out;
     out.evaluations = cells.size() * points;
     bool edges = refine(cells, g, effort, total, out);
-    for (std::uint32_t round = 0; round < 12 && out.evaluations < effort.most_evaluations; ++round) {
+    Effort rest = effort;
+    rest.most_evaluations *= 2;  // as many again for what is cut along jumps, and for what the audit comes upon
+    for (std::uint32_t round = 0; round < 12 && out.evaluations < rest.most_evaluations; ++round) {
         bool found = false;  // what the rule did not see: corners cut off, and whatever points at random come upon
-        if (edges) out.evaluations += try_rims(cells, g, effort.edge_mass, found);
+        if (edges) out.evaluations += try_rims(cells, g, effort.edge_mass, found, [](const Cell&) { return true; });
+        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);  // what has none is halved on
+        out.evaluations += look_around(cells, g, effort.edge_mass, found);
         const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, 0);
         out.evaluations += look.evaluations;
-        if (edges)
-            out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);  // those that have none are halved on
-        if (!edges && !look.found) break;
-        edges = refine(cells, g, effort, total, out);
+        if (!edges && !found && !look.found) break;
+        edges = refine(cells, g, rest, total, out);
     }
     for (std::uint32_t round = 99;; ++round) {  // the last look is the widest: what it comes upon is halved too
         if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);
         const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, effort.most_evaluations / 4);
-        if (!look.found || round == 103 || out.evaluations + 4 * look.evaluations >= effort.most_evaluations) {
+        if (!look.found || round == 103 || out.evaluations + 2 * look.evaluations >= rest.most_evaluations) {
             add_up(cells, bins, look, out);
             return out;
         }
         out.evaluations += look.evaluations;
-        Effort rest = effort;  // as much is left for the next look, and for what is cut along jumps
-        rest.most_evaluations -= 3 * look.evaluations;
         edges = refine(cells, g, rest, total, out);
     }
 }

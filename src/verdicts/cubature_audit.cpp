@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "simd/random.h"
-#include "verdicts/cell.h"
+#include "verdicts/jump_lines.h"
 
 namespace crescent::inline verdicts {
 
@@ -49,10 +49,52 @@ void add_points(int n, std::uint32_t index, std::uint32_t round, std::vector<Vec
 
 int parts_for(const std::vector<Cell>& cells, std::size_t room) {
     std::size_t jumpy = 0;
-    for (const Cell& c : cells) jumpy += c.jumpy();
+    for (const Cell& c : cells) jumpy += c.jumpy() && !c.cut;
     if (room == 0 || jumpy == 0) return 1;
     return std::clamp(
         static_cast<int>(std::sqrt(static_cast<double>(room) / static_cast<double>(jumpy))), 2, most_parts);
+}
+
+/// Of each cut cell that has none a second value, by two lines at random in each piece, against the polynomial through
+/// the piece's lines; `unsure` is what the lines differ by from that, the more of the two.
+std::size_t look_at_cuts(std::vector<Cell>& cells, const Batch& g, std::uint32_t round) {
+    std::vector<JumpLine> all;
+    std::vector<double> place;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(cells[c].lines.pieces); ++i) {
+            if (!cells[c].cut || cells[c].second) break;
+            const Cut& cut = cells[c].lines;
+            const auto h =
+                pcg4d<std::uint32_t>({static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), round, 0xc07e5u});
+            for (std::uint32_t half : {0u, 0x80000000u}) {
+                place.push_back((h.x + half + 0.5) * 0x1p-32);
+                all.push_back({c, cut.along_a, cut.ends[i] + place.back() * (cut.ends[i + 1] - cut.ends[i])});
+            }
+        }
+    std::size_t count = bracket_jumps(all, cells, g);
+    const std::vector<double> means = means_along(all, cells, g, &round, count);
+    for (std::size_t n = 0; n < all.size();) {
+        Cell& c = cells[all[n].cell];
+        std::array<double, 2> off{};
+        for (std::size_t i = 0; i < static_cast<std::size_t>(c.lines.pieces); ++i)
+            for (double& side : off) {
+                side += c.area() * (c.lines.ends[i + 1] - c.lines.ends[i]) * (means[n] - c.lines.mean_at(i, place[n]));
+                ++n;
+            }
+        c.second = c.value + 0.5 * (off[0] + off[1]);
+        c.unsure = std::max(std::fabs(off[0]), std::fabs(off[1]));
+    }
+    return count;
+}
+
+/// Where a jump turns a corner, its tip may stand in a cell whose points and lines all miss it: so much is granted to
+/// the whole, and to each bin in which cells are cut.
+void grant_tips(const std::vector<Cell>& cells, double mass, Audit& out) {
+    std::vector<bool> granted(out.bin_squares.size());
+    for (const Cell& c : cells)
+        if (c.cut) granted[static_cast<std::size_t>(c.rect.bin)] = true;
+    for (std::size_t i = 0; i < granted.size(); ++i) out.bin_squares[i] += granted[i] ? sqr(mass) : 0;
+    out.jumps += std::find(granted.begin(), granted.end(), true) != granted.end() ? sqr(mass) : 0;
 }
 
 }  // namespace
@@ -63,7 +105,9 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
     Audit out;
     out.bin_squares.assign(static_cast<std::size_t>(bins), 0.0);
     std::vector<Vec2d> where, points;
+    out.evaluations += look_at_cuts(cells, g, round);
     for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (cells[i].cut) continue;
         const std::size_t from = points.size();
         add_points(jittered(cells[i]) ? parts : 1, static_cast<std::uint32_t>(i), round, points);
         const Rect& r = cells[i].rect;
@@ -72,9 +116,21 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
     }
     std::vector<double> v(where.size());
     if (!where.empty()) g(where, v);
-    out.evaluations = where.size();
+    out.evaluations += where.size();
     std::size_t next = 0;
-    for (Cell& c : cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        Cell& c = cells[i];
+        if (c.cut) {
+            out.value += *c.second;
+            out.jumps += sqr(*c.second - c.value);
+            out.bin_squares[static_cast<std::size_t>(c.rect.bin)] += sqr(*c.second - c.value);
+            if (!(c.unsure > worth)) continue;
+            c.bent = true;
+            c.cut = false;
+            c.error = std::max(c.error, c.unsure);
+            out.found = true;
+            continue;
+        }
         const bool plain = jittered(c);
         const int count = plain ? parts * parts : looks;
         double sum = 0, most = 0;
@@ -88,10 +144,11 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
         out.value += value;
         (c.jumpy() ? out.jumps : out.smooth) += sqr(value - c.value);
         out.bin_squares[static_cast<std::size_t>(c.rect.bin)] += sqr(value - c.value);
-        if (c.cut || !(most * c.area() > worth) || !(most > 0.02 * (c.high - c.low))) continue;
+        if (!(most * c.area() > worth) || !(most > 0.02 * (c.high - c.low))) continue;
         c.error = std::max(c.error, 0.5 * most * c.area());
         out.found = true;
     }
+    grant_tips(cells, 2.5 * worth, out);
     return out;
 }
 

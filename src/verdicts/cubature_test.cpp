@@ -38,6 +38,18 @@ std::vector<Known> known_integrals() {
         {"a smooth slope up to a jump", [](double a, double b) { return a < 0.7 - 0.2 * b ? a : 0.0; },
             (std::pow(0.7, 3) - std::pow(0.5, 3)) / 1.2},
         {"a corner cut off", [](double a, double b) { return a + b < 0.04 ? 100.0 : 1.0; }, 1 + 99 * 0.5 * sqr(0.04)},
+        {"a rectangle askew",
+            [](double a, double b) {
+                const double c = std::cos(0.4), s = std::sin(0.4), x = a - 0.52, y = b - 0.47;
+                return std::fabs(c * x + s * y) < 0.21 && std::fabs(c * y - s * x) < 0.13 ? 4.0 : 0.0;
+            },
+            4 * 4 * 0.21 * 0.13, 2e-5},
+        {"a disc with a pole at its rim",
+            [](double a, double b) {
+                const double left = sqr(0.31) - sqr(a - 0.47) - sqr(b - 0.53);
+                return left > 0 ? 1 / std::sqrt(left) : 0.0;
+            },
+            2 * pi * 0.31, 2e-3},
         {"a chequer of steps", [](double a, double b) { return 1 + (int(a * 7) + int(b * 5)) % 3; }, 69 / 35.0},
         {"a pole at a corner", [](double a, double b) { return 1 / std::sqrt(a * a + b * b + 1e-300); },
             2 * std::log(1 + std::sqrt(2.0)), 1e-4},
@@ -99,16 +111,76 @@ TEST(Cubature, KnowsEveryBinAndAddsThemUp) {
     EXPECT_DOUBLE_EQ(sum, found.value);
 }
 
+/// As many directions as one w_o of a program is asked about, and what a rectangle light's density looks like.
+TEST(Cubature, KnowsTheEdgesOfARectangleForLittle) {
+    for (double turn : {0.1, 0.5, 0.9, 1.3}) {
+        const double c = std::cos(turn), s = std::sin(turn);
+        const auto g = [&](double a, double b) {
+            const double x = a - 0.52, y = b - 0.47, u = c * x + s * y, v = c * y - s * x;
+            return std::fabs(u) < 0.21 && std::fabs(v) < 0.13 ? (1 + 2 * u) / (4 * 0.21 * 0.13) : 0.0;
+        };
+        const Integral found = integrate(grid(4), 1, batch_of(g), {2e-5, 80000, 4e-4});
+        EXPECT_NEAR(found.value, 1, found.error) << turn;
+        EXPECT_TRUE(found.settled) << turn;
+        EXPECT_LT(found.error, 1e-4) << turn;
+        EXPECT_LT(found.evaluations, 160000u) << turn;
+    }
+}
+
 TEST(Cubature, CutsACellOnBothSidesOfAJump) {
     const auto g = [](double a, double b) { return a < 0.3 + 0.1 * b ? 2.0 : 0.5; };
     std::vector<Cell> cells = {Cell({0, 1, 0, 1, 0}, 0)};
-    cells[0].error = 1;
+    cells[0].error = cells[0].rule_error = 1;
     cells[0].high = 2;
     cells[0].low = 0.5;
     for (std::size_t i : {0u, 4u, 5u}) cells[0].outer[i] = 2;
     cut_along_jumps(cells, batch_of(g), 10);
     EXPECT_TRUE(cells[0].cut);
     EXPECT_NEAR(cells[0].value, 2 * 0.35 + 0.5 * 0.65, 1e-4);
+}
+
+/// The triangle in a corner: lines through it have a kink where the jump leaves the cell.
+TEST(Cubature, CutsACornerOff) {
+    const auto g = [](double a, double b) { return a / 0.37 + b / 0.61 < 1 ? 2.0 : 0.0; };
+    std::vector<Cell> cells = {Cell({0, 1, 0, 1, 0}, 0)};
+    cells[0].rule_error = 1;
+    cells[0].high = 2;
+    cut_along_jumps(cells, batch_of(g), 10);
+    EXPECT_TRUE(cells[0].cut);
+    EXPECT_EQ(cells[0].lines.pieces, 2);
+    EXPECT_NEAR(cells[0].value, 0.37 * 0.61, 1e-3);
+    audit(cells, 1, batch_of(g), 7, 0.01, 0);
+    EXPECT_NEAR(*cells[0].second, 0.37 * 0.61, 2e-3);
+    EXPECT_TRUE(cells[0].cut) << "one curve";
+}
+
+TEST(Cubature, HalvesACellAgainThatTwoJumpsCross) {
+    const auto g = [](double a, double b) { return std::fabs(a - 0.5) < 0.2 + 0.1 * b ? 1.0 : 0.0; };
+    std::vector<Cell> cells = {Cell({0, 1, 0, 1, 0}, 0)};
+    cells[0].rule_error = 1;
+    cells[0].high = 1;
+    cells[0].outer[0] = 1;
+    cut_along_jumps(cells, batch_of(g), 10);
+    const Audit look = audit(cells, 1, batch_of(g), 7, 0.001, 0);
+    EXPECT_TRUE(look.found);
+    EXPECT_TRUE(cells[0].bent);
+    EXPECT_FALSE(cells[0].cut);
+    EXPECT_GT(cells[0].error, 0.01);
+}
+
+/// A jump through the side of a large cell, where none of its own points is: the small cells beside it tell.
+TEST(Cubature, FollowsAJumpIntoTheCellBesideIt) {
+    const auto g = [](double a, double b) { return a < 0.51 - 4 * sqr(b - 0.3) ? 1.0 : 0.0; };
+    std::vector<Cell> cells = {Cell({0.25, 0.5, 0.2, 0.3, 0}, 0), Cell({0.5, 1, 0, 1, 0}, 0)};
+    cells[0].cut = cells[0].rim_tried = true;
+    cells[0].high = 1;
+    cells[0].outer = {1, 1, 1, 1, 1, 1, 0, 1};
+    bool found = false;
+    EXPECT_GT(look_around(cells, batch_of(g), 1e-4, found), 0u);
+    EXPECT_TRUE(found);
+    EXPECT_TRUE(cells[1].rim_jumps);
+    EXPECT_GT(cells[1].error, 0);
+    EXPECT_FALSE(cells[0].looked_around) << "it asks the halves";
 }
 
 TEST(Cubature, SeesASpikeThatDrawsFell) {

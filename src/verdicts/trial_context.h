@@ -233,7 +233,7 @@ private:
     void refine_table(int technique, Density& d) const;
     SamplesPerBin witnesses_of(int technique, const Density& d) const;
     Density density_about(
-        int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 1e-4) const;
+        int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 4e-4) const;
     Density bins_about(Vec3d axis, bool about_n) const;
     Batch batch_of(int technique, const SphereMap& map) const;
     Integral mass_inside_pole(int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) const;
