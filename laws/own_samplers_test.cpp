@@ -1,4 +1,4 @@
-// Samplers as people bring them: with a state, with a NaN that hides in a corner, with sharp lobes, with tables.
+// Samplers as people bring them: with a state, with a NaN that hides in a corner, with sharp lobes.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "laws/right/right.h"
 #include "verdicts/error_rates.h"
 #include "verdicts/list.h"
-#include "verdicts/mesh.h"
 #include "verdicts/pipe.h"
 
 namespace crescent {
@@ -178,37 +177,6 @@ TEST(OwnSamplers, WithSharpLobesAndBoundedWeightsHaveNoHeavyTail) {
             const Judgement j = judged(subject_of(ggx_visible_at(alpha, alpha * 3)), theta);
             EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
         }
-}
-
-/// 12 x 20 cells of cos theta x phi over the upper hemisphere.
-double in_cells(double a, double b) { return a >= 1 ? 0 : 1 + (int((1 - a) * 12) * 7 + int(b * 20) * 5) % 11; }
-
-TEST(Meshes, AreFoundInATableAndSummedExactly) {
-    const Batch g = [](std::span<const Vec2d> at, std::span<double> out) {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = in_cells(at[i].x, at[i].y);
-    };
-    const std::optional<Mesh> mesh = find_mesh(g);
-    ASSERT_TRUE(mesh);
-    double sum = 0;
-    for (int i = 0; i < 12; ++i)
-        for (int k = 0; k < 20; ++k) sum += in_cells(1 - (i + 0.5) / 12, (k + 0.5) / 20) / 240;
-    const double rings[] = {0, 0.31, 1.3, 2};
-    const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5});
-    ASSERT_TRUE(found);
-    EXPECT_NEAR(found->value, sum, 1e-12);
-    EXPECT_EQ(found->error, 0);
-}
-
-TEST(Meshes, AreNotSeenInASmoothDensityOrInACone) {
-    const Batch smooth = [](std::span<const Vec2d> at, std::span<double> out) {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = 1 + at[i].x + std::sin(2 * pi * at[i].y);
-    };
-    EXPECT_FALSE(find_mesh(smooth));
-    const SphereMap map(Vec3d{0, 0, 1});
-    const Batch cone = [&map](std::span<const Vec2d> at, std::span<double> out) {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = dot(map.direction(at[i]), tilt(40, 70)) > 0.6 ? 1 : 0;
-    };
-    EXPECT_FALSE(find_mesh(cone));
 }
 
 /// A library leaves the signals of the process that it is in alone, and does not let a program's end kill it.

@@ -11,7 +11,6 @@
 #include "verdicts/builtin.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
-#include "verdicts/mesh.h"
 
 namespace crescent {
 namespace {
@@ -258,28 +257,6 @@ TEST(Tails, OfFewValuesThatComeAgainAndAgainAreNone) {
     EXPECT_FALSE(tail.evidence.contains("k")) << tail.say;
     EXPECT_GT(tail.evidence["times_largest"].get<int>(), 100);
     EXPECT_EQ(named(j, "mean").state, State::right) << named(j, "mean").say;
-}
-
-/// 16 x 32 texels evenly spaced in theta, g sin theta constant in each; and the same from points at random.
-TEST(Meshes, OfTexelsInThetaAndPhiAreSummedOrSampled) {
-    const auto texel = [](double theta, double b) { return 1 + (int(theta / pi * 16) * 7 + int(b * 32) * 5) % 11; };
-    const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
-        for (std::size_t i = 0; i < at.size(); ++i)
-            out[i] = texel(std::acos(1 - at[i].x), at[i].y) / std::sqrt(at[i].x * (2 - at[i].x));
-    };
-    const std::optional<Mesh> mesh = find_mesh(g);
-    ASSERT_TRUE(mesh);
-    double sum = 0;
-    for (int i = 0; i < 16; ++i)
-        for (int k = 0; k < 32; ++k) sum += texel(pi * (i + 0.5) / 16, (k + 0.5) / 32) * pi / 16 / 32;
-    const double rings[] = {0, 0.31, 1.3, 2};
-    const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5});
-    ASSERT_TRUE(found);
-    EXPECT_NEAR(found->value, sum, 1e-9);
-    const Integral by_points = integrate_by_points(graded_cells(2), 1, g, 200000);
-    EXPECT_NEAR(by_points.value, sum, by_points.error);
-    EXPECT_LT(by_points.error, 0.05 * sum);
-    EXPECT_GT(by_points.error, 1e-4 * sum);
 }
 
 }  // namespace

@@ -62,9 +62,9 @@ struct Cell {
 /// that took.
 std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass, bool& found,
     const std::function<bool(const Cell&)>& asked);
-/// Integrates every line through cells that a jump crosses on both sides of the jump, which is found by bisection.
-/// Cells without one are marked smooth. Returns how many evaluations that took.
-std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edge_mass);
+/// Integrates lines through cells that a jump crosses on both sides of the jump, which is found by bisection. Cells
+/// without one are marked smooth. Returns how many evaluations that took, `room` at most.
+std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edge_mass, std::size_t room);
 
 /// Has cells beside those that were cut last halved or cut where the jump goes on in them, unseen. Returns how many
 /// evaluations that took.

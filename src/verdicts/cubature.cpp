@@ -173,6 +173,7 @@ void add_up(const std::vector<Cell>& cells, int bins, const Audit& look, Integra
     out.bin_errors.assign(n, 0.0);
     for (const Cell& c : cells) {
         out.bins[static_cast<std::size_t>(c.rect.bin)] += c.value;
+        if (c.jumps() && !c.bent) out.settled = false;  // nothing was left to look for the jump with
         if (c.jumpy()) continue;
         out.error += c.error;
         out.bin_errors[static_cast<std::size_t>(c.rect.bin)] += c.error;
@@ -197,10 +198,12 @@ Integral integrate(
     bool edges = refine(cells, g, effort, total, out);
     Effort rest = effort;
     rest.most_evaluations *= 2;  // as many again for what is cut along jumps, and for what the audit comes upon
-    for (std::uint32_t round = 0; round < 12 && out.evaluations < rest.most_evaluations; ++round) {
+    const auto room = [&] { return rest.most_evaluations - std::min(rest.most_evaluations, out.evaluations); };
+    for (std::uint32_t round = 0; round < 12 && room() > 0; ++round) {
         bool found = false;  // what the rule did not see: corners cut off, and whatever points at random come upon
         if (edges) out.evaluations += try_rims(cells, g, effort.edge_mass, found, [](const Cell&) { return true; });
-        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);  // what has none is halved on
+        if (edges)
+            out.evaluations += cut_along_jumps(cells, g, effort.edge_mass, room());  // what has none is halved on
         out.evaluations += look_around(cells, g, effort.edge_mass, found);
         const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, 0);
         out.evaluations += look.evaluations;
@@ -208,9 +211,9 @@ Integral integrate(
         edges = refine(cells, g, rest, total, out);
     }
     for (std::uint32_t round = 99;; ++round) {  // the last look is the widest: what it comes upon is halved too
-        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass);
+        if (edges) out.evaluations += cut_along_jumps(cells, g, effort.edge_mass, room());
         const Audit look = audit(cells, bins, g, round, 0.02 * effort.edge_mass, effort.most_evaluations / 4);
-        if (!look.found || round == 103 || out.evaluations + 2 * look.evaluations >= rest.most_evaluations) {
+        if (!look.found || round == 103 || 2 * look.evaluations >= room()) {
             add_up(cells, bins, look, out);
             return out;
         }

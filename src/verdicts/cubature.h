@@ -34,7 +34,7 @@ struct Integral {
 struct Effort {
     double tolerance = 5e-6;  // absolute, of the sum
     std::size_t most_evaluations = 400000;
-    double edge_mass = 4e-4;  // cells cut by a jump of the integrand are halved down to this, then cut along it
+    double edge_mass = 1e-4;  // cells cut by a jump of the integrand are halved down to this, then cut along it
 };
 
 /// Where draws of a density fell, and the integrand there: a cell that 17 points find empty, or lower than draws do, is

@@ -21,7 +21,14 @@ std::array<Vec2d, 4> corners(const Rect& r) {
     return {{{r.a0 + da, r.b0 + db}, {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b0 + db}, {r.a1 - da, r.b1 - db}}};
 }
 
-bool due(const Cell& c, double edge_mass) { return c.jumps() && c.step() < edge_mass; }
+/// The cells to cut: small ones that a jump seems to cross, as many as `room` evaluations are enough for.
+std::vector<std::size_t> due(const std::vector<Cell>& cells, double edge_mass, std::size_t room) {
+    constexpr std::size_t a_cell = 200;  // of two sides, three lines in up to three pieces, and the audit's lines
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < cells.size() && out.size() < room / a_cell; ++i)
+        if (cells[i].jumps() && cells[i].step() < edge_mass) out.push_back(i);
+    return out;
+}
 
 /// Along the side that sees more of the change.
 bool along_a(const Cell& c) {
@@ -39,11 +46,10 @@ bool may_cross(const Cell& c, int end) {
     return !c.rim_tried || std::fabs(c.outer[one] - c.outer[two]) > a_jump * (c.high - c.low);
 }
 
-/// Where the jump leaves the cells that are due through the sides at which their lines end.
-std::size_t find_pieces(std::vector<Cell>& cells, const Batch& g, double edge_mass) {
+/// Where the jump leaves these cells through the sides at which their lines end.
+std::size_t find_pieces(std::vector<Cell>& cells, const std::vector<std::size_t>& which, const Batch& g) {
     std::vector<JumpLine> sides;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (!due(cells[c], edge_mass)) continue;
+    for (std::size_t c : which) {
         Cut& cut = cells[c].lines;
         cut = Cut{along_a(cells[c])};
         for (int end : {0, 1})
@@ -54,10 +60,10 @@ std::size_t find_pieces(std::vector<Cell>& cells, const Batch& g, double edge_ma
         Cut& cut = cells[l.cell].lines;
         if (crosses(cells[l.cell], l)) cut.ends[static_cast<std::size_t>(++cut.pieces)] = l.jump();
     }
-    for (Cell& c : cells) {
-        if (!due(c, edge_mass)) continue;
-        c.lines.ends[static_cast<std::size_t>(++c.lines.pieces)] = 1;
-        std::sort(c.lines.ends.begin(), c.lines.ends.begin() + c.lines.pieces + 1);
+    for (std::size_t c : which) {
+        Cut& cut = cells[c].lines;
+        cut.ends[static_cast<std::size_t>(++cut.pieces)] = 1;
+        std::sort(cut.ends.begin(), cut.ends.begin() + cut.pieces + 1);
     }
     return count;
 }
@@ -108,11 +114,11 @@ std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass,
     return where.size();
 }
 
-std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edge_mass) {
-    std::size_t count = find_pieces(cells, g, edge_mass);
+std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edge_mass, std::size_t room) {
+    const std::vector<std::size_t> which = due(cells, edge_mass, room);
+    std::size_t count = find_pieces(cells, which, g);
     std::vector<JumpLine> all;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (!due(cells[c], edge_mass)) continue;
+    for (std::size_t c : which) {
         const Cut& cut = cells[c].lines;
         for (std::size_t i = 0; i < static_cast<std::size_t>(cut.pieces); ++i)
             for (double x : gauss3) all.push_back({c, cut.along_a, cut.ends[i] + x * (cut.ends[i + 1] - cut.ends[i])});

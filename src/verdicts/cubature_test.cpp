@@ -134,7 +134,7 @@ TEST(Cubature, CutsACellOnBothSidesOfAJump) {
     cells[0].high = 2;
     cells[0].low = 0.5;
     for (std::size_t i : {0u, 4u, 5u}) cells[0].outer[i] = 2;
-    cut_along_jumps(cells, batch_of(g), 10);
+    cut_along_jumps(cells, batch_of(g), 10, 1000);
     EXPECT_TRUE(cells[0].cut);
     EXPECT_NEAR(cells[0].value, 2 * 0.35 + 0.5 * 0.65, 1e-4);
 }
@@ -145,7 +145,7 @@ TEST(Cubature, CutsACornerOff) {
     std::vector<Cell> cells = {Cell({0, 1, 0, 1, 0}, 0)};
     cells[0].rule_error = 1;
     cells[0].high = 2;
-    cut_along_jumps(cells, batch_of(g), 10);
+    cut_along_jumps(cells, batch_of(g), 10, 1000);
     EXPECT_TRUE(cells[0].cut);
     EXPECT_EQ(cells[0].lines.pieces, 2);
     EXPECT_NEAR(cells[0].value, 0.37 * 0.61, 1e-3);
@@ -160,7 +160,7 @@ TEST(Cubature, HalvesACellAgainThatTwoJumpsCross) {
     cells[0].rule_error = 1;
     cells[0].high = 1;
     cells[0].outer[0] = 1;
-    cut_along_jumps(cells, batch_of(g), 10);
+    cut_along_jumps(cells, batch_of(g), 10, 1000);
     const Audit look = audit(cells, 1, batch_of(g), 7, 0.001, 0);
     EXPECT_TRUE(look.found);
     EXPECT_TRUE(cells[0].bent);

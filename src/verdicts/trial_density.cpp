@@ -119,11 +119,9 @@ void TrialContext::measure_further(int t, Density& d) const {
     };
     const SamplesPerBin seen = witnesses_of(t, d);
     try {
-        Integral mass =
-            integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()), while_affordable,
-                {tolerance(), affordable(6 * settings.evaluations, for_later()) + known,
-                    thrifty() ? Effort{}.edge_mass : 1e-4},
-                &seen);
+        Integral mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
+            while_affordable,
+            {tolerance(), affordable(6 * settings.evaluations, for_later()) + known, thrifty() ? 4e-4 : 1e-4}, &seen);
         if (mass.error < d.mass.error) d.mass = std::move(mass);
     } catch (const OutOfQuestions&) {}  // what is known so far stays
 }

@@ -30,7 +30,7 @@ std::optional<Density> TrialContext::table_density(int t) {
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
             mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
-                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, crowd, &seen);
+                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, grain_, crowd, &seen);
         else
             mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
                 affordable(4 * settings.evaluations, for_later()));
