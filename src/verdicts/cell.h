@@ -12,7 +12,7 @@ namespace crescent::inline verdicts {
 inline constexpr int rule_size = 17;
 
 /// How a cell is integrated that a jump crosses: along lines of one coordinate, three in each piece of the other.
-struct Cut {
+struct CutLines {
     static constexpr std::size_t lines = 3, most_pieces = 3;
     bool along_a = true;
     int pieces = 0;
@@ -35,7 +35,7 @@ struct Cell {
     bool rim_tried = false,
          rim_jumps = false;        // whether corners, or a side's points, differ from what the rule saw beside them
     bool cut = false;              // integrated on both sides of a jump,
-    Cut lines;                     // along these
+    CutLines lines;                // along these
     std::optional<double> second;  // the audit's estimate of its value, where it is cut and was looked at,
     double unsure = 0;             // and what single lines differ by
     bool looked_around = false;    // the cells beside it were asked for the jump

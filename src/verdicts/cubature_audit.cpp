@@ -63,7 +63,7 @@ std::size_t look_at_cuts(std::vector<Cell>& cells, const Batch& g, std::uint32_t
     for (std::size_t c = 0; c < cells.size(); ++c)
         for (std::size_t i = 0; i < static_cast<std::size_t>(cells[c].lines.pieces); ++i) {
             if (!cells[c].cut || cells[c].second) break;
-            const Cut& cut = cells[c].lines;
+            const CutLines& cut = cells[c].lines;
             const auto h =
                 pcg4d<std::uint32_t>({static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(i), round, 0xc07e5u});
             for (std::uint32_t half : {0u, 0x80000000u}) {
@@ -87,6 +87,35 @@ std::size_t look_at_cuts(std::vector<Cell>& cells, const Batch& g, std::uint32_t
     return count;
 }
 
+bool jittered(const Cell& c, int parts) { return parts > 1 && c.jumpy(); }
+
+/// Where the integrand is asked, in the cells that are not cut; `points` are the same in each cell's own coordinates.
+std::vector<Vec2d> points_at_random(
+    const std::vector<Cell>& cells, int parts, std::uint32_t round, std::vector<Vec2d>& points) {
+    std::vector<Vec2d> where;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (cells[i].cut) continue;
+        const std::size_t from = points.size();
+        add_points(jittered(cells[i], parts) ? parts : 1, static_cast<std::uint32_t>(i), round, points);
+        const Rect& r = cells[i].rect;
+        for (std::size_t k = from; k < points.size(); ++k)
+            where.push_back({r.a0 + points[k].x * (r.a1 - r.a0), r.b0 + points[k].y * (r.b1 - r.b0)});
+    }
+    return where;
+}
+
+/// What the lines at random say of a cell that is cut; one that they differ in is to be halved.
+void add_cut(Cell& c, double worth, Audit& out) {
+    out.value += *c.second;
+    out.jumps += sqr(*c.second - c.value);
+    out.bin_squares[static_cast<std::size_t>(c.rect.bin)] += sqr(*c.second - c.value);
+    if (!(c.unsure > worth)) return;
+    c.bent = true;
+    c.cut = false;
+    c.error = std::max(c.error, c.unsure);
+    out.found = true;
+}
+
 /// Where a jump turns a corner, its tip may stand in a cell whose points and lines all miss it: so much is granted to
 /// the whole, and to each bin in which cells are cut.
 void grant_tips(const std::vector<Cell>& cells, double mass, Audit& out) {
@@ -101,19 +130,11 @@ void grant_tips(const std::vector<Cell>& cells, double mass, Audit& out) {
 
 Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t round, double worth, std::size_t room) {
     const int parts = parts_for(cells, room);
-    const auto jittered = [parts](const Cell& c) { return parts > 1 && c.jumpy(); };
     Audit out;
     out.bin_squares.assign(static_cast<std::size_t>(bins), 0.0);
-    std::vector<Vec2d> where, points;
     out.evaluations += look_at_cuts(cells, g, round);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (cells[i].cut) continue;
-        const std::size_t from = points.size();
-        add_points(jittered(cells[i]) ? parts : 1, static_cast<std::uint32_t>(i), round, points);
-        const Rect& r = cells[i].rect;
-        for (std::size_t k = from; k < points.size(); ++k)
-            where.push_back({r.a0 + points[k].x * (r.a1 - r.a0), r.b0 + points[k].y * (r.b1 - r.b0)});
-    }
+    std::vector<Vec2d> points;
+    const std::vector<Vec2d> where = points_at_random(cells, parts, round, points);
     std::vector<double> v(where.size());
     if (!where.empty()) g(where, v);
     out.evaluations += where.size();
@@ -121,17 +142,10 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
     for (std::size_t i = 0; i < cells.size(); ++i) {
         Cell& c = cells[i];
         if (c.cut) {
-            out.value += *c.second;
-            out.jumps += sqr(*c.second - c.value);
-            out.bin_squares[static_cast<std::size_t>(c.rect.bin)] += sqr(*c.second - c.value);
-            if (!(c.unsure > worth)) continue;
-            c.bent = true;
-            c.cut = false;
-            c.error = std::max(c.error, c.unsure);
-            out.found = true;
+            add_cut(c, worth, out);
             continue;
         }
-        const bool plain = jittered(c);
+        const bool plain = jittered(c, parts);
         const int count = plain ? parts * parts : looks;
         double sum = 0, most = 0;
         for (int k = 0; k < count; ++k, ++next) {

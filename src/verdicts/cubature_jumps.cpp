@@ -11,8 +11,8 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr std::array<double, Cut::lines> gauss3 = {0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
-constexpr std::array<double, Cut::lines> weight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+constexpr std::array<double, CutLines::lines> gauss3 = {0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
+constexpr std::array<double, CutLines::lines> weight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 constexpr double a_jump = 0.01;  // of the cell's range: a smooth integrand changes by less over 2^-12 of its width
 
 /// The corners, in the order of the rule's outermost points.
@@ -50,18 +50,18 @@ bool may_cross(const Cell& c, int end) {
 std::size_t find_pieces(std::vector<Cell>& cells, const std::vector<std::size_t>& which, const Batch& g) {
     std::vector<JumpLine> sides;
     for (std::size_t c : which) {
-        Cut& cut = cells[c].lines;
-        cut = Cut{along_a(cells[c])};
+        CutLines& cut = cells[c].lines;
+        cut = CutLines{along_a(cells[c])};
         for (int end : {0, 1})
             if (may_cross(cells[c], end)) sides.push_back({c, !cut.along_a, end ? 1 - inset : inset});
     }
     const std::size_t count = bracket_jumps(sides, cells, g);
     for (const JumpLine& l : sides) {
-        Cut& cut = cells[l.cell].lines;
+        CutLines& cut = cells[l.cell].lines;
         if (crosses(cells[l.cell], l)) cut.ends[static_cast<std::size_t>(++cut.pieces)] = l.jump();
     }
     for (std::size_t c : which) {
-        Cut& cut = cells[c].lines;
+        CutLines& cut = cells[c].lines;
         cut.ends[static_cast<std::size_t>(++cut.pieces)] = 1;
         std::sort(cut.ends.begin(), cut.ends.begin() + cut.pieces + 1);
     }
@@ -70,14 +70,14 @@ std::size_t find_pieces(std::vector<Cell>& cells, const std::vector<std::size_t>
 
 }  // namespace
 
-double Cut::mean() const {
+double CutLines::mean() const {
     double sum = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(pieces); ++i)
         for (std::size_t k = 0; k < lines; ++k) sum += (ends[i + 1] - ends[i]) * weight3[k] * means[i][k];
     return sum;
 }
 
-double Cut::mean_at(std::size_t piece, double x) const {
+double CutLines::mean_at(std::size_t piece, double x) const {
     double sum = 0;
     for (std::size_t k = 0; k < lines; ++k) {
         double term = means[piece][k];
@@ -119,7 +119,7 @@ std::size_t cut_along_jumps(std::vector<Cell>& cells, const Batch& g, double edg
     std::size_t count = find_pieces(cells, which, g);
     std::vector<JumpLine> all;
     for (std::size_t c : which) {
-        const Cut& cut = cells[c].lines;
+        const CutLines& cut = cells[c].lines;
         for (std::size_t i = 0; i < static_cast<std::size_t>(cut.pieces); ++i)
             for (double x : gauss3) all.push_back({c, cut.along_a, cut.ends[i] + x * (cut.ends[i + 1] - cut.ends[i])});
     }
