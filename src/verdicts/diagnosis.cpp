@@ -48,7 +48,8 @@ bool may_be_whole(const Factor& factor, std::span<const Ratio> ratios) {
     return 4 * inside >= 3 * tried;
 }
 
-Fitted fit(const Factor& factor, std::span<const Ratio> ratios) {
+Fitted fit(const TrialContext& work, const Factor& factor, std::span<const Ratio> ratios) {
+    work.subject.make_way(4 * ratios.size());
     if (factor.whole && !may_be_whole(factor, ratios)) return {};
     std::vector<double> logs, raw, errors;
     for (const Ratio& r : ratios) {
@@ -119,7 +120,7 @@ std::optional<Diagnosis> explain_one_side(const TrialContext& work, std::span<co
         if (off.size() < least / 4 || right.empty() || mostly_one(off)) continue;
         if (static_cast<double>(one) < enough * static_cast<double>(right.size())) continue;
         for (const Factor& factor : factors_of_side(work, across)) {
-            const Fitted f = fit(factor, off);
+            const Fitted f = fit(work, factor, off);
             if (!f.fits || !(f.all > 0)) continue;
             Diagnosis d{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
                 factor_text(work, factor.name, f.constant), {}};
@@ -146,7 +147,7 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
     std::vector<Factor> factors = usual_factors(work);
     add_whole_factors(factors, work);
     for (const Factor& factor : factors) {
-        const Fitted f = fit(factor, ratios);
+        const Fitted f = fit(work, factor, ratios);
         if (!f.fits || !(f.all > 0)) continue;
         if (factor.whole && std::fabs(math::log(f.constant)) > may_differ(f.all, 0)) continue;
         const Diagnosis now{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),

@@ -135,8 +135,10 @@ SampleBatch TrialContext::draw(int technique, int round) const {
         const std::uint32_t seed = seed_of(seed_, static_cast<std::uint32_t>(round) * 7919u);
         b.u.resize(n);
         b.draws.resize(n);
-        for (std::uint64_t i = 0; i < n; ++i)
+        for (std::uint64_t i = 0; i < n; ++i) {
+            subject.make_way(1);
             b.u[i] = drawn_numbers(seed, index_, i, static_cast<std::uint32_t>(technique), traits.numbers);
+        }
         subject.sample(technique, trial.wo, b.u, b.draws);
     }
     drop_unusable(b);
@@ -149,8 +151,10 @@ SampleBatch TrialContext::draw(int technique, int round) const {
 void TrialContext::count_nothing(SampleBatch& b) const {
     if (scatter_.pdf()) settle_zeros(b);
     b.nothing = b.deltas = 0;
-    for (std::size_t i = 0; i < b.draws.size(); ++i)
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) ++b.nothing, b.deltas += b.draws[i].delta > 0;
+    }
 }
 
 const std::vector<double>& TrialContext::f_of_drawn(const SampleBatch& b) const {
@@ -169,6 +173,7 @@ const std::vector<double>& TrialContext::f_of_drawn(const SampleBatch& b) const 
     b.f_channels.assign(coloured ? b.draws.size() : 0, Vec3d{});
     std::size_t next = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        subject.make_way(1);
         if (!(b.draws[i].pdf > 0) || !counts(b.draws[i].wi) || !is_finite(b.draws[i].wi)) continue;
         if (coloured) b.f_channels[i] = by_channel[next];
         b.f[i] = coloured ? luminance(by_channel[next]) : value[next];
