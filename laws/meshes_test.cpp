@@ -41,18 +41,28 @@ TEST(Meshes, AreNotSeenInASmoothDensityOrInACone) {
     EXPECT_FALSE(find_mesh(cone));
 }
 
+/// A table of rows x 32 texels evenly spaced in theta and in phi (turns), and its integral over both.
+struct Texels {
+    int rows;
+    double at(double theta, double b) const { return 1 + (int(theta / pi * rows) * 7 + int(b * 32) * 5) % 11; }
+    double sum() const {
+        double out = 0;
+        for (int i = 0; i < rows; ++i)
+            for (int k = 0; k < 32; ++k) out += at(pi * (i + 0.5) / rows, (k + 0.5) / 32) * pi / rows / 32;
+        return out;
+    }
+};
+
 /// 16 x 32 texels evenly spaced in theta, g sin theta constant in each; and the same from points at random.
 TEST(Meshes, OfTexelsInThetaAndPhiAreSummedOrSampled) {
-    const auto texel = [](double theta, double b) { return 1 + (int(theta / pi * 16) * 7 + int(b * 32) * 5) % 11; };
+    const Texels texels{16};
     const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
         for (std::size_t i = 0; i < at.size(); ++i)
-            out[i] = texel(std::acos(1 - at[i].x), at[i].y) / std::sqrt(at[i].x * (2 - at[i].x));
+            out[i] = texels.at(std::acos(1 - at[i].x), at[i].y) / std::sqrt(at[i].x * (2 - at[i].x));
     };
     const std::optional<Mesh> mesh = find_mesh(g);
     ASSERT_TRUE(mesh);
-    double sum = 0;
-    for (int i = 0; i < 16; ++i)
-        for (int k = 0; k < 32; ++k) sum += texel(pi * (i + 0.5) / 16, (k + 0.5) / 32) * pi / 16 / 32;
+    const double sum = texels.sum();
     const double rings[] = {0, 0.31, 1.3, 2};
     const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5});
     ASSERT_TRUE(found);
@@ -66,18 +76,16 @@ TEST(Meshes, OfTexelsInThetaAndPhiAreSummedOrSampled) {
 /// A renderer that works in single precision rounds the direction before it looks up theta: near the poles sin theta is
 /// known to per cents there.
 TEST(Meshes, OfTexelsOfASkyInSinglePrecisionAreSummed) {
-    const auto texel = [](double theta, double b) { return 1 + (int(theta / pi * 64) * 7 + int(b * 32) * 5) % 11; };
+    const Texels texels{64};
     const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
         for (std::size_t i = 0; i < at.size(); ++i) {
             const float theta = std::acos(std::clamp(static_cast<float>(1 - at[i].x), -1.0f, 1.0f));
-            out[i] = texel(std::acos(1 - at[i].x), at[i].y) / std::max(std::sin(theta), 1e-12f);
+            out[i] = texels.at(std::acos(1 - at[i].x), at[i].y) / std::max(std::sin(theta), 1e-12f);
         }
     };
     const std::optional<Mesh> mesh = find_mesh(g);
     ASSERT_TRUE(mesh);
-    double sum = 0;
-    for (int i = 0; i < 64; ++i)
-        for (int k = 0; k < 32; ++k) sum += texel(pi * (i + 0.5) / 64, (k + 0.5) / 32) * pi / 64 / 32;
+    const double sum = texels.sum();
     const double rings[] = {0, 0.31, 1.3, 2};
     const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5}, 0x1p-24);
     ASSERT_TRUE(found);

@@ -51,18 +51,13 @@ bool holds(double left, const std::string& op, double right) {
     return op == "==" && left == right;
 }
 
-/// The run that a quantity is of, where it is of one.
-RunKey key_of(const ParsedQuantity& q, const Experiment& experiment, std::uint32_t seed) {
-    return {q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed};
-}
-
-/// `run`: that of its key, where it is of one.
-double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, const RunMeter* run,
-    const PlateBytes& plate_bytes) {
+/// find(key): the run of that key, for who is of one.
+template <class Find> double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment,
+    std::uint32_t seed, const PlateBytes& plate_bytes, const Find& find) {
     if (q.number) return *q.number;
     switch (subject_of(q.word)) {
         case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
-        case QuantityOf::run: return of_run(q, run);
+        case QuantityOf::run: return of_run(q, find(RunKey{q.subject, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
         case QuantityOf::furnace: return of_furnace(q, metrics);
         case QuantityOf::compared: break;
         case QuantityOf::shape: {
@@ -116,8 +111,8 @@ double side(const std::string& text, bool over_seeds, const Measurements& of, As
     std::vector<double> values;
     const std::vector own{of.experiment.seed};
     for (const std::uint32_t seed : over_seeds && !of.runs.seeds().empty() ? of.runs.seeds() : own)
-        values.push_back(
-            value_of(q, of.metrics, of.experiment, of.runs.find(key_of(q, of.experiment, seed)), of.plate_bytes));
+        values.push_back(value_of(
+            q, of.metrics, of.experiment, seed, of.plate_bytes, [&](const RunKey& key) { return of.runs.find(key); }));
     const double value = median(values);
     out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
     if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
@@ -135,8 +130,8 @@ bool cannot_fail(const AssertionPlan& plan) {
 
 double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment, std::uint32_t seed,
     const PlateBytes& plate_bytes) {
-    const RunKey key = key_of(q, experiment, seed);
-    return value_of(q, metrics, experiment, metrics.find(key.arm, key.n, key.s, key.seed), plate_bytes);
+    return value_of(q, metrics, experiment, seed, plate_bytes,
+        [&](const RunKey& key) { return metrics.find(key.arm, key.n, key.s, key.seed); });
 }
 
 std::vector<AssertionResult> judge(

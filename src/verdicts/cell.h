@@ -33,7 +33,7 @@ struct Cell {
     std::array<double, 8> outer{};       // at the rule's outermost points: four sides, four corners; or at the corners
     bool split_a = true;
     bool rim_tried = false,
-         rim_jumps = false;        // whether corners, or a side's points, differ from what the rule saw beside them
+         rim_jumps = false;        // whether corners, or what a cell beside it knows, differ from what the rule saw
     bool cut = false;              // integrated on both sides of a jump,
     CutLines lines;                // along these
     std::optional<double> second;  // the audit's estimate of its value, where it is cut and was looked at,
@@ -56,6 +56,13 @@ struct Cell {
     /// A jump seems to cross it, and nobody looked yet.
     bool jumps() const { return !cut && !smooth && (rough() || rim_jumps); }
 };
+
+/// The integrand at some points, which may be none.
+std::vector<double> values_at(const Batch& g, const std::vector<Vec2d>& where);
+
+inline constexpr double inset = 1e-7;  // of a cell's width: so far inside of its rim it is asked
+/// The corners, as far inside, in the order of the rule's outermost points: a0 b0, a0 b1, a1 b0, a1 b1.
+std::array<Vec2d, 4> corners(const Rect& r);
 
 /// Tries the corners of cells that were not tried yet and are `asked`: a jump may cut a corner off unseen. Cells
 /// in which it does and that weigh more than edge_mass get an error that has them halved. Returns how many evaluations

@@ -135,8 +135,7 @@ Audit audit(std::vector<Cell>& cells, int bins, const Batch& g, std::uint32_t ro
     out.evaluations += look_at_cuts(cells, g, round);
     std::vector<Vec2d> points;
     const std::vector<Vec2d> where = points_at_random(cells, parts, round, points);
-    std::vector<double> v(where.size());
-    if (!where.empty()) g(where, v);
+    const std::vector<double> v = values_at(g, where);
     out.evaluations += where.size();
     std::size_t next = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {

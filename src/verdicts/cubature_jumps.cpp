@@ -15,12 +15,6 @@ constexpr std::array<double, CutLines::lines> gauss3 = {0.5 - 0.3872983346207417
 constexpr std::array<double, CutLines::lines> weight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 constexpr double a_jump = 0.01;  // of the cell's range: a smooth integrand changes by less over 2^-12 of its width
 
-/// The corners, in the order of the rule's outermost points.
-std::array<Vec2d, 4> corners(const Rect& r) {
-    const double da = inset * (r.a1 - r.a0), db = inset * (r.b1 - r.b0);
-    return {{{r.a0 + da, r.b0 + db}, {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b0 + db}, {r.a1 - da, r.b1 - db}}};
-}
-
 /// The cells to cut: small ones that a jump seems to cross, as many as `room` evaluations are enough for.
 std::vector<std::size_t> due(const std::vector<Cell>& cells, double edge_mass, std::size_t room) {
     constexpr std::size_t a_cell = 200;  // of two sides, three lines in up to three pieces, and the audit's lines
@@ -70,6 +64,17 @@ std::size_t find_pieces(std::vector<Cell>& cells, const std::vector<std::size_t>
 
 }  // namespace
 
+std::vector<double> values_at(const Batch& g, const std::vector<Vec2d>& where) {
+    std::vector<double> out(where.size());
+    if (!where.empty()) g(where, out);
+    return out;
+}
+
+std::array<Vec2d, 4> corners(const Rect& r) {
+    const double da = inset * (r.a1 - r.a0), db = inset * (r.b1 - r.b0);
+    return {{{r.a0 + da, r.b0 + db}, {r.a0 + da, r.b1 - db}, {r.a1 - da, r.b0 + db}, {r.a1 - da, r.b1 - db}}};
+}
+
 double CutLines::mean() const {
     double sum = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(pieces); ++i)
@@ -94,8 +99,7 @@ std::size_t try_rims(std::vector<Cell>& cells, const Batch& g, double edge_mass,
     for (Cell& c : cells)
         if (!c.rim_tried && asked(c))
             for (Vec2d p : corners(c.rect)) where.push_back(p);
-    std::vector<double> v(where.size());
-    if (!where.empty()) g(where, v);
+    const std::vector<double> v = values_at(g, where);
     const double* at_rim = v.data();
     for (Cell& c : cells) {
         if (c.rim_tried || !asked(c)) continue;

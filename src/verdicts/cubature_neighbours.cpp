@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "verdicts/jump_lines.h"
+#include "verdicts/cell.h"
 
 namespace crescent::inline verdicts {
 
@@ -64,9 +64,9 @@ std::vector<Suspicion> suspicions(std::vector<Cell>& cells) {
         const Rect& r = c.rect;
         const double da = inset * (r.a1 - r.a0), db = inset * (r.b1 - r.b0);
         for (std::size_t k = 0; k < 4; ++k) {
-            const bool right = k >= 2, top = k % 2 == 1;
-            const double a = right ? r.a1 - da : r.a0 + da, b = top ? r.b1 - db : r.b0 + db;
-            for (Vec2d p : {Vec2d{right ? r.a1 + da : r.a0 - da, b}, Vec2d{a, top ? r.b1 + db : r.b0 - db}}) {
+            const Vec2d corner = corners(r)[k];
+            const double a = k >= 2 ? r.a1 + da : r.a0 - da, b = k % 2 == 1 ? r.b1 + db : r.b0 - db;
+            for (Vec2d p : {Vec2d{a, corner.y}, Vec2d{corner.x, b}}) {
                 p.y -= std::floor(p.y);
                 const std::size_t i = places.at(p);
                 if (i < cells.size() && !cells[i].jumpy() && unlike(cells[i], c.outer[4 + k])) out.push_back({i, n, p});
@@ -83,8 +83,7 @@ std::size_t look_around(std::vector<Cell>& cells, const Batch& g, double edge_ma
     const std::vector<Suspicion> all = suspicions(cells);
     std::vector<Vec2d> where;
     for (const Suspicion& s : all) where.push_back(s.at);
-    std::vector<double> v(where.size());
-    if (!where.empty()) g(where, v);
+    const std::vector<double> v = values_at(g, where);
     for (std::size_t i = 0; i < all.size(); ++i) {
         Cell& c = cells[all[i].cell];
         if (!unlike(c, v[i])) continue;  // the jump runs along the side

@@ -30,26 +30,20 @@ double place(std::size_t line, std::uint32_t side, std::uint32_t round) {
     return (pcg4d<std::uint32_t>({static_cast<std::uint32_t>(line), side, round, 0x11e5u}).x + 0.5) * 0x1p-32;
 }
 
-std::vector<double> values(const Batch& g, const std::vector<Vec2d>& where, std::size_t& count) {
-    std::vector<double> out(where.size());
-    if (!where.empty()) g(where, out);
-    count += where.size();
-    return out;
-}
-
 }  // namespace
 
 std::size_t bracket_jumps(std::vector<JumpLine>& lines, const std::vector<Cell>& cells, const Batch& g) {
-    std::size_t count = 0;
     std::vector<Vec2d> where;
     for (const JumpLine& l : lines)
         for (double t : {inset, 1 - inset}) where.push_back(at(cells[l.cell].rect, l, t));
-    std::vector<double> v = values(g, where, count);
+    std::vector<double> v = values_at(g, where);
+    std::size_t count = where.size();
     for (std::size_t i = 0; i < lines.size(); ++i) lines[i].g0 = v[2 * i], lines[i].g1 = v[2 * i + 1];
     for (int k = 0; k < bisections; ++k) {
         where.clear();
         for (const JumpLine& l : lines) where.push_back(at(cells[l.cell].rect, l, l.jump()));
-        v = values(g, where, count);
+        v = values_at(g, where);
+        count += where.size();
         for (std::size_t i = 0; i < lines.size(); ++i) {
             JumpLine& l = lines[i];
             if (std::fabs(v[i] - l.g0) > std::fabs(v[i] - l.g1)) l.t1 = l.jump(), l.g1 = v[i];
@@ -75,7 +69,8 @@ std::vector<double> means_along(const std::vector<JumpLine>& lines, const std::v
             for (std::size_t n = from; n < x.size(); ++n)
                 where.push_back(at(cells[lines[i].cell].rect, lines[i], side.t(x[n])));
         }
-    const std::vector<double> v = values(g, where, count);
+    const std::vector<double> v = values_at(g, where);
+    count += where.size();
     std::vector<double> out(lines.size(), 0.0);
     std::size_t n = 0;
     for (std::size_t i = 0; i < lines.size(); ++i)

@@ -21,8 +21,6 @@ struct JumpLine {
     double change() const { return std::fabs(g1 - g0); }
 };
 
-inline constexpr double inset = 1e-7;  // of a cell's width: so far inside of its rim it is asked
-
 /// Closes in on the largest change along each line, to 2^-12 of the cell's width. Returns how many evaluations that
 /// took.
 std::size_t bracket_jumps(std::vector<JumpLine>& lines, const std::vector<Cell>& cells, const Batch& g);
