@@ -32,7 +32,7 @@ void open_standard_streams() {
         if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF) static_cast<void>(::open("/dev/null", O_RDWR));
 }
 
-int failed(int code, const std::string& text) {
+int ended_with(int code, const std::string& text) {
     print_to_stderr(text + "\n");
     return code;
 }
@@ -40,14 +40,14 @@ int failed(int code, const std::string& text) {
 int perform(int argc, char** argv) {
     try {
         return parse(argc, argv)();
-    } catch (const InputError& e) { return failed(misused, e.what()); } catch (const OutputError& e) {
-        return failed(unwritable, std::string("crescent: ") + e.what());
+    } catch (const InputError& e) { return ended_with(misused, e.what()); } catch (const OutputError& e) {
+        return ended_with(unwritable, std::string("crescent: ") + e.what());
     } catch (const Interrupted&) {
-        return failed(interrupted, "crescent: interrupted; existing outputs were not changed");
+        return ended_with(interrupted, "crescent: interrupted; existing outputs were not changed");
     } catch (const std::bad_alloc&) {
-        return failed(unwritable, "crescent: out of memory");
+        return ended_with(unwritable, "crescent: out of memory");
     } catch (const std::exception& e) {
-        return failed(bug, std::string("crescent: internal error, please report it: ") + e.what());
+        return ended_with(bug, std::string("crescent: internal error, please report it: ") + e.what());
     }
 }
 
