@@ -29,10 +29,10 @@ template <class Work> double best_of(int repetitions, Work&& work) {
 constexpr int films_a_turn = 3;
 
 void arm(const Scene& scene, const std::string& name, const std::string& sampler, std::uint64_t n, int threads) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     std::vector<Film> films;
     double plain_mean = 0;
-    const double fast = best_of(films_a_turn, [&] { films = estimate_films(scene, sampler, {n}, 1, "", watch); });
+    const double fast = best_of(films_a_turn, [&] { films = estimate_films(scene, sampler, {n}, 1, "", monitor); });
     const double plain = best_of(
         films_a_turn, [&] { plain_mean = bench::straightforward(scene, sampler, static_cast<int>(n), 1, threads); });
     double mean = 0;

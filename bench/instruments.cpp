@@ -29,13 +29,13 @@ struct Figures {
 };
 
 Figures measure_arm(const Scene& scene, Instrument& gl, const std::string& sampler, std::uint64_t n, double samples) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const Job job{sampler, sampler, {n}, scene.s(), 1};
-    gl.films(scene, {sampler, sampler, {1}, job.s, 1}, watch);  // compiles
+    gl.films(scene, {sampler, sampler, {1}, job.s, 1}, monitor);  // compiles
     double cpu_s = 1e30, gl_s = 1e30;
     for (int k = 0; k < 7; ++k) {
-        cpu_s = std::min(cpu_s, seconds_of([&] { estimate_films(scene, sampler, {n}, 1, "", watch); }));
-        gl_s = std::min(gl_s, seconds_of([&] { gl.films(scene, job, watch); }));
+        cpu_s = std::min(cpu_s, seconds_of([&] { estimate_films(scene, sampler, {n}, 1, "", monitor); }));
+        gl_s = std::min(gl_s, seconds_of([&] { gl.films(scene, job, monitor); }));
     }
     return {samples / cpu_s * 1e-6, samples / gl_s * 1e-6};
 }

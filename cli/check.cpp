@@ -123,10 +123,10 @@ int exit_of(State state) {
 
 namespace {
 
-std::vector<Trial> trials_for(const CheckFlags& flags, const ProgressMonitor& watch) {
+std::vector<Trial> trials_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
     if (!flags.exec.empty()) {
         PipeLimits limits;
-        limits.stop = &watch.stop;
+        limits.stop = &monitor.stop;
         if (flags.full) limits.total_seconds = 3600;
         if (flags.patience > 0) limits.total_seconds = flags.patience;
         const auto subject = start_pipe(flags.exec, limits);
@@ -210,7 +210,7 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
 namespace {
 
 /// How much a program will be asked, before it is asked for an hour.
-void tell_cost(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& watch) {
+void tell_cost(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& monitor) {
     std::size_t judged = 0;
     bool program = false, light = false;
     for (const Trial& t : trials) {
@@ -219,12 +219,12 @@ void tell_cost(std::span<const Trial> trials, const TestSettings& settings, Prog
     }
     if (!program || !settings.full) return;
     const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
-    watch.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
+    monitor.log(fmt::format("--full asks at most {} questions: {} at each of {} w_o{}", judged * settings.questions,
         settings.questions, judged, more));
 }
 
 /// B on the trials of A: a built-in arm by its name, or a program.
-std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const ProgressMonitor& watch) {
+std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const ProgressMonitor& monitor) {
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end()) return arm_against(flags.against, a);
     const std::string near = nearest(flags.against, names);
@@ -236,7 +236,7 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
                 "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
                 "or a program");
     PipeLimits limits;
-    limits.stop = &watch.stop;
+    limits.stop = &monitor.stop;
     if (flags.patience > 0) limits.total_seconds = flags.patience;
     try {
         return sampler_against(start_pipe(flags.against, limits), a);
@@ -254,11 +254,11 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
 
 /// Exit 0: compared; 1: with --expect same, f or the distribution differs; 4: a tail is too heavy to tell.
 int check_against(
-    const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& watch) {
+    const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& monitor) {
     std::erase_if(a, [](const Trial& t) { return t.baseline; });
-    Judgement j = judge_against(a, others_of(flags, a, watch), test_settings_of(flags), same, watch);
+    Judgement j = judge_against(a, others_of(flags, a, monitor), test_settings_of(flags), same, monitor);
     if (!waivers.empty()) waive(j, waivers);
-    watch.clear();
+    monitor.clear();
     print(against_text(j));
     write_files(flags, j);
     return exit_of(j.state, flags);
@@ -267,26 +267,26 @@ int check_against(
 }  // namespace
 
 int check(const CheckFlags& flags) {
-    Progress watch(flags.quiet ? Progress::Style::silent : Progress::fitting());
-    StopOnSignal stop(watch);
+    Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    StopOnSignal stop(monitor);
     try_files(flags);
-    if (flags.error_rates > 0) return check_error_rates(flags, watch);
-    if (flags.right > 0) return check_right(flags, watch);
-    if (flags.planted) return check_planted(flags, watch);
+    if (flags.error_rates > 0) return check_error_rates(flags, monitor);
+    if (flags.right > 0) return check_right(flags, monitor);
+    if (flags.planted) return check_planted(flags, monitor);
     Judgement j;
     std::vector<std::string> expected = flags.expect;
     const bool same = std::erase(expected, "same") > 0;
     if (same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
     const std::vector<Waiver> waivers = read_waivers(expected);
     try {
-        const std::vector<Trial> trials = trials_for(flags, watch);
+        const std::vector<Trial> trials = trials_for(flags, monitor);
         check_waivers(waivers, names_of(trials));
-        if (!flags.against.empty()) return check_against(flags, trials, waivers, same, watch);
-        tell_cost(trials, test_settings_of(flags), watch);
-        j = judge(trials, test_settings_of(flags), watch);
+        if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
+        tell_cost(trials, test_settings_of(flags), monitor);
+        j = judge(trials, test_settings_of(flags), monitor);
     } catch (const SubjectFault& fault) { j = complaint(fault, flags); }
     if (!waivers.empty()) waive(j, waivers);
-    watch.clear();
+    monitor.clear();
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
     if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
     print(verdict_table(j));

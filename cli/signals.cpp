@@ -22,8 +22,8 @@ constexpr itimerval moving_patience{{}, {5, 0}};       // outputs that are being
 
 /// What stands under the final names when the process ends here.
 const char* last_words() {
-    const ProgressMonitor* watch = watched.load();
-    switch (watch ? watch->outputs.load() : left_behind.load()) {
+    const ProgressMonitor* monitor = watched.load();
+    switch (monitor ? monitor->outputs.load() : left_behind.load()) {
         case Outputs::moving: return "crescent: interrupted; the outputs are either all of before or all of this run\n";
         case Outputs::stand: return "crescent: interrupted; the outputs of this run are complete\n";
         default: return "crescent: interrupted; existing outputs were not changed\n";
@@ -39,14 +39,14 @@ extern "C" void end_now(int) {
 }
 
 extern "C" void time_is_up(int signal) {
-    const ProgressMonitor* watch = watched.load();
-    if (!watch || watch->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
+    const ProgressMonitor* monitor = watched.load();
+    if (!monitor || monitor->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
     else ::setitimer(ITIMER_REAL, &moving_patience, nullptr);
 }
 
 extern "C" void ask_to_stop(int signal) {
-    ProgressMonitor* watch = watched.load();
-    if (!watch || watch->stop.exchange(true)) end_now(signal);
+    ProgressMonitor* monitor = watched.load();
+    if (!monitor || monitor->stop.exchange(true)) end_now(signal);
     else ::setitimer(ITIMER_REAL, &patience, nullptr);
 }
 
@@ -77,8 +77,8 @@ void end_on_signals() {
 #endif
 #endif
 
-StopOnSignal::StopOnSignal(ProgressMonitor& watch) {
-    watched = &watch;
+StopOnSignal::StopOnSignal(ProgressMonitor& monitor) {
+    watched = &monitor;
     handle(SIGALRM, time_is_up);
     struct sigaction before{};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})

@@ -12,12 +12,12 @@ namespace {
 
 /// The cosine arm with 1, 2, 4, .. samples up to the ladder's highest: what the film opens with.
 std::vector<Film> opening_of(
-    const Experiment& experiment, const Cast& cast, const std::string& isa, ProgressMonitor& watch) {
+    const Experiment& experiment, const Cast& cast, const std::string& isa, ProgressMonitor& monitor) {
     std::vector<std::uint64_t> n;
     for (std::uint64_t k = 1; k <= cast.rungs.back(); k *= 2) n.push_back(k);
-    watch.begin("the opening", double(n.back()) * experiment.image.width * experiment.image.height);
+    monitor.begin("the opening", double(n.back()) * experiment.image.width * experiment.image.height);
     Scene scene(experiment);
-    return estimate_films(scene, "cosine", n, cast.seed, isa, watch);
+    return estimate_films(scene, "cosine", n, cast.seed, isa, monitor);
 }
 
 }  // namespace
@@ -79,13 +79,13 @@ Box around(const Data& data, const Box& of, int w, int h) {
     return {x0, y0, x0 + w - 1, y0 + h - 1};
 }
 
-Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
+Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
     Data data;
     data.experiment = experiment;
     data.experiment_hash = fmt::format("{:016x}", hash(experiment));
     data.cast = cast_of(data.experiment);
     data.experiment.note_evidence = true;  // two shots tell of it where it can be measured
-    Measured measured = measure_in_memory(data.experiment, options, watch);
+    Measured measured = measure_in_memory(data.experiment, options, monitor);
     data.metrics = std::move(measured.metrics);
     data.evidence = std::move(measured.evidence);
     data.provenance = std::move(measured.provenance);
@@ -93,8 +93,8 @@ Data collect(const Experiment& experiment, const RunOptions& options, ProgressMo
     data.films = std::move(measured.films);
     const bool quadrature = data.experiment.reference.kind == ReferenceKind::quadrature;
     data.references = std::move(quadrature ? measured.quadrature : measured.monte_carlo);
-    data.opening = opening_of(data.experiment, data.cast, options.isa, watch);
-    data.measures = std::make_shared<const Measures>(take_measures(data, options.isa, watch));
+    data.opening = opening_of(data.experiment, data.cast, options.isa, monitor);
+    data.measures = std::make_shared<const Measures>(take_measures(data, options.isa, monitor));
     return data;
 }
 

@@ -48,6 +48,6 @@ Box around(const Data& data, const Box& of, int w, int h);
 
 /// Runs the experiment in memory, with the arms and rungs that the film adds. InputError where it lacks what the film
 /// needs.
-Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch);
+Data collect(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);
 
 }  // namespace crescent::film

@@ -60,11 +60,11 @@ bool has_word(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& watch) {
+void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor) {
     const std::string list = folder + "/encoders.txt";
     int code = 0;
     try {
-        code = Process({"ffmpeg", "-hide_banner", "-encoders"}, "/dev/null", list, "").wait(watch);
+        code = Process({"ffmpeg", "-hide_banner", "-encoders"}, "/dev/null", list, "").wait(monitor);
     } catch (const OutputError&) {
         throw OutputError(
             "the film is encoded by ffmpeg, which this machine does not have: install the package ffmpeg");
@@ -91,8 +91,8 @@ void Encoder::take(const Raster& raster) {
     if (!process_.write(raster.bytes.data(), raster.bytes.size())) fail();
 }
 
-void Encoder::finish(const ProgressMonitor& watch) {
-    if (process_.wait(watch) != 0) fail();
+void Encoder::finish(const ProgressMonitor& monitor) {
+    if (process_.wait(monitor) != 0) fail();
 }
 
 }  // namespace crescent::film

@@ -19,14 +19,14 @@ struct Ingredients {
 };
 
 /// OutputError where ffmpeg or one of its parts is missing: told before the work.
-void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& watch);
+void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor);
 
 class Encoder {
 public:
     explicit Encoder(const Ingredients& in);
     void take(const Raster& raster);
     /// Waits for ffmpeg to finish. OutputError where it failed.
-    void finish(const ProgressMonitor& watch);
+    void finish(const ProgressMonitor& monitor);
 
 private:
     [[noreturn]] void fail() const;

@@ -53,12 +53,12 @@ std::vector<std::pair<std::string, std::string>> attributes_of(const Data& data)
 class Making {
 public:
     Making(const Data& data, const Timeline& timeline, const FilmOptions& options, Staging& staging,
-        ProgressMonitor& watch)
+        ProgressMonitor& monitor)
         : data_(data),
           timeline_(timeline),
           options_(options),
           staging_(staging),
-          watch_(watch),
+          monitor_(monitor),
           painter_(timeline, options.height) {}
 
     std::string one_still() {
@@ -115,14 +115,14 @@ private:
         in.log = scratch("ffmpeg.log", "");
 
         std::vector<std::uint64_t> hashes;
-        watch_.begin(fmt::format("{} frames", part.last - part.first), part.last - part.first);
+        monitor_.begin(fmt::format("{} frames", part.last - part.first), part.last - part.first);
         Encoder encoder(in);
-        for_each_frame(timeline_, options_.height, part.first, part.last, watch_, [&](const Raster& raster) {
+        for_each_frame(timeline_, options_.height, part.first, part.last, monitor_, [&](const Raster& raster) {
             encoder.take(raster);
             hashes.push_back(raster.hash);
         });
-        watch_.begin("ffmpeg ends the file", 1);
-        encoder.finish(watch_);
+        monitor_.begin("ffmpeg ends the file", 1);
+        encoder.finish(monitor_);
         return hashes;
     }
 
@@ -152,41 +152,41 @@ private:
     const Timeline& timeline_;
     const FilmOptions& options_;
     Staging& staging_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     Painter painter_;
 };
 
-std::string make(const Experiment& experiment, const FilmOptions& options, ProgressMonitor& watch) {
+std::string make(const Experiment& experiment, const FilmOptions& options, ProgressMonitor& monitor) {
     const bool pictures = !options.still.empty() || options.stills;
     Experiment cast = experiment;
     cast_of(cast);  // what is missing is told before the work
     Staging staging(options.out, pictures ? "stills" : "film");
     const Canvas font(16, 16, plates::ground);
-    if (!pictures) require_ffmpeg(options.webm, !options.voice.empty(), staging.scratch(), watch);
+    if (!pictures) require_ffmpeg(options.webm, !options.voice.empty(), staging.scratch(), monitor);
 
     RunOptions run;
     run.out = options.out, run.threads = options.threads, run.isa = options.isa, run.command = options.command;
-    Data data = collect(experiment, run, watch);
-    Voice voice(options.voice, staging.scratch(), watch);
-    if (!options.voice.empty()) watch.begin("the voice", 1);
+    Data data = collect(experiment, run, monitor);
+    Voice voice(options.voice, staging.scratch(), monitor);
+    if (!options.voice.empty()) monitor.begin("the voice", 1);
     const Timeline timeline(shots_of(data),
         options.voice.empty() ? nullptr
                               : std::function<double(const Words&)>([&](const Words& w) { return voice.seconds(w); }));
     data.opening = {};  // the first shot has its pictures
     const Part part = part_of(timeline, options);
-    Making making(data, timeline, options, staging, watch);
+    Making making(data, timeline, options, staging, monitor);
     const std::string said = !options.still.empty() ? making.one_still()
         : options.stills                            ? making.stills(part)
                                                     : making.film(part, options.voice.empty() ? nullptr : &voice);
-    staging.commit(watch);
+    staging.commit(monitor);
     return said;
 }
 
 const bool registered = [] {
-    film_maker() = [](const Experiment& experiment, const FilmOptions& options, ProgressMonitor& watch) {
+    film_maker() = [](const Experiment& experiment, const FilmOptions& options, ProgressMonitor& monitor) {
         const int asked = options.threads > 0 ? options.threads : usable_threads();
         const int threads = std::min(asked, oneapi::tbb::info::default_concurrency());
-        return on_threads(threads, [&] { return make(experiment, options, watch); });
+        return on_threads(threads, [&] { return make(experiment, options, monitor); });
     };
     return true;
 }();

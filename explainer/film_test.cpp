@@ -169,9 +169,9 @@ TEST(Film, CaptionsKeepTheirLawsSilentAndSpoken) {
 
 std::vector<std::uint64_t> hashes(int first, int last, int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     std::vector<std::uint64_t> out;
-    for_each_frame(timeline(), small_height, first, last, watch, [&](const Raster& r) { out.push_back(r.hash); });
+    for_each_frame(timeline(), small_height, first, last, monitor, [&](const Raster& r) { out.push_back(r.hash); });
     return out;
 }
 

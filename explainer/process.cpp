@@ -94,12 +94,12 @@ bool Process::write(const unsigned char* bytes, std::size_t size) {
     return true;
 }
 
-int Process::wait(const ProgressMonitor& watch) {
+int Process::wait(const ProgressMonitor& monitor) {
     if (pipe_ >= 0) ::close(pipe_);
     pipe_ = -1;
     int status = 0;
     while (::waitpid(pid_, &status, WNOHANG) == 0) {
-        watch.check();
+        monitor.check();
         ::usleep(2000);
     }
     pid_ = -1;

@@ -20,9 +20,9 @@ public:
 
     /// False: the program does not read any more.
     bool write(const unsigned char* bytes, std::size_t size);
-    /// Closes the pipe and waits; the exit code, 128 + signal where a signal ended it. Interrupted where the watch says
-    /// so.
-    int wait(const ProgressMonitor& watch);
+    /// Closes the pipe and waits; the exit code, 128 + signal where a signal ended it. Interrupted where the monitor
+    /// says so.
+    int wait(const ProgressMonitor& monitor);
 
 private:
     int pid_ = -1, pipe_ = -1;

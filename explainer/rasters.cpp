@@ -72,19 +72,19 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas) {
     return raster;
 }
 
-void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& watch,
+void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& monitor,
     const std::function<void(const Raster&)>& take) {
     tbb::enumerable_thread_specific<std::unique_ptr<Desk>> desks;
     int next = first;
     const auto deal = [&](tbb::flow_control& control) {
-        if (next >= last || watch.stop) control.stop();
+        if (next >= last || monitor.stop) control.stop();
         return std::exchange(next, std::min(next + chunk, last));
     };
     const auto draw = [&](int begin) {
         std::unique_ptr<Desk>& desk = desks.local();
         if (!desk) desk.reset(new Desk{Painter(timeline, height), nullptr});
         Chunk rasters;
-        for (int frame = begin; frame < std::min(begin + chunk, last) && !watch.stop; ++frame) {
+        for (int frame = begin; frame < std::min(begin + chunk, last) && !monitor.stop; ++frame) {
             if (desk->painter.draw(frame) || !desk->last) desk->last = raster_of(desk->painter.canvas());
             rasters.push_back(desk->last);
         }
@@ -92,9 +92,9 @@ void for_each_frame(const Timeline& timeline, int height, int first, int last, P
     };
     const auto hand_over = [&](const Chunk& rasters) {
         for (const auto& raster : rasters) {
-            if (watch.stop) return;
+            if (monitor.stop) return;
             take(*raster);
-            watch.advance(1);
+            monitor.advance(1);
         }
     };
     const std::size_t tokens = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) + 1;
@@ -102,7 +102,7 @@ void for_each_frame(const Timeline& timeline, int height, int first, int last, P
         tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, deal) &
             tbb::make_filter<int, Chunk>(tbb::filter_mode::parallel, draw) &
             tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, hand_over));
-    watch.check();
+    monitor.check();
 }
 
 }  // namespace crescent::film

@@ -21,7 +21,7 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas);
 
 /// Draws frames first .. last - 1 on all cores and hands them over one by one in their order. A frame that is like the
 /// one before it is handed over again without being drawn.
-void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& watch,
+void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& monitor,
     const std::function<void(const Raster&)>& take);
 
 }  // namespace crescent::film

@@ -58,8 +58,8 @@ box = [20, 2, 76, 12]
 
 inline const Data& small_data() {
     static const Data data = [] {
-        ProgressMonitor watch;
-        return collect(small_experiment(), {}, watch);
+        ProgressMonitor monitor;
+        return collect(small_experiment(), {}, monitor);
     }();
     return data;
 }

@@ -63,8 +63,8 @@ std::vector<float> samples_of_wav(const std::string& bytes, int& rate) {
     return {};
 }
 
-Voice::Voice(std::string command, std::string folder, ProgressMonitor& watch)
-    : command_(std::move(command)), folder_(std::move(folder)), watch_(watch) {}
+Voice::Voice(std::string command, std::string folder, ProgressMonitor& monitor)
+    : command_(std::move(command)), folder_(std::move(folder)), monitor_(monitor) {}
 
 const std::vector<float>& Voice::said(const std::string& text) {
     const auto known = said_.find(text);
@@ -72,7 +72,7 @@ const std::vector<float>& Voice::said(const std::string& text) {
     const std::string in = folder_ + "/voice.txt", out = folder_ + "/voice.wav", err = folder_ + "/voice.log";
     std::ofstream(in) << text << '\n';
     Process process({"/bin/sh", "-c", command_}, in, out, err);
-    const int code = process.wait(watch_);
+    const int code = process.wait(monitor_);
     int rate = 0;
     const std::vector<float> samples = samples_of_wav(contents_of(out), rate);
     if (code != 0 || samples.empty()) {

@@ -12,7 +12,7 @@ namespace crescent::film {
 class Voice {
 public:
     /// `folder`: where the program's files may lie.
-    Voice(std::string command, std::string folder, ProgressMonitor& watch);
+    Voice(std::string command, std::string folder, ProgressMonitor& monitor);
 
     /// How long the words take to be said, s. OutputError where the program fails or gives no WAV.
     double seconds(const Words& words);
@@ -23,7 +23,7 @@ private:
     const std::vector<float>& said(const std::string& text);
 
     std::string command_, folder_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     std::map<std::string, std::vector<float>> said_;  // at `rate`, one channel
 };
 

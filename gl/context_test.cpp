@@ -69,12 +69,13 @@ TEST(Framebuffers, LargerThanTheDriverTakesAreRefusedWithItsLog) {
 
 TEST(LostContext, EndsTheFilmWithAnErrorThatSaysSo) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const std::unique_ptr<Context> mine = open_context({});
     Estimator gl(*mine);
-    static_cast<void>(gl.films(scene, "cosine", {4}, 1, watch));
+    static_cast<void>(gl.films(scene, "cosine", {4}, 1, monitor));
     mine->release();
-    EXPECT_THAT(what_of<OutputError>([&] { gl.films(scene, "cosine", {4}, 1, watch); }), HasSubstr("context was lost"));
+    EXPECT_THAT(
+        what_of<OutputError>([&] { gl.films(scene, "cosine", {4}, 1, monitor); }), HasSubstr("context was lost"));
 }
 
 TEST(Contexts, AWrongChoiceIsTheReadersMistakeAndNamesWhatIsThere) {

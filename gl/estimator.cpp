@@ -70,13 +70,13 @@ Estimator::Kernel& Estimator::kernel(
     return *kernel;
 }
 
-const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, ProgressMonitor& watch) {
+const SiteTexture& Estimator::sites(const Scene& scene, const TileBox& box, ProgressMonitor& monitor) {
     const auto same = [](const TileBox& a, const TileBox& b) {
         return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
     };
     if (sites_ && sites_of_->is_same_as(scene) && same(sites_->box(), box)) return *sites_;
     sites_.reset();
-    sites_.emplace(context_, scene, box, watch);
+    sites_.emplace(context_, scene, box, monitor);
     sites_of_ = scene;
     return *sites_;
 }
@@ -109,9 +109,9 @@ void set_scene(const Program& program, const ShadingPoints& lights, const Bodies
 }  // namespace
 
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
-    std::vector<Film>& films, ProgressMonitor& watch) {
+    std::vector<Film>& films, ProgressMonitor& monitor) {
     const LightCounts counts = count_lights(scene);
-    const SiteTexture& here = sites(scene, box, watch);
+    const SiteTexture& here = sites(scene, box, monitor);
     if (here.groups().empty()) return;
     const ShadingPoints lights = empty_sites(scene, -1);  // a group's own occluders are those that matter to it
     const Bodies bodies = bodies_of(lights.occluders);
@@ -128,7 +128,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
     context_.gl().BindVertexArray(vertex_array_);  // core profiles draw nothing without one
     here.bind();
     target.bind();
-    Pass pass(context_, here, target, std::move(parts), counts.all(), watch);
+    Pass pass(context_, here, target, std::move(parts), counts.all(), monitor);
     for (Film& film : films) {
         pass.advance_to(film.n);
         for (std::size_t g = 0; g < here.groups().size(); ++g) {
@@ -139,7 +139,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
 }
 
 std::vector<Film> Estimator::films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, ProgressMonitor& watch) {
+    std::uint32_t seed, ProgressMonitor& monitor) {
     ensure(arm_index(sampler) >= 0, "the parser lets only known samplers through");
     if (!(find_arm_info(sampler)->gl.relative > 0))
         throw OutputError("the GL instrument has no copy of the sampler '" + sampler + "': use the cpu");
@@ -153,7 +153,7 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
     for (const std::uint64_t rung : n)
         out.emplace_back(image.width, image.height, rung), out.back().directions = directions_per_sample(sampler);
     for (const TileBox& box : rectangles_of(image.width, image.height, count_lights(scene), largest_texture_))
-        estimate(scene, box, sampler, seed, out, watch);
+        estimate(scene, box, sampler, seed, out, monitor);
     return out;
 }
 

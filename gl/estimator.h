@@ -22,7 +22,7 @@ public:
 
     /// One film per rung of n (ascending), as estimate_films() makes them.
     std::vector<Film> films(const Scene& scene, const std::string& sampler, const std::vector<std::uint64_t>& n,
-        std::uint32_t seed, ProgressMonitor& watch);
+        std::uint32_t seed, ProgressMonitor& monitor);
     /// The draw that took longest so far.
     double longest_draw_s() const;
     int largest_texture() const { return largest_texture_; }
@@ -36,10 +36,10 @@ private:
     };
 
     Kernel& kernel(const std::string& sampler, int lobe, const LightCounts& lights, const Bodies& bodies);
-    const SiteTexture& sites(const Scene& scene, const TileBox& box, ProgressMonitor& watch);
+    const SiteTexture& sites(const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
     const Framebuffer& framebuffer(int width, int height, std::size_t attachments);
     void estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
-        std::vector<Film>& films, ProgressMonitor& watch);
+        std::vector<Film>& films, ProgressMonitor& monitor);
 
     const Context& context_;
     GLuint vertex_array_ = 0;

@@ -13,12 +13,12 @@ using test::Difference;
 
 Difference differences(
     const Scene& scene, Estimator& gl, const std::string& arm, std::uint64_t n, std::uint32_t seeds) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const ShapeMap shapes = shape_map(scene);
     Difference out;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed)
-        test::compare(scene, shapes, estimate_films(scene, arm, {n}, seed, "", watch)[0],
-            gl.films(scene, arm, {n}, seed, watch)[0], out);
+        test::compare(scene, shapes, estimate_films(scene, arm, {n}, seed, "", monitor)[0],
+            gl.films(scene, arm, {n}, seed, monitor)[0], out);
     return out;
 }
 
@@ -88,32 +88,32 @@ TEST(FilmLaw, AnArmStatesAToleranceWhereItHasAShaderAndThereAlone) {
 TEST(FilmLaw, NoticesALobeThatIsOneInATenThousandSharper) {
     const Scene scene(test::small_scene()), other(test::small_scene({"shapes.phong.s=24.0024"}));
     const ShapeMap shapes = shape_map(scene);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
     Difference d;
-    test::compare(scene, shapes, estimate_films(other, "phong", {48}, 1, "", watch)[0],
-        gl.films(scene, "phong", {48}, 1, watch)[0], d);
+    test::compare(scene, shapes, estimate_films(other, "phong", {48}, 1, "", monitor)[0],
+        gl.films(scene, "phong", {48}, 1, monitor)[0], d);
     EXPECT_GT(d.largest, 7e-6);
 }
 
 TEST(FilmLaw, NoticesALampThatIsFivePercentLarger) {
     const Scene scene(test::small_scene()), other(test::small_scene({"disks.left.radius=0.42"}));
     const ShapeMap shapes = shape_map(scene);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
     Difference d;
     for (std::uint32_t seed = 1; seed <= 4; ++seed)
-        test::compare(scene, shapes, estimate_films(other, "uniform", {48}, seed, "", watch)[0],
-            gl.films(scene, "uniform", {48}, seed, watch)[0], d);
+        test::compare(scene, shapes, estimate_films(other, "uniform", {48}, seed, "", monitor)[0],
+            gl.films(scene, "uniform", {48}, seed, monitor)[0], d);
     EXPECT_GT(static_cast<double>(d.changed), test::gpu_side_rate * static_cast<double>(d.pixels * 48));
 }
 
 TEST(Films, EveryPlaneIsTheCpus) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
-    const Film a = estimate_films(scene, "cosine", {64}, 5, "", watch)[0],
-               b = gl.films(scene, "cosine", {64}, 5, watch)[0];
+    const Film a = estimate_films(scene, "cosine", {64}, 5, "", monitor)[0],
+               b = gl.films(scene, "cosine", {64}, 5, monitor)[0];
     for (std::size_t at = 0; at < a.size(); ++at) {
         if (a.hits[at] != b.hits[at]) continue;
         for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::y2, &Film::largest})
@@ -127,11 +127,11 @@ TEST(Films, EveryPlaneIsTheCpus) {
 TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
     const Scene scene(test::small_scene(
         {"disks.left.radius=0.005", "disks.right.radius=0.005", "image.width=24", "image.height=16"}));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
     for (const std::uint64_t n : {4u, 64u, 1000u}) {
-        const Film a = estimate_films(scene, "light-area", {n}, 5, "", watch)[0],
-                   b = gl.films(scene, "light-area", {n}, 5, watch)[0];
+        const Film a = estimate_films(scene, "light-area", {n}, 5, "", monitor)[0],
+                   b = gl.films(scene, "light-area", {n}, 5, monitor)[0];
         double cpu = 0, gpu = 0;
         for (std::size_t at = 0; at < a.size(); ++at) cpu += a.var[at], gpu += b.var[at];
         EXPECT_NEAR(gpu / cpu, 1, 1e-3) << n;
@@ -141,10 +141,11 @@ TEST(Films, VariancesOfSamplesThatHardlyDifferAreTheCpus) {
 TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
     const Scene scene(test::small_scene({"disks.left.radius=1e-6", "disks.right.radius=1e-6", "fill.radiance=[0,0,0]",
         "image.width=24", "image.height=16"}));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
     for (const char* arm : {"light-area", "light-solid-angle", "mis-balance"}) {
-        const Film a = estimate_films(scene, arm, {16}, 5, "", watch)[0], b = gl.films(scene, arm, {16}, 5, watch)[0];
+        const Film a = estimate_films(scene, arm, {16}, 5, "", monitor)[0],
+                   b = gl.films(scene, arm, {16}, 5, monitor)[0];
         double cpu = 0, gpu = 0;
         for (std::size_t at = 0; at < a.size(); ++at) cpu += a.y[at], gpu += b.y[at];
         EXPECT_NEAR(gpu / cpu, 1, 1e-5) << arm;
@@ -153,11 +154,11 @@ TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
 
 TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
-    const std::vector<Film> many = gl.films(scene, "mixture", {1, 3, 16, 37, 64}, 9, watch);
+    const std::vector<Film> many = gl.films(scene, "mixture", {1, 3, 16, 37, 64}, 9, monitor);
     for (const Film& film : many) {
-        const Film alone = gl.films(scene, "mixture", {film.n}, 9, watch)[0];
+        const Film alone = gl.films(scene, "mixture", {film.n}, 9, monitor)[0];
         EXPECT_EQ(alone.hits, film.hits) << film.n;
         EXPECT_EQ(alone.largest, film.largest) << film.n;
         for (std::size_t at = 0; at < film.size(); ++at)
@@ -167,19 +168,19 @@ TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
 
 TEST(Films, AFilmInRectanglesIsTheFilmAtOnce) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator whole(test::context()), parts(test::context(), 40);
-    EXPECT_EQ(
-        hash(parts.films(scene, "cosine", {16}, 3, watch)[0]), hash(whole.films(scene, "cosine", {16}, 3, watch)[0]));
+    EXPECT_EQ(hash(parts.films(scene, "cosine", {16}, 3, monitor)[0]),
+        hash(whole.films(scene, "cosine", {16}, 3, monitor)[0]));
 }
 
 TEST(Films, SumsOf65536SamplesAreGoodTo1e6) {
     const Scene scene(test::small_scene({"image.width=12", "image.height=8"}));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
     for (const char* arm : {"uniform", "cosine"}) {
-        const Film a = estimate_films(scene, arm, {65536}, 5, "", watch)[0],
-                   b = gl.films(scene, arm, {65536}, 5, watch)[0];
+        const Film a = estimate_films(scene, arm, {65536}, 5, "", monitor)[0],
+                   b = gl.films(scene, arm, {65536}, 5, monitor)[0];
         for (std::size_t at = 0; at < a.size(); ++at)
             EXPECT_NEAR(b.y[at], a.y[at], 1e-6 * static_cast<double>(a.y[at])) << arm << ", pixel " << at;
     }
@@ -196,9 +197,9 @@ TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
     const Scene scene(experiment);
     ASSERT_EQ(scene.disk_count(), 15u);
     Estimator gl(test::context());
-    ProgressMonitor watch;
-    const Film a = estimate_films(scene, "light-area", {32}, 2, "", watch)[0],
-               b = gl.films(scene, "light-area", {32}, 2, watch)[0];
+    ProgressMonitor monitor;
+    const Film a = estimate_films(scene, "light-area", {32}, 2, "", monitor)[0],
+               b = gl.films(scene, "light-area", {32}, 2, monitor)[0];
     EXPECT_EQ(a.hits, b.hits);
     for (std::size_t at = 0; at < a.size(); ++at)
         for (const auto plane : {&Film::r, &Film::g, &Film::b})
@@ -230,10 +231,10 @@ box = [0, 0, 3, 3]
 )",
         "plain.toml");
     const Scene scene(experiment);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
-    const Film a = estimate_films(scene, "cosine", {16}, 1, "", watch)[0],
-               b = gl.films(scene, "cosine", {16}, 1, watch)[0];
+    const Film a = estimate_films(scene, "cosine", {16}, 1, "", monitor)[0],
+               b = gl.films(scene, "cosine", {16}, 1, monitor)[0];
     for (std::size_t at = 0; at < a.size(); ++at) EXPECT_NEAR(b.y[at], a.y[at], 1e-6);
     EXPECT_NEAR(b.y[0], 0.5, 1e-6);
 }
@@ -242,19 +243,19 @@ TEST(Films, APlantedNaNIsCountedInEverySample) {
     Experiment experiment = test::small_scene();
     experiment.shapes[0].material.s = std::numeric_limits<double>::quiet_NaN();
     const Scene scene(experiment);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Estimator gl(test::context());
-    const std::uint64_t cpu = estimate_films(scene, "phong", {8}, 1, "", watch)[0].bad;
+    const std::uint64_t cpu = estimate_films(scene, "phong", {8}, 1, "", monitor)[0].bad;
     EXPECT_GT(cpu, 100u);
-    EXPECT_EQ(gl.films(scene, "phong", {8}, 1, watch)[0].bad, cpu);
+    EXPECT_EQ(gl.films(scene, "phong", {8}, 1, monitor)[0].bad, cpu);
 }
 
 TEST(Films, StopWhenAsked) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
-    watch.stop = true;
+    ProgressMonitor monitor;
+    monitor.stop = true;
     Estimator gl(test::context());
-    EXPECT_THROW(gl.films(scene, "cosine", {1u << 24}, 1, watch), Interrupted);
+    EXPECT_THROW(gl.films(scene, "cosine", {1u << 24}, 1, monitor), Interrupted);
 }
 
 }  // namespace

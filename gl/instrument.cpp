@@ -63,7 +63,7 @@ void GlInstrument::claim_framebuffer(const std::string& what, int width, int hei
     claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
 }
 
-std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, ProgressMonitor& watch, TileCheckpoint*) {
+std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, ProgressMonitor& monitor, TileCheckpoint*) {
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.image();
@@ -77,7 +77,7 @@ std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, Progre
     if (job.outside)
         throw OutputError(
             "the GL instrument has no copy of the arm '" + job.arm + "', which is a program or a plugin: use the cpu");
-    return estimator_.films(scene, job.sampler, job.n, job.seed, watch);
+    return estimator_.films(scene, job.sampler, job.n, job.seed, monitor);
 }
 
 }  // namespace crescent::gl

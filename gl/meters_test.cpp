@@ -20,10 +20,10 @@ box = [4, 4, 90, 16]
 }
 
 Measured measured_with(const std::shared_ptr<Instrument>& instrument) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     RunOptions options;
     options.instrument = instrument;
-    return measure_in_memory(metered_scene(), options, watch);
+    return measure_in_memory(metered_scene(), options, monitor);
 }
 
 TEST(MeterLaw, EveryMeterOfARunIsTheCpusWithinOnePercentOfItsBand) {

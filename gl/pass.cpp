@@ -15,13 +15,13 @@ constexpr std::uint64_t longest_sum = 4096;  // samples a draw's float sums may 
 }  // namespace
 
 Pass::Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer,
-    std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& watch)
+    std::vector<LobePart> parts, std::size_t lights, ProgressMonitor& monitor)
     : context_(context),
       sites_(sites),
       framebuffer_(framebuffer),
       parts_(std::move(parts)),
       lights_(lights),
-      watch_(watch),
+      monitor_(monitor),
       moments_(sites.groups().size()),
       met_(framebuffer.attachments() - 2) {
     for (std::size_t g = 0; g < moments_.size(); ++g)
@@ -78,8 +78,8 @@ void Pass::draw_part(LobePart& part, int samples) {
         const auto start = Clock::now();
         draw_strips(part, from, k);
         part.pacer->took(pixels * each, std::chrono::duration<double>(Clock::now() - start).count());
-        watch_.advance(static_cast<double>(pixels * each) / static_cast<double>(passes()));
-        watch_.check();
+        monitor_.advance(static_cast<double>(pixels * each) / static_cast<double>(passes()));
+        monitor_.check();
     }
 }
 

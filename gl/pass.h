@@ -28,7 +28,7 @@ struct LobePart {
 class Pass {
 public:
     Pass(const Context& context, const SiteTexture& sites, const Framebuffer& framebuffer, std::vector<LobePart> parts,
-        std::size_t lights, ProgressMonitor& watch);
+        std::size_t lights, ProgressMonitor& monitor);
 
     /// Takes samples [done, n); then moments() are those of n samples.
     void advance_to(std::uint64_t n);
@@ -49,7 +49,7 @@ private:
     const Framebuffer& framebuffer_;
     std::vector<LobePart> parts_;
     std::size_t lights_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     std::uint64_t done_ = 0;
     std::vector<Moments> moments_;            // one a group of the sites
     std::vector<std::vector<double>> means_;  // of X so far, as moments_

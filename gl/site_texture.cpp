@@ -20,14 +20,14 @@ std::vector<TileBox> tiles_in(const TileBox& box) {
 
 }  // namespace
 
-SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& watch)
+SiteTexture::SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor)
     : context_(context), box_(box), image_width_(static_cast<std::size_t>(scene.image().width)) {
     const std::vector<TileBox> tiles = tiles_in(box);
     std::vector<std::vector<ShadingPoints>> all(tiles.size());
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (!watch.stop) all[k] = sites_of(scene, tiles[k], nullptr);
+        if (!monitor.stop) all[k] = sites_of(scene, tiles[k], nullptr);
     });
-    watch.check();
+    monitor.check();
     for (std::vector<ShadingPoints>& groups : all)
         for (ShadingPoints& group : groups) groups_.push_back(std::move(group));
 

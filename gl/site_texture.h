@@ -22,7 +22,7 @@ struct LobePixels {
 /// Shading points in groups of one lobe, as sites_of() makes them, tile by tile.
 class SiteTexture {
 public:
-    SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& watch);
+    SiteTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor);
     ~SiteTexture();
     SiteTexture(const SiteTexture&) = delete;
     SiteTexture& operator=(const SiteTexture&) = delete;

@@ -22,11 +22,11 @@ std::vector<Trial> trials(const std::string& arm, const std::string& brdf, doubl
 
 Judgement against(std::span<const Trial> a, std::span<const Trial> b, bool expect_same = false, std::uint32_t seed = 1,
     std::uint64_t draws = 8192) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     TestSettings settings;
     settings.draws = draws;
     settings.seed = seed;
-    return judge_against(a, b, settings, expect_same, watch);
+    return judge_against(a, b, settings, expect_same, monitor);
 }
 
 TEST(Against, ItselfNothingIsToldApart) {

@@ -15,8 +15,8 @@ namespace crescent {
 namespace {
 
 Judgement of(const std::string& arm, const Settings& settings = {}) {
-    ProgressMonitor watch;
-    return judge(trials_of(arm, settings, false), TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    return judge(trials_of(arm, settings, false), TestSettings::quick(), monitor);
 }
 
 const Verdict& find(const Judgement& j, const std::string& trial, const std::string& name) {
@@ -67,7 +67,7 @@ public:
 
 /// And what explains a fault is named for four of five of those that have such a cause, and for no other.
 TEST_P(PlantedFaultsInQuickMode, AreCaughtAndExplained) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const auto faults = planted_faults(false);
     EXPECT_GE(faults.size(), 60u);
     std::size_t with = 0, named = 0;
@@ -76,7 +76,7 @@ TEST_P(PlantedFaultsInQuickMode, AreCaughtAndExplained) {
         // Of 0, 45 and 75 deg two that take turns; crescent check --planted asks at all three.
         std::vector<Trial> trials = faults[k].trials;
         if (trials.size() == 3) trials.erase(trials.begin() + 2 * static_cast<int>(k % 2));
-        const Judgement j = judge(trials, TestSettings::quick(), watch);
+        const Judgement j = judge(trials, TestSettings::quick(), monitor);
         EXPECT_EQ(j.state, State::wrong) << faults[k].name;
         const Explained e = explained(faults[k], j);
         with += !e.cause.empty();
@@ -188,9 +188,9 @@ TEST(Verdicts, CallAProgramTooSlowRatherThanWrong) {
     const std::string slow =
         "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
     TestSettings settings;
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     settings.accept_few = true;  // few, not none
-    const Judgement j = judge(trials_of_subject(start_pipe(slow, limits), false), settings, watch);
+    const Judgement j = judge(trials_of_subject(start_pipe(slow, limits), false), settings, monitor);
     EXPECT_EQ(j.state, State::inconclusive);
     EXPECT_EQ(j.left_out.size(), 8u);
     for (const Verdict& v : j.verdicts) EXPECT_EQ(v.state, State::inconclusive) << v.name << v.say;

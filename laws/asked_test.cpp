@@ -57,8 +57,8 @@ Seen judged(const std::vector<Trial>& trials) {
         const auto program = std::make_shared<Counted>(t.subject);
         Trial one = t;
         one.subject = program;
-        ProgressMonitor watch;
-        const Judgement j = judge({&one, 1}, TestSettings::quick(), watch);
+        ProgressMonitor monitor;
+        const Judgement j = judge({&one, 1}, TestSettings::quick(), monitor);
         for (const Verdict& v : j.verdicts) out.judgement.verdicts.push_back(v);
         out.most = std::max(out.most, program->spending().answers);
     }
@@ -115,8 +115,8 @@ TEST(Programs, AreAskedFourMillionTimesInAll) {
     const auto program = std::make_shared<Counted>(subject_of(recipe_of(RoughGlass{0.3, 1.5})));
     std::vector<Trial> trials = trials_of_subject(program, false);
     ASSERT_EQ(std::count_if(trials.begin(), trials.end(), [](const Trial& t) { return !t.baseline; }), 12);
-    ProgressMonitor watch;
-    const Judgement j = judge(trials, TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    const Judgement j = judge(trials, TestSettings::quick(), monitor);
     EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
     EXPECT_LE(j.questions, 4000000u);
     EXPECT_EQ(j.questions, program->spending().answers);
@@ -166,8 +166,8 @@ TEST(Against, AsksAProgramOnceAtEachDirection) {
         const auto program = std::make_shared<Counted>(a[0].subject);
         TestSettings settings;
         settings.draws = 4096;
-        ProgressMonitor watch;
-        judge_against(trials, sampler_against(program, trials), settings, false, watch);
+        ProgressMonitor monitor;
+        judge_against(trials, sampler_against(program, trials), settings, false, monitor);
         return program->spending().answers;
     };
     EXPECT_LT(answers(a), 2 * answers(std::span(a).first(1)));
@@ -181,8 +181,8 @@ TEST(Asked, PicturesTakeNoQuestionsOfTheirOwn) {
         TestSettings settings;
         settings.draws = 4096;
         settings.pictures = pictures;
-        ProgressMonitor watch;
-        return verdict_json(judge({&trial, 1}, settings, watch), {});
+        ProgressMonitor monitor;
+        return verdict_json(judge({&trial, 1}, settings, monitor), {});
     };
     EXPECT_EQ(answers(true), answers(false));
 }

@@ -25,7 +25,7 @@ class Keeping : public testing::Test {
 protected:
     std::string out_ = fs::path(testing::TempDir()) / ("kept-" + std::to_string(getpid()));
     Experiment experiment_ = load(std::string(CRESCENT_SOURCE_DIR) + "/laws/scripts/tiny.toml");
-    mutable Listener watch_;
+    mutable Listener monitor_;
     void SetUp() override { fs::remove_all(out_); }
     void TearDown() override { fs::remove_all(out_); }
 
@@ -40,7 +40,7 @@ protected:
     }
     /// What a run of `e` keeps: the meters of its first pass and one tile of its second.
     void keep(const Experiment& e) const {
-        Checkpoint kept(e, "CPU", out_, 0, watch_);
+        Checkpoint kept(e, "CPU", out_, 0, monitor_);
         const Job first = job(e), second = job(e, 1);
         std::vector<RunMeter> meters;
         for (const std::uint64_t n : first.n) meters.push_back(meter(e, first, n));
@@ -53,7 +53,7 @@ protected:
     }
     /// How many meters and tiles a run of `e` finds.
     std::pair<std::size_t, int> found(const Experiment& e) const {
-        Checkpoint kept(e, "CPU", out_, 0, watch_);
+        Checkpoint kept(e, "CPU", out_, 0, monitor_);
         const Job second = job(e, 1);
         TileCheckpoint tiles = kept.tiles(second);
         std::vector<Film> films(second.n.size(), Film(4, 4, 4));
@@ -83,12 +83,12 @@ TEST_F(Keeping, GivesOtherWorkNothing) {
     other = experiment_;
     other.seed = 8;
     EXPECT_EQ(found(other), nothing) << "another seed";
-    Checkpoint by_another(experiment_, "GL", out_, 0, watch_);
+    Checkpoint by_another(experiment_, "GL", out_, 0, monitor_);
     EXPECT_TRUE(by_another.meters(job(experiment_)).empty()) << "another instrument";
 }
 
 TEST_F(Keeping, TwoLaddersOfOneArmAreTwoPasses) {
-    Checkpoint kept(experiment_, "CPU", out_, 0, watch_);
+    Checkpoint kept(experiment_, "CPU", out_, 0, monitor_);
     Job other = job(experiment_, 1);
     other.n = {2, 16};
     keep(experiment_);
@@ -115,13 +115,13 @@ TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {
     other.seed = 8;
     keep(other);
     {
-        Checkpoint kept(other, "CPU", out_, 0, watch_);
+        Checkpoint kept(other, "CPU", out_, 0, monitor_);
         kept.discard();
     }
-    EXPECT_NE(watch_.said.find("another, unfinished run"), std::string::npos) << watch_.said;
+    EXPECT_NE(monitor_.said.find("another, unfinished run"), std::string::npos) << monitor_.said;
     EXPECT_EQ(found(experiment_), (std::pair<std::size_t, int>(2, 1)));
     EXPECT_EQ(found(other).first, 0u);
-    Checkpoint kept(experiment_, "CPU", out_, 0, watch_);
+    Checkpoint kept(experiment_, "CPU", out_, 0, monitor_);
     kept.discard();
     EXPECT_FALSE(fs::exists(out_ + "/.crescent-kept"));
 }
@@ -129,7 +129,7 @@ TEST_F(Keeping, ForgetsItsOwnAndTellsOfOthers) {
 TEST_F(Keeping, IsNotLedElsewhereByALink) {
     fs::create_directories(out_ + "/elsewhere");
     fs::create_directory_symlink("elsewhere", out_ + "/.crescent-kept");
-    EXPECT_THROW(Checkpoint(experiment_, "CPU", out_, 0, watch_), OutputError);
+    EXPECT_THROW(Checkpoint(experiment_, "CPU", out_, 0, monitor_), OutputError);
 }
 
 TEST(SeedSeries, HaveNoSeedTwice) {

@@ -130,9 +130,9 @@ TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
 }
 
 TEST(Doors, JudgingStopsWhenItsWatchSaysSo) {
-    ProgressMonitor watch;
-    watch.stop = true;
-    EXPECT_THROW(judge_sampler("own", Own{}, few(), &watch), Interrupted);
+    ProgressMonitor monitor;
+    monitor.stop = true;
+    EXPECT_THROW(judge_sampler("own", Own{}, few(), &monitor), Interrupted);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace crescent {
 namespace {
 
 TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     std::size_t with = 0, named = 0;
     std::string told;
     const std::vector<PlantedFault> faults = held_out_faults();
@@ -17,7 +17,7 @@ TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
         TestSettings settings;
         settings.draws = 16384;
         const Judgement j =
-            judge(std::span(fault.trials).subspan(1, 1), settings, watch);  // one w_o shows each of them
+            judge(std::span(fault.trials).subspan(1, 1), settings, monitor);  // one w_o shows each of them
         EXPECT_EQ(j.state, State::wrong) << fault.name;
         const Explained e = explained(fault, j);
         with += !e.cause.empty();

@@ -20,8 +20,8 @@ inline TestSettings of_draws(std::uint64_t draws) {
 }
 
 inline Judgement judged_alone(const Trial& trial, const TestSettings& settings) {
-    ProgressMonitor watch;
-    return judge({&trial, 1}, settings, watch);
+    ProgressMonitor monitor;
+    return judge({&trial, 1}, settings, monitor);
 }
 /// w_o at (theta, phi), degrees.
 inline Judgement judged_at(

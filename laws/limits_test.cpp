@@ -18,10 +18,10 @@ namespace {
 Judgement at_a_few(const std::string& arm, const Settings& settings) {
     std::vector<Trial> trials = trials_of(arm, settings, false);
     std::erase_if(trials, [](const Trial& t) { return t.theta_deg != 45 && t.theta_deg != 89; });
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     TestSettings few = TestSettings::quick();
     few.draws /= 4;
-    return judge(trials, few, watch);
+    return judge(trials, few, monitor);
 }
 
 bool reads(const std::string& arm, const Settings& settings) {
@@ -82,9 +82,9 @@ TEST(Limits, AccuseASamplerThatLeavesOutWhatItClaims) {
         const Vec3d wi{sin * std::cos(phi), sin * std::sin(phi), z};
         return Draw{wi, p(wo, wi), {}, {}};
     };
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const Trial trial = trial_of_subject(subject_of(r), 45, 130);
-    const Judgement j = judge({&trial, 1}, TestSettings::quick(), watch);
+    const Judgement j = judge({&trial, 1}, TestSettings::quick(), monitor);
     for (const Verdict& v : j.verdicts)
         if (v.name == "mean" || v.name == "physics") EXPECT_EQ(v.state, State::wrong) << v.name << ": " << v.say;
 }
@@ -132,10 +132,10 @@ TEST(Limits, WhatIsInconclusiveSaysWhatWouldSettleIt) {
 
     PipeLimits limits;
     limits.total_seconds = 0.3;
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const std::string slow =
         "read hello; echo hello 1 slow; read f; echo -; while read verb; do sleep 0.2; echo 0 0 1 1; done";
-    expect_settled(judge(trials_of_subject(start_pipe(slow, limits), false), TestSettings::quick(), watch), met);
+    expect_settled(judge(trials_of_subject(start_pipe(slow, limits), false), TestSettings::quick(), monitor), met);
     EXPECT_EQ(met.size(), verdict_names.size());
 }
 

@@ -33,8 +33,8 @@ std::string diagnosed(const Recipe& recipe, std::uint64_t seed) {
     const Trial trial = trial_of_subject(subject_of(recipe), 45, 130);
     TestSettings settings = TestSettings::quick();
     settings.seed = seed;
-    ProgressMonitor watch;
-    for (const Verdict& v : judge({&trial, 1}, settings, watch).verdicts)
+    ProgressMonitor monitor;
+    for (const Verdict& v : judge({&trial, 1}, settings, monitor).verdicts)
         if (v.state == State::wrong && v.evidence.contains("diagnosis")) return v.say;
     return "";
 }

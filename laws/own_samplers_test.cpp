@@ -106,8 +106,8 @@ TEST(OwnSamplers, AreTimedInTurnsWhileNothingElseIsAsked) {
     for (int i = 0; i < 4; ++i) trials.push_back(trial_of_subject(std::make_shared<Logged>(lock, calls), 15.0 * i, 0));
     TestSettings settings;
     settings.draws = 4096;
-    ProgressMonitor watch;
-    judge(trials, settings, watch);
+    ProgressMonitor monitor;
+    judge(trials, settings, monitor);
     std::sort(calls.begin(), calls.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
     ASSERT_GT(calls.size(), 28u);
     for (std::size_t i = calls.size() - 28; i < calls.size(); ++i) {

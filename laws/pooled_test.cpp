@@ -29,10 +29,10 @@ Recipe two_lobes(double choice, double sharpness) {
 }
 
 Judgement judged(const Recipe& r, std::uint32_t seed = 1) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     TestSettings settings;
     settings.seed = seed;
-    return judge(trials_of_subject(subject_of(r), false), settings, watch);
+    return judge(trials_of_subject(subject_of(r), false), settings, monitor);
 }
 
 TEST(Pooled, ALobeThatIsChosenHalfAPerCentTooOftenIsFound) {

@@ -47,8 +47,8 @@ TEST(Renderers, ASkyHasNoViewAndIsJudgedOnce) {
     const std::vector<Trial> trials = trials_of_subject(sky, false);
     ASSERT_EQ(trials.size(), 1u);
     EXPECT_EQ(trials[0].text(), "no w_o");
-    ProgressMonitor watch;
-    const Judgement j = judge(trials, TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    const Judgement j = judge(trials, TestSettings::quick(), monitor);
     EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
     EXPECT_EQ(named(j, "normalised").evidence["quadrature_error"].get<double>(), 0) << "its texels are summed";
 }

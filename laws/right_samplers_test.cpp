@@ -17,71 +17,71 @@ std::string told(const RightLaw& law) {
 }
 
 TEST(RightSamplers, OfEveryFamilyAreLeftAloneInQuickMode) {
-    ProgressMonitor watch;
-    const RightLaw law = measure_right(0, 60, TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    const RightLaw law = measure_right(0, 60, TestSettings::quick(), monitor);
     EXPECT_GE(law.families.size(), 20u);
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
 TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     TestSettings settings = TestSettings::thorough();
     settings.draws /= 8;  // as full mode integrates, with fewer draws
-    const RightLaw law = measure_right(1000, 20, settings, watch);
+    const RightLaw law = measure_right(1000, 20, settings, monitor);
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
 /// Slivers of a rim that few points meet, corners where a horizon cuts a cone, and texels that u itself is too coarse
 /// for: with half a million draws each is seen.
 TEST(RightSamplers, WithThinRimsAndFineTablesAreLeftAloneInFullMode) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const std::uint64_t which : {116u, 306u, 296u}) {
-        const RightLaw law = measure_right(which, 1, TestSettings::thorough(), watch);
+        const RightLaw law = measure_right(which, 1, TestSettings::thorough(), monitor);
         EXPECT_EQ(law.accused, 0u) << told(law);
     }
 }
 
 /// p jumps where the half vector crosses the horizon; the first sampler of their own that people bring.
 TEST(RightSamplers, WithAnisotropicVisibleNormalsAreLeftAlone) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const auto subject = subject_of(ggx_visible_at(0.1, 0.4));
-    const Judgement quick = judge(trials_of_subject(subject, false), TestSettings::quick(), watch);
+    const Judgement quick = judge(trials_of_subject(subject, false), TestSettings::quick(), monitor);
     EXPECT_EQ(quick.state, State::right) << what_is_wrong(quick);
     for (std::uint32_t seed : {2u, 3u}) {
         TestSettings settings = TestSettings::thorough();
         settings.seed = seed;
         const Trial trial = trial_of_subject(subject, 60, 250);
-        const Judgement full = judge({&trial, 1}, settings, watch);
+        const Judgement full = judge({&trial, 1}, settings, monitor);
         EXPECT_EQ(full.state, State::right) << what_is_wrong(full);
     }
 }
 
 /// Differences of the warp are rounded there far more than its directions are, and its warp bends at every texel.
 TEST(RightSamplers, WithASkyThatIsInterpolatedInSinglePrecisionAreLeftAlone) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const auto& [cells, sun] : {std::pair{16, 5.0}, {8, 0.5}, {32, 40.0}})
         for (std::uint32_t seed : {1u, 2u}) {
             TestSettings settings = TestSettings::quick();
             settings.seed = seed;
-            const Judgement j = judge(trials_of_subject(subject_of(smooth_sky(cells, sun)), false), settings, watch);
+            const Judgement j = judge(trials_of_subject(subject_of(smooth_sky(cells, sun)), false), settings, monitor);
             EXPECT_EQ(j.state, State::right) << cells << " cells, seed " << seed << ": " << what_is_wrong(j);
         }
 }
 
 /// Thousands of texels in one number: only small steps stay within one, where the sphere's curve is no rounding.
 TEST(RightSamplers, WithAnAliasTableOfThousandsOfTexelsAreLeftAlone) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (int rows = 30; rows < 64; ++rows) {
         Dice dice(static_cast<std::uint64_t>(rows));
         const auto sky = subject_of(recipe_of(sky_with_sun(dice, rows, 2 * rows, 0.5, true)));
-        const Judgement j = judge(trials_of_subject(sky, false), TestSettings::quick(), watch);
+        const Judgement j = judge(trials_of_subject(sky, false), TestSettings::quick(), monitor);
         EXPECT_EQ(j.state, State::right) << rows << " rows: " << what_is_wrong(j);
     }
 }
 
 /// In single precision sqrt(1 - c c) makes stairs of a sharp lobe's warp; their slopes are no density.
 TEST(RightSamplers, OfSharpLobesInSinglePrecisionAreLeftAlone) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const auto lobe = [](float s) {
         const auto p = [s](double cos) {
             return cos > 0 ? (s + 1) / (2 * pi) * std::pow(static_cast<float>(cos), s) : 0.0;
@@ -96,7 +96,7 @@ TEST(RightSamplers, OfSharpLobesInSinglePrecisionAreLeftAlone) {
         return r;
     };
     for (const float s : {500.0f, 5000.0f}) {
-        const Judgement j = judge(trials_of_subject(subject_of(lobe(s)), false), TestSettings::quick(), watch);
+        const Judgement j = judge(trials_of_subject(subject_of(lobe(s)), false), TestSettings::quick(), monitor);
         EXPECT_EQ(j.state, State::right) << s << ": " << what_is_wrong(j);
     }
 }

@@ -28,15 +28,15 @@ Experiment tiny(std::vector<std::string> overrides = {}) {
 std::string metrics_of(Measured measured) { return metrics_json(report_inputs(measured)); }
 
 TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny());
-    Prepared prepared = prepare(plan, {.threads = 1}, watch);
+    Prepared prepared = prepare(plan, {.threads = 1}, monitor);
     std::vector<JobResult> results;
     for (std::size_t k = plan.jobs.size(); k-- > 0;)
         results.push_back(
-            execute(plan, prepared, plan.jobs[k], {.threads = 2}, watch, plan.jobs[k].seed == plan.seeds[0]));
-    const Measured stepwise = collect(plan, std::move(prepared), std::move(results), {}, watch);
-    EXPECT_EQ(metrics_of(stepwise), metrics_of(measure_in_memory(tiny(), {}, watch)));
+            execute(plan, prepared, plan.jobs[k], {.threads = 2}, monitor, plan.jobs[k].seed == plan.seeds[0]));
+    const Measured stepwise = collect(plan, std::move(prepared), std::move(results), {}, monitor);
+    EXPECT_EQ(metrics_of(stepwise), metrics_of(measure_in_memory(tiny(), {}, monitor)));
     EXPECT_EQ(stepwise.metrics.runs.size(), 12u);
     EXPECT_NE(stepwise.film({"cosine", 16, 32, 7}), nullptr);
     EXPECT_NE(stepwise.reference(32), nullptr);
@@ -47,29 +47,29 @@ TEST(RunSteps, GiveTheSameNumbersInAnyOrderOfJobsAsTheRunInOneCall) {
 }
 
 TEST(RunSteps, ComputeTheNotesReferenceWhereTheExperimentAsksForIt) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny({"reference.monte_carlo=true", "seeds=1"}));
-    const Prepared prepared = prepare(plan, {}, watch);
+    const Prepared prepared = prepare(plan, {}, monitor);
     ASSERT_EQ(prepared.monte_carlo.size(), 1u);
     EXPECT_EQ(prepared.quadrature.size(), 1u);
 }
 
 TEST(RunSteps, AnswerAStopWithoutAnException) {
-    PolledMonitor watch;
+    PolledMonitor monitor;
     const RunPlan plan = crescent::plan(tiny());
-    Prepared prepared = prepare(plan, {}, watch);
+    Prepared prepared = prepare(plan, {}, monitor);
     EXPECT_FALSE(prepared.stopped);
-    EXPECT_EQ(watch.state().what, "reference by quadrature");
-    EXPECT_EQ(watch.state().done, watch.state().total);
-    JobResult first = execute(plan, prepared, plan.jobs[0], {}, watch);
+    EXPECT_EQ(monitor.state().what, "reference by quadrature");
+    EXPECT_EQ(monitor.state().done, monitor.state().total);
+    JobResult first = execute(plan, prepared, plan.jobs[0], {}, monitor);
     EXPECT_FALSE(first.stopped);
-    watch.stop = true;
-    EXPECT_TRUE(prepare(plan, {}, watch).stopped);
-    EXPECT_TRUE(execute(plan, prepared, plan.jobs[1], {}, watch).stopped);
-    Measured measured = collect(plan, std::move(prepared), {std::move(first)}, {}, watch);
+    monitor.stop = true;
+    EXPECT_TRUE(prepare(plan, {}, monitor).stopped);
+    EXPECT_TRUE(execute(plan, prepared, plan.jobs[1], {}, monitor).stopped);
+    Measured measured = collect(plan, std::move(prepared), {std::move(first)}, {}, monitor);
     EXPECT_TRUE(measured.stopped);
     const std::string out = fs::path(testing::TempDir()) / ("stopped-" + std::to_string(getpid()));
-    EXPECT_FALSE(write(measured, out, watch));
+    EXPECT_FALSE(write(measured, out, monitor));
     EXPECT_FALSE(fs::exists(out + "/metrics.json"));
     fs::remove_all(out);
 }
@@ -101,14 +101,14 @@ struct Looker : ProgressMonitor {
 };
 
 TEST(RunSteps, ChangeNothingThatBelongsToTheProcess) {
-    Looker watch;
+    Looker monitor;
     const std::string out = fs::path(testing::TempDir()) / ("steps-" + std::to_string(getpid()));
     RunOptions options;
     options.out = out, options.threads = 3;
-    run(tiny({"seeds=1"}), options, watch);
+    run(tiny({"seeds=1"}), options, monitor);
     EXPECT_TRUE(fs::exists(out + "/films/reference.exr"));
-    EXPECT_EQ(watch.changed, 0) << "while it ran";
-    EXPECT_TRUE(Process() == watch.before) << "afterwards";
+    EXPECT_EQ(monitor.changed, 0) << "while it ran";
+    EXPECT_TRUE(Process() == monitor.before) << "afterwards";
     fs::remove_all(out);
 }
 

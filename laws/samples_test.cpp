@@ -45,9 +45,9 @@ std::shared_ptr<const JudgedSampler> lobe_in_files(Vec3d axis) {
 TEST(SamplesOfFiles, BesideThePoleAreNotAccusedOfWhatTheirTableDoesNotSay) {
     for (const double degrees : {5.0, 20.0}) {
         const double angle = degrees * pi / 180;
-        ProgressMonitor watch;
+        ProgressMonitor monitor;
         const Trial trial = trial_of_subject(lobe_in_files({std::sin(angle), 0, std::cos(angle)}), 0, 0);
-        const Judgement j = judge({&trial, 1}, TestSettings::quick(), watch);
+        const Judgement j = judge({&trial, 1}, TestSettings::quick(), monitor);
         EXPECT_NE(j.state, State::wrong) << degrees << " deg: " << what_is_wrong(j);
     }
 }

@@ -12,8 +12,8 @@ TEST(VerdictList, IsWhatEveryCaseIsGivenInThisOrder) {
     TestSettings few;
     few.draws = 512;
     few.wo = {{45, 0}};
-    ProgressMonitor watch;
-    const Judgement j = judge(trials_of("uniform", {}, false, few.wo), few, watch);
+    ProgressMonitor monitor;
+    const Judgement j = judge(trials_of("uniform", {}, false, few.wo), few, monitor);
     ASSERT_EQ(j.verdicts.size() % verdict_names.size(), 0u);
     for (std::size_t i = 0; i < j.verdicts.size(); ++i)
         EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);

@@ -42,8 +42,8 @@ CRESCENT_EXPORT(judged)()->void {
     const std::string name = asked.at("sampler").get<std::string>();
     std::vector<Trial> trials = trials_named(name, asked.at("theta").get<double>());
     for (Trial& t : trials) t.subject = paused(t.subject);
-    ProgressMonitor watch;
-    const Judgement judgement = judge(trials, TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    const Judgement judgement = judge(trials, TestSettings::quick(), monitor);
     ordered_json out = {{"name", name}, {"state", word(State::right)}, {"cases", ordered_json::array()}};
     bool wrong = false, doubt = false;
     for (const Trial& t : trials) {

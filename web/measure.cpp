@@ -110,8 +110,8 @@ struct Furnaces {
         plan.n = n;
         e.furnaces = {plan};
         count_work(n);
-        ProgressMonitor watch;
-        for (const FurnaceMeter& f : furnaces(e, nullptr, "", watch)) add(f);
+        ProgressMonitor monitor;
+        for (const FurnaceMeter& f : furnaces(e, nullptr, "", monitor)) add(f);
     }
     void tell() const { say(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}}); }
 

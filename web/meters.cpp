@@ -30,10 +30,10 @@ std::string class_of(const std::string& arm) {
 void keep_largest(const TileBox& box, const std::string& sampler, const TailPlan& plan, std::vector<float>& largest) {
     const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
     count_work(pixels_of(box) * cost_of(sampler, tail_cost * plan.n));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     std::uint64_t drawn = 0;
     const std::vector<float> here =
-        largest_samples(bench().scene, sampler, plan.n, bench().experiment.seed, ends, plan.kept, "", watch, drawn);
+        largest_samples(bench().scene, sampler, plan.n, bench().experiment.seed, ends, plan.kept, "", monitor, drawn);
     largest.insert(largest.end(), here.begin(), here.end());
     if (largest.size() <= plan.kept) return;
     std::ranges::nth_element(largest, largest.begin() + static_cast<std::ptrdiff_t>(plan.kept), std::greater<>());

@@ -47,19 +47,20 @@ int main(int argc, char** argv) {
     const bool stop = argc > 1 && std::strcmp(argv[1], "stop") == 0;
     const crescent::RunPlan plan = crescent::plan(two_arms());
     const crescent::Engine engine{.threads = 2};
-    crescent::PolledMonitor watch;  // its state() may be read, and its `stop` be set, from any thread
-    crescent::Prepared prepared = crescent::prepare(plan, engine, watch);
+    crescent::PolledMonitor monitor;  // its state() may be read, and its `stop` be set, from any thread
+    crescent::Prepared prepared = crescent::prepare(plan, engine, monitor);
 
     std::vector<crescent::JobResult> results;
     for (const crescent::Job& job : plan.jobs) {
-        if (stop && results.size() == 3) watch.stop = true;
-        results.push_back(crescent::execute(plan, prepared, job, engine, watch));
+        if (stop && results.size() == 3) monitor.stop = true;
+        results.push_back(crescent::execute(plan, prepared, job, engine, monitor));
         if (results.back().stopped) {
             std::printf("stopped after %zu of %zu jobs\n", results.size() - 1, plan.jobs.size());
             return 130;
         }
     }
-    const crescent::Measured measured = crescent::collect(plan, std::move(prepared), std::move(results), engine, watch);
+    const crescent::Measured measured =
+        crescent::collect(plan, std::move(prepared), std::move(results), engine, monitor);
 
     for (const crescent::BandMeter& band : measured.metrics.bands)
         if (band.meter == "rmse.ball" && band.key.n == 16)

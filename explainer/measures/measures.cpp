@@ -177,14 +177,14 @@ WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     return out;
 }
 
-Measures take_measures(const Data& data, const std::string&, ProgressMonitor& watch) {
+Measures take_measures(const Data& data, const std::string&, ProgressMonitor& monitor) {
     Measures out;
     out.story = pixel_story(data);
-    watch.check();
+    monitor.check();
     out.tail = weight_tail(data.cast.s, tail_draws, data.cast.seed);
     out.cosine_directions = cosine_directions(data.cast.seed, shown_directions);
     out.surround_lost = lost_in(data, data.box(data.cast.surround));
-    watch.check();
+    monitor.check();
     return out;
 }
 

@@ -58,7 +58,7 @@ struct Measures {
     LostSupport surround_lost;             // at the median tilt of R in the surround region
 };
 
-Measures take_measures(const Data& data, const std::string& isa, ProgressMonitor& watch);
+Measures take_measures(const Data& data, const std::string& isa, ProgressMonitor& monitor);
 
 /// The pixel of a box with the largest |Y - Y_ref| where something is seen; the first of equals in storage order.
 std::pair<int, int> worst_pixel(

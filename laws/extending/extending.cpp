@@ -65,9 +65,9 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
     const Experiment e = parse(std::string(scene_text) + added, "extending",
         {"fill.radiance=" + fill, "arms.it.sampler=\"" + sampler + "\"", "shapes.ball.brdf=\"" + brdf + "\""});
     const Scene scene(e);
-    ProgressMonitor watch;
-    const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", watch)[0];
-    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, watch)[0];
+    ProgressMonitor monitor;
+    const Film film = estimate_films(scene, sampler, {256}, e.seed, "scalar", monitor)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, monitor)[0];
     double off = 0, variance = 0, error = 0, all = 0;
     for (std::size_t at = 0; at < film.size(); ++at) {
         off += static_cast<double>(film.y[at]) - static_cast<double>(truth.y[at]);
@@ -80,8 +80,8 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
 }
 
 bool is_judged_as_expected(const std::string& sampler) {
-    ProgressMonitor watch;
-    const Judgement j = judge(trials_of(sampler, {}, false), TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    const Judgement j = judge(trials_of(sampler, {}, false), TestSettings::quick(), monitor);
     if (!j.as_expected) std::cout << verdict_table(j);
     return j.as_expected;
 }
@@ -92,10 +92,10 @@ bool is_measured_and_drawn(const std::string& meter, const std::string& plate) {
             "\"\nruns = [{ arm = \"it\" }]\n[assertions.it]\ncheck = \"" + meter + ".all(it) > 0\"\n",
         "extending", {"arms.it.sampler=\"cosine\""});
     const Scene scene(e);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const RunKey key{"it", 256, e.s(), e.seed};
-    const Film film = estimate_films(scene, "cosine", {256}, e.seed, "scalar", watch)[0];
-    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, watch)[0];
+    const Film film = estimate_films(scene, "cosine", {256}, e.seed, "scalar", monitor)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, {e.s()}, monitor)[0];
     const ShapeMap shapes = shape_map(scene);
     Metrics m;
     m.runs = {measure(e, key, film, truth, shapes)};
@@ -110,8 +110,8 @@ bool is_measured_and_drawn(const std::string& meter, const std::string& plate) {
 }
 
 bool has_every_verdict() {
-    ProgressMonitor watch;
-    const Judgement j = judge(trials_of("cosine", {}, false, {{45, 0}}), TestSettings::quick(), watch);
+    ProgressMonitor monitor;
+    const Judgement j = judge(trials_of("cosine", {}, false, {{45, 0}}), TestSettings::quick(), monitor);
     const std::string table = verdict_table(j), json = verdict_json(j, {});
     return j.as_expected && std::ranges::all_of(verdict_names, [&](std::string_view name) {
         const bool told = table.find(" " + std::string(name)) != std::string::npos &&

@@ -51,16 +51,16 @@ void print_functions() {
 
 void print(const Experiment& experiment) {
     const Scene scene(experiment);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const std::string& isa : isas())
         for (const ArmPlan& arm : experiment.arms)
-            for (const Film& film : estimate_films(scene, arm.sampler, arm.n, experiment.seed, isa, watch))
+            for (const Film& film : estimate_films(scene, arm.sampler, arm.n, experiment.seed, isa, monitor))
                 std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film)
                           << '\n';
     for (const std::string& isa : isas())
-        for (const ReferenceFilm& film : monte_carlo_reference(scene, experiment, {experiment.s()}, isa, watch))
+        for (const ReferenceFilm& film : monte_carlo_reference(scene, experiment, {experiment.s()}, isa, monitor))
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
-    for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, watch))
+    for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, monitor))
         std::cout << experiment.file << " quadrature " << hash(film) << '\n';
 }
 

@@ -20,17 +20,17 @@ RightFamily& family_of(RightLaw& law, const std::string& name) {
 
 }  // namespace
 
-RightLaw measure_right(std::uint64_t first, std::uint64_t count, const TestSettings& given, ProgressMonitor& watch) {
+RightLaw measure_right(std::uint64_t first, std::uint64_t count, const TestSettings& given, ProgressMonitor& monitor) {
     std::vector<Judgement> all(count);
-    watch.begin("right samplers", static_cast<double>(count));
+    monitor.begin("right samplers", static_cast<double>(count));
     oneapi::tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
-        watch.check();
+        monitor.check();
         TestSettings settings = given;
         settings.seed = seed_of(given.seed, static_cast<std::uint32_t>(first + i));
         const Trial trial = right_trial(first + i, given.seed);
         ProgressMonitor inner;
         all[i] = judge({&trial, 1}, settings, inner);
-        watch.advance(1);
+        monitor.advance(1);
     });
     RightLaw law;
     law.alpha = given.alpha;

@@ -21,7 +21,8 @@ struct RightLaw {
 };
 
 /// Judges right samplers `first` to `first + count`, one w_o and one call each, on a seed of its own.
-RightLaw measure_right(std::uint64_t first, std::uint64_t count, const TestSettings& settings, ProgressMonitor& watch);
+RightLaw measure_right(
+    std::uint64_t first, std::uint64_t count, const TestSettings& settings, ProgressMonitor& monitor);
 /// A table by family, and what was said.
 std::string right_law_text(const RightLaw& law);
 

@@ -59,21 +59,21 @@ ReferenceList references_of(nb::handle self) {
 
 std::shared_ptr<Measured> measured(const Experiment& experiment, int first, int last, int threads,
     const std::string& isa, bool studies, const nb::object& progress) {
-    PolledMonitor watch;
-    Raised raised(watch);
+    PolledMonitor monitor;
+    Raised raised(monitor);
     const auto out = std::make_shared<Measured>();
-    watched(watch, raised, progress, false, [&] {
+    watched(monitor, raised, progress, false, [&] {
         const RunPlan what = plan(experiment, {first, last});
         const Engine engine = settled({.threads = threads, .isa = isa, .instrument = nullptr});
-        Prepared prepared = prepare(what, engine, watch);
+        Prepared prepared = prepare(what, engine, monitor);
         std::vector<JobResult> results;
         for (const Job& job : what.jobs) {
-            watch.check();
-            results.push_back(execute(what, prepared, job, engine, watch, job.seed == what.seeds.front()));
+            monitor.check();
+            results.push_back(execute(what, prepared, job, engine, monitor, job.seed == what.seeds.front()));
         }
-        watch.check();
-        *out = collect(what, std::move(prepared), std::move(results), engine, watch, {"crescent.run", studies});
-        watch.check();
+        monitor.check();
+        *out = collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent.run", studies});
+        monitor.check();
     });
     return out;
 }
@@ -83,7 +83,7 @@ ReportInputs inputs_of(const Measured& m) { return {m.experiment, m.metrics, m.e
 /// metrics.json, metrics.csv, junit.xml and films/*.exr appear as one; plates and report are the program's.
 void write_folder(const Measured& m, const std::string& folder) {
     const nb::gil_scoped_release free;
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     Staging staging(folder);
     staging.write("metrics.json", metrics_json(inputs_of(m)));
     staging.write("metrics.csv", metrics_csv(inputs_of(m)));
@@ -95,7 +95,7 @@ void write_folder(const Measured& m, const std::string& folder) {
     for (const auto& [key, film] : m.films)
         files[film_file(key.arm, key.s, m.experiment.s())].emplace_back(fmt::format("n={}", key.n), &film);
     for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, attributes);
-    staging.commit(watch);
+    staging.commit(monitor);
 }
 
 }  // namespace

@@ -83,18 +83,18 @@ bool is_serial(const Trials& trials) {
 Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, bool full, bool accept_few,
     bool expect_same, int threads, const std::string& command, const nb::object& progress) {
     const TestSettings settings = settings_of(alpha, seed, full, accept_few);
-    PolledMonitor watch;
-    Raised raised(watch);
+    PolledMonitor monitor;
+    Raised raised(monitor);
     Judged out{{}, {version(), commit(), command}, other != nullptr};
     const auto work = [&] {
         if (!other) {
-            out.judgement = judge(trials.all, settings, watch);
+            out.judgement = judge(trials.all, settings, monitor);
             return;
         }
         std::vector<Trial> a = trials.all, b = other->all;
         for (std::vector<Trial>* side : {&a, &b}) std::erase_if(*side, [](const Trial& t) { return t.baseline; });
         if (other->subject) b = sampler_against(other->subject, a);
-        out.judgement = judge_against(a, b, settings, expect_same, watch);
+        out.judgement = judge_against(a, b, settings, expect_same, monitor);
     };
     const bool serial = is_serial(trials) || (other && is_serial(*other));
     tell(trials, &raised);
@@ -104,7 +104,7 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
         if (other) tell(*other, nullptr);
     };
     try {
-        watched(watch, raised, progress, serial, [&] { threads > 0 ? on_threads(threads, work) : work(); });
+        watched(monitor, raised, progress, serial, [&] { threads > 0 ? on_threads(threads, work) : work(); });
     } catch (...) {
         quiet();
         throw;
@@ -128,8 +128,8 @@ Trials arm_beside(const std::string& arm, const Trials& a) {
 
 void draw_batches(const Trials& trials, std::uint32_t batches) {
     if (!trials.subject) throw nb::value_error("an arm of the list has no callables");
-    PolledMonitor watch;
-    Raised raised(watch);
+    PolledMonitor monitor;
+    Raised raised(monitor);
     tell(trials, &raised);
     const int count = trials.subject->traits().numbers;
     const auto batch = [&](std::uint32_t b) {
@@ -143,7 +143,7 @@ void draw_batches(const Trials& trials, std::uint32_t batches) {
             }
         trials.subject->sample(0, trials.all.front().wo, u, out);
     };
-    watched(watch, raised, nb::none(), trials.subject->serial(), [&] {
+    watched(monitor, raised, nb::none(), trials.subject->serial(), [&] {
         if (trials.subject->serial())
             for (std::uint32_t b = 0; b < batches; ++b) batch(b);
         else parallel_for(std::uint32_t{0}, batches, batch);

@@ -11,18 +11,18 @@ namespace crescent::python {
 namespace {
 
 /// With the lock held: a Ctrl-C, or what the progress callable raises, asks the work to stop.
-void look_around(PolledMonitor& watch, Raised& raised, const nb::object& progress) {
+void look_around(PolledMonitor& monitor, Raised& raised, const nb::object& progress) {
     try {
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
-        if (progress.is_none() || watch.stop) return;
-        const PolledMonitor::State state = watch.state();
+        if (progress.is_none() || monitor.stop) return;
+        const PolledMonitor::State state = monitor.state();
         progress(state.what, state.done, state.total);
     } catch (...) { raised.keep(); }
 }
 
 }  // namespace
 
-void watched(PolledMonitor& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
+void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress, bool on_this_thread,
     const std::function<void()>& work) {
     const auto guarded = [&] {
         try {
@@ -34,7 +34,7 @@ void watched(PolledMonitor& watch, Raised& raised, const nb::object& progress, b
             const nb::gil_scoped_release free;
             guarded();
         }
-        look_around(watch, raised, progress);
+        look_around(monitor, raised, progress);
         return raised.throw_again();
     }
     std::mutex lock;
@@ -53,14 +53,14 @@ void watched(PolledMonitor& watch, Raised& raised, const nb::object& progress, b
             guard.unlock();
             {
                 const nb::gil_scoped_acquire held;
-                look_around(watch, raised, progress);
+                look_around(monitor, raised, progress);
             }
             guard.lock();
         }
         guard.unlock();
         worker.join();
     }
-    look_around(watch, raised, progress);
+    look_around(monitor, raised, progress);
     raised.throw_again();
 }
 

@@ -16,20 +16,20 @@ namespace nb = nanobind;
 /// What a Python callable raised while C++ was asking it: the first one counts, and asks the work to stop.
 class Raised {
 public:
-    explicit Raised(ProgressMonitor& watch) : watch_(watch) {}
+    explicit Raised(ProgressMonitor& monitor) : monitor_(monitor) {}
     /// Inside a catch block.
     void keep() {
         const std::lock_guard guard(lock_);
         if (!first_) first_ = std::current_exception();
-        watch_.stop = true;
+        monitor_.stop = true;
     }
     void throw_again() const {
         if (first_) std::rethrow_exception(first_);
     }
-    void check() const { watch_.check(); }
+    void check() const { monitor_.check(); }
 
 private:
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     std::mutex lock_;
     std::exception_ptr first_;
 };
@@ -37,7 +37,7 @@ private:
 /// Calls `work` without the interpreter's lock. on_this_thread: for callables that want one thread, the caller's own;
 /// else in a thread of its own, and this one looks for Ctrl-C and calls progress(what, done, total) some times a
 /// second.
-void watched(PolledMonitor& watch, Raised& raised, const nb::object& progress, bool on_this_thread,
+void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress, bool on_this_thread,
     const std::function<void()>& work);
 
 }  // namespace crescent::python

@@ -139,12 +139,12 @@ void Staging::write(const std::string& name, const std::string& text) {
     write(name, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
-void Staging::commit(ProgressMonitor& watch) {
+void Staging::commit(ProgressMonitor& monitor) {
     Publication publication(out_, folder_, stage_);
-    publication.publish(std::move(names_), kind_, watch.outputs);
+    publication.publish(std::move(names_), kind_, monitor.outputs);
     names_.clear();
     said_.insert(said_.end(), publication.said().begin(), publication.said().end());
-    for (const std::string& line : said_) watch.log(line);
+    for (const std::string& line : said_) monitor.log(line);
     said_.clear();
 }
 

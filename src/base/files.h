@@ -31,8 +31,8 @@ public:
     /// A folder for what is needed on the way; it goes with the stage.
     std::string scratch() const { return folder_ + "/" + stage_ + "/scratch"; }
     /// Brings every output to its place and removes files of the earlier outputs that are not among them. What the
-    /// folder holds besides stays. `watch` is told what stands when, and which files were kept under another name.
-    void commit(ProgressMonitor& watch);
+    /// folder holds besides stays. `monitor` is told what stands when, and which files were kept under another name.
+    void commit(ProgressMonitor& monitor);
 
 private:
     void clear_stale();

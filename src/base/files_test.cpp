@@ -37,7 +37,7 @@ protected:
     fs::path top_ = fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
         ("publishing-" + std::to_string(getpid()));
     fs::path out_ = top_ / "out";
-    ProgressMonitor watch_;
+    ProgressMonitor monitor_;
     void SetUp() override { fs::remove_all(top_), fs::create_directories(top_); }
     void TearDown() override { fs::remove_all(top_); }
 
@@ -52,7 +52,7 @@ protected:
     void publish(const Files& files) {
         Staging staging(out_);
         for (const auto& [name, text] : files) staging.write(name, text);
-        staging.commit(watch_);
+        staging.commit(monitor_);
     }
     /// What a reader finds under the names of both runs, links followed.
     Files seen() const {
@@ -81,7 +81,7 @@ protected:
             for (const auto& [name, text] : files) staging.write(name, text);
             steps_left = step;
             before_change = end_at_last_step;
-            staging.commit(watch_);
+            staging.commit(monitor_);
             ::_exit(0);
         }
         int status = 0;
@@ -156,9 +156,9 @@ TEST_F(Publishing, WhatIsInTheWayAfterTheFirstStepsLeavesEverythingOld) {
     before_change = [] {
         if (steps_left-- == 0) fs::remove(way), fs::create_directories(way / "in the way");
     };
-    EXPECT_THROW(staging.commit(watch_), OutputError);
+    EXPECT_THROW(staging.commit(monitor_), OutputError);
     before_change = nullptr;
-    EXPECT_EQ(watch_.outputs, Outputs::untouched);
+    EXPECT_EQ(monitor_.outputs, Outputs::untouched);
     Files expected = old_run;
     expected.erase("plates/hero.png");
     Files now = seen();
@@ -216,16 +216,16 @@ TEST_F(Publishing, IsForOneRunAtATime) {
         FAIL();
     } catch (const OutputError& error) { EXPECT_THAT(error.what(), HasSubstr("another run")); }
     first.write("metrics.json", "first");
-    first.commit(watch_);
+    first.commit(monitor_);
     EXPECT_EQ(text_of(out_ / "metrics.json"), "first");
-    EXPECT_EQ(watch_.outputs, Outputs::stand);
+    EXPECT_EQ(monitor_.outputs, Outputs::stand);
 }
 
 TEST_F(Publishing, OfAnotherKindLeavesTheseOutputs) {
     publish(old_run);
     Staging film(out_, "film");
     film.write("film.mp4", "film");
-    film.commit(watch_);
+    film.commit(monitor_);
     EXPECT_EQ(seen(), old_run);
     EXPECT_EQ(text_of(out_ / "film.mp4"), "film");
 }

@@ -21,13 +21,13 @@
 
 namespace crescent::inline base {
 
-Journal::Journal(std::string path, std::string key, ProgressMonitor& watch)
-    : path_(std::move(path)), key_(std::move(key)), watch_(watch) {}
+Journal::Journal(std::string path, std::string key, ProgressMonitor& monitor)
+    : path_(std::move(path)), key_(std::move(key)), monitor_(monitor) {}
 
 Journal::Journal(Journal&& other) noexcept
     : path_(std::move(other.path_)),
       key_(std::move(other.key_)),
-      watch_(other.watch_),
+      monitor_(other.monitor_),
       file_(std::exchange(other.file_, -1)),
       off_(other.off_) {}
 
@@ -104,7 +104,7 @@ void Journal::append(const std::vector<Bytes>& parts) {
         written = written && ftruncate(file_, 0) == 0 && write({bytes_of(key_)});
     }
     if (written && write(parts)) return;
-    watch_.log(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", path_,
+    monitor_.log(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", path_,
         std::strerror(errno)));
     remove();
     off_ = true;

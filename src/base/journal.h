@@ -18,7 +18,7 @@ public:
     using Bytes = std::span<const std::byte>;
 
     /// `key` names the work: the records of other work count as none. Nothing is read or written yet.
-    Journal(std::string path, std::string key, ProgressMonitor& watch);
+    Journal(std::string path, std::string key, ProgressMonitor& monitor);
     ~Journal();
     Journal(Journal&& other) noexcept;
     Journal& operator=(Journal&&) = delete;
@@ -34,7 +34,7 @@ private:
     bool open(int flags);
     bool write(const std::vector<Bytes>& parts);
     std::string path_, key_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     int file_ = -1;
     bool off_ = false;  // another process has the file, or it cannot be written
 };

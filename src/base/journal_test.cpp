@@ -19,7 +19,7 @@ struct Listener : ProgressMonitor {
 
 class Journals : public testing::Test {
 protected:
-    mutable Listener watch_;
+    mutable Listener monitor_;
     fs::path folder_ = fs::path(testing::TempDir()) / ("journals-" + std::to_string(::getpid()));
     std::string path_ = folder_ / "deep" / "one";
     void SetUp() override { fs::remove_all(folder_); }
@@ -32,7 +32,7 @@ protected:
         return out;
     }
     Texts read(const std::string& key = "work") const {
-        Journal journal(path_, key, watch_);
+        Journal journal(path_, key, monitor_);
         return read(journal);
     }
     static void append(Journal& journal, const Texts& parts) {
@@ -41,7 +41,7 @@ protected:
         journal.append(bytes);
     }
     void write(const std::vector<Texts>& records) const {
-        Journal journal(path_, "work", watch_);
+        Journal journal(path_, "work", monitor_);
         for (const Texts& record : records) append(journal, record);
     }
 };
@@ -60,7 +60,7 @@ TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
     const Texts all = {"one", "two", "three"};
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes.substr(0, length);
-        Journal journal(path_, "work", watch_);
+        Journal journal(path_, "work", monitor_);
         Texts kept = read(journal);
         ASSERT_LT(kept.size(), all.size()) << length;
         EXPECT_TRUE(std::equal(kept.begin(), kept.end(), all.begin())) << length;
@@ -69,7 +69,7 @@ TEST_F(Journals, TornAnywhereLoseTheTornRecordAloneAndGrowOn) {
         Journal elsewhere = std::move(journal);  // lets go of the file at the end of this turn
         EXPECT_TRUE(read().empty()) << "another reader, while the file is in use";
         fs::copy_file(path_, path_ + "-copy", fs::copy_options::overwrite_existing);
-        Journal copy(path_ + "-copy", "work", watch_);
+        Journal copy(path_ + "-copy", "work", monitor_);
         EXPECT_EQ(read(copy), kept) << length;
     }
 }
@@ -92,9 +92,9 @@ TEST_F(Journals, OfOtherWorkCountAsNone) {
 TEST_F(Journals, TakeNoRecordThatWasWrittenForOtherWork) {
     write({{"one"}});
     {
-        Journal other(path_ + "-other", "work", watch_);
+        Journal other(path_ + "-other", "work", monitor_);
         append(other, {"two"});
-        Journal stranger(path_ + "-stranger", "strange work", watch_);
+        Journal stranger(path_ + "-stranger", "strange work", monitor_);
         append(stranger, {"theirs"});
     }
     const auto add_bytes_of = [&](const std::string& from) {
@@ -115,14 +115,14 @@ TEST_F(Journals, AreNotLedElsewhereByALink) {
     write({{"one"}});
     std::ifstream victim(folder_ / "victim");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(victim), {}), "victim");
-    EXPECT_EQ(watch_.said, 1);
+    EXPECT_EQ(monitor_.said, 1);
 }
 
 TEST_F(Journals, ThatCannotBeWrittenSaySo) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "deep") << "a file where the folder should be";
     write({{"one"}, {"two"}});
-    EXPECT_EQ(watch_.said, 1) << "once, and the work goes on";
+    EXPECT_EQ(monitor_.said, 1) << "once, and the work goes on";
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct Interrupted : std::exception {
 /// own.
 enum class Outputs { untouched, moving, stand };
 
-/// Someone who watches long work. Called from many threads at once; every call is cheap.
+/// How far long work is, and whether it is to go on. Called from many threads at once; every call is cheap.
 class ProgressMonitor {
 public:
     virtual ~ProgressMonitor() = default;

@@ -11,15 +11,15 @@
 namespace crescent::inline comparing {
 
 CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
-    ProgressMonitor& watch, std::string& summary) {
+    ProgressMonitor& monitor, std::string& summary) {
     const plates::Canvas probe(1, 1, {});  // a missing font is told before the work
-    const Readings all = read_all(plan, watch);
-    const CompareResult result = judge(plan, all, watch);
+    const Readings all = read_all(plan, monitor);
+    const CompareResult result = judge(plan, all, monitor);
     std::map<std::string, std::vector<unsigned char>> pictures;
     for (const auto& [name, picture] : compare_plates(plan, all, result))
         pictures[name] = encode_png(picture,
             {{"Software", "crescent " + provenance.version}, {"Title", name}, {"Command", provenance.command}});
-    watch.check();
+    monitor.check();
     Staging staging(options.out);
     for (const auto& [name, png] : pictures) staging.write("plates/" + name + ".png", png);
     if (!result.ladders.empty()) staging.write("plates/ladders.svg", ladders_svg(result, plan.theme));
@@ -27,7 +27,7 @@ CompareResult compare(const ComparePlan& plan, const CompareOptions& options, co
     staging.write("metrics.csv", compare_csv(result));
     staging.write("junit.xml", compare_junit(plan, result));
     staging.write("report.html", compare_html(plan, all, result, provenance, pictures));
-    staging.commit(watch);
+    staging.commit(monitor);
     summary = compare_summary(plan, all, result, options.out);
     return result;
 }

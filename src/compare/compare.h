@@ -16,6 +16,6 @@ struct CompareOptions {
 /// Reads, measures and writes everything under options.out; outputs appear whole or not at all. `summary` is for the
 /// terminal. Throws InputError, OutputError, Interrupted.
 CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
-    ProgressMonitor& watch, std::string& summary);
+    ProgressMonitor& monitor, std::string& summary);
 
 }  // namespace crescent::inline comparing

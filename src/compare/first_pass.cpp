@@ -150,7 +150,7 @@ bool all_equal(const Render& render) {
 
 void FirstPass::arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer,
     const std::string& name, const std::optional<double>& spp) {
-    each_render(all_.source, files, layer, watch_, [&](const Render& render) {
+    each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
         fit(render);
         look(render);
         RenderFile file{render.file, hash_of(render), render.layer, render.variance_channels, render.sample_channel,

@@ -7,7 +7,7 @@ namespace crescent::inline comparing {
 
 class FirstPass {
 public:
-    FirstPass(Readings& all, ProgressMonitor& watch) : all_(all), watch_(watch) {}
+    FirstPass(Readings& all, ProgressMonitor& monitor) : all_(all), monitor_(monitor) {}
     /// Reads every file of an arm into `to`; `spp`: samples a pixel, where the plan says them. Throws InputError at the
     /// first that does not fit.
     void arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
@@ -19,7 +19,7 @@ private:
     void known(const RenderFile& file, const std::string& arm);
 
     Readings& all_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     std::string first_;
     std::map<std::string, std::pair<std::string, std::string>> seen_;  // hash -> path, arm
 };

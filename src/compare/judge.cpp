@@ -24,13 +24,13 @@ template <class Read> std::optional<double> told(const std::optional<double>& pl
     return sum / static_cast<double>(arm.files.size());
 }
 
-ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& watch) {
+ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& monitor) {
     ArmResult out;
     const ArmReadings& arm = all.arms[a];
     out.name = plan.arms[a].name, out.renders = arm.files.size();
     out.spp = told(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
     out.seconds = told(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
-    const std::vector<Flips> flip = measure_flip(plan, all, a, watch);
+    const std::vector<Flips> flip = measure_flip(plan, all, a, monitor);
     for (std::size_t r = 0; r < all.regions.size(); ++r)
         out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
     return out;
@@ -97,11 +97,11 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
 
 }  // namespace
 
-CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonitor& watch) {
+CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonitor& monitor) {
     CompareResult out;
     out.warnings = all.warnings;
     const std::size_t arms = all.arms.size();
-    for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, all, a, watch));
+    for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, all, a, monitor));
     for (std::size_t r = 0; r < all.regions.size() && all.reference; ++r)
         out.reference_error[all.regions[r].name] = std::sqrt(reference_variance(all, r));
     if (all.reference) out.reference_error_from = reference_error_from(*all.reference);

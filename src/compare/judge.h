@@ -16,7 +16,8 @@ struct Flips {
 };
 
 /// Of the arm's first render, a region each; none without a reference.
-std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t arm, ProgressMonitor& watch);
+std::vector<Flips> measure_flip(
+    const ComparePlan& plan, const Readings& all, std::size_t arm, ProgressMonitor& monitor);
 
 /// Every meter of one arm in one region.
 RegionResult measure_region(
@@ -56,6 +57,6 @@ const char* rung_words(const RegionResult& region);
 std::vector<SppLadder> ladders_of(const CompareResult& result);
 
 /// Measures, tests and judges everything that the plan asks.
-CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonitor& watch);
+CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline comparing

@@ -127,8 +127,8 @@ CompareResult compare_made(const MadeWorld& world, std::uint32_t seed, const std
     if (world.referred) flags.push_back({{"reference"}, "reference", false, "reference"});
     flags.insert(flags.end(), more.begin(), more.end());
     const ComparePlan plan = plan_of(flags);
-    ProgressMonitor watch;
-    return judge(plan, read_all(plan, watch, source_of(world, seed)), watch);
+    ProgressMonitor monitor;
+    return judge(plan, read_all(plan, monitor, source_of(world, seed)), monitor);
 }
 
 }  // namespace crescent::inline comparing

@@ -30,10 +30,10 @@ std::array<std::vector<float>, 3> photograph(
 
 }  // namespace
 
-std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& watch) {
+std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& monitor) {
     std::vector<Flips> out(all.regions.size());
     if (!all.reference || !plan.flip) return out;
-    watch.begin("FLIP", 1);
+    monitor.begin("FLIP", 1);
     const MeanFilm& ref = all.reference->film;
     const Render test = all.source.read(all.arms[a].files[0].path, plan.arms[a].layer);
     const std::vector<float> hdr = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
@@ -44,7 +44,7 @@ std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, st
         {all.width, all.height, seen[0], seen[1], seen[2]}, plan.pixels_per_degree);
     for (std::size_t r = 0; r < all.regions.size(); ++r)
         out[r] = {mean_over(hdr, all.regions[r]), mean_over(ldr, all.regions[r])};
-    watch.advance(1);
+    monitor.advance(1);
     return out;
 }
 

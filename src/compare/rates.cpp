@@ -28,14 +28,14 @@ struct Calls {
     std::vector<CompareFlag> more;
 };
 
-void call(Calls& to, std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
+void call(Calls& to, std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& monitor) {
     std::vector<CompareFlag> flags = costs;
     flags.insert(flags.end(), to.more.begin(), to.more.end());
     to.results.resize(repeats);
     parallel_for(std::uint32_t{0}, repeats, [&](std::uint32_t k) {
-        watch.check();
+        monitor.check();
         to.results[k] = compare_made(to.world, seed_of(seed, k), flags);
-        watch.advance(1);
+        monitor.advance(1);
     });
     for (std::uint32_t k = 0; k < repeats; ++k) to.met.push_back(met_events(to.world, seed_of(seed, k)));
 }
@@ -149,7 +149,7 @@ std::string powers(const std::vector<Calls>& biased) {
 
 }  // namespace
 
-std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch) {
+std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& monitor) {
     const std::vector<int> few_and_many{4, 16};
     const std::vector<MadeNoise> chosen{
         coarse, {Kind::lognormal, 1}, {Kind::events, 0.01}, {Kind::events, 1e-3}, {Kind::events, 1e-4}};
@@ -168,9 +168,9 @@ std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Progr
     const auto all = {&right, &other, &alike, &bounded, &biased};
     std::size_t kinds = 0;
     for (const auto* worlds : all) kinds += worlds->size();
-    watch.begin("comparisons", static_cast<double>(repeats) * static_cast<double>(kinds));
+    monitor.begin("comparisons", static_cast<double>(repeats) * static_cast<double>(kinds));
     for (auto* worlds : all)
-        for (Calls& c : *worlds) call(c, repeats, seed, watch);
+        for (Calls& c : *worlds) call(c, repeats, seed, monitor);
     std::string out = fmt::format(
         "{} calls each, of two arms of 32 x 32 pixels whose mean is 1 and a reference without error: three comparisons "
         "a call, which share alpha = 0.05.\n\n",

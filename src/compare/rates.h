@@ -9,6 +9,6 @@
 namespace crescent::inline comparing {
 
 /// Markdown. `repeats` calls of each kind of noise; equal arguments give equal text but for the date in the caller's.
-std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& watch);
+std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline comparing

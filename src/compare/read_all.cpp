@@ -57,21 +57,21 @@ void regions(const ComparePlan& plan, Readings& all) {
 }  // namespace
 
 void each_render(const RenderSource& source, const std::vector<std::string>& paths, const std::string& layer,
-    ProgressMonitor& watch, const std::function<void(const Render&)>& use) {
+    ProgressMonitor& monitor, const std::function<void(const Render&)>& use) {
     const auto start = [&](std::size_t k) {
         return std::async(std::launch::async, [&source, &layer, path = paths[k]] { return source.read(path, layer); });
     };
     std::future<Render> next = start(0);
     for (std::size_t k = 0; k < paths.size(); ++k) {
         const Render render = next.get();
-        watch.check();
+        monitor.check();
         if (k + 1 < paths.size()) next = start(k + 1);
         use(render);
-        watch.advance(1);
+        monitor.advance(1);
     }
 }
 
-Readings read_all(const ComparePlan& plan, ProgressMonitor& watch, const RenderSource& source) {
+Readings read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source) {
     Readings all;
     all.source = source;
     std::vector<std::vector<std::string>> files;
@@ -81,8 +81,8 @@ Readings read_all(const ComparePlan& plan, ProgressMonitor& watch, const RenderS
     std::vector<std::string> reference;
     if (!plan.reference.empty()) reference = source.expand(plan.reference, {plan.file, 0, 0});
     total += reference.size();
-    watch.begin("first pass: means", static_cast<double>(total));
-    FirstPass first(all, watch);
+    monitor.begin("first pass: means", static_cast<double>(total));
+    FirstPass first(all, monitor);
     all.arms.resize(plan.arms.size());
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
         first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
@@ -90,9 +90,9 @@ Readings read_all(const ComparePlan& plan, ProgressMonitor& watch, const RenderS
     all.tiles = Tiles(all.width, all.height);
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
     regions(plan, all);
-    watch.begin("second pass: what each render says", static_cast<double>(total));
-    for (std::size_t a = 0; a < plan.arms.size(); ++a) second_pass(plan, all, all.arms[a], plan.arms[a].layer, watch);
-    if (all.reference) second_pass(plan, all, *all.reference, plan.reference_layer, watch);
+    monitor.begin("second pass: what each render says", static_cast<double>(total));
+    for (std::size_t a = 0; a < plan.arms.size(); ++a) second_pass(plan, all, all.arms[a], plan.arms[a].layer, monitor);
+    if (all.reference) second_pass(plan, all, *all.reference, plan.reference_layer, monitor);
     return all;
 }
 

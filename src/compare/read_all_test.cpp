@@ -33,8 +33,8 @@ protected:
             return out;
         };
         source.read = [this](const std::string& name, const std::string&) { return renders_.at(name); };
-        ProgressMonitor watch;
-        return read_all(plan_of(flags), watch, source);
+        ProgressMonitor monitor;
+        return read_all(plan_of(flags), monitor, source);
     }
     std::string refusal(const std::vector<CompareFlag>& flags = {}) const {
         try {

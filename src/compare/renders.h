@@ -100,6 +100,6 @@ struct Readings {
 };
 
 /// Reads everything twice. Throws InputError where files do not fit each other.
-Readings read_all(const ComparePlan& plan, ProgressMonitor& watch, const RenderSource& source = {});
+Readings read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source = {});
 
 }  // namespace crescent::inline comparing

@@ -180,7 +180,7 @@ private:
 }  // namespace
 
 void second_pass(
-    const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, ProgressMonitor& watch) {
+    const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, ProgressMonitor& monitor) {
     const MeanFilm* reference = all.reference && &*all.reference != &arm ? &all.reference->film : nullptr;
     SecondPass pass(plan, all, reference);
     std::vector<Largest> largest;
@@ -188,7 +188,7 @@ void second_pass(
     arm.power.assign(all.regions.size(), {});
     std::vector<std::string> paths;
     for (const RenderFile& file : arm.files) paths.push_back(file.path);
-    each_render(all.source, paths, layer, watch, [&](const Render& render) { pass.render(render, arm, largest); });
+    each_render(all.source, paths, layer, monitor, [&](const Render& render) { pass.render(render, arm, largest); });
     for (const Largest& values : largest) arm.largest.push_back(values.falling());
 }
 

@@ -7,10 +7,10 @@ namespace crescent::inline comparing {
 
 /// Reads each file in turn and hands it on, the next one being read meanwhile: two renders in memory at a time.
 void each_render(const RenderSource& source, const std::vector<std::string>& paths, const std::string& layer,
-    ProgressMonitor& watch, const std::function<void(const Render&)>& use);
+    ProgressMonitor& monitor, const std::function<void(const Render&)>& use);
 
 /// What each render of an arm (or the reference) says of each region and tile; its means must be known.
 void second_pass(
-    const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, ProgressMonitor& watch);
+    const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline comparing

@@ -79,20 +79,20 @@ void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments&
     for (std::size_t i = 0; i < sites.count; ++i) finish.pixel(i);
 }
 
-void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* checkpoint,
+void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
     const std::function<double(std::size_t)>& work) {
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (watch.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
+        if (monitor.stop.load(std::memory_order_relaxed) || (checkpoint && checkpoint->holds(k))) return;
         const double units = work(k);
-        if (watch.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
-        watch.advance(units);
+        if (monitor.stop.load(std::memory_order_relaxed)) return;  // the tile may be half done
+        monitor.advance(units);
         if (checkpoint) checkpoint->add(k, units);
     });
-    watch.check();
+    monitor.check();
 }
 
 std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* checkpoint) {
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
     const Image& image = scene.image();
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     std::vector<Film> films(n.size());
@@ -104,12 +104,12 @@ std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const 
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films, bad));
     PerThread<std::vector<Moments>> scratch(
         [&] { return std::vector<Moments>(n.size()); });  // a thread's tiles follow one another in it
-    for_each_tile(tiles, watch, checkpoint, [&](std::size_t k) {
+    for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
         for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
-            run_kernel(isa, arm, {&sites, n, seed, moments, &watch.stop, nullptr});
+            run_kernel(isa, arm, {&sites, n, seed, moments, &monitor.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 resolve_film(scene, sites, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
@@ -147,7 +147,7 @@ Moments estimate_sites(const ShadingPoints& sites, const ArmInUse& arm, std::uin
 }
 
 std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
-    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& watch, std::uint64_t& drawn) {
+    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn) {
     std::vector<float> all;
     Mutex lock;
     drawn = 0;
@@ -156,9 +156,9 @@ std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std:
         tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
-            if (watch.stop.load(std::memory_order_relaxed)) return;
+            if (monitor.stop.load(std::memory_order_relaxed)) return;
             std::vector<float> samples(sites.count * n);
-            estimate_sites(sites, arm, n, seed, isa, &watch.stop, samples.data());
+            estimate_sites(sites, arm, n, seed, isa, &monitor.stop, samples.data());
             const std::uint64_t here = samples.size();
             std::erase_if(samples, [](float x) { return std::isnan(x); });  // counted by the kernels; not a size
             if (samples.size() > count) {
@@ -171,7 +171,7 @@ std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std:
             all.insert(all.end(), samples.begin(), samples.end());
         }
     });
-    watch.check();
+    monitor.check();
     std::sort(all.begin(), all.end(), std::greater<>());  // the same values in any order of tiles
     if (all.size() > count) all.resize(count);
     return all;

@@ -16,7 +16,7 @@ namespace crescent::inline estimator {
 
 /// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best. `checkpoint` keeps finished tiles.
 std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
-    std::uint32_t seed, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* checkpoint = nullptr);
+    std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
 /// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.
 void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film);
@@ -27,15 +27,15 @@ ShapeMap shape_map(const Scene& scene);
 /// The `count` largest samples X of one arm over the geometry pixels of a box, n samples each, in falling order.
 /// `drawn` receives how many samples there were.
 std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
-    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& watch, std::uint64_t& drawn);
+    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn);
 
 /// Runs a kernel over sites that the caller made; moments of the last rung only.
 Moments estimate_sites(const ShadingPoints& sites, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples = nullptr);
 
 /// Calls work(k) for every tile k on all cores, except for those that the checkpoint holds; it returns what the tile
-/// was worth in units of progress. Stops early when the watch says so.
-void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& watch, TileCheckpoint* checkpoint,
+/// was worth in units of progress. Stops early when the monitor says so.
+void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, TileCheckpoint* checkpoint,
     const std::function<double(std::size_t)>& work);
 
 }  // namespace crescent::inline estimator

@@ -25,50 +25,51 @@ std::vector<std::string> hashes(const std::vector<Film>& films) {
 
 TEST(SameBitsLaw, EveryArmGivesTheSameFilmsOnEveryInstructionSet) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const std::string& arm : all_arms()) {
-        const auto scalar = hashes(estimate_films(scene, arm, {1, 7, 20}, 3, "scalar", watch));
+        const auto scalar = hashes(estimate_films(scene, arm, {1, 7, 20}, 3, "scalar", monitor));
         for (const std::string& isa : isas())
-            EXPECT_EQ(hashes(estimate_films(scene, arm, {1, 7, 20}, 3, isa, watch)), scalar) << arm << " on " << isa;
+            EXPECT_EQ(hashes(estimate_films(scene, arm, {1, 7, 20}, 3, isa, monitor)), scalar) << arm << " on " << isa;
     }
 }
 
 TEST(SameBitsLaw, EveryLobeGivesTheSameFilmsOnEveryInstructionSet) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const LobeInfo& lobe : lobe_infos()) {
         const Scene scene(
             test::small_scene({"shapes.ball.brdf=\"" + std::string(lobe.name) + "\"", "shapes.ball.alpha=0.3"}));
         const std::string arm(lobe.own_arm);
-        const auto scalar = hashes(estimate_films(scene, arm, {7, 20}, 3, "scalar", watch));
+        const auto scalar = hashes(estimate_films(scene, arm, {7, 20}, 3, "scalar", monitor));
         for (const std::string& isa : isas())
-            EXPECT_EQ(hashes(estimate_films(scene, arm, {7, 20}, 3, isa, watch)), scalar) << lobe.name << " on " << isa;
+            EXPECT_EQ(hashes(estimate_films(scene, arm, {7, 20}, 3, isa, monitor)), scalar)
+                << lobe.name << " on " << isa;
     }
 }
 
 TEST(SameBitsLaw, AnyNumberOfThreadsGivesTheSameFilms) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
-    const auto want = hashes(estimate_films(scene, "phong", {33}, 3, "", watch));
+    ProgressMonitor monitor;
+    const auto want = hashes(estimate_films(scene, "phong", {33}, 3, "", monitor));
     for (std::size_t threads : {1u, 2u, 3u, 16u}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        EXPECT_EQ(hashes(estimate_films(scene, "phong", {33}, 3, "", watch)), want) << threads << " threads";
+        EXPECT_EQ(hashes(estimate_films(scene, "phong", {33}, 3, "", monitor)), want) << threads << " threads";
     }
 }
 
 TEST(SameBitsLaw, NoticesAnotherSeedAndAnotherSampleCount) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
-    const auto want = hashes(estimate_films(scene, "cosine", {32}, 3, "", watch));
-    EXPECT_NE(hashes(estimate_films(scene, "cosine", {32}, 4, "", watch)), want);
-    EXPECT_NE(hashes(estimate_films(scene, "cosine", {31}, 3, "", watch)), want);
+    ProgressMonitor monitor;
+    const auto want = hashes(estimate_films(scene, "cosine", {32}, 3, "", monitor));
+    EXPECT_NE(hashes(estimate_films(scene, "cosine", {32}, 4, "", monitor)), want);
+    EXPECT_NE(hashes(estimate_films(scene, "cosine", {31}, 3, "", monitor)), want);
 }
 
 TEST(Ladder, ARungIsAPrefixWhateverTheOtherRungs) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
-    const auto many = estimate_films(scene, "phong", {1, 3, 16, 37, 64}, 9, "", watch);
+    ProgressMonitor monitor;
+    const auto many = estimate_films(scene, "phong", {1, 3, 16, 37, 64}, 9, "", monitor);
     for (const Film& film : many)
-        EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", watch)[0]), hash(film)) << "n = " << film.n;
+        EXPECT_EQ(hash(estimate_films(scene, "phong", {film.n}, 9, "", monitor)[0]), hash(film)) << "n = " << film.n;
 }
 
 /// Samples of every site of the test scene beside the moments that the kernel made of them.
@@ -90,17 +91,17 @@ TEST(Moments, AreThoseOfTheSamplesThemselvesTo1e6AtManySamples) {
 TEST(BadSamples, MinusZeroIsNone) {
     const Scene scene(test::small_scene({"fill.radiance=[-0.0,-0.0,-0.0]", "shapes.ground.rho_d=[-0.0,-0.0,-0.0]",
         "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const std::string& arm : all_arms())
-        EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", watch)[0].bad, 0u) << arm;
+        EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", monitor)[0].bad, 0u) << arm;
 }
 
 TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     std::uint64_t above_n = 0;
     for (const std::string& arm : all_arms()) {
-        const Film film = estimate_films(scene, arm, {32}, 2, "", watch)[0];
+        const Film film = estimate_films(scene, arm, {32}, 2, "", monitor)[0];
         EXPECT_EQ(film.directions, arm.starts_with("mis-") ? 2u : 1u) << arm;
         for (std::size_t at = 0; at < film.size(); ++at) {
             ASSERT_LE(film.horizon[at], film.n * film.directions) << arm;
@@ -127,29 +128,29 @@ TEST(Films, ShowANaNInTheVarianceAndNoneWhereEverySampleIsZero) {
 
 TEST(Estimator, StopsWhenAsked) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
-    watch.stop = true;
-    EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", watch), Interrupted);
+    ProgressMonitor monitor;
+    monitor.stop = true;
+    EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", monitor), Interrupted);
 }
 
 /// Asks to stop a little after the work has begun, from another thread, as a signal does.
 TEST(Estimator, StopsInMidWorkWithinATile) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     std::atomic<bool> done = false;
     std::thread other([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         EXPECT_FALSE(done);  // 5e10 samples take minutes
-        watch.stop = true;
+        monitor.stop = true;
     });
-    EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", watch), Interrupted);
+    EXPECT_THROW(estimate_films(scene, "cosine", {1u << 24}, 1, "", monitor), Interrupted);
     done = true;
     other.join();
 }
 
 TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     constexpr std::uint64_t n = 40;
     const Box box = {28, 18, 40, 27};
     std::vector<float> all;
@@ -160,7 +161,7 @@ TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     }
     std::sort(all.begin(), all.end(), std::greater<>());
     std::uint64_t drawn = 0;
-    const std::vector<float> largest = largest_samples(scene, "phong", n, 4, box, 100, "", watch, drawn);
+    const std::vector<float> largest = largest_samples(scene, "phong", n, 4, box, 100, "", monitor, drawn);
     EXPECT_EQ(drawn, all.size());
     all.resize(100);
     EXPECT_EQ(largest, all);

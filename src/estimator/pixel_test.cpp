@@ -61,9 +61,9 @@ TEST(OpenPixel, IsTheProductOfItsParts) {
 
 TEST(OpenPixel, AveragesToTheFilm) {
     const Scene scene(test::small_scene());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const char* arm : {"uniform", "cosine", "phong", "mis-power"}) {
-        const Film film = estimate_films(scene, arm, {n}, 11, "", watch).front();
+        const Film film = estimate_films(scene, arm, {n}, 11, "", monitor).front();
         for (const auto& [i, j] : pixels(scene)) {
             const double y = double(film.y[std::size_t(j) * std::size_t(film.width) + std::size_t(i)]);
             const double mean = running_mean(OpenPixel(scene, i, j).samples(arm, n, 11)).back();

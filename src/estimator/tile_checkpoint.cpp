@@ -24,10 +24,10 @@ template <class Work> void each_row(const TileOutputs& outputs, const TileBox& t
 
 }  // namespace
 
-TileCheckpoint::TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& watch)
-    : journal_(std::move(path), std::move(key), watch),
+TileCheckpoint::TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& monitor)
+    : journal_(std::move(path), std::move(key), monitor),
       patience_s_(checkpoint_after_s),
-      watch_(watch),
+      monitor_(monitor),
       start_(Clock::now()) {}
 
 void TileCheckpoint::begin(std::vector<TileBox> tiles, TileOutputs outputs) {
@@ -36,7 +36,7 @@ void TileCheckpoint::begin(std::vector<TileBox> tiles, TileOutputs outputs) {
     units_.assign(tiles_.size(), -1.0);
     journal_.read([this](Journal::Bytes record) { restore(record); });
     start_ = Clock::now();
-    watch_.skip(restored_);
+    monitor_.skip(restored_);
 }
 
 std::size_t TileCheckpoint::record_size(const TileBox& tile) const {

@@ -35,7 +35,7 @@ template <class F> TileOutputs outputs_of(std::vector<F>& films, std::span<std::
 class TileCheckpoint {
 public:
     /// Nothing is written before the pass has taken `checkpoint_after_s` seconds; then all finished tiles are.
-    TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& watch);
+    TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& monitor);
 
     /// The pass begins: tiles that an earlier run finished are put back into the outputs, which must outlive it.
     void begin(std::vector<TileBox> tiles, TileOutputs outputs);
@@ -55,7 +55,7 @@ private:
 
     Journal journal_;
     double patience_s_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     std::vector<TileBox> tiles_;
     TileOutputs outputs_;
     std::vector<double> units_;  // of each finished tile; -1: not finished

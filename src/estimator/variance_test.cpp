@@ -49,12 +49,12 @@ TEST(VarianceLaw, EveryArmHasTheTwoPassVarianceOfItsSamples) {
 
 TEST(VarianceLaw, AFilmShowsIt) {
     const Scene scene = scene_with_lamps(1e-3);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const TileBox box = {30, 8, 34, 10};
     const ShadingPoints sites = sites_of(scene, box, nullptr).front();
     std::vector<float> x(sites.count * 64);
     estimate_sites(sites, "light-area", 64, 5, "", nullptr, x.data());
-    const Film film = estimate_films(scene, "light-area", {64}, 5, "", watch)[0];
+    const Film film = estimate_films(scene, "light-area", {64}, 5, "", monitor)[0];
     for (std::size_t i = 0; i < sites.count; ++i) {
         const double want = test::spread_of({x.data() + i * 64, 64}) / (64 * 63);
         EXPECT_NEAR(static_cast<double>(film.var[sites.pixel[i]]), want, 1e-4 * want) << i;
@@ -65,8 +65,8 @@ TEST(VarianceLaw, SamplesThatAreAllAlikeHaveNone) {
     Experiment e = test::small_scene();
     e.disks.clear();
     const Scene scene(e);
-    ProgressMonitor watch;
-    const Film film = estimate_films(scene, "light-area", {100}, 1, "", watch)[0];  // nothing to aim at: every X is 0
+    ProgressMonitor monitor;
+    const Film film = estimate_films(scene, "light-area", {100}, 1, "", monitor)[0];  // nothing to aim at: every X is 0
     for (const float v : film.var) EXPECT_EQ(v, 0);
 }
 

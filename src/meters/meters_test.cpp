@@ -110,10 +110,10 @@ TEST(Meters, ShareTheHorizonAmongTheDirectionsThatWereDrawn) {
 
 RunMeter measured(const Experiment& e, const std::string& arm) {
     const Scene scene(e);
-    ProgressMonitor watch;
-    const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
+    ProgressMonitor monitor;
+    const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, monitor)[0];
     return measure(
-        e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", watch)[0], reference, shape_map(scene));
+        e, {arm, 32, e.s(), 3}, estimate_films(scene, arm, {32}, 3, "", monitor)[0], reference, shape_map(scene));
 }
 
 TEST(Meters, DoNotDependOnTheOrderOfShapesAndLights) {

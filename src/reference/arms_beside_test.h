@@ -99,8 +99,8 @@ public:
     const Film& film(const std::string& arm) {
         const auto found = films_.find(arm);
         if (found != films_.end()) return found->second;
-        ProgressMonitor watch;
-        return films_.emplace(arm, estimate_films(scene_, arm, {samples}, 29, "", watch)[0]).first->second;
+        ProgressMonitor monitor;
+        return films_.emplace(arm, estimate_films(scene_, arm, {samples}, 29, "", monitor)[0]).first->second;
     }
 
 private:

@@ -27,8 +27,8 @@ Experiment under_a_ball() {
 /// In sums over the pixels: the reference is the oracle's truth, and says that it knows it to `doubt`, relative.
 void expect_known(const Experiment& e, double doubt, const std::string& what) {
     const Scene scene(e);
-    ProgressMonitor watch;
-    const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, watch)[0];
+    ProgressMonitor monitor;
+    const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, monitor)[0];
     double y = 0, stated = 0, truth = 0, variance = 0;
     for (int j = 0; j < film.height; ++j)
         for (int i = 0; i < film.width; ++i) {
@@ -74,10 +74,10 @@ TEST(BallLights, OfAnySizeShineAlikeOnEveryArm) {
         Experiment e = under_a_ball();
         e.lights[0].form = lights::Sphere{{0, radius + 1, 0}, radius};
         const Scene scene(e);
-        ProgressMonitor watch;
-        const ReferenceFilm reference = quadrature_reference(scene, {scene.s()}, watch)[0];
+        ProgressMonitor monitor;
+        const ReferenceFilm reference = quadrature_reference(scene, {scene.s()}, monitor)[0];
         for (const char* arm : {"light-area", "light-solid-angle", "cosine", "mis-balance"}) {
-            const Film film = estimate_films(scene, arm, {16384}, 3, "", watch)[0];
+            const Film film = estimate_films(scene, arm, {16384}, 3, "", monitor)[0];
             double y = 0, truth = 0, doubt = 0, variance = 0;
             for (std::size_t at = 0; at < film.y.size(); ++at) {
                 y += static_cast<double>(film.y[at]), variance += static_cast<double>(film.var[at]);

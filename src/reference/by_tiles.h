@@ -16,12 +16,12 @@ inline std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double
 
 /// One film per exponent, made by calling work(tile, films) for every tile.
 template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
-    ProgressMonitor& watch, TileCheckpoint* checkpoint, Work&& work) {
+    ProgressMonitor& monitor, TileCheckpoint* checkpoint, Work&& work) {
     std::vector<ReferenceFilm> films;
     for (double s : exponents) films.emplace_back(image.width, image.height, s);
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films));
-    for_each_tile(tiles, watch, checkpoint, [&](std::size_t k) {
+    for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
         work(tiles[k], films);
         return static_cast<double>(tiles[k].x1 - tiles[k].x0) * (tiles[k].y1 - tiles[k].y0);
     });

@@ -27,8 +27,8 @@ constexpr double film_error = 1e-6;
 
 void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::string& arm, std::uint64_t n,
     const std::string& what) {
-    ProgressMonitor watch;
-    const Film film = estimate_films(scene, arm, {n}, 17, "", watch)[0];
+    ProgressMonitor monitor;
+    const Film film = estimate_films(scene, arm, {n}, 17, "", monitor)[0];
     double difference = 0, variance = 0, stated = 0;
     for (std::size_t at = 0; at < film.size(); ++at) {
         difference += static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
@@ -41,8 +41,8 @@ void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::
 
 void expect_means(const Experiment& e, const std::vector<std::string>& arms, std::uint64_t n, const std::string& what) {
     const Scene scene(e);
-    ProgressMonitor watch;
-    const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
+    ProgressMonitor monitor;
+    const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, monitor)[0];
     for (const std::string& arm : arms) expect_mean(scene, reference, arm, n, what);
 }
 
@@ -67,8 +67,8 @@ INSTANTIATE_TEST_SUITE_P(Radii, LampLaw, testing::Values(1.0, 1e-1, 1e-2, 1e-3, 
 TEST(Lamps, TheirSizeChangesNoMoreThanTheirLight) {
     const auto irradiance = [](double radius, const std::string& arm) {  // per area of lamp
         const Scene scene(lamps(radius, 0));
-        ProgressMonitor watch;
-        const Film film = estimate_films(scene, arm, {64}, 3, "", watch)[0];
+        ProgressMonitor monitor;
+        const Film film = estimate_films(scene, arm, {64}, 3, "", monitor)[0];
         double sum = 0;
         for (const float y : film.y) sum += static_cast<double>(y);
         return sum / sqr(radius);
@@ -91,9 +91,9 @@ TEST(Lamps, SixtyFourAreAllCounted) {
 }
 
 TEST(Lamps, ScenesMayStandAnywhereForABodyInTheirLight) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const auto film_at = [&](double offset) {
-        return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", watch)[0];
+        return estimate_films(Scene(lamps(0.2, offset)), "light-area", {16}, 3, "", monitor)[0];
     };
     const Film here = film_at(0), there = film_at(1e6);
     std::size_t other = 0;

@@ -91,10 +91,10 @@ Experiment lit_by_all_kinds(const Rgb& fill) {
 
 void expect_the_reference(const Experiment& e, const std::vector<const char*>& arms, std::uint64_t n) {
     const Scene scene(e);
-    ProgressMonitor watch;
-    const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, watch)[0];
+    ProgressMonitor monitor;
+    const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, monitor)[0];
     for (const char* arm : arms) {
-        const Film film = estimate_films(scene, arm, {n}, 17, "", watch)[0];
+        const Film film = estimate_films(scene, arm, {n}, 17, "", monitor)[0];
         EXPECT_EQ(film.bad, 0u) << arm;
         double difference = 0, variance = 0, all = 0, stated = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {
@@ -114,11 +114,11 @@ TEST(LightKinds, EveryArmMeetsTheQuadratureUnderAllOfThem) {
 
 TEST(LightKinds, GiveTheSameFilmsOnEveryInstructionSet) {
     const Scene scene(lit_by_all_kinds({0.1, 0.2, 0.3}));
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     for (const char* arm : {"cosine", "light-area", "light-solid-angle", "mis-power"}) {
-        const std::string scalar = hash(estimate_films(scene, arm, {16}, 5, "scalar", watch)[0]);
+        const std::string scalar = hash(estimate_films(scene, arm, {16}, 5, "scalar", monitor)[0]);
         for (const std::string& isa : isas())
-            EXPECT_EQ(hash(estimate_films(scene, arm, {16}, 5, isa, watch)[0]), scalar) << arm << " " << isa;
+            EXPECT_EQ(hash(estimate_films(scene, arm, {16}, 5, isa, monitor)[0]), scalar) << arm << " " << isa;
     }
 }
 

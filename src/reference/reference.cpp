@@ -6,7 +6,7 @@
 namespace crescent::inline reference {
 
 std::vector<ReferenceFilm> quadrature_reference(
-    const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& watch, TileCheckpoint* checkpoint) {
+    const Scene& scene, const std::vector<double>& exponents, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     const std::vector<PixelQuadrature> integrals(scenes.begin(), scenes.end());
     const auto pixel = [&](int i, int j, std::vector<ReferenceFilm>& films) {
@@ -25,8 +25,8 @@ std::vector<ReferenceFilm> quadrature_reference(
         }
     };
     return by_tiles(
-        scene.image(), exponents, watch, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
-            for (int j = tile.y0; j < tile.y1 && !watch.stop.load(std::memory_order_relaxed); ++j)
+        scene.image(), exponents, monitor, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+            for (int j = tile.y0; j < tile.y1 && !monitor.stop.load(std::memory_order_relaxed); ++j)
                 for (int i = tile.x0; i < tile.x1; ++i) pixel(i, j, films);
         });
 }

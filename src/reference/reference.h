@@ -14,6 +14,6 @@ namespace crescent::inline reference {
 
 /// One film per exponent, in order. `checkpoint` keeps finished tiles.
 std::vector<ReferenceFilm> quadrature_reference(const Scene& scene, const std::vector<double>& exponents,
-    ProgressMonitor& watch, TileCheckpoint* checkpoint = nullptr);
+    ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
 }  // namespace crescent::inline reference

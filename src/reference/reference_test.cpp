@@ -64,13 +64,13 @@ test::RandomScene scene_drawn(std::uint32_t seed) { return test::RandomScene(see
 class ReferenceOfRandomScenes : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(ReferenceOfRandomScenes, IsTheTruthAndThatOfTheArmsWithinTheDoubts) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     int known = 0, pixels = 0;
     const std::uint32_t first = 1000 * GetParam();
     for (std::uint32_t seed = first; seed < first + scenes_a_shard; ++seed) {
         test::RandomScene draw = scene_drawn(seed);
         const Scene scene(draw());
-        const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, watch)[0];
+        const ReferenceFilm film = quadrature_reference(scene, {scene.s()}, monitor)[0];
         EXPECT_EQ(differences(scene, film, seed), "") << "scene " << seed << "\n" << draw.what;
         const test::Compared arms = test::compare_scene(scene, film, seed);
         EXPECT_EQ(arms.off, 0) << "scene " << seed << arms.told << "\n" << draw.what;
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Shards, ReferenceOfRandomScenes, testing::Range(0u, sha
 
 /// A reference of lamps that are 15 % brighter than the scene's is found out wherever arms know the pixels.
 TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     int lit = 0, found = 0;
     for (std::uint32_t seed = 7000; seed < 7000 + brighter_scenes; ++seed) {
         Experiment e = scene_drawn(seed)();
@@ -93,7 +93,7 @@ TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
             for (double& c : disk.radiance) c *= 1.15;
         for (Light& light : e.lights)
             for (double& c : light.radiance) c *= 1.15;
-        const ReferenceFilm wrong = quadrature_reference(Scene(e), {scene.s()}, watch)[0];
+        const ReferenceFilm wrong = quadrature_reference(Scene(e), {scene.s()}, monitor)[0];
         const test::Compared all = test::compare_scene(scene, wrong, seed);
         if (all.known == 0) continue;
         double y = 0, stated = 0;
@@ -110,11 +110,11 @@ TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
 TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
     const Experiment experiment = test::small_scene();
     const Scene scene(experiment);
-    ProgressMonitor watch;
-    const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, watch)[0];
+    ProgressMonitor monitor;
+    const ReferenceFilm reference = quadrature_reference(scene, {experiment.s()}, monitor)[0];
     for (const char* arm :
         {"uniform", "cosine", "mixture", "mis-balance", "mis-power"}) {  // lamps_test.cpp has those that aim at lamps
-        const Film film = estimate_films(scene, arm, {1024}, 17, "", watch)[0];
+        const Film film = estimate_films(scene, arm, {1024}, 17, "", monitor)[0];
         double difference = 0, variance = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {
             difference += static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);

@@ -78,13 +78,13 @@ bool holds_files(const std::string& folder) {
 }  // namespace
 
 Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
-    double checkpoint_after_s, ProgressMonitor& watch)
+    double checkpoint_after_s, ProgressMonitor& monitor)
     : all_(out + "/.crescent-kept"),
       key_(key_of(experiment, instrument)),
       folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
       patience_s_(checkpoint_after_s),
-      watch_(watch),
-      journal_(folder_ + "/meters", key_, watch) {
+      monitor_(monitor),
+      journal_(folder_ + "/meters", key_, monitor) {
     for (const std::string& folder : {all_, folder_})
         if (leads_elsewhere(folder))
             throw OutputError(
@@ -94,23 +94,23 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrume
             if (are_of(experiment, meter.regions)) meters_.push_back(std::move(meter));
     });
     written_ = meters_.size();
-    if (holds_files(folder_)) watch_.log("resuming from the checkpoint in " + folder_);
+    if (holds_files(folder_)) monitor_.log("resuming from the checkpoint in " + folder_);
 }
 
 Checkpoint::~Checkpoint() {
     if (holds_files(folder_))
-        watch_.log("partial results saved in " + folder_ + ": the same command resumes from them");
+        monitor_.log("partial results saved in " + folder_ + ": the same command resumes from them");
 }
 
 TileCheckpoint Checkpoint::tiles(const Job& job) {
     const std::string ladder = fmt::format("n{}", fmt::join(job.n, ","));
     const std::string name = fmt::format("{}-s{}-seed{}", job.arm, job.s, job.seed);
     const std::string file = fmt::format("{}-{:08x}", name, XXH3_64bits(ladder.data(), ladder.size()) & 0xffffffffu);
-    return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, watch_};
+    return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, monitor_};
 }
 
 TileCheckpoint Checkpoint::tiles(const std::string& name) {
-    return {folder_ + "/" + name, key_ + " " + name, patience_s_, watch_};
+    return {folder_ + "/" + name, key_ + " " + name, patience_s_, monitor_};
 }
 
 std::vector<RunMeter> Checkpoint::meters(const Job& job) const {
@@ -138,7 +138,7 @@ void Checkpoint::discard() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
     if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;
-    watch_.log("what another, unfinished run kept is still in " + all_);
+    monitor_.log("what another, unfinished run kept is still in " + all_);
 }
 
 }  // namespace crescent::inline runs

@@ -20,7 +20,7 @@ public:
     /// Outputs go to `out`; nothing is kept before `checkpoint_after_s` seconds; `instrument` as provenance names it.
     /// Says so where there is something to go on from.
     Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
-        double checkpoint_after_s, ProgressMonitor& watch);
+        double checkpoint_after_s, ProgressMonitor& monitor);
     /// Where the run ends before forget(): says what is kept.
     ~Checkpoint();
     Checkpoint(const Checkpoint&) = delete;
@@ -38,7 +38,7 @@ public:
 private:
     std::string all_, key_, folder_;  // all_: of any run into the same place
     double patience_s_;
-    ProgressMonitor& watch_;
+    ProgressMonitor& monitor_;
     Stopwatch start_;
     Journal journal_;
     std::vector<RunMeter> meters_;

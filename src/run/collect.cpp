@@ -50,13 +50,13 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
 /// The tail index of each region's samples at the first seed. It belongs to an arm and exponent, not to N, and stands
 /// beside every rung.
 void add_tails(
-    const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& watch, Metrics& metrics) {
+    const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& monitor, Metrics& metrics) {
     const std::vector<Job> jobs = jobs_of(plan.experiment, plan.seeds.front());
     const std::vector<Region>& regions = plan.experiment.regions;
     std::vector<std::optional<Tail>> tails(jobs.size() * regions.size());
     parallel_for(std::size_t{0}, tails.size(), [&](std::size_t k) {
         const Job job = with_sampler(jobs[k / regions.size()], prepared);
-        tails[k] = region_tail(prepared.scene.with_s(job.s), job, regions[k % regions.size()].box, isa, watch);
+        tails[k] = region_tail(prepared.scene.with_s(job.s), job, regions[k % regions.size()].box, isa, monitor);
     });
     for (std::size_t k = 0; k < tails.size(); ++k) {
         const Job& job = jobs[k / regions.size()];
@@ -104,8 +104,8 @@ const ReferenceFilm* Measured::reference(double s) const {
 }
 
 std::optional<Tail> region_tail(
-    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& watch) {
-    return region_tail(scene, ArmInUse{job.sampler, job.outside.get()}, job.seed, box, isa, watch);
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor) {
+    return region_tail(scene, ArmInUse{job.sampler, job.outside.get()}, job.seed, box, isa, monitor);
 }
 
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
@@ -123,7 +123,7 @@ Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, cons
 }
 
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
-    ProgressMonitor& watch, const CollectOptions& options) {
+    ProgressMonitor& monitor, const CollectOptions& options) {
     const Engine with = settled(engine);
     Measured out;
     out.experiment = plan.experiment;
@@ -133,16 +133,16 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     take_results(std::move(results), out);
     const auto stage = [&](const char* name, const auto& work) {
         const Stopwatch start;
-        out.stopped = out.stopped || !unless_stopped(with.threads, watch, work);
+        out.stopped = out.stopped || !unless_stopped(with.threads, monitor, work);
         out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
         stage("tails, furnaces and evidence", [&] {  // none of them waits for another
-            side_by_side([&] { add_tails(plan, prepared, with.isa, watch, out.metrics); },
+            side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
                 [&] {
-                    out.evidence = measure_evidence(plan.experiment, with.isa, watch);
+                    out.evidence = measure_evidence(plan.experiment, with.isa, monitor);
                     out.metrics.furnaces =
-                        furnaces(plan.experiment, figures_of(out.experiment), with.isa, watch, prepared.outside);
+                        furnaces(plan.experiment, figures_of(out.experiment), with.isa, monitor, prepared.outside);
                 });
         });
     }

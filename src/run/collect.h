@@ -38,12 +38,12 @@ struct CollectOptions {
 
 /// Takes what was made; `results` need not be all of the plan's.
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
-    ProgressMonitor& watch, const CollectOptions& options = {});
+    ProgressMonitor& monitor, const CollectOptions& options = {});
 
 /// The tail index of one arm's samples X in a box, read off as many samples as about four million allow; none where too
 /// few spread. May throw Interrupted.
 std::optional<Tail> region_tail(
-    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& watch);
+    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor);
 
 /// Where the outputs of a plan come from.
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);

@@ -30,7 +30,7 @@ std::vector<RunMeter> meters_of(
     return out;
 }
 
-void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& watch,
+void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine, ProgressMonitor& monitor,
     bool keep_films, Checkpoint* checkpoint, JobResult& out) {
     std::unique_ptr<TileCheckpoint> tiles;
     if (checkpoint) {
@@ -39,7 +39,7 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     }
     if (keep_films || out.meters.empty()) {
         const Scene scene = prepared.scene.with_s(out.job.s);
-        std::vector<Film> films = engine.instrument->films(scene, out.job, watch, tiles.get());
+        std::vector<Film> films = engine.instrument->films(scene, out.job, monitor, tiles.get());
         const auto all = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
         out.samples = all - (tiles ? tiles->restored() : 0);
         const bool fresh = out.meters.empty();
@@ -85,27 +85,27 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
 }
 
 void add_references(
-    const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& watch, Checkpoint* checkpoint) {
+    const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
     const auto pixels = static_cast<double>(prepared.shapes.shape.size());
     const auto tiles_of_pass = [&](const char* name) {
         return std::unique_ptr<TileCheckpoint>(checkpoint ? new TileCheckpoint(checkpoint->tiles(name)) : nullptr);
     };
-    prepared.stopped = !unless_stopped(with.threads, watch, [&] {
-        watch.begin("reference by quadrature", pixels);
+    prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
+        monitor.begin("reference by quadrature", pixels);
         const std::unique_ptr<TileCheckpoint> quadrature = tiles_of_pass("quadrature"), note = tiles_of_pass("note");
-        prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, watch, quadrature.get());
+        prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor, quadrature.get());
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
-        watch.begin("the note's reference", pixels);
+        monitor.begin("the note's reference", pixels);
         prepared.monte_carlo =
-            monte_carlo_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, watch, note.get());
+            monte_carlo_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, monitor, note.get());
     });
 }
 
-Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& watch) {
+Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& monitor) {
     Prepared out = look(plan, engine);
-    add_references(plan, out, engine, watch);
+    add_references(plan, out, engine, monitor);
     return out;
 }
 
@@ -116,13 +116,13 @@ Job with_sampler(Job job, const Prepared& prepared) {
 }
 
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
-    ProgressMonitor& watch, bool keep_films, Checkpoint* checkpoint) {
+    ProgressMonitor& monitor, bool keep_films, Checkpoint* checkpoint) {
     const Engine with = settled(engine);
     const Stopwatch start;
     JobResult out;
     out.job = with_sampler(job, prepared);
     out.stopped = !unless_stopped(
-        with.threads, watch, [&] { compute(plan, prepared, with, watch, keep_films, checkpoint, out); });
+        with.threads, monitor, [&] { compute(plan, prepared, with, monitor, keep_films, checkpoint, out); });
     out.seconds = start.seconds();
     return out;
 }

@@ -1,9 +1,9 @@
 // Second step of a run: what all jobs look at and are measured against, then one job after another -> films and meters.
 //
-// Of these and the later steps: a stop that the Watch was asked for is no exception. What is returned says `stopped`
-// and holds nothing that can be relied on. InputError and OutputError are thrown as everywhere. No step changes
-// anything that belongs to the process: signals, locale, thread pools; each may be called from several threads with
-// plans of their own.
+// Of these and the later steps: a stop that the ProgressMonitor was asked for is no exception. What is returned says
+// `stopped` and holds nothing that can be relied on. InputError and OutputError are thrown as everywhere. No step
+// changes anything that belongs to the process: signals, locale, thread pools; each may be called from several threads
+// with plans of their own.
 #pragma once
 
 #include <memory>
@@ -48,10 +48,10 @@ struct Prepared {
 /// OutputError where the machine has not the memory or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
 /// Adds the references that the experiment asks for. A checkpoint keeps what is finished.
-void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& watch,
+void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor,
     Checkpoint* checkpoint = nullptr);
 /// Both of them.
-Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& watch);
+Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& monitor);
 
 struct JobResult {
     Job job;
@@ -67,7 +67,7 @@ Job with_sampler(Job job, const Prepared& prepared);
 
 /// One job. `keep_films` = false: its meters alone, which a checkpoint may hold already.
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
-    ProgressMonitor& watch, bool keep_films = true, Checkpoint* checkpoint = nullptr);
+    ProgressMonitor& monitor, bool keep_films = true, Checkpoint* checkpoint = nullptr);
 
 /// The reference that the meters of exponent s use; null where none was made.
 const ReferenceFilm* reference_of(const Experiment& experiment, const std::vector<ReferenceFilm>& quadrature,

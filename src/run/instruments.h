@@ -27,7 +27,7 @@ public:
     /// One film per rung, in order. The scene already has the job's s. `checkpoint`: where an instrument that works
     /// tile by tile keeps finished ones; null: nowhere.
     virtual std::vector<Film> films(
-        const Scene& scene, const Job& job, ProgressMonitor& watch, TileCheckpoint* checkpoint = nullptr) = 0;
+        const Scene& scene, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr) = 0;
     /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
     virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
     /// Claims of its own that join the assertions ("framebuffer is RGBA32F").

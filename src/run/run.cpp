@@ -33,31 +33,31 @@ double samples_of(const RunPlan& plan, std::uint32_t seed, std::uint64_t pixels)
 }
 
 std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared, const Engine& engine,
-    ProgressMonitor& watch, Checkpoint* checkpoint) {
+    ProgressMonitor& monitor, Checkpoint* checkpoint) {
     std::vector<JobResult> results;
     for (std::size_t k = 0, seed = 0; k < plan.jobs.size(); ++k) {
         const Job& job = plan.jobs[k];
         if (k == 0 || job.seed != plan.jobs[k - 1].seed)
-            watch.begin(fmt::format("seed {} of {}", plan.range.first + static_cast<int>(seed++), plan.series),
+            monitor.begin(fmt::format("seed {} of {}", plan.range.first + static_cast<int>(seed++), plan.series),
                 samples_of(plan, job.seed, prepared.geometry_pixels));
-        results.push_back(execute(plan, prepared, job, engine, watch, job.seed == plan.seeds.front(), checkpoint));
-        watch.check();
+        results.push_back(execute(plan, prepared, job, engine, monitor, job.seed == plan.seeds.front(), checkpoint));
+        monitor.check();
     }
     return results;
 }
 
 /// The steps up to the last; throws Interrupted.
 Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, const RunOptions& options,
-    ProgressMonitor& watch, Checkpoint* checkpoint) {
+    ProgressMonitor& monitor, Checkpoint* checkpoint) {
     const Stopwatch start;
-    add_references(plan, prepared, engine, watch, checkpoint);
-    watch.check();
+    add_references(plan, prepared, engine, monitor, checkpoint);
+    monitor.check();
     const double references = start.seconds();
-    std::vector<JobResult> results = execute_all(plan, prepared, engine, watch, checkpoint);
+    std::vector<JobResult> results = execute_all(plan, prepared, engine, monitor, checkpoint);
     const double estimating = start.seconds();
     Measured out = collect(
-        plan, std::move(prepared), std::move(results), engine, watch, {options.command, !films_alone(options.parts)});
-    watch.check();
+        plan, std::move(prepared), std::move(results), engine, monitor, {options.command, !films_alone(options.parts)});
+    monitor.check();
     out.timing.estimating_s = estimating;
     out.timing.stages.insert(
         out.timing.stages.begin(), {{"references", references}, {"films", estimating - references}});
@@ -68,7 +68,7 @@ Engine engine_of(const RunOptions& options) { return settled({options.threads, o
 
 }  // namespace
 
-RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
+RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
     const Stopwatch start;
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
@@ -78,20 +78,20 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     staging.expect(outputs_of(plan, options.parts));
     std::optional<Checkpoint> checkpoint;  // what a program drew yesterday it may not draw today
     if (!may_change(plan.experiment))
-        checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, watch);
-    Measured all = measured(plan, std::move(prepared), engine, options, watch, checkpoint ? &*checkpoint : nullptr);
+        checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, monitor);
+    Measured all = measured(plan, std::move(prepared), engine, options, monitor, checkpoint ? &*checkpoint : nullptr);
     all.timing.total_s = start.seconds();
-    on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, watch, options.parts); });
-    staging.commit(watch);
+    on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, monitor, options.parts); });
+    staging.commit(monitor);
     if (checkpoint) checkpoint->discard();
     std::string summary = terminal_summary(report_inputs(all), all.timing, options.out, options.parts);
     return {std::move(all.metrics), std::move(all.timing), std::move(all.provenance), std::move(summary)};
 }
 
-Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch) {
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
-    return measured(plan, look(plan, engine), engine, options, watch, nullptr);
+    return measured(plan, look(plan, engine), engine, options, monitor, nullptr);
 }
 
 }  // namespace crescent::inline runs

@@ -34,10 +34,10 @@ struct RunResult {
     std::string summary;  // for the terminal
 };
 
-/// Runs `experiment` and writes nothing. Throws Interrupted where the watch says so.
-Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch);
+/// Runs `experiment` and writes nothing. Throws Interrupted where the monitor says so.
+Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);
 
 /// Runs `experiment` and writes everything under options.out; outputs appear whole or not at all. Throws Interrupted.
-RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& watch);
+RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline runs

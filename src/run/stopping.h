@@ -13,11 +13,11 @@ namespace crescent::inline runs {
 /// As many of these as oneTBB has: it complains on stderr of more.
 inline int threads_to_be_had(int threads) { return std::min(threads, oneapi::tbb::info::default_concurrency()); }
 
-/// Does the work on so many threads; false where the watch stopped it, on the way or before its end.
-template <class Work> bool unless_stopped(int threads, const ProgressMonitor& watch, const Work& work) {
+/// Does the work on so many threads; false where the monitor stopped it, on the way or before its end.
+template <class Work> bool unless_stopped(int threads, const ProgressMonitor& monitor, const Work& work) {
     try {
         on_threads(threads_to_be_had(threads), work);
-        watch.check();
+        monitor.check();
         return true;
     } catch (const Interrupted&) { return false; }
 }

@@ -32,7 +32,7 @@ std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attrib
 }
 
 /// One file an arm and exponent, rungs as parts.
-void write_films(const Measured& m, Staging& staging, const ProgressMonitor& watch) {
+void write_films(const Measured& m, Staging& staging, const ProgressMonitor& monitor) {
     std::vector<std::pair<std::string, std::vector<std::pair<std::string, const Film*>>>> files;
     for (const auto& [key, film] : m.films) {
         const std::string name = film_file(key.arm, key.s, m.experiment.s());
@@ -41,7 +41,7 @@ void write_films(const Measured& m, Staging& staging, const ProgressMonitor& wat
     }
     for (const auto& [name, parts] : files) {
         write_exr(staging.path("films/" + name + ".exr"), parts, attributes_of(m));
-        watch.check();
+        monitor.check();
     }
 }
 
@@ -108,11 +108,11 @@ Attributes attributes_of(const Measured& m) {
         {"instrument", p.instrument}, {"seed", std::to_string(m.experiment.seed)}};
 }
 
-Plates draw_plates(const Measured& m, const ProgressMonitor& watch) {
+Plates draw_plates(const Measured& m, const ProgressMonitor& monitor) {
     const std::vector<PlatePlan>& plans = m.experiment.plates;
     std::vector<std::vector<unsigned char>> bytes(plans.size());
     parallel_for(std::size_t{0}, plans.size(), [&](std::size_t k) {
-        watch.check();
+        monitor.check();
         bytes[k] = draw(plans[k], m, attributes_of(m));
     });
     Plates out;
@@ -135,16 +135,16 @@ std::vector<std::string> outputs_of(const RunPlan& plan, const OutputParts& part
 
 ReportInputs report_inputs(const Measured& m) { return {m.experiment, m.metrics, m.evidence, m.provenance, m.plates}; }
 
-void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputParts& parts) {
+void write(Measured& m, Staging& staging, ProgressMonitor& monitor, const OutputParts& parts) {
     const Stopwatch start;
     side_by_side(
         [&] {
             if (!parts.films) return;
-            write_films(m, staging, watch);
+            write_films(m, staging, monitor);
             write_references(m, staging);
         },
         [&] {
-            if (parts.draws()) m.plates = draw_plates(m, watch);
+            if (parts.draws()) m.plates = draw_plates(m, monitor);
         });
     if (parts.plates) write_plates(m, staging);
     m.timing.stages.emplace_back("plates and films on disk", start.seconds());
@@ -156,14 +156,14 @@ void write(Measured& m, Staging& staging, ProgressMonitor& watch, const OutputPa
     m.timing.date = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
     m.timing.host_cpu = host_cpu();
     staging.write("timing.json", timing_json(m.timing, m.provenance));
-    watch.check();
+    monitor.check();
 }
 
-bool write(Measured& m, const std::string& folder, ProgressMonitor& watch, const OutputParts& parts, int threads) {
+bool write(Measured& m, const std::string& folder, ProgressMonitor& monitor, const OutputParts& parts, int threads) {
     Staging staging(folder);
     const bool done =
-        unless_stopped(threads > 0 ? threads : usable_threads(), watch, [&] { write(m, staging, watch, parts); });
-    if (done) staging.commit(watch);
+        unless_stopped(threads > 0 ? threads : usable_threads(), monitor, [&] { write(m, staging, monitor, parts); });
+    if (done) staging.commit(monitor);
     return done;
 }
 

@@ -43,10 +43,10 @@ FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, co
         quantile(means, 0.75), quantile(means, 0.95)};
 }
 
-void float_furnace(const FurnaceSubject& subject, const std::string& isa, ProgressMonitor& watch, Evidence& out) {
+void float_furnace(const FurnaceSubject& subject, const std::string& isa, ProgressMonitor& monitor, Evidence& out) {
     const ShadingPoints sites = furnace_sites(subject.surface, replicates);
     for (std::uint64_t n : furnace_rungs) {
-        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
+        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &monitor.stop);
         std::vector<double> means;
         for (std::size_t i = 0; i < replicates; ++i)
             means.push_back((subject.rho_d / pi * m.g[i] + subject.rho_s * m.g_lobe[i]) / static_cast<double>(n));
@@ -63,14 +63,14 @@ double unit_double(std::uint64_t h, int bits) {
 }
 
 /// One draw of random bits serves every resolution.
-void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& watch, Evidence& out) {
+void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& monitor, Evidence& out) {
     using Means = std::vector<std::vector<double>>;  // [rung][replicate]
     std::array<Means, resolutions.size()> means;
     means.fill(Means(furnace_rungs.size(), std::vector<double>(replicates)));
     parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
         std::array<double, resolutions.size()> sums{};
         std::uint64_t j = 0;
-        for (std::size_t rung = 0; rung < furnace_rungs.size() && !watch.stop; ++rung) {
+        for (std::size_t rung = 0; rung < furnace_rungs.size() && !monitor.stop; ++rung) {
             for (; j < furnace_rungs[rung]; ++j) {
                 const auto h =
                     draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
@@ -107,7 +107,7 @@ LostSupport lost_support(const FurnaceSubject& subject, double theta_deg) {
 
 /// Repeats a t-test of the Phong arm on a Lambert surface against the mean that is known to be right.
 FalseRejection false_rejection(
-    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, ProgressMonitor& watch) {
+    const FurnaceSubject& subject, double s, double alpha, const std::string& isa, ProgressMonitor& monitor) {
     constexpr std::uint64_t n = 100'000;
     constexpr int runs = 128;
     Surface lambert = subject.surface;
@@ -120,7 +120,7 @@ FalseRejection false_rejection(
         const int first = part * share, count = std::min(share, runs - first);
         ShadingPoints sites = furnace_sites(lambert, static_cast<std::size_t>(count));
         for (std::uint32_t& pixel : sites.pixel) pixel += static_cast<std::uint32_t>(first);
-        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &watch.stop);
+        const Moments m = estimate_sites(sites, "phong", n, subject.seed, isa, &monitor.stop);
         for (int i = 0; i < count; ++i) {
             const std::size_t at = static_cast<std::size_t>(i);
             const double mean = m.g[at] / pi / static_cast<double>(n), off = mean - 1;
@@ -144,7 +144,7 @@ const Shape* subject_shape(const Experiment& experiment) {
 
 }  // namespace
 
-Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& watch) {
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor) {
     Evidence out;
     if (!experiment.note_evidence) return out;
     const bool phong = std::any_of(
@@ -158,16 +158,16 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     subject.rho_s = out.rho_s = subject.surface.rho_s;
     subject.seed = experiment.seed;
     out.expected = out.rho_d + out.rho_s;
-    float_furnace(subject, isa, watch, out);
-    double_furnaces(subject, watch, out);
+    float_furnace(subject, isa, monitor, out);
+    double_furnaces(subject, monitor, out);
     for (int bits : resolutions) {
         const double k = (subject.s - 1) / (subject.s + 1);
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
     for (double theta = 0; theta <= 75; theta += 7.5) out.lost.push_back(lost_support(subject, theta));
     for (double s : {2.0, 3.0, 8.0, 32.0, 128.0})
-        out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, watch));
-    watch.check();
+        out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, monitor));
+    monitor.check();
     return out;
 }
 

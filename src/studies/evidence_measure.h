@@ -10,6 +10,6 @@ namespace crescent::inline studies {
 
 /// Nothing (empty vectors) where the experiment does not ask for it, and where it has no Phong arm or no shape with a
 /// Phong lobe.
-Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& watch);
+Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline studies

@@ -16,8 +16,8 @@ double out_of_reach(const Evidence& e, const FurnaceQuantiles& q) {
 }
 
 TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
-    ProgressMonitor watch;
-    const Evidence e = measure_evidence(test::small_scene({"note_evidence=true"}), "", watch);
+    ProgressMonitor monitor;
+    const Evidence e = measure_evidence(test::small_scene({"note_evidence=true"}), "", monitor);
     ASSERT_FALSE(e.lost.empty());
     for (const LostSupport& l : e.lost) EXPECT_NEAR(l.measured, l.theory, 4 * l.se + 1e-9) << l.theta_R_deg;
     for (const FalseRejection& r : e.rejections) {

@@ -24,7 +24,7 @@ std::optional<Tail> tail_of(std::vector<float> x) {
 }
 
 FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
-    ProgressMonitor& watch, const OutsideSamplers& outside) {
+    ProgressMonitor& monitor, const OutsideSamplers& outside) {
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
@@ -35,7 +35,7 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
     const ShadingPoints sites = furnace_sites(surface, 1);
     std::vector<float> samples(plan.n);
     const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed,
-        isa, &watch.stop, samples.data());
+        isa, &monitor.stop, samples.data());
     const double n = static_cast<double>(plan.n);
     FurnaceMeter out;
     out.name = plan.name, out.arm = plan.arm, out.part = lobe_only ? "lobe" : "combined", out.n = plan.n;
@@ -52,12 +52,12 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
 }  // namespace
 
 std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& watch, const OutsideSamplers& outside) {
+    ProgressMonitor& monitor, const OutsideSamplers& outside) {
     std::vector<FurnaceMeter> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
-        out.push_back(measure_one(experiment, plan, isa, watch, outside));
+        out.push_back(measure_one(experiment, plan, isa, monitor, outside));
         if (published) out.back().published = published->furnace(plan.name);
-        watch.check();
+        monitor.check();
     }
     return out;
 }

@@ -13,8 +13,8 @@
 
 namespace crescent::inline studies {
 
-/// Every furnace of the experiment, measured. Throws Interrupted when the watch says stop.
+/// Every furnace of the experiment, measured. Throws Interrupted when the monitor says stop.
 std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& watch, const OutsideSamplers& outside = {});
+    ProgressMonitor& monitor, const OutsideSamplers& outside = {});
 
 }  // namespace crescent::inline studies

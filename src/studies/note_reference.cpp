@@ -81,18 +81,18 @@ bool may_be_missed(const ShadingPoints& sites, std::size_t i, std::size_t k, dou
 class NotePixels {
 public:
     NotePixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& sites, const std::string& isa,
-        ProgressMonitor& watch)
+        ProgressMonitor& monitor)
         : scene_(scene), sites_(sites) {
         const ReferencePlan& plan = experiment.reference;
         const auto seed = [&](std::uint32_t k) { return reference_seed(experiment, k); };
         if (sites.lobe >= 0)
             lobe_ = estimate_sites(only_lobe(sites), lobe_info(static_cast<LobeKind>(sites.lobe)).own_arm,
-                plan.lobe_spp, seed(0), isa, &watch.stop);
+                plan.lobe_spp, seed(0), isa, &monitor.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         light_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.lights().size(); ++k)
             lights_.push_back(estimate_sites(only_light(scene, sites, k), "light-area", plan.disk_spp,
-                seed(static_cast<std::uint32_t>(k + 1)), isa, &watch.stop));
+                seed(static_cast<std::uint32_t>(k + 1)), isa, &monitor.stop));
     }
 
     void write(std::size_t i, ReferenceFilm& film) const {
@@ -144,17 +144,18 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
 }
 
 std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch, TileCheckpoint* checkpoint) {
+    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& monitor,
+    TileCheckpoint* checkpoint) {
     const std::vector<Scene> scenes = scenes_at(scene, exponents);
     return by_tiles(
-        scene.image(), exponents, watch, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+        scene.image(), exponents, monitor, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < scenes.size(); ++e) {
                 for (const ShadingPoints& sites : sites_of(scenes[e], tile, nullptr)) {
                     if (e > 0 && sites.lobe < 0) {
                         for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
                         continue;
                     }
-                    const NotePixels pixels(scenes[e], experiment, sites, isa, watch);
+                    const NotePixels pixels(scenes[e], experiment, sites, isa, monitor);
                     for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
                 }
             }

@@ -21,7 +21,7 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 /// One film per exponent, in order. `experiment`: whose reference it is; says how many samples, and which seeds.
 /// `checkpoint` keeps finished tiles.
 std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& watch,
+    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& monitor,
     TileCheckpoint* checkpoint = nullptr);
 
 }  // namespace crescent::inline studies

@@ -15,9 +15,9 @@ namespace {
 /// Standard errors between the two references, over the whole image.
 double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
-    ProgressMonitor watch;
-    const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, watch)[0],
-                        note = monte_carlo_reference(scene, experiment, {experiment.s()}, "", watch)[0];
+    ProgressMonitor monitor;
+    const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, monitor)[0],
+                        note = monte_carlo_reference(scene, experiment, {experiment.s()}, "", monitor)[0];
     double difference = 0, variance = 0;
     for (std::size_t at = 0; at < q.size(); ++at) {
         difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
@@ -39,10 +39,10 @@ TEST(Estimator, ADiskBehindAnotherIsHiddenFromBothReferences) {
     EXPECT_LT(references_apart(experiment), 4);
     Experiment alone = experiment;
     alone.disks.erase(alone.disks.begin());
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const Scene both(experiment), bare(alone);
-    const ReferenceFilm with = quadrature_reference(both, {both.s()}, watch)[0];
-    const ReferenceFilm without = quadrature_reference(bare, {bare.s()}, watch)[0];
+    const ReferenceFilm with = quadrature_reference(both, {both.s()}, monitor)[0];
+    const ReferenceFilm without = quadrature_reference(bare, {bare.s()}, monitor)[0];
     int darker = 0;  // ten times less radiant than what it hides
     for (std::size_t at = 0; at < with.size(); ++at) darker += with.y[at] < 0.7f * without.y[at];
     EXPECT_GT(darker, 100);
@@ -62,13 +62,13 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
     Experiment experiment = test::small_scene();
     experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
     const Scene scene(experiment);
-    ProgressMonitor watch;
+    ProgressMonitor monitor;
     const std::vector<double> s = {experiment.s()};
-    const ReferenceFilm truth = quadrature_reference(scene, s, watch)[0],
-                        note = monte_carlo_reference(scene, experiment, s, "", watch)[0];
+    const ReferenceFilm truth = quadrature_reference(scene, s, monitor)[0],
+                        note = monte_carlo_reference(scene, experiment, s, "", monitor)[0];
     for (std::uint32_t k = 0; k < 4; ++k)
         for (const char* arm : {"phong", "light-area"}) {
-            const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", watch)[0];
+            const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", monitor)[0];
             EXPECT_LT(std::fabs(correlation(note.y, film.y, truth.y)), 0.15) << arm << ", seed " << k;
         }
     for (std::uint32_t k = 0; k < 64; ++k)

@@ -15,11 +15,11 @@ TailPlan tail_plan(const Box& box) {
 }
 
 std::optional<Tail> region_tail(const Scene& scene, const ArmInUse& arm, std::uint32_t seed, const Box& box,
-    const std::string& isa, ProgressMonitor& watch) {
+    const std::string& isa, ProgressMonitor& monitor) {
     const TailPlan plan = tail_plan(box);
     if (plan.kept == 0) return std::nullopt;
     std::uint64_t drawn = 0;
-    return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, box, plan.kept, isa, watch, drawn));
+    return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, box, plan.kept, isa, monitor, drawn));
 }
 
 }  // namespace crescent::inline studies

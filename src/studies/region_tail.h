@@ -23,6 +23,6 @@ TailPlan tail_plan(const Box& box);
 /// The tail index of one arm's samples X in a box, read off as tail_plan() says; none where too few spread. May throw
 /// Interrupted.
 std::optional<Tail> region_tail(const Scene& scene, const ArmInUse& arm, std::uint32_t seed, const Box& box,
-    const std::string& isa, ProgressMonitor& watch);
+    const std::string& isa, ProgressMonitor& monitor);
 
 }  // namespace crescent::inline studies

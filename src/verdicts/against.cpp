@@ -179,7 +179,7 @@ State state_of(const std::vector<Verdict>& verdicts) {
 }  // namespace
 
 Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& given, bool expect_same,
-    ProgressMonitor& watch) {
+    ProgressMonitor& monitor) {
     for (const auto& trials : {a, b})
         for (const Trial& t : trials)
             if (!t.subject->traits().has_pdf)
@@ -187,17 +187,17 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
     TestSettings settings = given;
     settings.share(tests_against(a, b));
     TestCounts tally;
-    watch.begin("two samplers", static_cast<double>(a.size()));
+    monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
     AskedByDirection asked_a, asked_b;  // by one thread, where either is a program
     const auto one = [&](std::size_t i) {
-        watch.check();
+        monitor.check();
         try {
             const auto stream = static_cast<std::uint32_t>(i);
             all[i] = compare_one(
                 asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, tally);
         } catch (const SubjectFault& fault) { all[i] = broken_off(a[i], b[i], fault); }
-        watch.advance(1);
+        monitor.advance(1);
     };
     bool serial = false;
     for (std::size_t i = 0; i < a.size(); ++i) serial = serial || a[i].subject->serial() || b[i].subject->serial();

@@ -13,7 +13,7 @@ namespace crescent::inline verdicts {
 
 /// Trials of A and of B, one for one. expect_same: a difference in distribution or f is wrong, not only told.
 Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& settings,
-    bool expect_same, ProgressMonitor& watch);
+    bool expect_same, ProgressMonitor& monitor);
 
 /// Built-in arm `name` on the surface, light and w_o of each of these trials; with A's f where A is not built in.
 std::vector<Trial> arm_against(const std::string& name, std::span<const Trial> a);

@@ -61,7 +61,7 @@ std::optional<double> time_once(
 }  // namespace
 
 void measure_costs(std::span<const Trial> trials, const TestSettings& settings, std::span<Efficiency> all,
-    const ProgressMonitor& watch) {
+    const ProgressMonitor& monitor) {
     constexpr std::size_t turns = 7, most = 2048, of_a_program = 512;
     std::vector<Numbers> u(most);
     for (std::size_t i = 0; i < most; ++i) u[i] = drawn_numbers(seed_of(settings.seed, 0), 0, i, 0, Numbers::most);
@@ -69,7 +69,7 @@ void measure_costs(std::span<const Trial> trials, const TestSettings& settings, 
     std::vector<Draw> draws(most);
     for (std::size_t turn = 0; turn < turns; ++turn)
         for (std::size_t i = 0; i < all.size(); ++i) {
-            watch.check();
+            monitor.check();
             const Trial& trial = trials[all[i].trial];
             if (times[i].size() < turn || !trial.subject->draws_at_will()) continue;  // it was given up
             const std::size_t n = trial.subject->serial() ? of_a_program : most;

@@ -40,7 +40,7 @@ std::string rate_text(std::uint64_t hits, std::uint64_t of) {
         of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
 }
 
-FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given, ProgressMonitor& watch) {
+FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given, ProgressMonitor& monitor) {
     std::vector<Trial> trials;
     for (Trial& t : trials_of("", {}, false))
         if (is_right(t)) trials.push_back(std::move(t));
@@ -48,18 +48,18 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
     settings.share(count_tests(trials));
     TestCounts tally;
     std::vector<std::atomic<int>> alarms(seeds);
-    watch.begin("false alarms", static_cast<double>(trials.size() * seeds));
+    monitor.begin("false alarms", static_cast<double>(trials.size() * seeds));
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
         TrialContext work(trials[i], settings, tally, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (std::uint64_t k = 0; k < seeds; ++k) {
-            watch.check();
+            monitor.check();
             work.redraw(seed_of(settings.seed, static_cast<std::uint32_t>(k)));
             if (const std::optional<Verdict> v = accusation(work)) {
                 ++alarms[k];
-                watch.log(fmt::format("seed {}: {} [{}] {}: {}", k, v->arm, v->trial, v->name, v->say));
+                monitor.log(fmt::format("seed {}: {} [{}] {}: {}", k, v->arm, v->trial, v->name, v->say));
             }
-            watch.advance(1);
+            monitor.advance(1);
         }
     });
     FalseAlarms out;

@@ -15,7 +15,7 @@ struct FalseAlarms {
     double alpha = 0, screen = 0;
 };
 /// How often right arms are accused, over so many seeds. Throws Interrupted.
-FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& settings, ProgressMonitor& watch);
+FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& settings, ProgressMonitor& monitor);
 
 /// Clopper & Pearson 1934: the 95 % interval of a rate.
 std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of);

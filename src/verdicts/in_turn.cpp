@@ -67,14 +67,14 @@ std::size_t share_of(const TestSettings& settings, std::size_t count, std::uint6
 }  // namespace
 
 std::vector<Outcome> judge_in_turn(
-    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& watch) {
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor) {
     TestSettings quick_look = settings;
     quick_look.draws = std::min(settings.draws, few_draws);
     quick_look.pictures = false;
     std::vector<Outcome> outcomes(trials.size()), looks(trials.size());
     const std::vector<std::size_t> order = order_of(trials);
     for (std::size_t i : order) {
-        watch.check();
+        monitor.check();
         if (!trials[i].baseline) looks[i] = look(trials[i], i, quick_look, tally);
     }
     std::uint64_t dearest = 0;
@@ -82,7 +82,7 @@ std::vector<Outcome> judge_in_turn(
     for (const Trial& t : trials) count += !t.baseline;
     std::size_t to_come = count;
     for (std::size_t i : order) {
-        watch.check();
+        monitor.check();
         const Spending before = trials[i].subject->spending();
         TestSettings here = settings;
         if (!trials[i].baseline) here.questions = share_of(settings, count, before.answers, --to_come);
@@ -91,7 +91,7 @@ std::vector<Outcome> judge_in_turn(
             const bool slow = !outcomes[i].cut || outcomes[i].cut->state == State::inconclusive;
             if (slow) outcomes[i].cut = left_out(trials[i], settings);
         } else {
-            outcomes[i] = judge_one(trials[i], i, here, tally, watch);
+            outcomes[i] = judge_one(trials[i], i, here, tally, monitor);
             dearest = std::max(dearest, trials[i].subject->spending().answers - before.answers);
             const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
             if (cut_short) outcomes[i].cut = left_out(trials[i], settings);
@@ -101,7 +101,7 @@ std::vector<Outcome> judge_in_turn(
             if (met && verdicts.empty()) verdicts = std::move(looks[i].verdicts);
             else if (met) verdicts[0] = std::move(looks[i].verdicts[0]);
         }
-        watch.advance(1);
+        monitor.advance(1);
     }
     std::size_t whole = 0;
     for (std::size_t i : order) whole += !trials[i].baseline && !outcomes[i].cut;

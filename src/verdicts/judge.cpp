@@ -65,8 +65,8 @@ void limit_to_upper_half(const TrialContext& work, const VerdictKind& kind, Verd
 }
 
 /// One verdict with the time that it took.
-void judge_next(TrialContext& work, Outcome& out, const VerdictKind& kind, const ProgressMonitor& watch) {
-    watch.check();
+void judge_next(TrialContext& work, Outcome& out, const VerdictKind& kind, const ProgressMonitor& monitor) {
+    monitor.check();
     const Stopwatch start;
     Verdict v = kind.judge(work);
     limit_to_upper_half(work, kind, v);
@@ -74,13 +74,13 @@ void judge_next(TrialContext& work, Outcome& out, const VerdictKind& kind, const
     out.verdicts.push_back(std::move(v));
 }
 
-void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const ProgressMonitor& watch) {
-    judge_next(work, out, *verdict_kinds[0], watch);
+void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const ProgressMonitor& monitor) {
+    judge_next(work, out, *verdict_kinds[0], monitor);
     if (out.verdicts[0].state == State::wrong && !out.verdicts[0].evidence.contains("usable"))
         return skip_rest(work.trial, out, "The sampler is not valid here.");
     work.measure_density();
     for (const VerdictKind* kind : std::span(verdict_kinds).subspan(1))
-        if (kind->judge) judge_next(work, out, *kind, watch);
+        if (kind->judge) judge_next(work, out, *kind, monitor);
     diagnose(work, out.verdicts);
     out.contrasted = contrasted(work);
     if (work.subject.has_f() && work.weighs()) out.efficiency = measure_efficiency(work, index);
@@ -158,7 +158,7 @@ Cut cut_by(const SubjectFault& fault) {
 }
 
 Outcome judge_one(
-    const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally, ProgressMonitor& watch) {
+    const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor) {
     Outcome out;
     Trial kept = trial;
     if (trial.subject->serial()) kept.subject = asked_once(trial.subject);
@@ -170,7 +170,7 @@ Outcome judge_one(
             return out;
         }
         TrialContext work(kept, settings, tally, static_cast<std::uint32_t>(index));
-        judge_in_order(work, index, out, watch);
+        judge_in_order(work, index, out, monitor);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
     } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
@@ -199,25 +199,25 @@ std::uint64_t count_tests(std::span<const Trial> trials) {
 namespace {
 
 std::vector<Outcome> judge_all(
-    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& watch) {
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor) {
     if (std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); }))
-        return judge_in_turn(trials, settings, tally, watch);
+        return judge_in_turn(trials, settings, tally, monitor);
     std::vector<Outcome> outcomes(trials.size());
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
-        watch.check();
-        outcomes[i] = judge_one(trials[i], i, settings, tally, watch);
-        watch.advance(1);
+        monitor.check();
+        outcomes[i] = judge_one(trials[i], i, settings, tally, monitor);
+        monitor.advance(1);
     });
     return outcomes;
 }
 
 /// Trials against one another; the call does nothing else while it takes times.
 Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcomes, const TestSettings& settings,
-    const ProgressMonitor& watch) {
+    const ProgressMonitor& monitor) {
     std::vector<Efficiency> efficiencies;
     for (const Outcome& o : outcomes)
         if (o.efficiency) efficiencies.push_back(*o.efficiency);
-    measure_costs(trials, settings, efficiencies, watch);
+    measure_costs(trials, settings, efficiencies, monitor);
     Compared out(verdict_kinds.size());
     for (std::size_t k = 0; k < verdict_kinds.size(); ++k)
         if (verdict_kinds[k]->compare) out[k] = verdict_kinds[k]->compare(trials, efficiencies);
@@ -227,19 +227,19 @@ Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcome
 
 }  // namespace
 
-Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& watch) {
+Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& monitor) {
     TestSettings settings = given;
     settings.share(count_tests(trials) + pooled_tests(trials));
     TestCounts tally;
-    watch.begin("verdicts", static_cast<double>(trials.size()));
-    std::vector<Outcome> outcomes = judge_all(trials, settings, tally, watch);
-    judge_pooled(trials, outcomes, settings, tally, watch);
+    monitor.begin("verdicts", static_cast<double>(trials.size()));
+    std::vector<Outcome> outcomes = judge_all(trials, settings, tally, monitor);
+    judge_pooled(trials, outcomes, settings, tally, monitor);
     Judgement out;
     out.alpha = settings.alpha;
     out.tests = tally.tests;
     out.screened = tally.screened;
     out.confirmed = tally.confirmed;
-    Compared compared = compare(trials, outcomes, settings, watch);
+    Compared compared = compare(trials, outcomes, settings, monitor);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;
         complete(trials[i], outcomes[i], compared, i, out);

@@ -23,8 +23,8 @@ struct SubjectTooSlow : SubjectFault {
     using SubjectFault::SubjectFault;
 };
 
-/// Throws Interrupted when the watch says stop.
-Judgement judge(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& watch);
+/// Throws Interrupted when the monitor says stop.
+Judgement judge(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& monitor);
 /// The state of the whole: everything that the caller does not expect, and expectations that nothing meets.
 void settle(Judgement& judgement);
 /// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
@@ -47,7 +47,7 @@ struct Efficiency {
 Efficiency measure_efficiency(const TrialContext& work, std::size_t trial);
 /// The time of one sample of each, asked by one thread, all in turn: a slow moment of the machine falls on all alike.
 void measure_costs(std::span<const Trial> trials, const TestSettings& settings, std::span<Efficiency> all,
-    const ProgressMonitor& watch);
+    const ProgressMonitor& monitor);
 /// Ranks trials that differ by the arm alone.
 std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all);
 

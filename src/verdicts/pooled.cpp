@@ -186,9 +186,9 @@ void judge_group(const Members& all, std::span<const Trial> trials, std::span<Ou
 std::uint64_t pooled_tests(std::span<const Trial> trials) { return contrast_count * groups_of(trials).size(); }
 
 void judge_pooled(std::span<const Trial> trials, std::span<Outcome> outcomes, const TestSettings& settings,
-    TestCounts& tally, const ProgressMonitor& watch) {
+    TestCounts& tally, const ProgressMonitor& monitor) {
     for (const Members& group : groups_of(trials)) {
-        watch.check();
+        monitor.check();
         try {
             judge_group(group, trials, outcomes, settings, tally);
         } catch (const SubjectFault&) {}  // a program that broke off said so where it was asked first

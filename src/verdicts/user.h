@@ -187,13 +187,13 @@ private:
 };
 
 /// Judges a sampler over a grid of w_o under an even light. TestSettings::thorough() looks harder, and takes minutes.
-/// Where `watch` says stop, Interrupted is thrown.
+/// Where `monitor` says stop, Interrupted is thrown.
 template <class S> Judgement judge_sampler(std::string name, S sampler,
-    const TestSettings& settings = TestSettings::quick(), ProgressMonitor* watch = nullptr) {
+    const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
     if constexpr (user::must_be_judgeable<S>()) {
         const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));
         ProgressMonitor alone;
-        return judge(trials_of_subject(subject, settings.full, settings.wo), settings, watch ? *watch : alone);
+        return judge(trials_of_subject(subject, settings.full, settings.wo), settings, monitor ? *monitor : alone);
     } else {
         return {};
     }
