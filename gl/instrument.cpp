@@ -63,7 +63,9 @@ void GlInstrument::claim_framebuffer(const std::string& what, int width, int hei
     claims_.push_back(claim(name + " has no MSAA", target.multisamples(), "==", 0, "GL_SAMPLES"));
 }
 
-std::vector<Film> GlInstrument::films(const Scene& scene, const Job& job, ProgressMonitor& monitor, TileCheckpoint*) {
+std::vector<Film> GlInstrument::films(
+    const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint*) {
+    const Scene& scene = view.scene();
     if (!context_->is_current()) context_->make_current();
     if (!claimed_film_) {
         const Image& image = scene.image();

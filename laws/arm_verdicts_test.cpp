@@ -196,9 +196,10 @@ TEST(Verdicts, CallAProgramTooSlowRatherThanWrong) {
     for (const Verdict& v : j.verdicts) EXPECT_EQ(v.state, State::inconclusive) << v.name << v.say;
 }
 
-std::string fault_of(const std::string& command) {
+/// What is said of a program that is waited for that long.
+std::string fault_of(const std::string& command, double seconds = 30) {
     PipeLimits limits;
-    limits.hello_seconds = limits.quiet_seconds = 0.5;
+    limits.hello_seconds = limits.quiet_seconds = seconds;
     try {
         const auto pipe = start_pipe(command, limits);
         std::vector<Numbers> u(100, {0.5, 0.5});
@@ -209,10 +210,10 @@ std::string fault_of(const std::string& command) {
 }
 
 TEST(Verdicts, SayWhatAPipeDidWrongAndWhere) {
-    EXPECT_NE(fault_of("sleep 20")
+    EXPECT_NE(fault_of("sleep 20", 0.5)
                   .find("request 1 ('hello 2'): expected 'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME', got nothing"),
         std::string::npos);
-    EXPECT_NE(fault_of("sleep 20 & exit 0").find("the program ended with exit code 0, and what it left running"),
+    EXPECT_NE(fault_of("sleep 20 & exit 0", 5).find("the program ended with exit code 0, and what it left running"),
         std::string::npos);
     EXPECT_NE(fault_of("echo hallo").find("got 'hallo'"), std::string::npos);
     EXPECT_NE(fault_of("exit 3").find("exit code 3"), std::string::npos);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "estimator/tiled_scene.h"
+
 namespace crescent {
 namespace {
 
@@ -21,6 +23,15 @@ TEST(Needs, GrowWithThePixelsAndTheRungs) {
     const std::uint64_t before = memory_needed(e);
     e.arms[0].n = {1, 2, 3, 4, 5};
     EXPECT_GT(memory_needed(e), before + std::uint64_t{3} * 30 * 2048 * 2048);
+}
+
+TEST(Needs, LeavePointsToBeMadeAgainWhereMemoryIsShort) {
+    const RunPlan small = plan(tiny(96, 54)), large = plan(tiny(8192, 8192));
+    EXPECT_TRUE(can_keep_points(small, Scene(small.experiment), 1'000'000'000));
+    EXPECT_FALSE(can_keep_points(large, Scene(large.experiment), 20'000'000'000));
+    const std::uint64_t all = memory_needed(large.experiment) + bytes_of_points(Scene(large.experiment));
+    EXPECT_TRUE(can_keep_points(large, Scene(large.experiment), 2 * all));
+    EXPECT_EQ(large.exponents.size(), 1u);
 }
 
 TEST(Needs, ThatAreNotThereAreToldWithWhatWouldFit) {

@@ -58,7 +58,7 @@ void print(const Experiment& experiment) {
                 std::cout << experiment.file << ' ' << isa << ' ' << arm.name << " n=" << film.n << ' ' << hash(film)
                           << '\n';
     for (const std::string& isa : isas())
-        for (const ReferenceFilm& film : monte_carlo_reference(scene, experiment, {experiment.s()}, isa, monitor))
+        for (const ReferenceFilm& film : monte_carlo_reference({scene}, experiment, isa, monitor))
             std::cout << experiment.file << ' ' << isa << " note-reference " << hash(film) << '\n';
     for (const ReferenceFilm& film : quadrature_reference(scene, {experiment.s()}, monitor))
         std::cout << experiment.file << " quadrature " << hash(film) << '\n';

@@ -91,10 +91,10 @@ void for_each_tile(const std::vector<TileBox>& tiles, ProgressMonitor& monitor, 
     monitor.check();
 }
 
-std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
+std::vector<Film> estimate_films(const TiledScene& view, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
-    const Image& image = scene.image();
-    const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
+    const Image& image = view.scene().image();
+    const std::vector<TileBox>& tiles = view.tiles();
     std::vector<Film> films(n.size());
     parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
         films[r] = Film(image.width, image.height, n[r]);
@@ -107,11 +107,12 @@ std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const 
     for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
         std::vector<Moments>& moments = scratch.local();
         double samples = 0;
-        for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
+        const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
+        for (const ShadingPoints& sites : *groups) {
             for (Moments& m : moments) m.resize(sites.pixel.size(), sites.light_count());
             run_kernel(isa, arm, {&sites, n, seed, moments, &monitor.stop, nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
-                resolve_film(scene, sites, moments[r], films[r]);
+                resolve_film(view.scene(), sites, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
                     moments[r].bad.begin() + static_cast<std::ptrdiff_t>(sites.count), std::uint64_t{0});
             }

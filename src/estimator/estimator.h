@@ -9,13 +9,14 @@
 #include "base/progress_monitor.h"
 #include "estimator/kernel.h"
 #include "estimator/tile_checkpoint.h"
+#include "estimator/tiled_scene.h"
 #include "films/film.h"
 #include "scene/scene.h"
 
 namespace crescent::inline estimator {
 
 /// One film per rung of n (ascending). `isa`: a name of isas(), "" for the best. `checkpoint` keeps finished tiles.
-std::vector<Film> estimate_films(const Scene& scene, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
+std::vector<Film> estimate_films(const TiledScene& view, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
 /// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.

@@ -146,7 +146,22 @@ void ShadingPoints::pad() {
     each_array([&](auto& array) {
         array.resize(whole_packs(count));
         std::fill(array.begin() + static_cast<std::ptrdiff_t>(count), array.end(), array[count - 1]);
+        array.shrink_to_fit();
     });
+}
+
+void ShadingPoints::take_s(const Scene& scene) {
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+        const Surface surface = scene.surface_of_shape(shape[i]);
+        s[i] = static_cast<float>(surface.s);
+        alpha[i] = static_cast<float>(surface.alpha);
+    }
+}
+
+std::size_t ShadingPoints::bytes_of_one() {
+    std::size_t bytes = 0;
+    each_array([&](auto& array) { bytes += sizeof(array[0]); });
+    return bytes;
 }
 
 void ShadingPoints::cull_occluders(const Scene& scene) {

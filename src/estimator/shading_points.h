@@ -83,6 +83,10 @@ struct ShadingPoints {
     void pad();
     /// Drops the occluders that stand between no site and no disk.
     void cull_occluders(const Scene& scene);
+    /// The lobe's parameters as a scene of the same view has them, see Scene::with_s.
+    void take_s(const Scene& scene);
+    /// Bytes of memory that one point takes.
+    std::size_t bytes_of_one();
 
 private:
     template <class Work> void each_array(Work&& work);

@@ -14,7 +14,7 @@ inline std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double
     return scenes;
 }
 
-/// One film per exponent, made by calling work(tile, films) for every tile.
+/// One film per exponent, made by calling work(k, tile k, films) for every tile.
 template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
     ProgressMonitor& monitor, TileCheckpoint* checkpoint, Work&& work) {
     std::vector<ReferenceFilm> films;
@@ -22,7 +22,7 @@ template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, co
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films));
     for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {
-        work(tiles[k], films);
+        work(k, tiles[k], films);
         return static_cast<double>(tiles[k].x1 - tiles[k].x0) * (tiles[k].y1 - tiles[k].y0);
     });
     return films;

@@ -24,8 +24,8 @@ std::vector<ReferenceFilm> quadrature_reference(
             store_pixel(films[e], at, radiance, error);
         }
     };
-    return by_tiles(
-        scene.image(), exponents, monitor, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
+    return by_tiles(scene.image(), exponents, monitor, checkpoint,
+        [&](std::size_t, const TileBox& tile, std::vector<ReferenceFilm>& films) {
             for (int j = tile.y0; j < tile.y1 && !monitor.stop.load(std::memory_order_relaxed); ++j)
                 for (int i = tile.x0; i < tile.x1; ++i) pixel(i, j, films);
         });

@@ -38,8 +38,7 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
         tiles.reset(new TileCheckpoint(checkpoint->tiles(out.job)));
     }
     if (keep_films || out.meters.empty()) {
-        const Scene scene = prepared.scene.with_s(out.job.s);
-        std::vector<Film> films = engine.instrument->films(scene, out.job, monitor, tiles.get());
+        std::vector<Film> films = engine.instrument->films(view_at(prepared, out.job.s), out.job, monitor, tiles.get());
         const auto all = static_cast<double>(prepared.geometry_pixels * out.job.n.back());
         out.samples = all - (tiles ? tiles->restored() : 0);
         const bool fresh = out.meters.empty();
@@ -66,6 +65,12 @@ const ReferenceFilm* reference_of(const Experiment& experiment, const std::vecto
     return film == films.end() ? nullptr : &*film;
 }
 
+const TiledScene& view_at(const Prepared& prepared, double s) {
+    const auto view = std::ranges::find(prepared.views, s, [](const TiledScene& v) { return v.scene().s(); });
+    ensure(view != prepared.views.end(), "a job's exponent is one of its plan's");
+    return *view;
+}
+
 Prepared look(const RunPlan& plan, const Engine& engine) {
     const Experiment& experiment = plan.experiment;
     check_memory(experiment);
@@ -81,6 +86,9 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
         throw InputError(experiment.place_of("camera"),
             "nothing is in view: every ray of the camera misses every shape; expected eye and target that face one");
     out.outside = open_outside(experiment);
+    TiledScene view = out.scene;
+    if (can_keep_points(plan, out.scene, available_memory())) view.keep_points();
+    out.views = views_at(view, plan.exponents);
     return out;
 }
 
@@ -98,8 +106,7 @@ void add_references(
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
         monitor.begin("the note's reference", pixels);
-        prepared.monte_carlo =
-            monte_carlo_reference(prepared.scene, plan.experiment, plan.exponents, with.isa, monitor, note.get());
+        prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.experiment, with.isa, monitor, note.get());
     });
 }
 

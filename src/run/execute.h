@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/progress_monitor.h"
+#include "estimator/tiled_scene.h"
 #include "films/film.h"
 #include "meters/metrics.h"
 #include "run/instruments.h"
@@ -35,7 +36,8 @@ Engine settled(Engine engine);
 struct Prepared {
     explicit Prepared(const Experiment& experiment) : scene(experiment) {}
 
-    Scene scene;  // at the experiment's own s
+    Scene scene;                    // at the experiment's own s
+    std::vector<TiledScene> views;  // of it at each exponent, in the plan's order
     OutsideSamplers outside;
     ShapeMap shapes;
     std::vector<std::uint64_t> shape_pixels;  // of each shape, in the experiment's order
@@ -64,6 +66,9 @@ struct JobResult {
 
 /// The job with the sampler that was opened for its arm, where the arm is none of the list.
 Job with_sampler(Job job, const Prepared& prepared);
+
+/// The prepared view at exponent s, which is one of the plan's.
+const TiledScene& view_at(const Prepared& prepared, double s);
 
 /// One job. `keep_films` = false: its meters alone, which a checkpoint may hold already.
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,

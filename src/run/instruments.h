@@ -11,11 +11,11 @@
 #include "films/film.h"
 #include "meters/metrics.h"
 #include "run/plan.h"
-#include "scene/scene.h"
 
 namespace crescent::inline estimator {
 class TileCheckpoint;
-}
+class TiledScene;
+}  // namespace crescent::inline estimator
 
 namespace crescent::inline runs {
 
@@ -24,10 +24,10 @@ class Instrument {
 public:
     virtual ~Instrument() = default;
     virtual std::string name() const = 0;  // for provenance and plates
-    /// One film per rung, in order. The scene already has the job's s. `checkpoint`: where an instrument that works
+    /// One film per rung, in order. The view already has the job's s. `checkpoint`: where an instrument that works
     /// tile by tile keeps finished ones; null: nowhere.
     virtual std::vector<Film> films(
-        const Scene& scene, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr) = 0;
+        const TiledScene& view, const Job& job, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr) = 0;
     /// What the provenance says of it beside its name: the driver's own words, by what they are ("GL_RENDERER").
     virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
     /// Claims of its own that join the assertions ("framebuffer is RGBA32F").

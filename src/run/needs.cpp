@@ -7,9 +7,8 @@
 #include <set>
 
 #include "base/machine.h"
+#include "estimator/tiled_scene.h"
 #include "films/film.h"
-#include "run/plan.h"
-#include "scene/scene.h"
 
 namespace crescent::inline runs {
 
@@ -44,6 +43,10 @@ std::uint64_t memory_needed(const Experiment& experiment) {
         film * (rungs + again) + references * reference * static_cast<double>(exponents.size()) + working_bytes;
     const double hits = pixels <= static_cast<double>(Scene::whole_hits) ? pixels * sizeof(Hit) : 0;
     return static_cast<std::uint64_t>(for_itself + pixels * a_pixel + hits);
+}
+
+bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available) {
+    return memory_needed(plan.experiment) + plan.exponents.size() * bytes_of_points(scene) <= available / 2;
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {

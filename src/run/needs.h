@@ -5,6 +5,8 @@
 #include <string>
 
 #include "experiment/experiment.h"
+#include "run/plan.h"
+#include "scene/scene.h"
 
 namespace crescent::inline runs {
 
@@ -14,6 +16,10 @@ std::uint64_t memory_needed(const Experiment& experiment);
 
 /// "this run needs about 70 GB of memory ...", with what would need less; "" where `available` bytes are enough.
 std::string why_too_large(const Experiment& experiment, std::uint64_t available);
+
+/// Whether half of `available` bytes hold what is needed and the shading points of the image at each exponent, which a
+/// run is faster with.
+bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available);
 
 /// Throws OutputError where the memory is not there.
 void check_memory(const Experiment& experiment);

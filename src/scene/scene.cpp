@@ -105,13 +105,17 @@ Hit Scene::Made::hit(int shape, Vec3d d, const Intersection& met) const {
     return {shape, met.reveal, data.camera.eye + met.t * d, dot(met.n, d) < 0 ? met.n : -met.n, -d};
 }
 
+Surface Scene::surface_of_shape(std::size_t shape) const {
+    Material material = shapes()[shape].material;
+    if (other_s_ && (static_cast<std::ptrdiff_t>(shape) == made_->s_shape || material.inherits_s)) material.s = s_;
+    return surface_of(material, s_);
+}
+
 Surface Scene::surface(const Hit& hit) const {
-    const Shape& shape = shapes()[static_cast<std::size_t>(hit.shape)];
-    Material material = shape.material;
-    if (other_s_ && (hit.shape == made_->s_shape || material.inherits_s)) material.s = s_;
-    Surface out = surface_of(material, s_);
+    const auto shape = static_cast<std::size_t>(hit.shape);
+    Surface out = surface_of_shape(shape);
     if (hit.reveal) {
-        out.rho_d = albedo_of_reveal(shape).value_or(out.rho_d);
+        out.rho_d = albedo_of_reveal(shapes()[shape]).value_or(out.rho_d);
         out.rho_s = 0;
     }
     return out;

@@ -38,6 +38,8 @@ public:
     /// exponent is shared.
     Scene with_s(double s) const;
     Surface surface(const Hit& hit) const;
+    /// What is the same all over a shape, panel's reveal apart, whose lobe's parameters are the shape's too.
+    Surface surface_of_shape(std::size_t shape) const;
 
     /// The scene's own exponent, or the other one that with_s() was given.
     double s() const { return s_; }

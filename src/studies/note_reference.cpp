@@ -143,19 +143,20 @@ std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     return seed;
 }
 
-std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& monitor,
-    TileCheckpoint* checkpoint) {
-    const std::vector<Scene> scenes = scenes_at(scene, exponents);
-    return by_tiles(
-        scene.image(), exponents, monitor, checkpoint, [&](const TileBox& tile, std::vector<ReferenceFilm>& films) {
-            for (std::size_t e = 0; e < scenes.size(); ++e) {
-                for (const ShadingPoints& sites : sites_of(scenes[e], tile, nullptr)) {
+std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
+    const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
+    std::vector<double> exponents;
+    for (const TiledScene& view : views) exponents.push_back(view.scene().s());
+    return by_tiles(experiment.image, exponents, monitor, checkpoint,
+        [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
+            for (std::size_t e = 0; e < views.size(); ++e) {
+                const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
+                for (const ShadingPoints& sites : *groups) {
                     if (e > 0 && sites.lobe < 0) {
                         for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
                         continue;
                     }
-                    const NotePixels pixels(scenes[e], experiment, sites, isa, monitor);
+                    const NotePixels pixels(views[e].scene(), experiment, sites, isa, monitor);
                     for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
                 }
             }

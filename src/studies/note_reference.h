@@ -9,19 +9,18 @@
 
 #include "base/progress_monitor.h"
 #include "estimator/tile_checkpoint.h"
+#include "estimator/tiled_scene.h"
 #include "experiment/experiment.h"
 #include "films/film.h"
-#include "scene/scene.h"
 
 namespace crescent::inline studies {
 
 /// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from.
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
-/// One film per exponent, in order. `experiment`: whose reference it is; says how many samples, and which seeds.
-/// `checkpoint` keeps finished tiles.
-std::vector<ReferenceFilm> monte_carlo_reference(const Scene& scene, const Experiment& experiment,
-    const std::vector<double>& exponents, const std::string& isa, ProgressMonitor& monitor,
-    TileCheckpoint* checkpoint = nullptr);
+/// One film a view, which are the same but for their exponents, see views_at. `experiment`: whose reference it is; says
+/// how many samples, and which seeds. `checkpoint` keeps finished tiles.
+std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
+    const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
 }  // namespace crescent::inline studies

@@ -17,7 +17,7 @@ double references_apart(const Experiment& experiment) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
     const ReferenceFilm q = quadrature_reference(scene, {experiment.s()}, monitor)[0],
-                        note = monte_carlo_reference(scene, experiment, {experiment.s()}, "", monitor)[0];
+                        note = monte_carlo_reference({scene}, experiment, "", monitor)[0];
     double difference = 0, variance = 0;
     for (std::size_t at = 0; at < q.size(); ++at) {
         difference += static_cast<double>(note.y[at]) - static_cast<double>(q.y[at]);
@@ -65,7 +65,7 @@ TEST(Estimator, TheNotesReferenceSharesNoStreamWithAnyArmAtDefaultSeeds) {
     ProgressMonitor monitor;
     const std::vector<double> s = {experiment.s()};
     const ReferenceFilm truth = quadrature_reference(scene, s, monitor)[0],
-                        note = monte_carlo_reference(scene, experiment, s, "", monitor)[0];
+                        note = monte_carlo_reference({scene}, experiment, "", monitor)[0];
     for (std::uint32_t k = 0; k < 4; ++k)
         for (const char* arm : {"phong", "light-area"}) {
             const Film film = estimate_films(scene, arm, {96}, seed_of(1, k), "", monitor)[0];

@@ -1,0 +1,57 @@
+#include "estimator/tiled_scene.h"
+
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace crescent::inline estimator {
+
+struct TiledScene::Kept {
+    Mutex lock;
+    std::shared_ptr<const Points> points;  // null: not asked for yet
+};
+
+TiledScene::TiledScene(Scene scene)
+    : scene_(std::move(scene)),
+      tiles_(std::make_shared<const std::vector<TileBox>>(tiles_of(scene_.image().width, scene_.image().height))) {}
+
+void TiledScene::keep_points() { kept_ = std::make_shared<std::vector<Kept>>(tiles_->size()); }
+
+TiledScene TiledScene::with_s(double s) const {
+    TiledScene other = *this;
+    other.scene_ = scene_.with_s(s);
+    if (kept_) {
+        other.other_s_ = std::make_shared<const TiledScene>(*this);
+        other.keep_points();
+    }
+    return other;
+}
+
+std::shared_ptr<const TiledScene::Points> TiledScene::points(std::size_t k) const {
+    if (!kept_) return make(k);
+    Kept& tile = (*kept_)[k];
+    const Guard guard(tile.lock);
+    if (!tile.points) tile.points = make(k);
+    return tile.points;
+}
+
+std::shared_ptr<const TiledScene::Points> TiledScene::make(std::size_t k) const {
+    if (!other_s_) return std::make_shared<const Points>(sites_of(scene_, (*tiles_)[k], nullptr));
+    Points points = *other_s_->points(k);
+    for (ShadingPoints& group : points) group.take_s(scene_);
+    return std::make_shared<const Points>(std::move(points));
+}
+
+std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<double>& exponents) {
+    std::vector<TiledScene> views;
+    for (const double s : exponents) views.push_back(s == view.scene().s() ? view : view.with_s(s));
+    return views;
+}
+
+std::uint64_t bytes_of_points(const Scene& scene) {
+    const auto pixels =
+        static_cast<std::uint64_t>(scene.image().width) * static_cast<std::uint64_t>(scene.image().height);
+    return pixels * empty_sites(scene, 0).bytes_of_one();
+}
+
+}  // namespace crescent::inline estimator
