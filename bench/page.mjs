@@ -54,4 +54,5 @@ for (let turn = 0; turn < times; ++turn) {
   }
 }
 for (const row of Object.values(best)) console.log(JSON.stringify(row));
+for (let said = door.say("prepare_reference"); said.includes("more"); said = door.say("go_on"));
 console.log(JSON.stringify({ commit, engine: `node ${process.version}, V8 ${process.versions.v8}`, reference: page("reference_tile", []) }));

@@ -15,6 +15,7 @@
 #include "experiment/arm_facts.h"
 #include "experiment/experiment.h"
 #include "films/film.h"
+#include "films/film_hash.h"
 #include "math/functions.h"
 #include "meters/meters.h"
 #include "meters/metrics.h"

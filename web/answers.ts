@@ -23,7 +23,7 @@ export class Asker {
   }
 
   /** The reference's picture, box by box as it comes. */
-  photograph(put: (box: Box, bytes: ArrayBuffer) => void): void { this.model.photograph(this.opening, this.size, put); }
+  photograph(put: (box: Box, bytes: ArrayBuffer) => void): void { void this.model.photograph(this.opening, this.size, put); }
 
   private opened(set: readonly string[], arms: readonly string[]): Opening {
     const extra = [...new Set(arms)].filter((arm) => !builtIn.includes(arm)).map((arm) => `arms.${arm}.n=[16, 64]`);

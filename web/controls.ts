@@ -6,7 +6,8 @@ import { Described, Knob, Region } from "./model";
 type Change = (path: string, value: string | undefined) => void;
 
 const steps = 1000;
-const short = (x: number): string => String(Number(x.toPrecision(4)));
+const short = (x: number): string => String(Number(x.toPrecision(4))); // what a slider gives
+const typed = (x: number): string => String(Number(x.toPrecision(12)));
 
 /** Where a value lies on a slider, and back. */
 function share(knob: Knob, x: number): number {
@@ -20,13 +21,13 @@ function valueAt(knob: Knob, t: number): number {
 /** taken: returns what becomes of x, where that may be another value. */
 function field(label: string, value: number, taken: (x: number) => number | undefined): HTMLInputElement {
   return el("input", {
-    type: "text", inputmode: "decimal", "aria-label": label, value: short(value), class: "number",
+    type: "text", inputmode: "decimal", "aria-label": label, value: typed(value), class: "number",
     onchange: (event): void => {
       const input = event.target as HTMLInputElement, x = Number(input.value.trim() || NaN);
-      if (!Number.isFinite(x)) { input.value = short(value); return; }
+      if (!Number.isFinite(x)) { input.value = typed(value); return; }
       const becomes = taken(x);
       value = becomes ?? x;
-      if (becomes !== undefined) input.value = short(value);
+      if (becomes !== undefined) input.value = typed(value);
     },
   });
 }
@@ -43,26 +44,44 @@ function slider(label: string, knob: Knob, value: number, moved: (x: number) => 
   });
 }
 
-/** A number: a slider and a field. Three numbers: three fields and, for a colour, a slider that scales all. */
+/** A slider and a field for one number, each showing what the other was given. */
+function pair(label: string, knob: Knob, value: number, taken: (x: number) => void): HTMLInputElement[] {
+  const text = field(label, value, (x) => { bar.value = String(Math.round(steps * share(knob, x))); taken(x); return undefined; });
+  const bar = slider(`${label} (slider)`, knob, value, (x) => { text.value = short(x); taken(x); });
+  return [bar, text];
+}
+
+/** Three fields, and a slider that scales all of them. */
+function colourRow(knob: Knob, own: number[], change: Change): HTMLElement[] {
+  const hue = [...own]; // stands where the slider makes it black
+  const tell = (all: number[]): undefined => void change(knob.path, `[${all.map(typed).join(", ")}]`);
+  const fields = own.map((c, k) => field(`${knob.label} ${["red", "green", "blue"][k]}`, c, (x) => { hue[k] = x; return tell(hue); }));
+  if (!(Math.max(...own) > 0)) return fields;
+  return [slider(`${knob.label} (slider)`, knob, Math.max(...own), (x) => {
+    const all = hue.map((c) => Number(short((c * x) / Math.max(...hue))));
+    fields.forEach((one, k) => { one.value = typed(all[k]!); });
+    tell(all);
+  }), ...fields];
+}
+
+/** A slider and a field for each coordinate. */
+function placeRow(knob: Knob, own: number[], change: Change): HTMLElement[] {
+  const all = [...own];
+  return ["x", "y", "z"].map((name, k) => el("div", { class: "row" }, el("span", { "aria-hidden": "true" }, name),
+    ...pair(`${knob.label} ${name}`, knob, own[k]!, (x) => { all[k] = x; change(knob.path, `[${all.map(typed).join(", ")}]`); })));
+}
+
+/** A number: a slider and a field. Three numbers: a field for each, and sliders. */
 function knobRow(knob: Knob, change: Change): HTMLElement {
-  const legend = knob.unit ? `${knob.label}, ${knob.unit}` : knob.label;
-  const inside: HTMLElement[] = [];
-  if (typeof knob.value === "number") {
-    const write = knob.path === "seed" ? (x: number): string => String(Math.max(0, Math.round(x))) : short;
-    const text = field(knob.label, knob.value, (x) => { change(knob.path, write(x)); return undefined; });
-    if (knob.path === "seed") text.value = String(knob.value);
-    else inside.push(slider(`${knob.label} (slider)`, knob, knob.value, (x) => { text.value = short(x); change(knob.path, short(x)); }));
-    inside.push(text);
-  } else {
-    let all = knob.value;
-    const names = knob.low < 0 ? ["x", "y", "z"] : ["red", "green", "blue"];
-    const set = (values: number[]): undefined => void change(knob.path, `[${(all = values).map(short).join(", ")}]`);
-    const most = Math.max(...all);
-    if (knob.low >= 0 && most > 0)
-      inside.push(slider(`${knob.label} (slider)`, knob, most, (x) => set(all.map((c) => (c * x) / (Math.max(...all) || 1)))));
-    inside.push(...all.map((c, k) => field(`${knob.label} ${names[k] ?? k}`, c, (x) => set(all.map((old, at) => (at === k ? x : old))))));
-  }
-  return el("fieldset", { class: "knob", "data-path": knob.path }, el("legend", {}, legend), el("div", { class: "row" }, ...inside));
+  const legend = el("legend", {}, knob.unit ? `${knob.label}, ${knob.unit}` : knob.label);
+  const set = (...rows: HTMLElement[]): HTMLElement => el("fieldset", { class: "knob", "data-path": knob.path }, legend, ...rows);
+  const row = (inside: HTMLElement[]): HTMLElement => set(el("div", { class: "row" }, ...inside));
+  const { value } = knob;
+  if (typeof value !== "number") return knob.low < 0 ? set(...placeRow(knob, value, change)) : row(colourRow(knob, value, change));
+  if (knob.path !== "seed") return row(pair(knob.label, knob, value, (x) => change(knob.path, typed(x))));
+  const text = field(knob.label, value, (x) => { change(knob.path, String(Math.max(0, Math.round(x)))); return undefined; });
+  text.value = String(value);
+  return row([text]);
 }
 
 /** Its four ends; none passes the one beyond, or the picture's edge. */

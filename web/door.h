@@ -9,6 +9,7 @@
 // with its kind and its message, and never returns. The page drops such an instance and makes another one.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -46,8 +47,12 @@ struct Bench {
     Scene scene;
     ShapeMap shapes;
     std::vector<Slot> slots;
-    TileBox seen{};  // the box whose primary rays were traced last, for the arms that follow
-    std::vector<ShadingPoints> sites;
+    /// What primary rays met, by box, for the arms and rungs that follow; and of the last box that there was no room
+    /// for.
+    std::map<std::array<int, 4>, std::vector<ShadingPoints>> sites;
+    std::size_t sites_kept = 0;
+    std::array<int, 4> sites_last{};
+    std::vector<ShadingPoints> last;
     ReferenceFilm reference;
     std::unique_ptr<PixelQuadrature> quadrature;
 

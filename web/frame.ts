@@ -124,7 +124,7 @@ export class Frame {
     const chosen = pixel ? [this.outline([...pixel, ...pixel], "pixel", "")] : [];
     const ends: [0 | 2, 1 | 3][] = [[0, 1], [2, 1], [0, 3], [2, 3]];
     const corners = boxes.filter(({ move }) => move).flatMap((of) => ends.map(([kx, ky]) => this.corner(of, kx, ky)));
-    this.over.replaceChildren(...boxes.map(({ name, box }) => this.outline(box, "region", name)), ...chosen, ...corners);
+    this.over.replaceChildren(...boxes.map(({ name, box, move }) => this.outline(box, move ? "region own" : "region", name)), ...chosen, ...corners);
     if (held) this.over.querySelector<HTMLElement>(`[data-corner="${held}"]`)?.focus();
   }
 }

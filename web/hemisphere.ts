@@ -1,8 +1,10 @@
 // The hemisphere of a pixel: f L cos and the density as two disks, the pixel's draws as points, the light's edge, the
 // running mean, the largest sample taken apart.
+import { choice } from "./controls";
 import { DoorError } from "./door";
 import { el, made } from "./dom";
 import { Model } from "./model";
+import { State } from "./state";
 
 interface Opened {
   shape?: string; mirror: [number, number]; draws: [number, number, number, number][]; under: number;
@@ -64,7 +66,7 @@ function largestTable(parts: Record<string, string>): HTMLElement {
 }
 
 /** Fills `root` with pixel (i, j) under an arm, where that is still wanted; show(): once its words are there. Throws DoorError. */
-export async function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number, wanted: () => boolean, show: () => void): Promise<void> {
+async function showPixel(root: HTMLElement, model: Model, i: number, j: number, arm: number, name: string, n: number, wanted: () => boolean, show: () => void): Promise<void> {
   const pixel = await model.parts<Opened>(wanted, "pixel", { i, j, arm: name, n, css: `c${arm % 6}`, reference: model.referenceDone });
   if (!pixel) return;
   if (!pixel.shape) {
@@ -93,7 +95,27 @@ export async function showPixel(root: HTMLElement, model: Model, i: number, j: n
   }
 }
 
-export function pixelFailed(root: HTMLElement, error: unknown): void {
+function pixelFailed(root: HTMLElement, error: unknown): void {
   const words = error instanceof DoorError ? error.message : String(error);
   root.replaceChildren(el("p", { class: "bad" }, `This pixel cannot be opened: ${words}.`));
+}
+
+/** The pixel of the state in `root`, with the choice whose draws are shown; latest(): no other was opened since; again():
+    another arm was chosen. */
+export async function openPixel(root: HTMLElement, model: Model, state: State, latest: () => boolean, again: () => void): Promise<void> {
+  const { pixel } = state, { described: d } = model;
+  if (!pixel) return;
+  const [i, j] = [Math.min(pixel[0], d.width - 1), Math.min(pixel[1], d.height - 1)];
+  const inside = el("div"), arms = state.arms.map((arm, k): [string, string] => [String(k), arm]);
+  const whose = choice("whose", "draws of", arms, String(state.arm), (value) => { state.arm = Number(value); again(); });
+  const s = model.shown[state.arm] ?? model.shown[0]!;
+  const show = (): void => { // what stood there stands until this one has its words
+    if (inside.isConnected) return;
+    const held = document.activeElement?.id === "whose";
+    root.replaceChildren(whose, inside);
+    if (held) whose.querySelector("select")!.focus();
+  };
+  try {
+    await showPixel(inside, model, i, j, s.arm, s.name, state.n, () => latest() && d === model.described, show);
+  } catch (error) { pixelFailed(inside, error); show(); }
 }

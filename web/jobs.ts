@@ -36,18 +36,26 @@ function perform(door: Door, job: Exclude<Job, { kind: "open" }>): Answer {
 }
 
 const goesOn = (answer: Answer): boolean => typeof answer.said === "object" && answer.said !== null && "more" in answer.said;
+const readsReference = (job: Job): boolean => job.kind === "reference" || job.kind === "photograph";
 
 /** An instance that opens what a job is about, and its experiment again after it broke. */
 export class Answering {
   private door: Door;
   private last: Opening | undefined; // that of the page
   private here: Opening | undefined; // that of the door
-  private opened: Job | undefined; // what was opened for it, and is to be done next
+  private ready = false; // to compute its reference
+  private steps: (() => Answer)[] = []; // of the job that was begun: the last one answers it
+  private goes = false; // the first of them has parts left
   worked = 0; // the work of the last part, in samples, and of the largest so far
   most = 0;
 
-  constructor(private readonly module: WebAssembly.Module) {
-    this.door = new Door(module);
+  /** `kept`: for how many pixels it keeps what their primary rays met. */
+  constructor(private readonly module: WebAssembly.Module, private readonly kept = 0) { this.door = this.made(); }
+
+  private made(): Door {
+    const door = new Door(this.module);
+    door.number("keep_sites", this.kept);
+    return door;
   }
 
   get size(): number { return this.door.size; }
@@ -67,25 +75,38 @@ export class Answering {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
     if (this.door.waits) this.renew();
-    this.opened = undefined;
-    return this.part(() => {
-      if (!about || about === this.here || JSON.stringify(about) === JSON.stringify(this.here)) return this.done(job);
-      this.here = undefined;
-      this.door.ask("open", about);
-      this.here = about;
-      this.opened = job;
-      return undefined;
-    });
+    this.goes = false;
+    this.steps = [];
+    const known = !about || about === this.here || JSON.stringify(about) === JSON.stringify(this.here);
+    if (!known) this.steps.push(() => this.open(about));
+    if (readsReference(job) && !(known && this.ready)) this.steps.push(() => this.prepare());
+    this.steps.push(() => (job.kind === "open" ? {} : perform(this.door, job)));
+    return this.goOn();
   }
 
   /** The next part of the job that was begun. */
   goOn(): Answer | undefined {
-    const job = this.opened;
-    this.opened = undefined;
-    return this.part(() => (job ? this.done(job) : { said: this.door.ask("go_on") }));
+    return this.part(() => {
+      const answer = this.goes ? { said: this.door.ask("go_on") } : this.steps[0]!();
+      this.goes = goesOn(answer);
+      if (this.goes) return undefined;
+      this.steps.shift();
+      return this.steps.length === 0 ? answer : undefined;
+    });
   }
 
-  private done(job: Job): Answer { return job.kind === "open" ? {} : perform(this.door, job); }
+  private open(about: Opening): Answer {
+    this.here = undefined;
+    this.ready = false;
+    this.door.ask("open", about);
+    this.here = about;
+    return {};
+  }
+
+  private prepare(): Answer {
+    this.ready = true;
+    return { said: this.door.ask("prepare_reference") };
+  }
 
   private part(work: () => Answer | undefined): Answer | undefined {
     this.worked = 0;
@@ -93,7 +114,7 @@ export class Answering {
       const answer = work();
       this.worked = this.door.number("worked");
       this.most = Math.max(this.most, this.worked);
-      return answer && !goesOn(answer) ? answer : undefined;
+      return answer;
     } catch (error) {
       this.renew();
       throw error;
@@ -101,8 +122,9 @@ export class Answering {
   }
 
   private renew(): void {
-    this.door = new Door(this.module);
+    this.door = this.made();
     this.here = undefined;
+    this.ready = false;
   }
 }
 

@@ -101,17 +101,19 @@ struct Largest {
     }
 };
 
-/// What the furnaces read, one a part, and why the one that is asked about is off.
+/// What the furnaces read, one after another, and why the one that is asked about is off.
 struct Furnaces {
     explicit Furnaces(std::string of) : name(std::move(of)) {}
 
-    void add(FurnacePlan plan, std::uint64_t n) {
-        Experiment e = bench().experiment;
+    void draw(FurnacePlan plan, std::uint64_t n) {
         plan.n = n;
-        e.furnaces = {plan};
-        count_work(n);
+        count_work(n * furnace_cost);
         ProgressMonitor monitor;
-        for (const FurnaceMeter& f : furnaces(e, nullptr, "", monitor)) add(f);
+        draws = draw_furnace(bench().experiment, plan, "", monitor);
+    }
+    void read() {
+        count_work(draws.samples.size() * furnace_cost);
+        add(read_furnace(std::move(draws)));
     }
     void tell() const { say(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}}); }
 
@@ -129,6 +131,7 @@ private:
         else if (off > 4 * f.se) why = "bug";
     }
     std::string name, why = "none";
+    FurnaceDraws draws;  // of the furnace that is to be read
     ordered_json lines = ordered_json::array();
 };
 
@@ -139,7 +142,7 @@ private:
 CRESCENT_EXPORT(measure)()->void {
     const ordered_json asked = request();
     const auto m = std::make_shared<Measuring>(asked);
-    Parts parts;
+    Parts parts{prepare_reference};
     for (const TileBox& part : parts_of(m->box, reference_cost)) parts.emplace_back([=] { m->add_reference(part); });
     for (const TileBox& part : parts_of(m->box, cost_of(m->sampler, m->n)))
         for (std::size_t k = 0; k < m->y.size(); ++k) parts.emplace_back([=] { m->add_film(part, k); });
@@ -168,7 +171,10 @@ CRESCENT_EXPORT(furnaces_of)()->void {
     const auto n = asked.at("n").get<std::uint64_t>();
     const auto found = std::make_shared<Furnaces>(asked.at("name").get<std::string>());
     Parts parts;
-    for (const FurnacePlan& plan : bench().experiment.furnaces) parts.emplace_back([=] { found->add(plan, n); });
+    for (const FurnacePlan& plan : bench().experiment.furnaces) {
+        parts.emplace_back([=] { found->draw(plan, n); });
+        parts.emplace_back([=] { found->read(); });
+    }
     parts.emplace_back([=] { found->tell(); });
     begin(std::move(parts));
 }

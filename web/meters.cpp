@@ -74,15 +74,21 @@ ordered_json meters_of(const Slot& s) {
 /// Film `index` -> {key, meters: {"rmse.H": {value, text, published}, ...}, largest, bad, unsure, hash}.
 CRESCENT_EXPORT(meters)(int index)->void {
     const auto out = std::make_shared<ordered_json>();
-    begin({[=] {
-               *out = meters_of(slot(index));
-               count_work(bench().pixels() * meter_cost / 2);
-           },
-        [=] {
-            (*out)["hash"] = hash(slot(index).film);
-            count_work(bench().pixels() * meter_cost / 2);
-            say(*out);
-        }});
+    const auto hash = std::make_shared<FilmHash>();
+    Parts parts{[=] {
+        count_work(bench().pixels() * meter_cost);
+        *out = meters_of(slot(index));
+    }};
+    for (std::size_t plane = 0; plane < slot(index).film.planes().size(); ++plane)
+        parts.emplace_back([=] {
+            count_work(bench().pixels() / hashed);
+            hash->add(slot(index).film.planes()[plane]);
+        });
+    parts.emplace_back([=] {
+        (*out)["hash"] = hash->text();
+        say(*out);
+    });
+    begin(std::move(parts));
 }
 
 /// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: how heavy the tail of the arm's samples is in a box.

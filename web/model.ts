@@ -92,7 +92,7 @@ export class Model {
     const era = ++this.era, rungs = [...ladder.filter((rung) => rung > 1 && rung < n), n];
     this.startedAt = performance.now();
     this.finished = this.referenceDone = false;
-    const workers = this.pool.open({ ...opening, published: "" }).catch(() => undefined); // what they refuse is refused here too
+    this.pool.open({ ...opening, published: "" });
     try {
       this.described = this.door.ask<Described>("open", opening);
       this.shown = arms.map((name) => {
@@ -109,7 +109,8 @@ export class Model {
       throw error;
     }
     this.viewer.opened(this.described, this.shown);
-    await workers;
+    await this.pool.ready;
+    if (era !== this.era) return;
     try {
       await this.compute(era, opening, rungs);
     } catch (error) {
@@ -257,8 +258,9 @@ export class Model {
   }
 
   /** The reference of an experiment as a picture, RGBA of a box after another. What is asked last is answered first. */
-  photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): void {
-    for (const box of this.boxes(this.referenceCost, size).reverse())
+  async photograph(opening: Opening, size: readonly [number, number], put: (box: Box, bytes: ArrayBuffer) => void): Promise<void> {
+    await this.pool.ready;
+    for (const box of this.boxes(this.referenceCost + this.filmCost, size).reverse()) // and its colours
       this.pool.ask({ kind: "photograph", box, opening }, true).then(({ bytes }) => put(box, bytes![0]!), () => {}); // the question stands without it
   }
 

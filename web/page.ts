@@ -1,10 +1,11 @@
 // The page: reads the address, opens the experiment, shows it, writes the address.
 import { showChoices } from "./choices";
-import { choice, controlRows } from "./controls";
+import { controlRows } from "./controls";
 import { Asker } from "./answers";
 import { Box, Door, DoorError } from "./door";
-import { byId, copied, el, made, Speaker } from "./dom";
-import { pixelFailed, showPixel } from "./hemisphere";
+import { byId, copied, el, Speaker } from "./dom";
+import { openPixel } from "./hemisphere";
+import { showLadders } from "./ladders";
 import { Lessons, lessonList, showLesson, showSheet } from "./lesson";
 import { Lesson, lessons, onBench } from "./lessons";
 import { Described, Model, Shown, Viewer } from "./model";
@@ -39,12 +40,12 @@ export class Page implements Viewer {
 
   constructor(private readonly data: Data) {}
 
-  async start(module: WebAssembly.Module, worker: string): Promise<void> {
+  start(module: WebAssembly.Module, worker: string): void {
     const count = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     const door = new Door(module), turns = new Turns(door.number("most_of_part"));
-    const pool = await Pool.start(module, worker, count, turns);
+    const pool = new Pool(module, worker, count, turns);
+    void pool.ready.then(() => { document.documentElement.dataset["workers"] = String(pool.workers); });
     this.model = new Model(module, door, pool, turns, this);
-    document.documentElement.dataset["workers"] = String(pool.workers);
     this.samplers = this.model.door.ask<Sampler[]>("samplers");
     byId("copy").onclick = async (): Promise<void> => this.speaker.say(await copied(byId("command")));
     byId("reset").onclick = (): void => { this.state.set = {}; this.open(); };
@@ -179,7 +180,7 @@ export class Page implements Viewer {
     });
     this.speaker.say(lines.join("; "));
     if (!this.model.finished) return;
-    void this.finished(Promise.all([painted, this.charts(), this.state.pixel && this.openPixel()]));
+    void this.finished(Promise.all([painted, showLadders(byId("charts"), this.model), this.state.pixel && this.openPixel()]));
   }
 
   /** Tells the tests, once all of it is shown. */
@@ -191,17 +192,6 @@ export class Page implements Viewer {
     told["memory"] = `${this.model.door.size} ${this.model.pool.size}`; // of the page's instance, of the workers
     told["turns"] = `${this.model.turns.within(0.5)} ${this.model.turns.within(0.95)}`; // ms
     told["took"] = String(Math.round(took));
-  }
-
-  private async charts(): Promise<void> {
-    const { described, shown } = this.model;
-    await this.model.turns.pass();
-    if (described !== this.model.described) return;
-    const charts = described.regions.map(({ name }) => {
-      const series = shown.map((s) => ({ arm: s.name, points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)) }));
-      return el("figure", { class: "narrow" }, made(this.model.door.say("ladder_chart", { region: name, series })));
-    });
-    byId("charts").replaceChildren(...charts);
   }
 
   /** All pictures, unless others are wanted meanwhile. */
@@ -223,26 +213,12 @@ export class Page implements Viewer {
     void this.openPixel();
   }
 
-  private async openPixel(): Promise<void> {
-    const { pixel } = this.state, { described: d } = this.model, mine = ++this.opening;
-    if (!pixel) return;
-    const [i, j] = [Math.min(pixel[0], d.width - 1), Math.min(pixel[1], d.height - 1)];
-    const inside = el("div"), arms = this.state.arms.map((arm, k): [string, string] => [String(k), arm]);
-    const whose = choice("whose", "draws of", arms, String(this.state.arm), (value) => {
-      this.state.arm = Number(value);
+  private openPixel(): Promise<void> {
+    const mine = ++this.opening;
+    return openPixel(byId("pixel"), this.model, this.state, () => mine === this.opening, () => {
       history.replaceState(null, "", write(this.state));
       void this.openPixel();
     });
-    const s = this.model.shown[this.state.arm] ?? this.model.shown[0]!;
-    const show = (): void => { // what stood there stands until this one has its words
-      if (inside.isConnected) return;
-      const held = document.activeElement?.id === "whose";
-      byId("pixel").replaceChildren(whose, inside);
-      if (held) byId("whose").focus();
-    };
-    try {
-      await showPixel(inside, this.model, i, j, s.arm, s.name, this.state.n, () => mine === this.opening && d === this.model.described, show);
-    } catch (error) { pixelFailed(inside, error); show(); }
   }
 
   /** A sentence with what to do; `all`: there is nothing to show of these settings but their command. */

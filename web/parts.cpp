@@ -1,14 +1,18 @@
 #include "parts.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+
+#include "pause.h"
 
 namespace crescent::web {
 
 namespace {
 
 double done = 0;
-Parts left;  // the next one last
+Parts left;                  // the next one last
+std::size_t most_sites = 0;  // kept of one experiment; some 200 bytes each
 
 std::uint64_t bad_of(const Moments& m, std::size_t count) {
     return std::accumulate(m.bad.begin(), m.bad.begin() + static_cast<std::ptrdiff_t>(count), std::uint64_t{0});
@@ -21,15 +25,17 @@ std::uint32_t within(std::uint32_t pixel, const TileBox& box) {
     return static_cast<std::uint32_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
 }
 
-/// What the primary rays of a box meet; asked for arm after arm, they are traced once.
+/// What the primary rays of a box meet; asked for arm after arm and rung after rung, they are traced once.
 std::vector<ShadingPoints>& sites_seen(const TileBox& box) {
     Bench& b = bench();
-    const bool same = b.seen.x0 == box.x0 && b.seen.y0 == box.y0 && b.seen.x1 == box.x1 && b.seen.y1 == box.y1;
-    if (same) return b.sites;
+    const std::array key = {box.x0, box.y0, box.x1, box.y1};
+    if (const auto known = b.sites.find(key); known != b.sites.end()) return known->second;
+    if (b.sites_last == key) return b.last;
     b.shapes.shape.resize(b.pixels());
-    b.sites = sites_of(b.scene, box, b.shapes.shape.data());
-    b.seen = box;
-    return b.sites;
+    std::vector<ShadingPoints> made = sites_of(b.scene, box, b.shapes.shape.data());
+    if (b.sites_kept + pixels_of(box) > most_sites) return b.sites_last = key, b.last = std::move(made);
+    b.sites_kept += pixels_of(box);
+    return b.sites[key] = std::move(made);
 }
 
 void next_part() {
@@ -90,15 +96,30 @@ Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, 
     return film;
 }
 
+void prepare_reference() {
+    Bench& b = bench();
+    if (b.quadrature) return;
+    b.quadrature = std::make_unique<PixelQuadrature>(b.scene, [](std::size_t steps) { make_room(steps * step_cost); });
+}
+
 void reference_over(const TileBox& box, ReferenceFilm& film) {
     Bench& b = bench();
-    if (!b.quadrature) b.quadrature = std::make_unique<PixelQuadrature>(b.scene);
+    ensure(b.quadrature != nullptr, "the reference was prepared");
     count_work(pixels_of(box) * reference_cost);
     b.quadrature->write(box, film);
 }
 
+/// What is to be called before reference_tile(); {} once it is done.
+CRESCENT_EXPORT(prepare_reference)()->void {
+    begin({[] {
+        prepare_reference();
+        say(ordered_json::object());
+    }});
+}
 /// The next part of the question that was begun.
 CRESCENT_EXPORT(go_on)()->void { next_part(); }
+/// Keeps what primary rays met for so many pixels of an experiment: where the same tiles are asked for again.
+CRESCENT_EXPORT(keep_sites)(double pixels)->void { most_sites = static_cast<std::size_t>(pixels); }
 /// Samples that were drawn, or what cost as much, since the last call.
 CRESCENT_EXPORT(worked)()->double { return std::exchange(done, 0.0); }
 /// The most that one part may do, and what a pixel counts of a reference, and of a film beside its samples.

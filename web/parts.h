@@ -12,12 +12,18 @@
 namespace crescent::web {
 
 inline constexpr std::uint64_t most_of_part = 100'000;
-/// What a pixel of a reference counts: no less than it takes, by the rates of both in docs/speed.md.
-inline constexpr std::uint64_t reference_cost = 1000;
+/// What a pixel of a reference counts: one in a penumbra takes twice what the others do, by the rates in docs/speed.md.
+inline constexpr std::uint64_t reference_cost = 2000;
 /// What a pixel counts in films beside its samples, put into its place, measured, for the scale of maps, as a colour.
-inline constexpr std::uint64_t film_cost = 8, put_cost = 2, meter_cost = 1, scale_cost = 3, colour_cost = 10;
+inline constexpr std::uint64_t film_cost = 30, put_cost = 2, meter_cost = 1, scale_cost = 3, colour_cost = 10;
+/// Pixels of a plane whose hash counts one.
+inline constexpr std::uint64_t hashed = 10;
 /// And a sample that is looked at by itself, for a tail.
 inline constexpr std::uint64_t tail_cost = 4;
+/// And a step of what is computed between two questions, or for a lobe's albedo.
+inline constexpr std::uint64_t step_cost = 10;
+/// And a sample of a furnace, which fills one lane of a pack; to look at it for the tail.
+inline constexpr std::uint64_t furnace_cost = 1;
 
 /// What "box": [x0, y0, x1, y1] of a request means, both ends inside.
 Box asked_box(const ordered_json& asked);
@@ -40,6 +46,8 @@ void begin(Parts parts);
 Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, std::uint32_t seed);
 /// What one of its pixels counts.
 std::uint64_t cost_of(const std::string& sampler, std::uint64_t n);
+/// What a reference needs of the lobes, where it is not made yet; pauses (pause.h).
+void prepare_reference();
 /// The pixels of a box into a reference of the scene's size.
 void reference_over(const TileBox& box, ReferenceFilm& film);
 

@@ -11,15 +11,9 @@ namespace {
 /// The page's: leaves the module, unless it comes back to it.
 extern "C" __attribute__((import_module("door"), import_name("pause"))) void door_pause();
 
-/// What they count, in samples of a pixel: an answer of a sampler, which is asked in double and one by one, and a step
-/// of what is computed between two questions.
-constexpr std::uint64_t answer_cost = 40, step_cost = 10;
+/// What an answer of a sampler counts, in samples of a pixel: it is asked in double and one by one.
+constexpr std::uint64_t answer_cost = 40;
 constexpr std::size_t most_answers = most_of_part / answer_cost / 4;
-
-void make_room(std::uint64_t cost) {
-    if (work_of_part() + static_cast<double>(cost) > static_cast<double>(most_of_part)) door_pause();
-    count_work(cost);
-}
 
 /// ask(from, count) for all of `size` in blocks.
 template <class Ask> void in_blocks(std::size_t size, const Ask& ask) {
@@ -83,6 +77,11 @@ private:
 alignas(16) std::array<std::uint32_t, 1 << 15> kept;
 
 }  // namespace
+
+void make_room(std::uint64_t cost) {
+    if (work_of_part() + static_cast<double>(cost) > static_cast<double>(most_of_part)) door_pause();
+    count_work(cost);
+}
 
 std::shared_ptr<const JudgedSampler> paused(std::shared_ptr<const JudgedSampler> sampler) {
     return std::make_shared<Paused>(std::move(sampler));

@@ -30,22 +30,30 @@ double residual(const Film& film, std::size_t at) {
     return std::fabs(static_cast<double>(film.y[at]) - static_cast<double>(bench().reference.y[at]));
 }
 
-template <class F> Srgb8 photographed(const F& film, std::size_t at) {
-    const Rgb radiance{film.r[at], film.g[at], film.b[at]};
-    return photograph(radiance, bench().experiment.exposure);
-}
-
-Srgb8 colour(Picture picture, int index, int other, double top, std::size_t at) {
-    if (picture == Picture::photograph)
-        return index < 0 ? photographed(bench().reference, at) : photographed(slot(index).film, at);
-    const double a = residual(slot(index).film, at);
-    if (picture == Picture::heat) return turbo(a / top);
-    return two_hues((residual(slot(other).film, at) - a) / top);
-}
-
 void put(std::byte* to, const Srgb8& colour) {
     for (std::size_t c = 0; c < 3; ++c) to[c] = static_cast<std::byte>(colour[c]);
     to[3] = std::byte{255};
+}
+
+/// colour(at) for every pixel of a box, row by row from the top.
+template <class Colour> void each_pixel(const TileBox& box, std::byte* to, const Colour& colour) {
+    for (int j = box.y1 - 1; j >= box.y0; --j) {
+        const std::size_t row = static_cast<std::size_t>(j) * bench().width();
+        for (int i = box.x0; i < box.x1; ++i, to += 4) put(to, colour(row + static_cast<std::size_t>(i)));
+    }
+}
+
+template <class F> void photographed(const F& film, const TileBox& box, std::byte* to) {
+    const double exposure = bench().experiment.exposure;
+    each_pixel(box, to, [&](std::size_t at) { return photograph(Rgb{film.r[at], film.g[at], film.b[at]}, exposure); });
+}
+
+void mapped(Picture picture, int index, int other, double top, const TileBox& box, std::byte* to) {
+    const Film &film = slot(index).film, &beside = slot(picture == Picture::heat ? index : other).film;
+    each_pixel(box, to, [&](std::size_t at) {
+        const double a = residual(film, at);
+        return picture == Picture::heat ? turbo(a / top) : two_hues((residual(beside, at) - a) / top);
+    });
 }
 
 std::vector<std::byte> disk_pixels;
@@ -155,21 +163,18 @@ CRESCENT_EXPORT(scale_bar)(int picture, int size)->const void* {
 /// from 0 to `top`; 2: |Y_other - Y_ref| - |Y - Y_ref| over `top`, in the first hue where `other` is nearer.
 CRESCENT_EXPORT(paint)
 (int picture, int index, int other, double top, int x0, int y0, int x1, int y1)->const void* {
+    const TileBox box{x0, y0, x1, y1};
     std::vector<std::byte>& out = scratch<std::byte>();
-    out.resize(pixels_of({x0, y0, x1, y1}) * 4);
-    count_work(pixels_of({x0, y0, x1, y1}) * colour_cost);
+    out.resize(pixels_of(box) * 4);
+    count_work(pixels_of(box) * colour_cost);
     const bool needs_reference = picture != 0 || index < 0;
     if (needs_reference && bench().reference.size() == 0) {
         std::fill(out.begin(), out.end(), std::byte{0});
         return out.data();
     }
-    std::byte* to = out.data();
-    for (int j = y1 - 1; j >= y0; --j)
-        for (int i = x0; i < x1; ++i) {
-            const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
-            put(to, colour(static_cast<Picture>(picture), index, other, top, at));
-            to += 4;
-        }
+    if (picture != 0) mapped(static_cast<Picture>(picture), index, other, top, box, out.data());
+    else if (index < 0) photographed(bench().reference, box, out.data());
+    else photographed(slot(index).film, box, out.data());
     return out.data();
 }
 

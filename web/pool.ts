@@ -7,6 +7,8 @@ import { Turns } from "./turns";
 type Done = (answer: Answer) => void;
 type Failed = (error: DoorError) => void;
 interface Waiting { job: Job; done: Done; failed: Failed; lasting: boolean }
+type Kept = Map<string, Hand>; // who keeps what the primary rays of a box met
+const boxOf = ({ job }: Waiting): string => (job.kind === "tile" ? Object.values(job.box).join() : "");
 
 const underWay = 2; // jobs that a worker holds, so that it never waits for the page
 const side = 64; // of a tile, in pixels
@@ -64,31 +66,40 @@ export class Pool {
   private hands: Hand[] = [];
   private alone: { lasting: Lane; passing: Lane } | undefined; // what is opened meanwhile breaks no lasting question
   private queue: Waiting[] = [];
+  private kept: Kept = new Map();
+  private opened: Opening | undefined;
   private era = 0;
   private slicing = false;
-
-  private constructor(private readonly module: WebAssembly.Module, private readonly turns: Turns) {}
+  private settled = false;
+  readonly ready: Promise<void>; // once it is known whether there are workers: what is asked waits for that
 
   /** `source`: the worker's script. */
-  static async start(module: WebAssembly.Module, source: string, count: number, turns: Turns): Promise<Pool> {
-    const pool = new Pool(module, turns);
+  constructor(module: WebAssembly.Module, source: string, count: number, private readonly turns: Turns) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-    const starting = Array.from({ length: count }, () => pool.startOne(url));
-    const started = await Promise.all(starting);
-    URL.revokeObjectURL(url);
-    if (!started.some(Boolean)) pool.alone = { lasting: new Lane(module), passing: new Lane(module) };
-    return pool;
+    this.ready = Promise.all(Array.from({ length: count }, () => this.startOne(module, url))).then((started) => {
+      URL.revokeObjectURL(url);
+      if (!started.some(Boolean)) {
+        this.alone = { lasting: new Lane(module), passing: new Lane(module) };
+        if (this.opened) this.alone.passing.answering.about(this.opened);
+      }
+      this.settled = true;
+    });
   }
 
-  private startOne(url: string): Promise<boolean> {
+  private startOne(module: WebAssembly.Module, url: string): Promise<boolean> {
     return new Promise((resolve) => {
       const late = setTimeout(() => resolve(false), 4000);
       const settle = (good: boolean): void => { clearTimeout(late); resolve(good); };
       try {
         const worker = new Worker(url);
         worker.onerror = (event): void => { event.preventDefault(); settle(false); };
-        worker.onmessage = (): void => { this.hands.push(new Hand(worker, () => this.pump())); settle(true); };
-        worker.postMessage(this.module);
+        worker.onmessage = (): void => {
+          const hand = new Hand(worker, () => this.pump());
+          if (this.opened) this.openIn(hand, this.opened);
+          this.hands.push(hand);
+          settle(true);
+        };
+        worker.postMessage(module);
       } catch {
         settle(false);
       }
@@ -110,16 +121,21 @@ export class Pool {
   get most(): number { return Math.max(this.alone?.lasting.answering.most ?? 0, this.alone?.passing.answering.most ?? 0); }
 
   /** Every instance opens this; what was asked before is never answered. */
-  async open(opening: Opening): Promise<void> {
+  open(opening: Opening): void {
     this.cancel();
-    const job: Job = { kind: "open", opening };
+    this.opened = opening;
     if (this.alone) { this.alone.passing.answering.about(opening); return; } // opened by the first job that asks it
-    for (const hand of this.hands) hand.give({ job, lasting: true, done: () => {}, failed: () => {} });
+    this.kept.clear();
+    for (const hand of this.hands) this.openIn(hand, opening);
+  }
+  private openIn(hand: Hand, opening: Opening): void { // what they refuse is refused on the page's own thread too
+    hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 
   /** `lasting`: a question that stands whatever is opened meanwhile, and goes before all others. */
-  ask(job: Job, lasting = false): Promise<Answer> {
+  async ask(job: Job, lasting = false): Promise<Answer> {
     const era = this.era;
+    if (!this.settled) await this.ready;
     return new Promise((resolve, reject) => {
       const here = (): boolean => lasting || era === this.era;
       const waiting: Waiting = { job, lasting, done: (a) => here() && resolve(a), failed: (e) => here() && reject(e) };
@@ -130,9 +146,10 @@ export class Pool {
     });
   }
 
-  /** Boxes of a size that one job should have; a pixel costs so many samples. Without workers, a job has `most` samples. */
+  /** Boxes of a size that one job should have; a pixel costs so many samples. A job has at most `most` of them, or in a worker
+      twenty times as many: a new setting waits for those that are under way. */
   tiles(width: number, height: number, cost: number, most: number): Box[] {
-    const pixels = this.alone ? Math.max(1, Math.floor(most / cost)) : Infinity;
+    const pixels = Math.max(1, Math.floor((this.alone ? most : 20 * most) / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
     const all: Box[] = [];
     for (let y0 = 0; y0 < height; y0 += up)
@@ -147,7 +164,14 @@ export class Pool {
       void this.slices();
       return;
     }
-    for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.queue.shift()!);
+    for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.nextFor(hand));
+  }
+  /** The next job that this one is best at: a box that it keeps, else one that nobody does, else what others are behind with. */
+  private nextFor(hand: Hand): Waiting {
+    const good = (waiting: Waiting): boolean => [hand, undefined].includes(this.kept.get(boxOf(waiting)));
+    const [waiting] = this.queue.splice(Math.max(0, this.queue.findIndex(good)), 1);
+    if (waiting!.job.kind === "tile") this.kept.set(boxOf(waiting!), hand);
+    return waiting!;
   }
   private next(): Hand | undefined { return this.hands.find((hand) => hand.room); }
 

@@ -1,7 +1,7 @@
 // Turns of the page's own thread: what it does between two looks at its reader. A turn ends after so much work, which the
 // core counts in samples (web/parts.h), or so many milliseconds, whichever comes first.
 
-const mostMs = 6; // what a turn began last ends within the 10 that a reader may wait
+const mostMs = 4; // what a turn began last ends within the 10 that a reader may wait
 const mostParts = 4; // of web/parts.h
 const bins = 64; // ms
 

@@ -6,11 +6,12 @@ interface Scope {
   postMessage(message: Reply, transfer: Transferable[]): void;
 }
 const scope = self as unknown as Scope;
+const keptPixels = 300_000; // 60 MB
 let answering: Answering | undefined;
 
 scope.onmessage = ({ data }: MessageEvent): void => {
   if (!answering) {
-    answering = new Answering(data as WebAssembly.Module);
+    answering = new Answering(data as WebAssembly.Module, keptPixels);
     scope.postMessage({ id: -1, size: answering.size }, []);
     return;
   }

@@ -20,6 +20,7 @@ from selenium.webdriver.common.keys import Keys
 
 import browser
 import reach
+import settings
 import steady
 import turns
 
@@ -241,7 +242,7 @@ def two_hundred_settings(driver):
 laws = {
     "numbers": [same_bits, opens_and_measures, address_is_data, address_keeps_all, faults_are_sentences, the_link_back,
                 a_lesson_is_confirmed, *turns.laws(page), two_hundred_settings],
-    "readers": [*reach.laws(page, pathlib.Path(page_path).resolve().parent), *steady.laws(page)],
+    "readers": [*reach.laws(page, pathlib.Path(page_path).resolve().parent), *steady.laws(page), *settings.laws(page)],
 }[group]
 driver = browser.chromium()
 failed = 0

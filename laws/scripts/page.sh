@@ -45,6 +45,9 @@ esbuild "$CRESCENT_SOURCE/web/door.ts" --format=esm --target=es2022 --log-level=
 expect 0 node --no-warnings "$CRESCENT_SOURCE/laws/page/verdicts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
     phong.json 60
 cat printed
+expect 0 node --no-warnings "$CRESCENT_SOURCE/laws/page/parts.mjs" "$work/door.mjs" "$CRESCENT_PAGE/crescent.wasm" \
+    "$CRESCENT_SOURCE/experiments/gallery.toml"
+cat printed
 
 python=/usr/bin/python3  # Debian's, which has Debian's selenium
 command -v chromium >/dev/null && command -v chromedriver >/dev/null &&

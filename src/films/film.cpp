@@ -5,6 +5,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "films/film_hash.h"
+
 namespace crescent::inline films {
 
 namespace {
@@ -22,12 +24,9 @@ template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f
 }
 
 std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
-    XXH3_state_t* state = XXH3_createState();
-    XXH3_64bits_reset(state);
-    for (const auto plane : planes) XXH3_64bits_update(state, plane.data(), plane.size());
-    const std::uint64_t digest = XXH3_64bits_digest(state);
-    XXH3_freeState(state);
-    return fmt::format("{:016x}", digest);
+    FilmHash all;
+    for (const auto plane : planes) all.add(plane);
+    return all.text();
 }
 
 }  // namespace
@@ -46,6 +45,16 @@ ReferenceFilm::ReferenceFilm(int w, int h, double exponent) : width(w), height(h
 std::vector<std::span<std::byte>> Film::planes() { return film_bytes<std::byte>(*this); }
 
 std::vector<std::span<std::byte>> ReferenceFilm::planes() { return reference_bytes<std::byte>(*this); }
+
+FilmHash::FilmHash() : state_(XXH3_createState(), [](void* p) { XXH3_freeState(static_cast<XXH3_state_t*>(p)); }) {
+    XXH3_64bits_reset(static_cast<XXH3_state_t*>(state_.get()));
+}
+void FilmHash::add(std::span<const std::byte> bytes) {
+    XXH3_64bits_update(static_cast<XXH3_state_t*>(state_.get()), bytes.data(), bytes.size());
+}
+std::string FilmHash::text() const {
+    return fmt::format("{:016x}", XXH3_64bits_digest(static_cast<const XXH3_state_t*>(state_.get())));
+}
 
 std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(film)); }
 

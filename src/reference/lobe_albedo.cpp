@@ -14,6 +14,8 @@ namespace crescent::inline reference {
 
 namespace {
 
+constexpr std::size_t ring_steps = 40, band_steps = 5;  // of a ring of half vectors; of one in closed form
+
 template <class Call> double integrate(Call&& f, double a, double b, double tolerance = 1e-9) {
     return b > a ? boost::math::quadrature::gauss_kronrod<double, 21>::integrate(f, a, b, 12, tolerance) : 0.0;
 }
@@ -21,11 +23,13 @@ template <class Call> double integrate(Call&& f, double a, double b, double tole
 /// A lobe about the half vector m: with m drawn by the lobe's own distribution (cos(m) from u, azimuth phi, density
 /// p_m) and dwi = 4 (wo.m) dm, the integrand f cos(theta_i) 4 (wo.m) / p_m is smooth over those m whose wi is above the
 /// horizon: cos(phi) > (cos_o / (2 c) - cos_o c) / (sin_o sin_m). Gauss-Legendre in phi, cut there; adaptive in u.
-template <class L, class Normals> double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals) {
+template <class L, class Normals>
+double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, const MakeWay& make_way) {
     using Rule = math::Gauss<30>;
     const double theta_o = math::acos(cos_o), sin_o = math::sin(theta_o);
     const Vec3<double> wo = {sin_o, 0, cos_o};
     const auto ring = [&](double u) {
+        if (make_way) make_way(ring_steps);
         const double c = normals.height(u), sin = std::sqrt(std::max(0.0, 1 - c * c));
         const double cut = (0.5 / c - c) * cos_o, all = sin_o * sin;
         const double last = cut <= -all ? pi : cut >= all ? 0 : math::acos(cut / all);
@@ -50,17 +54,22 @@ template <class L, class Normals> double half_vector_albedo(const L& lobe, doubl
 
 }  // namespace
 
-double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o) {
+double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o, const MakeWay& make_way) {
     const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no room at the horizon itself
     int index = 0;
     double out = 0;
     for_each_lobe(Lobes{}, [&]<template <class> class L>() {
         if (index++ != static_cast<int>(kind)) return;
         if constexpr (requires { typename L<double>::Normals; })
-            out = half_vector_albedo(L<double>(s, alpha), c, typename L<double>::Normals(s, alpha));
+            out = half_vector_albedo(L<double>(s, alpha), c, typename L<double>::Normals(s, alpha), make_way);
         else
-            out = L<double>::albedo(s, alpha, std::clamp(cos_o, 0.0, 1.0),
-                [](const auto& f, double a, double b) { return integrate(f, a, b); });
+            out = L<double>::albedo(s, alpha, std::clamp(cos_o, 0.0, 1.0), [&](const auto& f, double a, double b) {
+                const auto one = [&](double x) {
+                    if (make_way) make_way(band_steps);
+                    return f(x);
+                };
+                return integrate(one, a, b);
+            });
     });
     return out;
 }
@@ -76,8 +85,8 @@ double through_five(const std::array<double, 5>& v, double t) {
 
 }  // namespace
 
-LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha) {
-    const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta)); };
+LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const MakeWay& make_way) {
+    const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta), make_way); };
     const bool about_mirror = lobe_info(kind).about_mirror;
     const double good = about_mirror ? 1e-7 : 1e-6;  // half vectors take forty times as long
     const double own = about_mirror ? 1e-10 : 1e-6;

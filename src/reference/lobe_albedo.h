@@ -3,20 +3,26 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "lobes/info.h"
 
 namespace crescent::inline reference {
 
+/// Told before so many steps, a tenth of a microsecond each, on the thread that takes them: a page may answer its
+/// reader meanwhile. Near the horizon one albedo takes millions.
+using MakeWay = std::function<void(std::size_t steps)>;
+
 /// A at one angle by adaptive quadrature: lobes about R to about 1e-10, lobes about the half vector to about 1e-6.
-double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o);
+double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o, const MakeWay& make_way = {});
 
 /// The same for many angles: interpolation through five quadratures a cell, cells halved until their own error is below
 /// 1e-7 (1e-6 for the half-vector lobes) or they are 2^-15 of a right angle: those that a lobe's edge runs through.
 class LobeAlbedo {
 public:
-    LobeAlbedo(LobeKind kind, double s, double alpha);
+    LobeAlbedo(LobeKind kind, double s, double alpha, const MakeWay& make_way = {});
     double operator()(double cos_o) const;
     /// Largest difference to quadrature seen between the nodes about this angle, and the quadrature's own.
     double error(double cos_o) const;

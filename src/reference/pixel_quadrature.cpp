@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "reference/disk_quadrature.h"
-#include "reference/lobe_albedo.h"
 
 namespace crescent::inline reference {
 
@@ -15,12 +14,12 @@ namespace {
 /// One table for each lobe of a scene.
 class Albedos {
 public:
-    explicit Albedos(const Scene& scene) {
+    Albedos(const Scene& scene, const MakeWay& make_way) {
         for (std::size_t k = 0; k < scene.shapes().size(); ++k) {
             Hit hit;
             hit.shape = static_cast<int>(k);
             const Surface surface = scene.surface(hit);
-            if (surface.rho_s > 0) tables_.try_emplace(key(surface), surface.brdf, surface.s, surface.alpha);
+            if (surface.rho_s > 0) tables_.try_emplace(key(surface), surface.brdf, surface.s, surface.alpha, make_way);
         }
     }
     const LobeAlbedo& of(const Surface& surface) const { return tables_.at(key(surface)); }
@@ -35,7 +34,7 @@ private:
 
 class PixelQuadrature::Made {
 public:
-    explicit Made(const Scene& scene) : scene_(scene), albedos_(scene_) {
+    Made(const Scene& scene, const MakeWay& make_way) : scene_(scene), albedos_(scene_, make_way) {
         for (std::size_t k = 0; k < scene_.lights().size(); ++k) disks_.emplace_back(scene_, k);
     }
 
@@ -72,7 +71,8 @@ private:
     std::vector<DiskQuadrature> disks_;
 };
 
-PixelQuadrature::PixelQuadrature(const Scene& scene) : made_(std::make_unique<const Made>(scene)) {}
+PixelQuadrature::PixelQuadrature(const Scene& scene, const MakeWay& make_way)
+    : made_(std::make_unique<const Made>(scene, make_way)) {}
 PixelQuadrature::~PixelQuadrature() = default;
 PixelQuadrature::PixelQuadrature(PixelQuadrature&&) noexcept = default;
 PixelQuadrature& PixelQuadrature::operator=(PixelQuadrature&&) noexcept = default;

@@ -8,13 +8,15 @@
 #include "color/rgb.h"
 #include "estimator/shading_points.h"
 #include "films/film.h"
+#include "reference/lobe_albedo.h"
 #include "scene/scene.h"
 
 namespace crescent::inline reference {
 
 class PixelQuadrature {
 public:
-    explicit PixelQuadrature(const Scene& scene);
+    /// `make_way`: told while the tables of the lobes' albedos are made.
+    explicit PixelQuadrature(const Scene& scene, const MakeWay& make_way = {});
     ~PixelQuadrature();
     PixelQuadrature(PixelQuadrature&&) noexcept;
     PixelQuadrature& operator=(PixelQuadrature&&) noexcept;

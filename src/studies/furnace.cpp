@@ -23,7 +23,9 @@ std::optional<Tail> tail_of(std::vector<float> x) {
     return fit_tail(std::span<const float>(x.data(), length + 1));
 }
 
-FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
+}  // namespace
+
+FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
     ProgressMonitor& monitor, const OutsideSamplers& outside) {
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
@@ -33,29 +35,32 @@ FurnaceMeter measure_one(const Experiment& experiment, const FurnacePlan& plan, 
     const bool lobe_only = plan.part == FurnacePart::lobe;
     const Surface surface = furnace_surface(experiment, *shape, lobe_only);
     const ShadingPoints sites = furnace_sites(surface, 1);
-    std::vector<float> samples(plan.n);
+    FurnaceDraws out;
+    out.samples.resize(plan.n);
     const Moments m = estimate_sites(sites, {arm->sampler, outside_of(outside, arm->name)}, plan.n, experiment.seed,
-        isa, &monitor.stop, samples.data());
+        isa, &monitor.stop, out.samples.data());
     const double n = static_cast<double>(plan.n);
-    FurnaceMeter out;
-    out.name = plan.name, out.arm = plan.arm, out.part = lobe_only ? "lobe" : "combined", out.n = plan.n;
+    FurnaceMeter& meter = out.meter;
+    meter.name = plan.name, meter.arm = plan.arm, meter.part = lobe_only ? "lobe" : "combined", meter.n = plan.n;
     const double rho_d = luminance(surface.rho_d);
     const double albedo = surface.rho_s > 0 ? lobe_albedo(surface.brdf, surface.s, surface.alpha, 1.0) : 0;
-    out.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
-    out.expected = rho_d + surface.rho_s * albedo;
-    out.se = plan.n > 1 ? std::sqrt(m.spread[0] / (n * (n - 1))) : 0;
-    out.tail = tail_of(std::move(samples));
-    out.bad = m.bad[0];
+    meter.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
+    meter.expected = rho_d + surface.rho_s * albedo;
+    meter.se = plan.n > 1 ? std::sqrt(m.spread[0] / (n * (n - 1))) : 0;
+    meter.bad = m.bad[0];
     return out;
 }
 
-}  // namespace
+FurnaceMeter read_furnace(FurnaceDraws draws) {
+    draws.meter.tail = tail_of(std::move(draws.samples));
+    return draws.meter;
+}
 
 std::vector<FurnaceMeter> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
     ProgressMonitor& monitor, const OutsideSamplers& outside) {
     std::vector<FurnaceMeter> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
-        out.push_back(measure_one(experiment, plan, isa, monitor, outside));
+        out.push_back(read_furnace(draw_furnace(experiment, plan, isa, monitor, outside)));
         if (published) out.back().published = published->furnace(plan.name);
         monitor.check();
     }

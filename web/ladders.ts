@@ -1,0 +1,17 @@
+// RMSE against N, one chart a region, as the core draws it.
+import { el, made } from "./dom";
+import { Model } from "./model";
+
+/** The charts of what the model has measured, unless it opens something else meanwhile. */
+export async function showLadders(root: HTMLElement, model: Model): Promise<void> {
+  const { described, shown } = model;
+  await model.turns.pass();
+  if (described !== model.described) return;
+  root.replaceChildren(...described.regions.map(({ name }) => {
+    const series = shown.map((s) => ({
+      arm: s.name,
+      points: s.rungs.map((r) => [r.n, Number(r.meters.meters[`rmse.${name}`]!.value)]).filter(([, y]) => y! > 0 && Number.isFinite(y)),
+    }));
+    return el("figure", { class: "narrow" }, made(model.door.say("ladder_chart", { region: name, series })));
+  }));
+}
