@@ -15,7 +15,7 @@ template <class F> struct LightArea {
         {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr ArmManual manual = {.label = "light-area (NEE)",
-        .summary = "next-event estimation: a point of a disk light, even over its area",
+        .summary = "next-event estimation: a point of a light, even over its area",
         .formula = R"(\frac{\lvert y-x\rvert^2}{\pi r^2\cos\theta_y})",
         .draw = "even over the area of a disk",
         .axis = "the disk",

@@ -22,7 +22,7 @@ template <class F> struct LightSolidAngle {
         {.lambert = true, .light = "overhead disk"}, {.lambert = true, .light = "two disks"},
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr ArmManual manual = {.label = "light-solid-angle (NEE)",
-        .summary = "next-event estimation: a direction of the cap about a disk light, even over its solid angle",
+        .summary = "next-event estimation: a direction to a light, even over its solid angle",
         .formula = R"(\frac{1}{2\pi\,(1-\cos\beta)})",
         .draw = R"($\cos\theta=1-u_1(1-\cos\beta)$)",
         .axis = R"(the middle of the cap, of half angle $\beta$, around the disk)",

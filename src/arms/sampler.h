@@ -70,11 +70,11 @@ template <class F> struct ShadingPoint {
     int other_count = 0;
 };
 
-/// What holds of the arms that aim at disk lights alone.
-inline constexpr std::string_view light_arm_misses = "light that comes from no disk";
+/// What holds of the arms that aim at lights alone.
+inline constexpr std::string_view light_arm_misses = "the fill";
 inline ExpectedBehaviour theory_of_light_arm(const TrialPoint& at) {
     ExpectedBehaviour t;
-    if (at.fill > 0) t.wrong = "support", t.why = "an arm that aims at the disk alone cannot find the fill";
+    if (at.fill > 0) t.wrong = "support", t.why = "an arm that aims at lights alone cannot find the fill";
     return t;
 }
 

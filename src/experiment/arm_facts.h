@@ -10,7 +10,7 @@ namespace crescent::inline experiment {
 /// Directions that an arm draws a sample: 2 where it joins two techniques and N counts pairs.
 int techniques_of(const ArmPlan& arm);
 
-/// The light of this scene that an arm cannot reach ("light that comes from no disk"), so that it is biased here and
+/// The light of this scene that an arm cannot reach ("the fill"), so that it is biased here and
 /// its error stops falling with N; "" where it reaches all.
 std::string missed_light(const ArmPlan& arm, const Experiment& experiment);
 

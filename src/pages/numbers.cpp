@@ -44,7 +44,8 @@ std::string figures(double x, int digits) {
 std::string compact(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : shortest(x); }
 
 std::string figures_of(std::string_view meter, double x) {
-    if (meter == "fireflies" && x == std::floor(x)) return fmt::format("{:.0f}", x);
+    if (meter == "fireflies" && std::isfinite(x))
+        return fmt::format("{}", 2 * x == std::floor(2 * x) ? x : std::round(x));
     return figures(x);
 }
 

@@ -17,7 +17,7 @@ std::string figures(double x, int digits = 4);
 /// At most six significant figures and no trailing zeros: "3", "1.99966".
 std::string compact(double x);
 
-/// As figures(), but a meter that counts (fireflies) stays a whole number.
+/// As figures(), but a meter that counts (fireflies) stays a whole number, or a half between two where it is a median.
 std::string figures_of(std::string_view meter, double x);
 
 /// A ratio or share in percent, "6.7 %"; at most `digits` significant figures.

@@ -13,14 +13,24 @@ namespace crescent::plates {
 /// The pdf of a sampler at one surface point of an experiment, for the plates. Directions in the local frame, n = +z.
 class Density {
 public:
-    /// `tilt`: radians from n to R. A sampler that is not in the list, or that needs a light, has density 0.
+    /// `tilt`: radians from n to R. An arm that aims at lights alone is asked at a pixel, which sees a light and has R
+    /// as near to that as there is one. A sampler that is not in the list, or that has no one density, has density 0.
     Density(const Experiment& e, const std::string& sampler, double s, double tilt);
     double at(const Vec3d& wi) const { return pdf_(wi); }
     /// In the plane of incidence, `angle` radians from n towards R.
     double in_plane(double angle) const;
+    /// The largest in that plane, or at what a pixel's arm draws.
+    double peak() const { return peak_; }
+    /// Radians from n to R.
+    double tilt() const { return tilt_; }
+    /// "pixel (12, 34)" where an arm that aims at lights was asked; else "".
+    const std::string& where() const { return where_; }
 
 private:
+    void ask_at_a_pixel(const Experiment& e, const std::string& sampler, double s);
     std::function<double(const Vec3d&)> pdf_;
+    double tilt_, peak_ = 0;
+    std::string where_;
 };
 
 }  // namespace crescent::plates

@@ -34,6 +34,23 @@ TEST(Density, OfEveryArmThatNeedsNoLightIsThereOnASurfaceWithoutAlpha) {
     }
 }
 
+TEST(Density, OfAnArmThatAimsAtLightsIsThatOfAPixelOnWhichOneShines) {
+    Experiment e = test::small_scene();
+    for (const char* arm : {"light-area", "light-solid-angle"}) {
+        const Density density(e, arm, e.s(), 0.5);
+        EXPECT_NE(density.where(), "") << arm;
+        EXPECT_NEAR(density.tilt(), 0.5, 0.2) << arm;
+        EXPECT_NEAR(integral(density), 1, 0.15) << arm;
+        double largest = 0;
+        for (int i = 0; i < 900; ++i) largest = std::max(largest, density.in_plane((i - 450) * pi / 900));
+        EXPECT_GT(largest, 0) << arm << ": no light near the plane of incidence";
+        EXPECT_LE(largest, 1.01 * density.peak()) << arm;
+    }
+    e.disks.clear();
+    e.lights.clear();
+    EXPECT_EQ(Density(e, "light-area", e.s(), 0.5).peak(), 0);
+}
+
 TEST(Density, IsOfTheShapeWhoseExponentIsTheExperiments) {
     Experiment e = test::small_scene();
     Shape other = e.shapes[0];

@@ -62,7 +62,7 @@ void draw_axes(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves)
     c.line(a.plot.x, a.plot.bottom(), a.plot.right(), a.plot.bottom(), muted, 1.5);
 }
 
-std::string signed_number(double v) { return fmt::format("{}{:.2f}", v < 0 ? "−" : "", std::abs(v)); }
+std::string signed_number(double v) { return fmt::format("{}{:.2f}", v <= -0.005 ? "−" : "", std::abs(v)); }
 
 std::string slope_text(const LadderCurve& l) {
     if (!std::isfinite(l.slope)) return l.name;

@@ -184,6 +184,7 @@ void draw_meters(Sheet& sheet) {
     Rect rest{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
     if (rest.h >= 170) draw_charts(sheet, rest);
     note_what_is_left_out(sheet, t);
+    note_biased_arms(sheet);
     if (seeds < 2) sheet.notes.push_back("one seed: no band");
     if (rest.h >= 170)
         sheet.notes.push_back(seeds > 1 ? "slopes: fit, and 5–95 % over seeds" : "slopes: fit and its interval");

@@ -225,6 +225,19 @@ TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
     EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), say));
 }
 
+TEST(Plates, NameTheArmsThatCannotReachAllLight) {
+    World world(96, 54);
+    world.e.fill = {1, 1, 1};
+    const char* say = "out of reach: light-area";
+    for (PlateKind kind : {PlateKind::heat, PlateKind::meters})
+        EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), "biased"));
+    world.add_arm("light-area", "light-area");
+    for (PlateKind kind : {PlateKind::heat, PlateKind::meters}) {
+        EXPECT_TRUE(has(world.settings(world.plan(kind, 4)), say));
+        EXPECT_FALSE(has(world.settings(world.plan(kind, 2)), say)) << "not on this plate";
+    }
+}
+
 TEST(Heat, PrintsThe98thPercentileOfAllPixelsShown) {
     World world(96, 54);
     PlatePlan plan = world.plan(PlateKind::heat, 2);

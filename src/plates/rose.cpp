@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arms/info.h"
 #include "color/turbo.h"
 #include "math/functions.h"
 #include "plates/density.h"
@@ -98,10 +99,10 @@ void draw_arrow(Canvas& c, const Dome& dome, const Direction& d, const std::stri
 struct Part {
     RunKey key;
     Density p;
-    double peak = 0;
+    double peak = p.peak();
 };
 
-void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
+void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
     double head = 26;  // above the dome, for the tips of the arrows
     int r = static_cast<int>(std::min((slot.w - bar_room - 24) / 2, (slot.h - head) / (1 + up)));
     if (r < 8) return;
@@ -110,7 +111,7 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot, double tilt) {
         dome_block(part.p, part.peak, r, ground_pixel(sheet.canvas.theme())), int(dome.x) - r, int(slot.y + head));
     draw_grid(sheet.canvas, dome);
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
-    draw_arrow(sheet.canvas, dome, {math::sin(tilt), 0, math::cos(tilt)}, "R", 1);
+    draw_arrow(sheet.canvas, dome, {math::sin(part.p.tilt()), 0, math::cos(part.p.tilt())}, "R", 1);
     Rect bar{slot.right() - bar_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
     sheet.canvas.text({bar.x, slot.y - 2, bar_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
     colour_bar(sheet, bar, part.peak, false);
@@ -123,11 +124,7 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
         for (const ArmPlan& a : e.arms) keys.push_back({a.name, 0, e.s(), e.seed});
     }
     std::vector<Part> parts;
-    for (const RunKey& k : keys) {
-        Part part{k, Density(e, sampler_of(k.arm, e), k.s, tilt), 0};
-        for (int i = -900; i <= 900; ++i) part.peak = std::max(part.peak, part.p.in_plane(i * 0.1 * degree));
-        parts.push_back(std::move(part));
-    }
+    for (const RunKey& k : keys) { parts.push_back({k, Density(e, sampler_of(k.arm, e), k.s, tilt)}); }
     return parts;
 }
 
@@ -151,7 +148,16 @@ double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, c
     return line.y + (narrow ? 56 : 31);
 }
 
-void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, double tilt) {
+/// Why there is nothing to show of an arm.
+std::string why_no_density(const std::string& arm, const Experiment& e) {
+    const ArmInfo* info = find_arm_info(sampler_of(arm, e));
+    return arm_name(arm, e) +
+        (!info                   ? " comes from outside: its density is not known here"
+                : info->combines ? " joins several densities, each with its own weight"
+                                 : " aims at lights: none shines where the camera sees");
+}
+
+void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
     const Experiment& e = sheet.experiment();
     const Part& part = parts[i];
     Rect col = column(content_band, parts.size(), i);
@@ -159,23 +165,19 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, doub
     double y = draw_words(sheet, parts, i, col, narrow);
     Rect dome{col.x, y, col.w, content_band.y + 294 - y};
     if (!(part.peak > 0)) {
-        const bool outside = sampler_of(part.key.arm, e).empty();
-        paint_missing(sheet, dome,
-            arm_name(part.key.arm, e) +
-                (outside ? " comes from outside: its density is not known here"
-                         : " has no density that is independent of the lights"));
+        paint_missing(sheet, dome, why_no_density(part.key.arm, e));
         return;
     }
-    draw_dome(sheet, part, dome, tilt);
+    draw_dome(sheet, part, dome);
     PolarPlot plot;
     plot.slot = {col.x, content_band.y + 300, col.w, 240};
     plot.legend_w = narrow ? 0 : bar_room;
     plot.peak = part.peak;
-    plot.tilt = tilt;
+    plot.tilt = part.p.tilt();
     for (std::size_t k = 0; k < parts.size(); ++k) {
         bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
         if (k != i && (narrow || !lower)) continue;
-        plot.curves.push_back({k == i, arm_colour(parts[k].key.arm, e), arm_name(parts[k].key.arm, e),
+        plot.curves.push_back({k == i, arm_colour(parts[k].key.arm, e), escaped(parts[k].key.arm),
             [&p = parts[k].p](double a) { return p.in_plane(a); }});
     }
     draw_polar(sheet.canvas, plot);
@@ -191,13 +193,17 @@ void draw_rose(Sheet& sheet) {
     instrument_header(sheet, "PDF ROSE",
         "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
         "nothing sampled", false);
-    for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i, tilt);
+    for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i);
     if (sheet.in.instrument == "CPU") sheet.notes.clear();  // nothing was measured
     for (const std::string& note : {fmt::format("R stands {}° from n", number(tilt_deg)),
              std::string(
                  "domes seen from 45° above the surface, rings and meridians every 30°, each with its own scale"),
              std::string("polar: plane of incidence")})
         sheet.notes.push_back(note);
+    for (const Part& p : parts)
+        if (!p.p.where().empty())
+            sheet.notes.push_back(
+                fmt::format("{}: {}, R at {}°", escaped(p.key.arm), p.p.where(), number(p.p.tilt() / degree, 3)));
 }
 
 }  // namespace crescent::plates

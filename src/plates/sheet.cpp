@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/arm_facts.h"
 #include "math/functions.h"
 
 namespace crescent::plates {
@@ -59,6 +60,18 @@ void instrument_header(
     if (!on.empty())
         sheet.notes.push_back(
             (of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
+}
+
+void note_biased_arms(Sheet& sheet) {
+    const Experiment& e = sheet.experiment();
+    const std::vector<RunKey> runs = keys_of(sheet.plan, e);
+    std::vector<std::string> names;
+    for (const ArmPlan& arm : e.arms) {
+        const bool shown =
+            runs.empty() || std::ranges::any_of(runs, [&](const RunKey& k) { return k.arm == arm.name; });
+        if (shown && !missed_light(arm, e).empty()) names.push_back(arm_name(arm.name, e));
+    }
+    if (!names.empty()) sheet.notes.push_back("biased, some light is out of reach: " + joined(names, ", "));
 }
 
 void finish(Sheet& sheet) {

@@ -31,6 +31,9 @@ void photograph_header(Sheet& sheet, const std::string& what, const std::string&
 /// which any instrument may have computed; else it is the CPU's, and the films of the run are named beside it.
 void instrument_header(
     Sheet& sheet, const std::string& name, const std::string& what, const std::string& stream, bool of_films = true);
+/// Names in the footer the arms of the plate that cannot reach all light of the scene, so that their errors stop
+/// falling.
+void note_biased_arms(Sheet& sheet);
 /// "seed 7", "one stream, seed 7" for several runs.
 std::string stream_words(const std::vector<RunKey>& runs);
 /// The reference's own seed, "" where it is not sampled.

@@ -19,6 +19,12 @@ RatioOfErrors compare(const std::string& a, double value_a, const std::string& b
     return c;
 }
 
+double chance_of_parted_bands(int seeds) {
+    double chance = 2;  // 2 / (2n choose n): which of 2n values are one arm's is drawn at random
+    for (int k = 1; k <= seeds; ++k) chance *= static_cast<double>(k) / (seeds + k);
+    return std::min(chance, 1.0);
+}
+
 std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const {
     if (arms.empty()) return 0;
     const auto has = [](const ArmPlan* arm, std::uint64_t n) {

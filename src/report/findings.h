@@ -27,6 +27,10 @@ struct SeedCount {
     int held = 0, of = 0;
 };
 
+/// How often all values of one of two equal arms are above all of the other's, at so many seeds each. Bands of so few
+/// seeds lie apart by chance about as often.
+double chance_of_parted_bands(int seeds);
+
 class Findings {
 public:
     explicit Findings(const ReportInputs& in) : in_(in), runs_(in.metrics.runs) {}

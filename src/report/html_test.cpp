@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "pages/charts.h"
+#include "report/findings.h"
 #include "report/sample_test.h"
 #include "report/wellformed_test.h"
 
@@ -122,7 +123,7 @@ TEST(ReportHtml, TellsOfTwoTechniquesAndOfLightThatAnArmCannotReach) {
     EXPECT_THAT(s.html(), Not(HasSubstr("is biased in this scene"))) << "no fill: it reaches all light";
     s.experiment.fill = {1, 1, 1};
     EXPECT_THAT(
-        s.html(), HasSubstr("<b>lamp</b> is biased in this scene: it cannot reach light that comes from no disk"));
+        s.html(), HasSubstr("<b>lamp</b> is biased in this scene: it cannot reach the fill"));
     EXPECT_EQ(xml_error(s.html()), "");
 }
 
@@ -163,9 +164,17 @@ TEST(ReportHtml, MarksAssertionsThatCannotFailAndThoseThatWereNotJudged) {
 
 TEST(ReportHtml, OverlappingBandsAreNotRanked) {
     Sample s;
+    for (BandMeter& b : s.metrics.bands) b.band.seeds = 4;
     EXPECT_THAT(s.html(), Not(HasSubstr("so the two are not ranked")));
     s.band("phong", "rmse.H").band.q95 = 7;
     EXPECT_THAT(s.html(), HasSubstr("bands overlap, so the two are not ranked"));
+}
+
+// Of six values of equal arms, three and three, all of one are above all of the other's in one run of ten.
+TEST(ReportHtml, ArmsOfThreeSeedsAreNotRanked) {
+    EXPECT_THAT(Sample().html(), HasSubstr("With 3 seeds the bands of equal arms lie apart in 10 % of all runs"));
+    EXPECT_DOUBLE_EQ(chance_of_parted_bands(3), 0.1);
+    EXPECT_DOUBLE_EQ(chance_of_parted_bands(1), 1);
 }
 
 TEST(ReportHtml, HeavyTailReplacesTheInterval) {

@@ -65,7 +65,8 @@ void material_rows(const Page& page, std::vector<Row>& rows) {
     const Shape* shape = glossy(page.in.experiment);
     if (!shape) return;
     rows.push_back({"A metal instead?", with(page, {fmt::format("shapes.{}.rho_d=[0, 0, 0]", shape->name)}),
-        "Without its Lambert part the surface no longer shows Failure B; the Lambertian surfaces around it still do."});
+        "Without a Lambert part it has nothing that a narrow density starves; the Lambertian surfaces around it "
+        "have."});
     if (!shape->material.s) return;
     const double s = *shape->material.s;
     rows.push_back(
@@ -108,9 +109,11 @@ std::string claims(const Page& page) {
         "For this scene, these arms, these seeds and this <i>N</i>, the figures above are what the float films hold. "
         "The films can be made again, bit for bit: their hashes stand at the end.",
         "Arms differ in their density alone: same directions of view, same light, same random numbers."};
-    if (e.seeds > 1)
-        can.push_back(fmt::format(
-            "Bands span {} seeds. An order of arms whose bands do not overlap is no accident of the seed.", e.seeds));
+    if (e.seeds > 1) {
+        const double chance = chance_of_parted_bands(e.seeds);
+        can.push_back(fmt::format("Bands span {} seeds. Those of two equal arms lie apart in {} of all such runs.",
+            e.seeds, chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"));
+    }
     std::vector<std::string> cannot{
         "One bounce, a camera without lens and without antialiasing, BRDFs without Fresnel. It is a bench, not a "
         "renderer.",

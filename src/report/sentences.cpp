@@ -34,8 +34,13 @@ std::string ranking(const Page& page, const BandMeter& a, const BandMeter& b) {
     if (a.band.heavy || b.band.heavy) return heavy_words(page, a, b);
     if (a.band.seeds < 2) return " One seed gives no interval, so the two are not ranked.";
     const bool overlap = a.band.q05 <= b.band.q95 && b.band.q05 <= a.band.q95;
-    return overlap ? " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked."
-                   : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";
+    if (overlap) return " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked.";
+    const double chance = chance_of_parted_bands(std::min(a.band.seeds, b.band.seeds));
+    return chance > 0.05 ? fmt::format(
+                               " With {} seeds the bands of equal arms lie apart in {} of all runs, so the two "
+                               "are not ranked.",
+                               std::min(a.band.seeds, b.band.seeds), percent(chance, 2))
+                         : " The <span class=\"v\">5–95 %</span> bands over seeds do not overlap.";
 }
 
 html::Cell meter_cell(const Page& page, const BandMeter* band) {

@@ -80,6 +80,8 @@ TEST(Numbers, ReadableFiguresKeepFourPlaces) {
     EXPECT_EQ(figures(0), "0");
     EXPECT_EQ(figures_of("fireflies", 12), "12");
     EXPECT_EQ(figures_of("fireflies", 536.5), "536.5");
+    EXPECT_EQ(figures_of("fireflies", 3.75), "4");
+    EXPECT_EQ(figures_of("fireflies", 21358), "21358");
 }
 
 TEST(Numbers, AreClippedByCodePointsInTheMiddle) {
