@@ -19,7 +19,7 @@ std::shared_ptr<Instrument> instrument(const RunFlags& flags) {
     const std::shared_ptr<const InstrumentKind> kind = find_instrument(flags.instrument);
     if (!kind)
         throw OutputError("this build has no instrument '" + flags.instrument +
-            "': it was made without it, or without the headers of EGL and OSMesa");
+            "': it was made without it, or without the headers of EGL");
     return kind->open({flags.gl_context, flags.gl_device});
 }
 

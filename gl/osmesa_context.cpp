@@ -1,13 +1,15 @@
 // OSMesa: Mesa's renderer on the CPU, without EGL or a driver beneath it. Core 3.3 is asked for; Mesa gives the highest
 // version that is compatible with it.
 #include "context.h"
+#include "library.h"
+
+// Mesa has it no more since 25.1.
+#if __has_include(<GL/osmesa.h>)
 
 // osmesa.h asks for the gl.h of old; glcorearb.h has declared all that it uses.
 #define __gl_h_
 #define GLAPIENTRY APIENTRY
 #include <GL/osmesa.h>
-
-#include "library.h"
 
 namespace crescent::gl {
 
@@ -54,3 +56,16 @@ private:
 std::unique_ptr<Context> open_osmesa() { return std::make_unique<OsMesa>(); }
 
 }  // namespace crescent::gl
+
+#else
+
+namespace crescent::gl {
+
+std::unique_ptr<Context> open_osmesa() {
+    throw OutputError(
+        "--gl-context osmesa: libOSMesa.so.8 cannot be opened: this build was made without its header GL/osmesa.h");
+}
+
+}  // namespace crescent::gl
+
+#endif

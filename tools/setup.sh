@@ -108,6 +108,15 @@ build_page() {
     [ $((SECONDS - start)) -lt 2 ] || say "built the page in $((SECONDS - start)) s"
 }
 
+# other_compiler PRESET: the setting for another compiler where clang++-19, which the preset names, is not installed.
+other_compiler() {
+    [ "$1" = release ] && ! command -v clang++-19 >/dev/null || return 0
+    local name
+    for name in clang++ g++; do
+        command -v "$name" >/dev/null && { echo "-DCMAKE_CXX_COMPILER=$name"; return; }
+    done
+}
+
 # build PRESET [TARGET...]: configures where it has not been, then brings the targets (default: all) up to date.
 build() {
     local preset=$1 dir log start=$SECONDS
@@ -119,8 +128,11 @@ build() {
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$dir/CMakeCache.txt" 2>/dev/null ||
         rm -rf "$dir/CMakeCache.txt" "$dir/build.ninja"
     if [ ! -f "$dir/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$dir/build.ninja" ]; then
-        say "configuring $preset"
-        (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || fail 3 "$log" "cmake --preset $preset failed"
+        local compiler
+        compiler=$(other_compiler "$preset")
+        say "configuring $preset${compiler:+ with ${compiler#*=}, since there is no clang++-19}"
+        (cd "$root" && cmake --preset "$preset" $compiler) >"$log" 2>&1 ||
+            fail 3 "$log" "cmake --preset $preset failed"
     fi
     ninja -C "$dir" "$@" 2>&1 | follow "$preset" "$log" >>"$log"
     [ "${PIPESTATUS[0]}" -eq 0 ] || fail 3 "$log" "building $preset failed"

@@ -24,6 +24,16 @@ dpkg_says "ii  cmake" "rc  g++"
 dpkg_says "ii  cmake" "ii  g++"
 [ -z "$(missing cmake g++)" ] || die "missing: $(missing cmake g++ | xargs)"
 
+# Where clang++-19 is not installed, as outside Debian and Ubuntu, another compiler is taken.
+mkdir compilers
+[ -z "$(PATH=$work/compilers other_compiler release)" ] || die "a compiler that is not there is taken"
+for name in g++ clang++; do
+    printf '#!/bin/sh\n' >compilers/$name && chmod +x compilers/$name
+    [ "$(PATH=$work/compilers other_compiler release)" = "-DCMAKE_CXX_COMPILER=$name" ] || die "$name is not taken"
+done
+cp compilers/g++ compilers/clang++-19
+[ -z "$(PATH=$work/compilers other_compiler release)" ] || die "another compiler than clang++-19 is taken"
+
 # What the configuration cannot do without is installed by ./run as well, which configures the tests with the rest.
 key() { tr '[:upper:]' '[:lower:]' <<<"$1" | sed -E 's/^lib//; s/-dev$//; s/[^a-z]//g'; }
 cd "$CRESCENT_SOURCE" || exit 1
