@@ -15,10 +15,10 @@ Films are the same bits for any --threads and any --isa. --instrument gl
 computes them in GLSL, the same to a tolerance: docs/gl.md.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,
-timing.json, plates/, films/, in place of those of an earlier run. Each file
-appears whole or not at all. --only metrics writes metrics.json, metrics.csv and
+timing.json, plates/, films/, in place of those of an earlier run. They appear
+as one, or not at all. --only metrics writes metrics.json, metrics.csv and
 junit.xml; --seed-range lets several machines share the seeds. A long run
-that was stopped goes on where it was when the same command is given again.)";
+that was stopped resumes when the same command is given again.)";
 
 constexpr const char* film_footer = R"(The film of an experiment: every picture, curve and number comes from the run
 that it is made with. Written under DIR as one: crescent.mp4, captions

@@ -54,7 +54,7 @@ Bug::Bug(const std::source_location& at, std::string_view claim)
 
 std::string nearest(std::string_view word, const std::vector<std::string>& valid) {
     std::string best;
-    std::size_t best_distance = std::min(std::max<std::size_t>(2, word.size() / 2) + 1, word.size());
+    std::size_t best_distance = std::min(std::max<std::size_t>(2, word.size() / 3) + 1, word.size());
     for (const std::string& candidate : valid) {
         const std::size_t d = edit_distance(word, candidate);
         if (d < best_distance) best_distance = d, best = candidate;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <random>
 
+#include "base/errors.h"
+
 namespace crescent::inline base {
 namespace {
 
@@ -50,6 +52,13 @@ TEST(Text, ForAShellIsReadBackByIt) {
 TEST(Text, IsCutBetweenCharacters) {
     EXPECT_EQ(printable("\xc3\xa9\xc3\xa9", 3), "\xc3\xa9...");
     EXPECT_EQ(printable("\xc3\xa9\xc3\xa9", 4), "\xc3\xa9\xc3\xa9");
+}
+
+TEST(Hints, NameAWordThatIsAFewLettersAwayAndNoOther) {
+    EXPECT_EQ(nearest("spere", {"theme", "sphere"}), "sphere");
+    EXPECT_EQ(nearest("rsme", {"rmse", "var"}), "rmse");
+    EXPECT_EQ(nearest("sphere", {"theme", "title"}), "");
+    EXPECT_EQ(nearest("s", {"n", "title"}), "");
 }
 
 }  // namespace
