@@ -9,7 +9,6 @@ tree=$CRESCENT_BUILD/extending/tree build=$CRESCENT_BUILD/extending/build
 
 mkdir -p fresh
 (cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake src cli laws "$work/fresh")
-rm -r fresh/laws/planted fresh/laws/right  # no arm, lobe or verdict needs them
 cp -r fresh plain
 
 # The file of a `<!-- file PATH -->` is the block of code that follows. `<!-- list PATH "HEADER" WORD -->` is two words
