@@ -1,6 +1,6 @@
-// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample, read off
-// the very source that the kernels are made of. + - * / and sqrt count one each; comparisons, selections and integers
-// none.
+// A float that counts what is done to it, in the vocabulary of simd/scalar.h: the arithmetic of one sample. What an arm
+// and a lobe do is counted in their own source; what the kernels add to it is written out once more in accumulate().
+// + - * / and sqrt count one each; comparisons, selections and integers none.
 #pragma once
 
 #include "crescent.h"

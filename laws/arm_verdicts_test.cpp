@@ -35,7 +35,7 @@ TEST(Verdicts, PhongOnLambertLosesTheSupportThatTheorySays) {
 }
 
 TEST(Verdicts, SeeTheNearerOfTwoLights) {
-    const TrialLight light = stage(LobeKind::none, true, "fill + two disks", 32).light;
+    const TrialLight light = trial_setup(LobeKind::none, true, "fill + two disks", 32).light;
     ASSERT_EQ(light.disks.size(), 2u);
     int both = 0, front = 0, back = 0;
     for (double theta = 0; theta < 90; ++theta)

@@ -129,7 +129,7 @@ TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {
         << what_is_wrong(j);
 }
 
-TEST(Doors, JudgingStopsWhenItsWatchSaysSo) {
+TEST(Doors, JudgingStopsWhenItsMonitorSaysSo) {
     ProgressMonitor monitor;
     monitor.stop = true;
     EXPECT_THROW(judge_sampler("own", Own{}, few(), &monitor), Interrupted);

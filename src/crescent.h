@@ -62,7 +62,7 @@
 #include "scene/shadow.h"
 #include "simd/random.h"
 #include "studies/evidence.h"
-#include "studies/note_reference.h"
+#include "studies/monte_carlo_reference.h"
 #include "verdicts/against.h"
 #include "verdicts/error_rates.h"
 #include "verdicts/judge.h"

@@ -56,8 +56,8 @@ public:
         ask(at, out, [&](auto a, auto o) { inner_->true_f(a, o); });
     }
     bool has_drawn_f() const override { return inner_->has_drawn_f(); }
-    std::vector<TabulationError> doubts() const override { return inner_->doubts(); }
-    double doubt(Vec3d w) const override { return inner_->doubt(w); }
+    std::vector<TabulationError> tabulation_errors() const override { return inner_->tabulation_errors(); }
+    double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
     std::string place(int round, std::size_t draw) const override { return inner_->place(round, draw); }
     bool draws_at_will() const override { return inner_->draws_at_will(); }
     Spending spending() const override { return inner_->spending(); }

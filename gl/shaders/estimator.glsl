@@ -77,7 +77,7 @@ bool meets_light(int k, vec3 wi, int aimed, bool met, out float t) {
 
 // A sample that met a disk: the nearest disk first, and of two as near as rounding can tell the one that stands first
 // in the file; then what stands before it. Returns X where one was met, else x.
-float meet(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
+float resolve_light_hit(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
     float nearest = 1e30;
     int index = -1;
     for (int k = 0; k < DISKS; ++k) {
@@ -106,7 +106,7 @@ float meet(vec3 wi, float g, float lobe, float x, int aimed, bool met) {
 }
 
 // X of one drawn direction, adding what it carries to the sums.
-float carry(Drawn drawn, float weight, int aimed, bool met) {
+float accumulate(Drawn drawn, float weight, int aimed, bool met) {
     float cosine = drawn.wi.z;
     bool down = cosine <= 0.0;  // false for NaN, which must reach the sums and be counted
     bool up = !down && drawn.pdf != 0.0;
@@ -124,7 +124,7 @@ float carry(Drawn drawn, float weight, int aimed, bool met) {
         float t;
         any = meets_light(k, drawn.wi, aimed, met, t) || any;
     }
-    if (any && up) x = meet(drawn.wi, g, lobe, x, aimed, met);
+    if (any && up) x = resolve_light_hit(drawn.wi, g, lobe, x, aimed, met);
     return x;
 }
 
@@ -134,11 +134,11 @@ void take(uint pixel, uvec4 h, uint sample_index) {
 #ifdef TWO_TECHNIQUES
     uvec4 second = draws(pixel, sample_index >> 1u, 1u, seed);
     Drawn a = sample_mixture(site.wo, u), b = sample_light_area(site.wo, unit_floats(odd ? second.zw : second.xy));
-    float x = carry(a, weight_of(a.pdf, pdf_light_area(site.wo, a.wi)), -1, false);
-    x += carry(b, weight_of(b.pdf, pdf_mixture(site.wo, b.wi)), aimed_disk, aimed_met);
+    float x = accumulate(a, weight_of(a.pdf, pdf_light_area(site.wo, a.wi)), -1, false);
+    x += accumulate(b, weight_of(b.pdf, pdf_mixture(site.wo, b.wi)), aimed_disk, aimed_met);
 #else
     Drawn drawn = sample_arm(site.wo, u);
-    float x = carry(drawn, 1.0, aimed_disk, aimed_met);
+    float x = accumulate(drawn, 1.0, aimed_disk, aimed_met);
 #endif
     if (sample_index == uint(first_sample)) mean = x;
     block_off += x - mean;

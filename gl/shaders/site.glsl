@@ -25,11 +25,11 @@ bool faces(LocalDisk d) { return d.along < 0.0 || (d.along > 0.0 && d.two_sided 
 LocalDisk disks[DISK_SLOTS];
 vec2 disk_worth[DISK_SLOTS];  // Y of L rho_d / pi and of L rho_s: X = (cos/p) (d + s lobe)
 
-struct Site {
+struct ShadingPoint {
     vec3 wo;
     float s, alpha, diffuse, lobe;  // Phong exponent, GGX roughness, Y(rho_d), rho_s
 };
-Site site;
+ShadingPoint site;
 
 // What the estimator alone knows.
 struct Surroundings {
@@ -45,7 +45,7 @@ Surroundings load_site(ivec2 at) {
          c = texelFetch(sites, ivec3(at, 2), 0);
     vec4 t = texelFetch(sites, ivec3(at, 3), 0), u = texelFetch(sites, ivec3(at, 4), 0),
          n = texelFetch(sites, ivec3(at, 5), 0);
-    site = Site(a.xyz, a.w, b.x, b.y, b.z);
+    site = ShadingPoint(a.xyz, a.w, b.x, b.y, b.z);
     for (int k = 0; k < DISKS; ++k) {
         vec4 center = texelFetch(sites, ivec3(at, 6 + 2 * k), 0), normal = texelFetch(sites, ivec3(at, 7 + 2 * k), 0);
         float height = dot(center.xyz, normal.xyz);

@@ -17,7 +17,7 @@
 #include "laws/films/plain.h"
 #include "math/functions.h"
 #include "reference/reference.h"
-#include "studies/note_reference.h"
+#include "studies/monte_carlo_reference.h"
 
 namespace {
 

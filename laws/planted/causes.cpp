@@ -78,9 +78,9 @@ std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uin
     settings.seed = seed;
     std::size_t found = 0;
     for (std::size_t i = first; i < first + count; ++i) {
-        TestCounts tally;
+        TestCounts test_counts;
         const Trial trial = right_trial(i, seed);
-        TrialContext work(trial, settings, tally, static_cast<std::uint32_t>(i));
+        TrialContext work(trial, settings, test_counts, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (const std::optional<Diagnosis>& what : {diagnose_density(work, 0), diagnose_identity(work, 0)}) {
             if (!what) continue;

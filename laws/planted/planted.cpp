@@ -129,7 +129,7 @@ void other_density_faults(std::vector<Plan>& out) {
         }});
 }
 
-TrialLight two_disks() { return stage(LobeKind::none, true, "two disks", 32).light; }
+TrialLight two_disks() { return trial_setup(LobeKind::none, true, "two disks", 32).light; }
 
 /// The density of A where it aims at disk k alone, chosen with certainty.
 template <template <class> class A> double towards(LocalDisk<double> disk, const Pair& at) {
@@ -277,7 +277,7 @@ std::vector<PlantedFault> arm_faults(bool full) {
     std::vector<PlantedFault> out;
     for (const Plan& p : plans) {
         PlantedFault fault{p.name, p.arm, {}};
-        const Stage on = stage(p.lobe, p.lambert, p.light, p.sharpness);
+        const TrialSetup on = trial_setup(p.lobe, p.lambert, p.light, p.sharpness);
         for (const auto& [theta, azimuth] : wo_grid(full)) {
             if (theta != 0 && theta != 45 && theta != 75) continue;  // what shows at three of them shows at sixteen
             std::shared_ptr<const JudgedSampler> right;

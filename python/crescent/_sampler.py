@@ -1,4 +1,4 @@
-"""A sampler of somebody's own: its callables with what is known of it, looked over as it is made."""
+"""A user's sampler: its callables with what is known of it, looked over as it is made."""
 
 from __future__ import annotations
 

@@ -109,10 +109,10 @@ template <class A, class L, class E, class F> struct Lane : E {
         // NaN, infinite and negative numbers alone have bits from 0x7f800000 up; -0, which is no negative number,
         // arises from nothing that a site holds (shading_points.cpp).
         to.bad = plus_one_where(bits(x) > U(0x7f7fffffu), to.bad);
-        if (call.samples) keep(x, call.samples, j, call.rungs.back());
+        if (call.samples) record_sample(x, call.samples, j, call.rungs.back());
     }
 
-    void keep(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
+    void record_sample(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
         float lanes[Lanes<F>::count];
         store(x, lanes);
         for (std::size_t l = 0; l < Lanes<F>::count && at + l < sites.count; ++l) samples[(at + l) * n + j] = lanes[l];

@@ -162,12 +162,12 @@ template <class F> struct Lights {
     [[gnu::always_inline]] F gather(const First& around, const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
         if (light_count == 0) return x;
         if constexpr (requires { drawn.met; }) {
-            if (any(up)) x = meet(drawn, g, lobe, x, up);
+            if (any(up)) x = resolve_light_hit(drawn, g, lobe, x, up);
         } else {
             auto near = around.holds(drawn.wi);
             for (std::size_t k = 1; k < light_count; ++k) near = near | cones[k].holds(drawn.wi);
             if (any(near & up)) [[unlikely]]
-                x = meet(drawn, g, lobe, x, up);
+                x = resolve_light_hit(drawn, g, lobe, x, up);
         }
         return x;
     }
@@ -183,7 +183,7 @@ template <class F> struct Lights {
     }
 
     /// Samples that may have met a light: nearest light first, then what stands before it. Returns X where one was met.
-    template <class D> [[gnu::noinline]] F meet(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+    template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
         const Vec3<F> wi = drawn.wi;
         const F far = number<F>(1e30);
         F nearest = far;

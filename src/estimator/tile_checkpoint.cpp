@@ -26,7 +26,7 @@ template <class Work> void each_row(const TileOutputs& outputs, const TileBox& t
 
 TileCheckpoint::TileCheckpoint(std::string path, std::string key, double checkpoint_after_s, ProgressMonitor& monitor)
     : journal_(std::move(path), std::move(key), monitor),
-      patience_s_(checkpoint_after_s),
+      checkpoint_after_s_(checkpoint_after_s),
       monitor_(monitor),
       start_(Clock::now()) {}
 
@@ -66,7 +66,7 @@ void TileCheckpoint::add(std::size_t tile, double units) {
     const Guard guard(lock_);
     units_[tile] = units;
     waiting_.push_back(tile);
-    if (std::chrono::duration<double>(Clock::now() - start_).count() < patience_s_) return;
+    if (std::chrono::duration<double>(Clock::now() - start_).count() < checkpoint_after_s_) return;
     for (const std::size_t finished : waiting_) write(finished);
     waiting_.clear();
 }

@@ -54,7 +54,7 @@ private:
     std::size_t record_size(const TileBox& tile) const;
 
     Journal journal_;
-    double patience_s_;
+    double checkpoint_after_s_;
     ProgressMonitor& monitor_;
     std::vector<TileBox> tiles_;
     TileOutputs outputs_;

@@ -82,7 +82,7 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrume
     : all_(out + "/.crescent-kept"),
       key_(key_of(experiment, instrument)),
       folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
-      patience_s_(checkpoint_after_s),
+      checkpoint_after_s_(checkpoint_after_s),
       monitor_(monitor),
       journal_(folder_ + "/meters", key_, monitor) {
     for (const std::string& folder : {all_, folder_})
@@ -106,11 +106,11 @@ TileCheckpoint Checkpoint::tiles(const Job& job) {
     const std::string ladder = fmt::format("n{}", fmt::join(job.n, ","));
     const std::string name = fmt::format("{}-s{}-seed{}", job.arm, job.s, job.seed);
     const std::string file = fmt::format("{}-{:08x}", name, XXH3_64bits(ladder.data(), ladder.size()) & 0xffffffffu);
-    return {folder_ + "/" + file, key_ + " " + name + " " + ladder, patience_s_, monitor_};
+    return {folder_ + "/" + file, key_ + " " + name + " " + ladder, checkpoint_after_s_, monitor_};
 }
 
 TileCheckpoint Checkpoint::tiles(const std::string& name) {
-    return {folder_ + "/" + name, key_ + " " + name, patience_s_, monitor_};
+    return {folder_ + "/" + name, key_ + " " + name, checkpoint_after_s_, monitor_};
 }
 
 std::vector<RunMeter> Checkpoint::meters(const Job& job) const {
@@ -127,7 +127,7 @@ std::vector<RunMeter> Checkpoint::meters(const Job& job) const {
 
 void Checkpoint::add(const std::vector<RunMeter>& meters) {
     meters_.insert(meters_.end(), meters.begin(), meters.end());
-    if (start_.seconds() < patience_s_) return;
+    if (start_.seconds() < checkpoint_after_s_) return;
     const std::vector<RunMeter> fresh(meters_.begin() + static_cast<std::ptrdiff_t>(written_), meters_.end());
     const std::vector<std::uint8_t> record = nlohmann::json::to_cbor(fresh);
     journal_.append({std::as_bytes(std::span(record))});

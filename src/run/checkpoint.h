@@ -21,7 +21,7 @@ public:
     /// Says so where there is something to go on from.
     Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
         double checkpoint_after_s, ProgressMonitor& monitor);
-    /// Where the run ends before forget(): says what is kept.
+    /// Where the run ends before discard(): says what is kept.
     ~Checkpoint();
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
@@ -37,7 +37,7 @@ public:
 
 private:
     std::string all_, key_, folder_;  // all_: of any run into the same place
-    double patience_s_;
+    double checkpoint_after_s_;
     ProgressMonitor& monitor_;
     Stopwatch start_;
     Journal journal_;

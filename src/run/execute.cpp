@@ -14,7 +14,7 @@
 #include "run/needs.h"
 #include "run/outside.h"
 #include "run/stopping.h"
-#include "studies/note_reference.h"
+#include "studies/monte_carlo_reference.h"
 
 namespace crescent::inline runs {
 

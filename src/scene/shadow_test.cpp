@@ -69,7 +69,7 @@ int hidden_segments(const Obstacle& s, Numbers& next, int segments) {
     return hidden_ones;
 }
 
-TEST(StandsClear, NeverPartsABodyFromSegmentsThatItCrosses) {
+TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
     for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
         Numbers next(7 + static_cast<std::uint32_t>(kind));
         int clear = 0, unclear = 0, in_the_way = 0;

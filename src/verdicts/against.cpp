@@ -121,9 +121,9 @@ std::optional<std::string> unusable(TrialContext& work, const char* who) {
 }
 
 std::vector<Verdict> compare_one(
-    const Side& one, const Side& other, const TestSettings& settings, bool expect_same, TestCounts& tally) {
+    const Side& one, const Side& other, const TestSettings& settings, bool expect_same, TestCounts& test_counts) {
     const Trial &ta = one.trial, &tb = other.trial;
-    TrialContext a(ta, settings, tally, one.stream), b(tb, settings, tally, other.stream);
+    TrialContext a(ta, settings, test_counts, one.stream), b(tb, settings, test_counts, other.stream);
     std::vector<Verdict> out;
     std::optional<std::string> fault = unusable(a, "A");
     if (!fault) fault = unusable(b, "B");
@@ -186,7 +186,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
                 throw InputError({t.arm, 0, 0}, "has no pdf(w), which two samplers are held against each other by");
     TestSettings settings = given;
     settings.share(tests_against(a, b));
-    TestCounts tally;
+    TestCounts test_counts;
     monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
     AskedByDirection asked_a, asked_b;  // by one thread, where either is a program
@@ -195,7 +195,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
         try {
             const auto stream = static_cast<std::uint32_t>(i);
             all[i] = compare_one(
-                asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, tally);
+                asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, test_counts);
         } catch (const SubjectFault& fault) { all[i] = broken_off(a[i], b[i], fault); }
         monitor.advance(1);
     };
@@ -206,9 +206,9 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
     else parallel_for(std::size_t{0}, a.size(), one);
     Judgement out;
     out.alpha = settings.alpha;
-    out.tests = tally.tests;
-    out.screened = tally.screened;
-    out.confirmed = tally.confirmed;
+    out.tests = test_counts.tests;
+    out.screened = test_counts.screened;
+    out.confirmed = test_counts.confirmed;
     for (std::size_t i = 0; i < a.size(); ++i) {
         out.questions = std::max(out.questions,
             a[i].subject->spending().answers + (a[i].subject == b[i].subject ? 0 : b[i].subject->spending().answers));

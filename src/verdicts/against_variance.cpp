@@ -13,7 +13,7 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr double alike_to = 0.01;  // of a variance: nobody chooses a sampler by less
+constexpr double alike_to = 0.01;  // of a variance: less does not decide between samplers
 
 /// The ratio with its 95 % interval, and which is smaller where both stages of the test say so.
 void tell_ratio(Verdict& v, double ratio, double log_se, bool differ) {

@@ -42,8 +42,8 @@ struct Cell {
     bool bent = false;             // more than one curve crosses it: to be halved before it is cut again
     bool beside_jump = false;      // half of a cell that a jump crosses, or seems to
     bool smooth = false;           // looked at for a jump, and none is there
-    int suspected = 0;             // how often it was halved on the witnesses' word alone
-    std::vector<Witness> inside;
+    int suspected = 0;             // how often it was halved because of the draws in it alone
+    std::vector<SampleValue> inside;
 
     Cell(const Rect& r, int suspicion) : rect(r), suspected(suspicion) {}
     double area() const { return (rect.a1 - rect.a0) * (rect.b1 - rect.b0); }
@@ -53,7 +53,7 @@ struct Cell {
     bool rough() const { return high - low > 1e-3 * high && rule_error > 0.01 * step(); }
     /// A jump crosses it, or seems to.
     bool jumpy() const { return cut || rim_jumps || rough(); }
-    /// A jump seems to cross it, and nobody looked yet.
+    /// A jump seems to cross it, and was not looked at yet.
     bool jumps() const { return !cut && !smooth && (rough() || rim_jumps); }
 };
 

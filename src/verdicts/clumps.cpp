@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t fewest = 5;  // draws of a block
 
-struct Spot {
+struct PlacedDraw {
     double a, b, p;
     std::size_t draw;
 };
@@ -41,12 +41,12 @@ public:
         : work_(work), per_sr_(draws / mass), rounding_(rounding) {}
     /// Before as much as it takes to sort so many draws, or to look at them.
     void make_way(std::size_t draws) const { work_.subject.make_way(draws); }
-    void look(const Rect& r, std::span<const Spot> inside) {
+    void look(const Rect& r, std::span<const PlacedDraw> inside) {
         if (inside.size() < fewest) return;
         make_way(inside.size());
         ++tried_;
         double highest = 0;
-        for (const Spot& s : inside) highest = std::max(highest, s.p);
+        for (const PlacedDraw& s : inside) highest = std::max(highest, s.p);
         const double m = static_cast<double>(inside.size()), worth = per_sr_ * highest;
         if (!(worth * 2 * pi * (r.a1 - r.a0) * (r.b1 - r.b0) < 0.5 * m)) return;
         const double room = solid_angle(r, rounding_), due = worth * room;
@@ -75,11 +75,11 @@ private:
     std::vector<std::size_t> crowd_;
 };
 
-bool lower(const Spot& x, const Spot& y) { return x.a < y.a; }
-bool before(const Spot& x, const Spot& y) { return x.b < y.b; }
+bool lower(const PlacedDraw& x, const PlacedDraw& y) { return x.a < y.a; }
+bool before(const PlacedDraw& x, const PlacedDraw& y) { return x.b < y.b; }
 
 /// Halves the block at its middle draw, across its longer side, down to a few draws.
-void look_at_blocks(const Rect& r, std::span<Spot> inside, Search& search) {
+void look_at_blocks(const Rect& r, std::span<PlacedDraw> inside, Search& search) {
     constexpr std::size_t most = 1024;  // in larger ones p varies too much
     if (inside.size() <= most) search.look(r, inside);
     if (inside.size() <= 2 * fewest) return;
@@ -101,29 +101,29 @@ void look_at_blocks(const Rect& r, std::span<Spot> inside, Search& search) {
 }
 
 /// In halves first where they are many: it makes way between them.
-template <class Order> void sort(std::span<Spot> spots, const Order& order, const Search& search) {
+template <class Order> void sort(std::span<PlacedDraw> placed, const Order& order, const Search& search) {
     constexpr std::size_t most = 1 << 13;
-    if (spots.size() <= most) {
-        search.make_way(spots.size());
-        std::sort(spots.begin(), spots.end(), order);
+    if (placed.size() <= most) {
+        search.make_way(placed.size());
+        std::sort(placed.begin(), placed.end(), order);
         return;
     }
-    const std::size_t half = spots.size() / 2;
+    const std::size_t half = placed.size() / 2;
     search.make_way(half / 8);
-    std::nth_element(spots.begin(), spots.begin() + static_cast<std::ptrdiff_t>(half), spots.end(), order);
-    sort(spots.first(half), order, search);
-    sort(spots.subspan(half), order, search);
+    std::nth_element(placed.begin(), placed.begin() + static_cast<std::ptrdiff_t>(half), placed.end(), order);
+    sort(placed.first(half), order, search);
+    sort(placed.subspan(half), order, search);
 }
 
 /// Rings, or sectors, of so many draws each between those they are cut at.
-void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
-    sort(spots, rings ? lower : before, search);
-    const auto place = [&](std::size_t i) { return rings ? spots[i].a : spots[i].b; };
+void look_at_slices(std::vector<PlacedDraw>& placed, bool rings, Search& search) {
+    sort(placed, rings ? lower : before, search);
+    const auto place = [&](std::size_t i) { return rings ? placed[i].a : placed[i].b; };
     for (std::size_t draws : {2 * fewest, 16 * fewest}) {
         double from = 0;
-        for (std::size_t i = 0; i + draws < spots.size(); i += draws + 1) {
+        for (std::size_t i = 0; i + draws < placed.size(); i += draws + 1) {
             const double to = place(i + draws);
-            search.look(rings ? Rect{from, to, 0, 1, 0} : Rect{0, 2, from, to, 0}, std::span(spots).subspan(i, draws));
+            search.look(rings ? Rect{from, to, 0, 1, 0} : Rect{0, 2, from, to, 0}, std::span(placed).subspan(i, draws));
             from = to;
         }
     }
@@ -131,7 +131,7 @@ void look_at_slices(std::vector<Spot>& spots, bool rings, Search& search) {
 
 /// How far apart directions lie that come again and again, as those of a warp do that rounds: median over `draws` of
 /// the way to the nearest other one that came twice. 0 where there is none such.
-double grain_of(const SampleBatch& b, std::span<const std::size_t> draws) {
+double resolution_of(const SampleBatch& b, std::span<const std::size_t> draws) {
     std::vector<Vec3d> all, again;
     for (const Draw& d : b.draws)
         if (d.pdf > 0 && is_finite(d.wi)) all.push_back(d.wi);
@@ -155,7 +155,7 @@ double grain_of(const SampleBatch& b, std::span<const std::size_t> draws) {
 double least_step(const TrialContext& work, int technique, const SampleBatch& b, std::span<const std::size_t> draws) {
     const int numbers = work.traits.numbers;
     if (draws.empty() || b.u.size() != b.draws.size() || !work.subject.draws_at_will()) return 0;
-    if (work.traits.own_random) return grain_of(b, draws);  // no step of u moves it
+    if (work.traits.own_random) return resolution_of(b, draws);  // no step of u moves it
     struct Move {
         std::size_t draw;
         int axis;
@@ -197,19 +197,19 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
 }
 
 Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
-    std::vector<Spot> spots;
-    spots.reserve(b.draws.size());
+    std::vector<PlacedDraw> placed;
+    placed.reserve(b.draws.size());
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         work.subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const Vec2d at = d.map.coordinates(b.draws[i].wi);
-        spots.push_back({at.x, at.y, b.pdf[i] + work.subject.doubt(b.draws[i].wi), i});
+        placed.push_back({at.x, at.y, b.pdf[i] + work.subject.tabulation_error(b.draws[i].wi), i});
     }
     double rounding = 4 * std::max(work.direction_resolution(), 0x1p-24);  // u itself is a multiple of 2^-24
     for (int turn = 0;; ++turn) {
-        Search search(work, static_cast<double>(spots.size()), d.mass.value, rounding);
-        look_at_blocks({0, 2, 0, 1, 0}, spots, search);
-        for (bool rings : {true, false}) look_at_slices(spots, rings, search);
+        Search search(work, static_cast<double>(placed.size()), d.mass.value, rounding);
+        look_at_blocks({0, 2, 0, 1, 0}, placed, search);
+        for (bool rings : {true, false}) look_at_slices(placed, rings, search);
         const Clump found = search.found(d.map);
         if (turn == 2 || !(found.p < work.settings.screen)) return found;
         const double step = 4 * least_step(work, technique, b, search.crowd());

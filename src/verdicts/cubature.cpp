@@ -76,7 +76,7 @@ double disagreement(const Cell& cell, double total) {
     if (total <= 0 || cell.suspected > patience) return 0;
     const double seen = static_cast<double>(cell.inside.size()), due = cell.value * total;
     double higher = 0;  // draws at which the integrand is more than the rule knows of: a sliver behind a jump
-    for (const Witness& w : cell.inside) higher += w.g > 1.3 * cell.high;
+    for (const SampleValue& w : cell.inside) higher += w.g > 1.3 * cell.high;
     const bool off = std::fabs(seen - due) > 6 * std::sqrt(std::max(due, 0.0)) + 2;
     return std::max(off ? std::fabs(seen - due) : 0.0, higher) / total;
 }
@@ -88,20 +88,20 @@ std::array<Cell, 2> halve(Cell& cell, double total) {
     const int suspected = cell.suspected + (disagreement(cell, total) > 0);
     std::array<Cell, 2> out = {Cell(lower, suspected), Cell(upper, suspected)};
     for (Cell& half : out) half.beside_jump = cell.jumpy();
-    for (const Witness& w : cell.inside)
+    for (const SampleValue& w : cell.inside)
         out[(cell.split_a ? w.at.x < lower.a1 : w.at.y < lower.b1) ? 0 : 1].inside.push_back(w);
     return out;
 }
 
-std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const SamplesPerBin* witnesses) {
+std::vector<Cell> start_cells(const std::vector<Rect>& start, int bins, const SamplesPerBin* samples) {
     std::vector<Cell> cells;
     std::vector<std::vector<std::size_t>> of_bin(static_cast<std::size_t>(bins));
     for (const Rect& r : start) {
         of_bin[static_cast<std::size_t>(r.bin)].push_back(cells.size());
         cells.emplace_back(r, 0);
     }
-    for (std::size_t b = 0; witnesses && b < of_bin.size(); ++b)
-        for (const Witness& w : witnesses->bins[b])
+    for (std::size_t b = 0; samples && b < of_bin.size(); ++b)
+        for (const SampleValue& w : samples->bins[b])
             for (std::size_t c : of_bin[b]) {
                 const Rect& r = cells[c].rect;
                 if (w.at.x < r.a0 || w.at.x > r.a1 || w.at.y < r.b0 || w.at.y > r.b1) continue;
@@ -189,9 +189,9 @@ void add_up(const std::vector<Cell>& cells, int bins, const Audit& look, Integra
 }  // namespace
 
 Integral integrate(
-    std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const SamplesPerBin* witnesses) {
-    const double total = witnesses ? witnesses->total : 0;
-    std::vector<Cell> cells = start_cells(start, bins, witnesses);
+    std::vector<Rect> start, int bins, const Batch& g, const Effort& effort, const SamplesPerBin* samples) {
+    const double total = samples ? samples->total : 0;
+    std::vector<Cell> cells = start_cells(start, bins, samples);
     evaluate(cells, g);
     Integral out;
     out.evaluations = cells.size() * points;
@@ -265,7 +265,8 @@ void split(const Node& n, std::vector<Node>& stack) {
 
 }  // namespace
 
-std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> pilot_directions) {
+std::vector<Rect> refined_at_pilots(
+    std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> pilot_directions) {
     std::vector<Node> stack;
     for (const Rect& r : cells) stack.push_back({r, {}, 0});
     for (Vec3d w : pilot_directions) {

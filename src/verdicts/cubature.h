@@ -39,18 +39,18 @@ struct Effort {
 
 /// Where draws of a density fell, and the integrand there: a cell that 17 points find empty, or lower than draws do, is
 /// halved until both agree.
-struct Witness {
+struct SampleValue {
     Vec2d at;
     double g = 0;
 };
 struct SamplesPerBin {
-    std::vector<std::vector<Witness>> bins;  // by bin
-    double total = 0;                        // draws, those in no bin included
+    std::vector<std::vector<SampleValue>> bins;  // by bin
+    double total = 0;                            // draws, those in no bin included
 };
 
 /// The integral over cells, by Genz-Malik rules on the worst cell first, with the error it is known to.
 Integral integrate(
-    std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const SamplesPerBin* witnesses = nullptr);
+    std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, const SamplesPerBin* samples = nullptr);
 
 /// Sphere coordinates about an axis: a = 1 - cos of the angle to it, b = turns about it. dw = 2 pi da db.
 struct SphereMap {
@@ -62,7 +62,8 @@ struct SphereMap {
 
 /// Rings that narrow towards the axis, six sectors each, up to a = a_end.
 std::vector<Rect> graded_cells(double a_end = 2);
-/// The same cells halved wherever `guides` crowd, so that no sharp lobe is overlooked; bins are kept.
-std::vector<Rect> guided(std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> pilot_directions);
+/// The same cells halved wherever `pilot_directions` crowd, so that no sharp lobe is overlooked; bins are kept.
+std::vector<Rect> refined_at_pilots(
+    std::vector<Rect> cells, const SphereMap& map, std::span<const Vec3d> pilot_directions);
 
 }  // namespace crescent::inline verdicts

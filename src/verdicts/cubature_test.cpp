@@ -187,7 +187,7 @@ TEST(Cubature, SeesASpikeThatDrawsFell) {
     const auto g = [](double a, double b) {
         return std::exp(-(sqr(a - 0.3371) + sqr(b - 0.7113)) / sqr(2e-3)) / (pi * sqr(2e-3));
     };
-    SamplesPerBin fell{{std::vector<Witness>(1000, Witness{{0.33712, 0.71127}, 0})}, 1000};
+    SamplesPerBin fell{{std::vector<SampleValue>(1000, SampleValue{{0.33712, 0.71127}, 0})}, 1000};
     EXPECT_NEAR(integrate(grid(4), 1, batch_of(g), {5e-6, 400000, 1e-4}, &fell).value, 1, 1e-4);
 }
 

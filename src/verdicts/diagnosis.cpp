@@ -178,7 +178,7 @@ std::optional<Diagnosis> diagnose_density(const TrialContext& work, int techniqu
 
 namespace {
 
-/// A factor with a constant that nobody knows may be chance: weights cut off are 1 / cos up to some constant.
+/// A factor with an unknown constant may be chance: weights cut off are 1 / cos up to some constant.
 bool is_told_apart(const TrialContext& work, const Diagnosis& found) {
     return found.name == "a constant" || found.name.ends_with("surface") || std::fabs(found.constant - 1) < close ||
         !name_of_constant(work, found.constant).empty();

@@ -46,11 +46,11 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
         if (is_right(t)) trials.push_back(std::move(t));
     TestSettings settings = given;
     settings.share(count_tests(trials));
-    TestCounts tally;
+    TestCounts test_counts;
     std::vector<std::atomic<int>> alarms(seeds);
     monitor.begin("false alarms", static_cast<double>(trials.size() * seeds));
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
-        TrialContext work(trials[i], settings, tally, static_cast<std::uint32_t>(i));
+        TrialContext work(trials[i], settings, test_counts, static_cast<std::uint32_t>(i));
         work.measure_density();
         for (std::uint64_t k = 0; k < seeds; ++k) {
             monitor.check();
@@ -66,9 +66,9 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
     out.seeds = seeds;
     out.trials = trials.size();
     out.draws = settings.draws;
-    out.tests = tally.tests;
-    out.screened = tally.screened;
-    out.confirmed = tally.confirmed;
+    out.tests = test_counts.tests;
+    out.screened = test_counts.screened;
+    out.confirmed = test_counts.confirmed;
     out.alpha = settings.alpha;
     out.screen = settings.screen;
     for (const auto& a : alarms) out.calls += a > 0;

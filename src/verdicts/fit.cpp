@@ -66,7 +66,7 @@ std::vector<double> count(const TrialContext& work, const Density& d, const Samp
 /// Of n draws those due for a mass of one. What draws nothing is left by p, and the share that was drawn is what p is
 /// scaled to, so that the normalisation is not judged twice. The sum of a table says less than its bins.
 double due_for_one(const Density& d, double n) {
-    const bool table = d.doubts > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.doubts;
+    const bool table = d.tabulation_error > 0 && std::fabs(d.mass.value + d.nothing - 1) <= d.tabulation_error;
     return table ? n : n * (1 - d.nothing) / d.mass.value;
 }
 
@@ -78,7 +78,7 @@ Binned binned(const Density& d, const std::vector<double>& seen, double due_for_
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const double due = due_for_one * d.mass.bins[i],
                      slack = due_for_one *
-            ((d.doubt.empty() ? 0 : d.doubt[i]) + (estimates ? 1 : 3) * d.mass.bin_errors[i] +
+            ((d.tabulation_errors.empty() ? 0 : d.tabulation_errors[i]) + (estimates ? 1 : 3) * d.mass.bin_errors[i] +
                 2 * d.nothing_se * d.mass.bins[i]);
         const auto add = [&](Counts& to, std::size_t k, double of_slack) {
             to.seen[k] += seen[i], to.due[k] += due, to.slack[k] += of_slack;
@@ -106,7 +106,8 @@ void set_apart(const Density& d, double n, Binned& counts, FitToDensity& out) {
         }
     }
     if (out.outside_seen > 0)
-        out.outside_p = math::poisson_tail(out.outside_due + n * (1e-4 + d.mass.error + d.doubts), out.outside_seen);
+        out.outside_p =
+            math::poisson_tail(out.outside_due + n * (1e-4 + d.mass.error + d.tabulation_error), out.outside_seen);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ Mismatch pdf_twice(const TrialContext& work, int t) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || !work.counts(d.wi)) continue;  // elsewhere a pdf weighs nothing
         ++m.tried;
-        if (close(d.pdf, b.pdf[i], 2 * work.subject.doubt(d.wi)) || m.leaves_out(work)) continue;
+        if (close(d.pdf, b.pdf[i], 2 * work.subject.tabulation_error(d.wi)) || m.leaves_out(work)) continue;
         if (m.count < 4096 && close(d.pdf, b.pdf[i], pdf_conditioning(work, t, d.wi, b.pdf[i]))) continue;
         m.add(d.pdf, b.pdf[i], d.wi);
     }

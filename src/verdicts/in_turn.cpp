@@ -29,10 +29,10 @@ std::vector<std::size_t> order_of(std::span<const Trial> trials) {
 }
 
 /// `valid` from a few draws.
-Outcome look(const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally) {
+Outcome look(const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& test_counts) {
     Outcome out;
     try {
-        TrialContext work(trial, settings, tally, static_cast<std::uint32_t>(index));
+        TrialContext work(trial, settings, test_counts, static_cast<std::uint32_t>(index));
         out.verdicts.push_back(kinds::valid.judge(work));
     } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
@@ -67,7 +67,7 @@ std::size_t share_of(const TestSettings& settings, std::size_t count, std::uint6
 }  // namespace
 
 std::vector<Outcome> judge_in_turn(
-    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor) {
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& test_counts, ProgressMonitor& monitor) {
     TestSettings quick_look = settings;
     quick_look.draws = std::min(settings.draws, few_draws);
     quick_look.pictures = false;
@@ -75,7 +75,7 @@ std::vector<Outcome> judge_in_turn(
     const std::vector<std::size_t> order = order_of(trials);
     for (std::size_t i : order) {
         monitor.check();
-        if (!trials[i].baseline) looks[i] = look(trials[i], i, quick_look, tally);
+        if (!trials[i].baseline) looks[i] = look(trials[i], i, quick_look, test_counts);
     }
     std::uint64_t dearest = 0;
     std::size_t count = 0;
@@ -91,7 +91,7 @@ std::vector<Outcome> judge_in_turn(
             const bool slow = !outcomes[i].cut || outcomes[i].cut->state == State::inconclusive;
             if (slow) outcomes[i].cut = left_out(trials[i], settings);
         } else {
-            outcomes[i] = judge_one(trials[i], i, here, tally, monitor);
+            outcomes[i] = judge_one(trials[i], i, here, test_counts, monitor);
             dearest = std::max(dearest, trials[i].subject->spending().answers - before.answers);
             const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
             if (cut_short) outcomes[i].cut = left_out(trials[i], settings);

@@ -103,7 +103,7 @@ struct Suspect {
     double p, p_j;  // over the share of the choosing number
     double share = 1, allowed = 0;
     bool stands = true;
-    double grain = 0;                              // rounding of the warp there
+    double resolution = 0;                         // rounding of the warp there
     std::array<double, look_steps.size()> here{};  // p |J| by each step, and its noise
     std::array<double, look_steps.size()> noise{};
 
@@ -137,8 +137,8 @@ struct Suspect {
 };
 
 /// How finely the warp is computed at each suspect. A difference of two nearly equal numbers within the sampler may
-/// cost most of its digits, of which the direction's own grain knows nothing. By third differences over moves of u,
-/// which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the moves
+/// cost most of its digits, of which the direction's own resolution knows nothing. By third differences over moves of
+/// u, which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the moves
 /// cross spoils three of nine. Small moves stay within the cell of a table; where floats make stairs of a warp only
 /// wide ones leave a stair, of several lengths, since stairs as long as the move look smooth.
 void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
@@ -159,7 +159,7 @@ void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& 
                     rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
             }
             std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
-            s.grain = std::max({s.grain, work.direction_resolution(), 0.5 * rough[rough.size() / 2]});
+            s.resolution = std::max({s.resolution, work.direction_resolution(), 0.5 * rough[rough.size() / 2]});
         }
     }
 }
@@ -175,7 +175,7 @@ void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& 
         work.subject.sample(technique, work.trial.wo, u, w);
         for (std::size_t i = 0; i < suspects.size(); ++i) {
             Suspect& s = suspects[i];
-            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), s.grain, look_steps[k]);
+            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), s.resolution, look_steps[k]);
             s.here[k] = s.p * q.largest, s.noise[k] = q.noise;
         }
     }

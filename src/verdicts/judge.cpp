@@ -157,19 +157,19 @@ Cut cut_by(const SubjectFault& fault) {
         State::error, fmt::format("The sampler broke off: {}.", fault.what()), rest, {{"first_fault", fault.what()}}};
 }
 
-Outcome judge_one(
-    const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor) {
+Outcome judge_one(const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& test_counts,
+    ProgressMonitor& monitor) {
     Outcome out;
     Trial kept = trial;
     if (trial.subject->serial()) kept.subject = asked_once(trial.subject);
     try {
         if (trial.baseline) {
-            out.efficiency = measure_efficiency(
-                TrialContext(kept, settings_of_baseline(trial, settings), tally, static_cast<std::uint32_t>(index)),
+            out.efficiency = measure_efficiency(TrialContext(kept, settings_of_baseline(trial, settings), test_counts,
+                                                    static_cast<std::uint32_t>(index)),
                 index);
             return out;
         }
-        TrialContext work(kept, settings, tally, static_cast<std::uint32_t>(index));
+        TrialContext work(kept, settings, test_counts, static_cast<std::uint32_t>(index));
         judge_in_order(work, index, out, monitor);
         out.maps = std::move(work.maps);
         out.pictures = std::move(work.pictures);
@@ -199,13 +199,13 @@ std::uint64_t count_tests(std::span<const Trial> trials) {
 namespace {
 
 std::vector<Outcome> judge_all(
-    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor) {
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& test_counts, ProgressMonitor& monitor) {
     if (std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); }))
-        return judge_in_turn(trials, settings, tally, monitor);
+        return judge_in_turn(trials, settings, test_counts, monitor);
     std::vector<Outcome> outcomes(trials.size());
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
         monitor.check();
-        outcomes[i] = judge_one(trials[i], i, settings, tally, monitor);
+        outcomes[i] = judge_one(trials[i], i, settings, test_counts, monitor);
         monitor.advance(1);
     });
     return outcomes;
@@ -230,15 +230,15 @@ Compared compare(std::span<const Trial> trials, std::span<const Outcome> outcome
 Judgement judge(std::span<const Trial> trials, const TestSettings& given, ProgressMonitor& monitor) {
     TestSettings settings = given;
     settings.share(count_tests(trials) + pooled_tests(trials));
-    TestCounts tally;
+    TestCounts test_counts;
     monitor.begin("verdicts", static_cast<double>(trials.size()));
-    std::vector<Outcome> outcomes = judge_all(trials, settings, tally, monitor);
-    judge_pooled(trials, outcomes, settings, tally, monitor);
+    std::vector<Outcome> outcomes = judge_all(trials, settings, test_counts, monitor);
+    judge_pooled(trials, outcomes, settings, test_counts, monitor);
     Judgement out;
     out.alpha = settings.alpha;
-    out.tests = tally.tests;
-    out.screened = tally.screened;
-    out.confirmed = tally.confirmed;
+    out.tests = test_counts.tests;
+    out.screened = test_counts.screened;
+    out.confirmed = test_counts.confirmed;
     Compared compared = compare(trials, outcomes, settings, monitor);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;

@@ -32,44 +32,44 @@ TrialLight light_named(const std::string& name) {
     return light;
 }
 
-using Stages = std::vector<Stage>;
+using Setups = std::vector<TrialSetup>;
 
 /// The surfaces that an arm states; where it states none, every lobe at a middling width, and Lambert.
-Stages stages_of(const ArmInfo& arm) {
-    Stages all;
+Setups setups_of(const ArmInfo& arm) {
+    Setups all;
     for (const TrialSurface& on : arm.trials)
-        all.push_back(stage(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
+        all.push_back(trial_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
     // What is judged under a disk alone aims at lights, and is judged under a rectangle too.
     const bool aims = std::ranges::any_of(arm.trials, [](const TrialSurface& on) { return on.light == "disk"; });
     for (const char* light : {"rectangle", "disk + rectangle"})
-        if (aims) all.push_back(stage(LobeKind::none, true, light, 32));
+        if (aims) all.push_back(trial_setup(LobeKind::none, true, light, 32));
     if (!all.empty()) return all;
-    all.push_back(stage(LobeKind::none, true, "fill", 32));
+    all.push_back(trial_setup(LobeKind::none, true, "fill", 32));
     for (const LobeInfo& lobe : lobe_infos())
-        all.push_back(stage(lobe.kind, true, "fill", lobe.parameter == LobeParameter::alpha ? 0.3 : 32));
+        all.push_back(trial_setup(lobe.kind, true, "fill", lobe.parameter == LobeParameter::alpha ? 0.3 : 32));
     return all;
 }
 
-/// What is known of an arm on a stage at theta_R = theta.
-ExpectedBehaviour theory_of(const ArmInfo& arm, const Stage& on, double theta_deg) {
+/// What is known of an arm on such a surface at theta_R = theta.
+ExpectedBehaviour theory_of(const ArmInfo& arm, const TrialSetup& on, double theta_deg) {
     const SurfaceSetup& f = on.surface;
     return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : ExpectedBehaviour{};
 }
 
-/// Sets what this stage has; the keys that it read are crossed out of `unread`.
-void apply(const Settings& settings, Stage& stage, Settings& unread) {
+/// Sets what this surface and light have; the keys that it read are crossed out of `unread`.
+void apply(const Settings& settings, TrialSetup& setup, Settings& unread) {
     const auto set = [&](const char* key, bool has, double& to) {
         const auto at = settings.find(key);
         if (at == settings.end() || !has) return;
         to = at->second;
         unread.erase(key);
     };
-    SurfaceSetup& f = stage.surface;
-    set("s", stage.tells_s, f.s);
-    set("alpha", stage.tells_alpha, f.alpha);
+    SurfaceSetup& f = setup.surface;
+    set("s", setup.tells_s, f.s);
+    set("alpha", setup.tells_alpha, f.alpha);
     set("rho_d", f.rho_d > 0, f.rho_d);
     set("rho_s", f.rho_s > 0, f.rho_s);
-    if (stage.tells_alpha && f.alpha < lobe_info(f.lobe).judged_from)
+    if (setup.tells_alpha && f.alpha < lobe_info(f.lobe).judged_from)
         throw InputError({"--set", 0, 0},
             fmt::format(
                 "alpha is judged from {:g} on where the lobe is {}: the quadrature of a sharper one is not known",
@@ -79,16 +79,16 @@ void apply(const Settings& settings, Stage& stage, Settings& unread) {
             fmt::format("rho_d = {:g} and rho_s = {:g} together reflect more than arrives", f.rho_d, f.rho_s));
 }
 
-std::shared_ptr<const JudgedSampler> subject_of(const std::string& arm, const Stage& stage, Vec3d wo) {
+std::shared_ptr<const JudgedSampler> subject_of(const std::string& arm, const TrialSetup& setup, Vec3d wo) {
     std::shared_ptr<const JudgedSampler> out;
     for_each_arm(Arms{}, [&]<template <class> class A>() {
-        if (A<float>::name == arm) out = std::make_shared<BuiltIn<A>>(stage.surface, wo, stage.light);
+        if (A<float>::name == arm) out = std::make_shared<BuiltIn<A>>(setup.surface, wo, setup.light);
     });
     return out;
 }
 
-/// Two stages that --set made alike count once.
-bool alike(const Stage& a, const Stage& b) {
+/// Two setups that --set made alike count once.
+bool alike(const TrialSetup& a, const TrialSetup& b) {
     return a.brdf == b.brdf && a.lighting == b.lighting && (!a.tells_s || a.surface.s == b.surface.s) &&
         (!a.tells_alpha || a.surface.alpha == b.surface.alpha);
 }
@@ -101,7 +101,7 @@ double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
 }
 
 std::shared_ptr<const JudgedSampler> arm_on(const std::string& name, const Trial& trial) {
-    Stage on;
+    TrialSetup on;
     const auto value = [&](const char* key, double& to) {
         for (const auto& [known, v] : trial.parameters)
             if (known == key) to = v;
@@ -127,8 +127,8 @@ std::vector<std::pair<double, double>> wo_grid(bool full) {
     return grid;
 }
 
-Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double sharpness) {
-    Stage out;
+TrialSetup trial_setup(LobeKind lobe, bool lambert, const std::string& lighting, double sharpness) {
+    TrialSetup out;
     const LobeInfo* info = lobe == LobeKind::none ? nullptr : &lobe_info(lobe);
     out.surface.lobe = lobe;
     out.surface.rho_d = lambert ? 0.5 : 0;
@@ -143,18 +143,18 @@ Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double sha
     return out;
 }
 
-Trial trial_on(
-    const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject) {
+Trial trial_on(const TrialSetup& setup, double theta, double azimuth, std::string arm,
+    std::shared_ptr<const JudgedSampler> subject) {
     Trial t;
     t.arm = std::move(arm);
-    t.brdf = stage.brdf;
-    t.lighting = stage.lighting;
+    t.brdf = setup.brdf;
+    t.lighting = setup.lighting;
     t.wo = tilt(theta, azimuth);
     t.theta_deg = theta;
     t.azimuth_deg = azimuth;
-    if (stage.tells_s) t.parameters.emplace_back("s", stage.surface.s);
-    if (stage.tells_alpha) t.parameters.emplace_back("alpha", stage.surface.alpha);
-    t.light = stage.light;
+    if (setup.tells_s) t.parameters.emplace_back("s", setup.surface.s);
+    if (setup.tells_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
+    t.light = setup.light;
     t.subject = std::move(subject);
     return t;
 }
@@ -172,14 +172,14 @@ std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, b
     Settings unread = settings;
     for (const std::string& name : names) {
         if (!arm.empty() && name != arm) continue;
-        Stages stages;
-        for (Stage s : stages_of(*find_arm_info(name))) {
+        Setups setups;
+        for (TrialSetup s : setups_of(*find_arm_info(name))) {
             apply(settings, s, unread);
             bool seen = false;
-            for (const Stage& other : stages) seen = seen || alike(s, other);
-            if (!seen) stages.push_back(s);
+            for (const TrialSetup& other : setups) seen = seen || alike(s, other);
+            if (!seen) setups.push_back(s);
         }
-        for (const Stage& s : stages)
+        for (const TrialSetup& s : setups)
             for (const auto& [theta, azimuth] : own.empty() ? wo_grid(full) : own) {
                 Trial t = trial_on(s, theta, azimuth, name, subject_of(name, s, tilt(theta, azimuth)));
                 t.theory = theory_of(*find_arm_info(name), s, theta);

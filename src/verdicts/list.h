@@ -31,16 +31,16 @@ Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, doub
 std::shared_ptr<const JudgedSampler> arm_on(const std::string& name, const Trial& trial);
 
 /// One surface and light to try an arm on.
-struct Stage {
+struct TrialSetup {
     SurfaceSetup surface;
     TrialLight light;
     std::string brdf, lighting;
     bool tells_s = false, tells_alpha = false;
 };
 /// A surface and light of the built-in list: lobe, with a Lambert part or without, under "fill", "disk" or both.
-Stage stage(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);
-/// The trial of `subject` on a stage at one w_o, theory not yet filled in.
-Trial trial_on(
-    const Stage& stage, double theta, double azimuth, std::string arm, std::shared_ptr<const JudgedSampler> subject);
+TrialSetup trial_setup(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);
+/// The trial of `subject` on such a surface at one w_o, theory not yet filled in.
+Trial trial_on(const TrialSetup& setup, double theta, double azimuth, std::string arm,
+    std::shared_ptr<const JudgedSampler> subject);
 
 }  // namespace crescent::inline verdicts

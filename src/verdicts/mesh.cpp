@@ -103,13 +103,13 @@ std::vector<double> rows_of(const std::vector<double>& a) {
 }
 
 /// Per turn, of a cell with values v and w of g at heights x and y: g is constant there, or g sin theta is, as texels
-/// in theta x phi have it; the latter to what single precision knows, and near the poles to what directions of `grain`
-/// tell of theta. -1: neither.
-double mass_of(double v, double w, double a0, double a1, double x, double y, double grain) {
+/// in theta x phi have it; the latter to what single precision knows, and near the poles to what directions of
+/// `resolution` tell of theta. -1: neither.
+double mass_of(double v, double w, double a0, double a1, double x, double y, double resolution) {
     if (std::fabs(v - w) <= 1e-9 * std::fabs(v)) return (a1 - a0) * v;
     const double one = v * std::sqrt(x * (2 - x)), two = w * std::sqrt(y * (2 - y));
     const double to_pole = std::min({x, 2 - x, y, 2 - y});
-    if (std::fabs(one - two) <= (2e-6 + 2 * grain / to_pole) * std::fabs(one))
+    if (std::fabs(one - two) <= (2e-6 + 2 * resolution / to_pole) * std::fabs(one))
         return (theta_of(a1) - theta_of(a0)) * (x * (2 - x) > y * (2 - y) ? one : two);
     return -1;
 }
@@ -154,7 +154,7 @@ std::optional<Mesh> mesh_of(const Jumps& jumps) {
 }
 
 std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
-    const Effort& effort, double grain, const Prepare& prepare, const SamplesPerBin* witnesses) {
+    const Effort& effort, double resolution, const Prepare& prepare, const SamplesPerBin* samples) {
     std::vector<double> sides;
     for (int k = 1; k < sectors; ++k) sides.push_back(static_cast<double>(k) / sectors);
     const std::vector<double> a = merged(mesh.a, rings), b = merged(mesh.b, sides);
@@ -182,7 +182,7 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
             const int sector = std::min(static_cast<int>(0.5 * (b[k] + b[k + 1]) * sectors), sectors - 1);
             const int bin = static_cast<int>(ring) * sectors + sector;
             const double mass =
-                mass_of(v[2 * k], v[2 * k + 1], a[i], a[i + 1], where[2 * k].x, where[2 * k + 1].x, grain);
+                mass_of(v[2 * k], v[2 * k + 1], a[i], a[i + 1], where[2 * k].x, where[2 * k + 1].x, resolution);
             if (mass >= 0) out.bins[static_cast<std::size_t>(bin)] += (b[k + 1] - b[k]) * mass;
             else rest.push_back({a[i], a[i + 1], b[k], b[k + 1], bin});
         }
@@ -192,7 +192,7 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
     out.second = out.value;
     if (rest.empty()) return out;
     if (prepare) rest = prepare(std::move(rest));
-    const Integral other = integrate(std::move(rest), static_cast<int>(out.bins.size()), g, effort, witnesses);
+    const Integral other = integrate(std::move(rest), static_cast<int>(out.bins.size()), g, effort, samples);
     for (std::size_t i = 0; i < out.bins.size(); ++i)
         out.bins[i] += other.bins[i], out.bin_errors[i] += other.bin_errors[i];
     out.value += other.value;

@@ -31,10 +31,10 @@ std::optional<Mesh> find_mesh(const Batch& g);
 
 /// The integral over the mesh, cut at the bins' edges too: rings (ascending a) x sectors. Cells with two unequal values
 /// are left to the adaptive cubature, which starts from what `prepare` makes of them; none where they are too many for
-/// it. `grain`: what g is told of a direction is off by so much, as single precision has it.
+/// it. `resolution`: what g is told of a direction is off by so much, as single precision has it.
 using Prepare = std::function<std::vector<Rect>(std::vector<Rect>)>;
 std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double> rings, int sectors, const Batch& g,
-    const Effort& effort, double grain = 0, const Prepare& prepare = {}, const SamplesPerBin* witnesses = nullptr);
+    const Effort& effort, double resolution = 0, const Prepare& prepare = {}, const SamplesPerBin* samples = nullptr);
 
 /// The integral of what has too many cells to sum: points at random, spread over `cells` first and then where g varies
 /// most. Its error is three standard errors, of the whole and of each bin. estimates: g is a random estimate, whose

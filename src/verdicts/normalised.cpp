@@ -20,9 +20,9 @@ bool is_off(const TrialContext& work, int technique, double excess) {
     return student_p(excess / se, 15) < work.settings.screen * work.settings.confirm;
 }
 
-/// What the difference from one may be before anybody is accused.
+/// What the difference from one may be before p is called wrong.
 double granted(const Density& d, const Integral& m) {
-    return granted_mass + d.doubts + std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se);
+    return granted_mass + d.tabulation_error + std::max((m.settled ? 1 : 2) * m.error, 5 * m.second_se);
 }
 
 /// What the cubature and its audit leave of the difference.
@@ -40,7 +40,7 @@ const Integral& mass_of(const TrialContext& work, int technique) {
 }
 
 void note(const Density& d, const Integral& mass, const std::string& tag, Verdict& v) {
-    if (d.doubts > 0) v.evidence["table_known_to" + tag] = d.doubts;
+    if (d.tabulation_error > 0) v.evidence["table_known_to" + tag] = d.tabulation_error;
     v.evidence["integral" + tag] = mass.value;
     v.evidence["quadrature_error" + tag] = mass.error;
     v.evidence["evaluations" + tag] = mass.evaluations;
@@ -84,9 +84,10 @@ void tell_sum(const TrialContext& work, const Density& d, const Integral& mass, 
         v.settle = work.settings.full
             ? "More evaluations (TestSettings::evaluations), or a p that jumps along fewer curves."
             : "--full, with twelve times as many evaluations.";
-    } else if (d.doubts > granted_mass) {
-        v.say = told(d, mass) + fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.doubts);
-        if (d.doubts > 0.05) v.state = State::inconclusive, v.settle = "A finer table.";
+    } else if (d.tabulation_error > granted_mass) {
+        v.say = told(d, mass) +
+            fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.tabulation_error);
+        if (d.tabulation_error > 0.05) v.state = State::inconclusive, v.settle = "A finer table.";
     } else {
         v.say = told(d, mass) + ": one, as a density must.";
     }
@@ -99,7 +100,7 @@ Verdict judge(TrialContext& work) {
         const Density& d = work.density(t);
         const Integral& mass = mass_of(work, t);
         note(d, mass, work.suffix(t), v);
-        ++work.tally.tests;
+        ++work.test_counts.tests;
         if (const double sum = mass.value + d.nothing; !std::isfinite(sum) || is_off(work, t, excess(d, mass))) {
             v.state = State::wrong;
             v.say = told(d, mass) + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));

@@ -25,12 +25,12 @@ struct Outcome {
 };
 
 /// All verdicts of one trial but those that hold it against other trials.
-Outcome judge_one(
-    const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor);
+Outcome judge_one(const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& test_counts,
+    ProgressMonitor& monitor);
 /// Trials of a program, one after the other: first `valid` at every w_o from a few draws, then all verdicts, the middle
 /// of the hemisphere and the most grazing w_o first, as far as the program's time goes.
 std::vector<Outcome> judge_in_turn(
-    std::span<const Trial> trials, const TestSettings& settings, TestCounts& tally, ProgressMonitor& monitor);
+    std::span<const Trial> trials, const TestSettings& settings, TestCounts& test_counts, ProgressMonitor& monitor);
 /// What a sampler that can no more be asked leaves: an error, or too little time.
 Cut cut_by(const SubjectFault& fault);
 

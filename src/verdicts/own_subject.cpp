@@ -1,4 +1,4 @@
-// Trials of somebody's own sampler, with arms of the list beside it that are aimed at its BRDF.
+// Trials of a user's sampler, with arms of the list beside it that are aimed at its BRDF.
 #include <cmath>
 
 #include "verdicts/against.h"
@@ -68,7 +68,7 @@ std::vector<Trial> trials_of_subject(const std::shared_ptr<const JudgedSampler>&
 
 namespace {
 
-/// An arm of the list aimed at somebody else's f.
+/// An arm of the list aimed at a user's f.
 class WithF : public JudgedSampler {
 public:
     WithF(std::shared_ptr<const JudgedSampler> arm, std::shared_ptr<const JudgedSampler> owner)

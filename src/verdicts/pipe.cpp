@@ -132,7 +132,7 @@ private:
         return d;
     }
 
-    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nobody is asked.
+    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked.
     void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
         std::size_t columns, std::span<double> out) const {
         const auto counts = [&](const Pair& p) { return !hello_.hemisphere || p.wi.z > 0; };

@@ -71,7 +71,7 @@ std::optional<Contrasted> contrasted(const TrialContext& work) {
     Contrasted out;
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
-        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value) || d.mass.sampled || !d.doubt.empty() ||
+        if (!(d.mass.value > 0) || !std::isfinite(d.mass.value) || d.mass.sampled || !d.tabulation_errors.empty() ||
             d.mass.error > 1e-3)
             return {};
         out.densities.push_back(d);
@@ -91,11 +91,11 @@ std::uint64_t fresh_draws(const Trial& trial, std::size_t count, const TestSetti
 }
 
 std::vector<Contrasts> fresh_contrasts(const Trial& trial, std::size_t index, const Contrasted& of,
-    const TestSettings& settings, std::uint64_t draws, TestCounts& tally) {
+    const TestSettings& settings, std::uint64_t draws, TestCounts& test_counts) {
     TestSettings fresh = settings;
     fresh.seed = seed_of(settings.seed, 0x9001u);
     fresh.draws = draws;
-    const TrialContext work(trial, fresh, tally, static_cast<std::uint32_t>(index));
+    const TrialContext work(trial, fresh, test_counts, static_cast<std::uint32_t>(index));
     std::vector<Contrasts> out;
     for (std::size_t t = 0; t < of.densities.size(); ++t)
         out.push_back(contrasts_of(of.densities[t], work.first(static_cast<int>(t))));
@@ -147,7 +147,7 @@ Verdict* density_of(Outcome& o) {
 }
 
 void judge_group(const Members& all, std::span<const Trial> trials, std::span<Outcome> outcomes,
-    const TestSettings& settings, TestCounts& tally) {
+    const TestSettings& settings, TestCounts& test_counts) {
     Members members;
     for (std::size_t i : all) {
         Verdict* v = density_of(outcomes[i]);
@@ -162,21 +162,21 @@ void judge_group(const Members& all, std::span<const Trial> trials, std::span<Ou
         Pooled first, second;
         for (std::size_t i : members)
             for (const Contrasts& z : outcomes[i].contrasted->z) first.add(z[c], i);
-        ++tally.tests;
+        ++test_counts.tests;
         if (!(first.p() < settings.screen)) continue;
-        ++tally.screened;
+        ++test_counts.screened;
         if (!again) {
             constexpr std::uint64_t few = 4096;
             const std::uint64_t draws = fresh_draws(trials[members[0]], members.size(), settings);
             if (draws < few) return;
             again.emplace();
             for (std::size_t i : members)
-                again->push_back(fresh_contrasts(trials[i], i, *outcomes[i].contrasted, settings, draws, tally));
+                again->push_back(fresh_contrasts(trials[i], i, *outcomes[i].contrasted, settings, draws, test_counts));
         }
         for (std::size_t k = 0; k < members.size(); ++k)
             for (const Contrasts& z : (*again)[k]) second.add(z[c], members[k]);
         if (!(second.p() < settings.confirm)) continue;
-        ++tally.confirmed;
+        ++test_counts.confirmed;
         return tell(*density_of(outcomes[second.at]), first, second, c);
     }
 }
@@ -186,11 +186,11 @@ void judge_group(const Members& all, std::span<const Trial> trials, std::span<Ou
 std::uint64_t pooled_tests(std::span<const Trial> trials) { return contrast_count * groups_of(trials).size(); }
 
 void judge_pooled(std::span<const Trial> trials, std::span<Outcome> outcomes, const TestSettings& settings,
-    TestCounts& tally, const ProgressMonitor& monitor) {
+    TestCounts& test_counts, const ProgressMonitor& monitor) {
     for (const Members& group : groups_of(trials)) {
         monitor.check();
         try {
-            judge_group(group, trials, outcomes, settings, tally);
+            judge_group(group, trials, outcomes, settings, test_counts);
         } catch (const SubjectFault&) {}  // a program that broke off said so where it was asked first
     }
 }

@@ -28,6 +28,6 @@ std::uint64_t pooled_tests(std::span<const Trial> trials);
 /// Where the contrasts of a sampler's w_o together are off, and again on a fresh seed, density is wrong at the w_o that
 /// shows it most.
 void judge_pooled(std::span<const Trial> trials, std::span<Outcome> outcomes, const TestSettings& settings,
-    TestCounts& tally, const ProgressMonitor& monitor);
+    TestCounts& test_counts, const ProgressMonitor& monitor);
 
 }  // namespace crescent::inline verdicts

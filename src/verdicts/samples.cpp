@@ -54,13 +54,14 @@ SampleFile::SampleFile(const std::string& samples, const std::string& table) : n
 }
 
 void SampleFile::read_samples(const std::string& path) {
-    Complaints in{path, {}};
+    FileDiagnostics in{path, {}};
     const std::vector<std::string> without = {"u1", "u2", "wix", "wiy", "wiz", "pdf"};
     std::vector<std::string> with = without;
     with.emplace_back("f");
     const NumberTable t = read_table_file(in, {without, with});
     if (t.rows() < 1000)
-        in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())), in.settle();
+        in.add(0, 0, fmt::format("{} samples are too few to judge; expected 1000 at least", t.rows())),
+            in.throw_if_any();
     const int f = t.column("f");
     has_drawn_f_ = f >= 0;
     lines_ = t.lines;
@@ -75,11 +76,11 @@ void SampleFile::read_samples(const std::string& path) {
         if (f >= 0) d.f = t.at(r, static_cast<std::size_t>(f));
         draws_.push_back(d);
     }
-    in.settle();
+    in.throw_if_any();
 }
 
 void SampleFile::read_table(const std::string& path) {
-    Complaints in{path, {}};
+    FileDiagnostics in{path, {}};
     const NumberTable t = read_table_file(in, {{"cos_theta", "phi", "pdf"}, {"wix", "wiy", "wiz", "pdf"}});
     const bool polar = t.column("cos_theta") >= 0;
     std::vector<double> cos, phi, p;
@@ -92,7 +93,7 @@ void SampleFile::read_table(const std::string& path) {
             !std::isfinite(p.back()))
             in.add(t.lines.empty() ? 0 : t.lines[r], 1, "no direction of the sphere with a finite pdf");
     }
-    in.settle();
+    in.throw_if_any();
     for (double tolerance = 1e-7; rows_.size() * columns_.size() != p.size() && tolerance < 1e-2; tolerance *= 10) {
         rows_ = distinct(cos, tolerance);
         columns_ = distinct(phi, tolerance);
@@ -101,7 +102,7 @@ void SampleFile::read_table(const std::string& path) {
         in.add(0, 0,
             fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries",
                 rows_.size(), columns_.size(), p.size())),
-            in.settle();
+            in.throw_if_any();
     row_edges_ = edges_of(rows_, rows_.front() < -1e-6 ? -1 : 0, 1);
     column_edges_ = edges_of(columns_, 0, 2 * pi);
     values_.assign(p.size(), std::nan(""));
@@ -109,7 +110,7 @@ void SampleFile::read_table(const std::string& path) {
         values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
     for (double v : values_)
         if (std::isnan(v))
-            in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.settle();
+            in.add(0, 0, "expected a full grid: a cell is missing and another stands twice"), in.throw_if_any();
 }
 
 /// Nine of ten samples carry the very value of their cell.
@@ -157,7 +158,7 @@ double SampleFile::of_cell(Vec3d w) const {
         : values_[cell_of(row_edges_, w.z) * columns_.size() + cell_of(column_edges_, turned(w))];
 }
 
-SampleFile::GridCell SampleFile::spot(Vec3d w) const {
+SampleFile::GridCell SampleFile::cell_at(Vec3d w) const {
     const auto row = std::upper_bound(rows_.begin(), rows_.end(), w.z) - rows_.begin();
     GridCell at{};
     at.i0 =
@@ -185,13 +186,13 @@ double SampleFile::between(const GridCell& at) const {
 void SampleFile::pdf(int, std::span<const Pair> at, std::span<double> out) const {
     for (std::size_t i = 0; i < at.size(); ++i) {
         const Vec3d w = at[i].wi;
-        out[i] = w.z < row_edges_.front() ? 0 : cells_ ? of_cell(w) : between(spot(w));
+        out[i] = w.z < row_edges_.front() ? 0 : cells_ ? of_cell(w) : between(cell_at(w));
     }
 }
 
-double SampleFile::doubt(Vec3d w) const {
+double SampleFile::tabulation_error(Vec3d w) const {
     if (cells_ || w.z < row_edges_.front()) return 0;
-    const GridCell at = spot(w);
+    const GridCell at = cell_at(w);
     const std::size_t n = columns_.size();
     const double cap = at.s > 1 ? cap_above_ : at.s < 0 ? cap_below_ : 0;
     return cap +
@@ -200,7 +201,7 @@ double SampleFile::doubt(Vec3d w) const {
 }
 
 /// In pieces that are small beside any bin.
-std::vector<TabulationError> SampleFile::doubts() const {
+std::vector<TabulationError> SampleFile::tabulation_errors() const {
     std::vector<TabulationError> out;
     if (cells_) return out;
     const std::size_t rows = 1 + 192 / rows_.size(), columns = 1 + 64 / columns_.size();
@@ -213,7 +214,7 @@ std::vector<TabulationError> SampleFile::doubts() const {
                          phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
             const double sin = std::sqrt(std::max(1 - z * z, 0.0));
             const Vec3d w{sin * math::cos(phi), sin * math::sin(phi), z};
-            const double mass = doubt(w) * dz * dphi;
+            const double mass = tabulation_error(w) * dz * dphi;
             if (mass > 0) out.push_back({w, mass});
         }
     return out;

@@ -22,8 +22,8 @@ public:
     std::string name() const override { return name_; }
     bool has_drawn_f() const override { return has_drawn_f_; }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override;
-    std::vector<TabulationError> doubts() const override;
-    double doubt(Vec3d w) const override;
+    std::vector<TabulationError> tabulation_errors() const override;
+    double tabulation_error(Vec3d w) const override;
     std::string place(int round, std::size_t draw) const override;
 
 private:
@@ -43,7 +43,7 @@ private:
     void find_bends();
     bool agrees_as_cells() const;
     double of_cell(Vec3d w) const;
-    GridCell spot(Vec3d w) const;
+    GridCell cell_at(Vec3d w) const;
     double between(const GridCell& at) const;
 };
 

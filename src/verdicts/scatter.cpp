@@ -130,9 +130,9 @@ std::vector<double> TrialContext::mean_pdf(std::span<const Vec3d> wi, int answer
 }
 
 Integral TrialContext::integral_of(std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort,
-    bool estimates, const SamplesPerBin* witnesses) const {
+    bool estimates, const SamplesPerBin* samples) const {
     return estimates ? integrate_by_points(std::move(cells), bins, g, effort.most_evaluations, true)
-                     : integrate(std::move(cells), bins, g, effort, witnesses);
+                     : integrate(std::move(cells), bins, g, effort, samples);
 }
 
 }  // namespace crescent::inline verdicts

@@ -107,8 +107,8 @@ public:
     /// f is known at the draws, though not elsewhere: their weights can be looked at, but compared with no integral.
     virtual bool has_drawn_f() const { return has_f(); }
     /// A tabulated p is known to this much, over the sphere and at one direction, 1/sr.
-    virtual std::vector<TabulationError> doubts() const { return {}; }
-    virtual double doubt(Vec3d /*w*/) const { return 0; }
+    virtual std::vector<TabulationError> tabulation_errors() const { return {}; }
+    virtual double tabulation_error(Vec3d /*w*/) const { return 0; }
     /// Where a recorded draw stands, "samples.csv:17"; "" where it was asked for.
     virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.

@@ -29,7 +29,7 @@ template <class Each> void cells_of(std::string_view line, Each&& each) {
     }
 }
 
-double number(Complaints& in, std::string_view word, unsigned line, unsigned column) {
+double number(FileDiagnostics& in, std::string_view word, unsigned line, unsigned column) {
     double v = 0;
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
@@ -40,7 +40,7 @@ double number(Complaints& in, std::string_view word, unsigned line, unsigned col
     return v;
 }
 
-NumberTable read_csv(Complaints& in, std::istream& file) {
+NumberTable read_csv(FileDiagnostics& in, std::istream& file) {
     NumberTable t;
     std::string text;
     for (unsigned line = 1; std::getline(file, text); ++line) {
@@ -62,11 +62,11 @@ NumberTable read_csv(Complaints& in, std::istream& file) {
         }
     }
     if (t.columns.empty()) in.add(1, 1, "the file is empty; expected a header line");
-    in.settle();
+    in.throw_if_any();
     return t;
 }
 
-void name_columns(Complaints& in, const NumberTable& t, const std::vector<std::vector<std::string>>& layouts) {
+void name_columns(FileDiagnostics& in, const NumberTable& t, const std::vector<std::vector<std::string>>& layouts) {
     const auto has_all = [&](const std::vector<std::string>& layout) {
         return std::all_of(layout.begin(), layout.end(), [&](const std::string& n) { return t.column(n) >= 0; });
     };
@@ -80,7 +80,7 @@ void name_columns(Complaints& in, const NumberTable& t, const std::vector<std::v
     in.add(1, 1,
         fmt::format(
             "expected the header {}, not {}", expected, printable(fmt::format("{}", fmt::join(t.columns, ",")), 100)));
-    in.settle();
+    in.throw_if_any();
 }
 
 struct NpyHeader {
@@ -112,9 +112,10 @@ bool take_count(std::string_view& s, std::size_t& out) {
     return true;
 }
 
-NpyHeader npy_header(Complaints& in, std::istream& file) {
+NpyHeader npy_header(FileDiagnostics& in, std::istream& file) {
     char magic[10];
-    if (!file.read(magic, 10) || std::memcmp(magic, "\x93NUMPY", 6) != 0) in.add(0, 0, "not an NPY file"), in.settle();
+    if (!file.read(magic, 10) || std::memcmp(magic, "\x93NUMPY", 6) != 0)
+        in.add(0, 0, "not an NPY file"), in.throw_if_any();
     const auto byte = [](char c) { return static_cast<std::uint32_t>(static_cast<unsigned char>(c)); };
     std::uint32_t length = byte(magic[8]) | byte(magic[9]) << 8;
     if (magic[6] > 1) {
@@ -122,7 +123,7 @@ NpyHeader npy_header(Complaints& in, std::istream& file) {
         file.read(more, 2);
         length |= byte(more[0]) << 16 | byte(more[1]) << 24;
     }
-    if (length > 65536) in.add(0, 0, "the NPY header is too long"), in.settle();
+    if (length > 65536) in.add(0, 0, "the NPY header is too long"), in.throw_if_any();
     std::string header(length, ' ');
     file.read(header.data(), static_cast<std::streamsize>(length));
     NpyHeader out;
@@ -134,12 +135,12 @@ NpyHeader npy_header(Complaints& in, std::istream& file) {
     if (!known)
         in.add(0, 0,
             fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", printable(trimmed(header), 100))),
-            in.settle();
+            in.throw_if_any();
     out.by_column = value_of(header, "'fortran_order':").starts_with("True");
     return out;
 }
 
-NumberTable read_npy(Complaints& in, std::istream& file, const std::vector<std::vector<std::string>>& layouts) {
+NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<std::vector<std::string>>& layouts) {
     const NpyHeader h = npy_header(in, file);
     NumberTable t;
     std::string expected;
@@ -147,12 +148,14 @@ NumberTable read_npy(Complaints& in, std::istream& file, const std::vector<std::
         if (layout.size() == h.columns) t.columns = layout;
         expected += fmt::format("{}{} ({})", expected.empty() ? "" : " or ", layout.size(), fmt::join(layout, ","));
     }
-    if (t.columns.empty()) in.add(0, 0, fmt::format("expected {} columns, not {}", expected, h.columns)), in.settle();
+    if (t.columns.empty())
+        in.add(0, 0, fmt::format("expected {} columns, not {}", expected, h.columns)), in.throw_if_any();
     const auto start = file.tellg();
     file.seekg(0, std::ios::end);
     const std::size_t bytes = static_cast<std::size_t>(file.tellg() - start);
     if (bytes / h.size / h.columns < h.rows)
-        in.add(0, 0, fmt::format("the file ends in row {} of {}", bytes / h.size / h.columns + 1, h.rows)), in.settle();
+        in.add(0, 0, fmt::format("the file ends in row {} of {}", bytes / h.size / h.columns + 1, h.rows)),
+            in.throw_if_any();
     file.seekg(start);
     std::vector<char> raw(h.rows * h.columns * h.size);
     file.read(raw.data(), static_cast<std::streamsize>(raw.size()));
@@ -175,10 +178,10 @@ int NumberTable::column(std::string_view name) const {
     return at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
 }
 
-NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::string>>& layouts) {
+NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts) {
     std::ifstream file(in.path, std::ios::binary);
     if (!file || file.peek() == std::ifstream::traits_type::eof())
-        in.add(0, 0, file ? "is empty" : "cannot be read"), in.settle();
+        in.add(0, 0, file ? "is empty" : "cannot be read"), in.throw_if_any();
     if (in.path.ends_with(".npy")) return read_npy(in, file, layouts);
     NumberTable t = read_csv(in, file);
     name_columns(in, t, layouts);

@@ -10,15 +10,15 @@
 
 namespace crescent::inline verdicts {
 
-/// Collects the mistakes of one file; throws InputError at the tenth, or when asked to settle.
-struct Complaints {
+/// Collects the mistakes of one file; throws InputError at the tenth, or in throw_if_any().
+struct FileDiagnostics {
     std::string path;
     std::vector<Diagnostic> all;
     void add(unsigned line, unsigned column, const std::string& message) {
         all.push_back({{path, line, column}, message});
         if (all.size() >= 10) throw InputError(all);
     }
-    void settle() const {
+    void throw_if_any() const {
         if (!all.empty()) throw InputError(all);
     }
 };
@@ -34,6 +34,6 @@ struct NumberTable {
 
 /// .npy has no names: the one of `layouts` with as many columns applies. CSV must have all columns of one layout and no
 /// others.
-NumberTable read_table_file(Complaints& in, const std::vector<std::vector<std::string>>& layouts);
+NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts);
 
 }  // namespace crescent::inline verdicts

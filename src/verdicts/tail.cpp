@@ -58,10 +58,8 @@ std::string more_draws(const TrialContext& work) {
                               : fmt::format("--full, with sixteen times as many draws as these {}", n);
 }
 
-std::string samples_for(double sd, double mean) {
-    const double n = sqr(sd / mean) / 1e-4;
-    return fmt::format("{:.3g}", std::max(n, 1.0));
-}
+/// Samples whose mean has a standard error of 1 %.
+double samples_for_1_percent(double sd, double mean) { return std::max(sqr(sd / mean) / 1e-4, 1.0); }
 
 /// The fit to the largest weights, or that there is nothing to fit.
 void tell_fit(const std::optional<Tail>& tail, std::span<const double> x, const ExpectedBehaviour& theory, Verdict& v) {
@@ -112,9 +110,9 @@ void judge_variance(const TrialContext& work, const Spread& s, const std::option
         v.say += "Too close to 1/2 to tell whether the variance is finite.";
         v.settle = more_draws(work) + ".";
     } else {
-        const std::string samples = samples_for(s.sd, s.mean > 0 ? s.mean : 1);
-        v.evidence["samples_for_1_percent"] = std::stod(samples);
-        v.say += fmt::format("The variance is finite: about {} samples give 1 %.", samples);
+        const double samples = samples_for_1_percent(s.sd, s.mean > 0 ? s.mean : 1);
+        v.evidence["samples_for_1_percent"] = samples;
+        v.say += fmt::format("The variance is finite: about {:.3g} samples give 1 %.", samples);
     }
 }
 

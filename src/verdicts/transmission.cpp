@@ -70,7 +70,7 @@ Integral from_below(const TrialContext& work, Vec3d b) {
         pilot_directions.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
     }
     return work.integral_of(
-        guided(graded_cells(1), map, pilot_directions), 1,
+        refined_at_pilots(graded_cells(1), map, pilot_directions), 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Pair> pairs;
             for (Vec2d v : at) pairs.push_back({map.direction(v), b});

@@ -20,7 +20,7 @@ bool multiples_of(std::span<const Draw> draws, double unit) {
     return true;
 }
 
-double grain_of(std::span<const Draw> all, int bits) {
+double rounding_of(std::span<const Draw> all, int bits) {
     if (bits > 0) return bits <= 24 ? 0x1p-24 : 0x1p-50;
     std::vector<Draw> draws;
     for (const Draw& d : all) {
@@ -84,14 +84,14 @@ void TestSettings::share(std::uint64_t tests) {
 TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& counts, std::uint32_t index)
     : trial(t),
       settings(r),
-      tally(counts),
+      test_counts(counts),
       subject(*t.subject),
       traits(t.subject->traits()),
       index_(index),
       seed_(r.seed) {
     asked_before_ = subject.spending().answers;
     for (int k = 0; k < subject.techniques(); ++k) first_.push_back(draw(k, 0));
-    grain_ = grain_of(first_[0].draws, traits.bits);
+    direction_resolution_ = rounding_of(first_[0].draws, traits.bits);
     scatter_ = look_for_scatter(*this);
     for (SampleBatch& b : first_) count_nothing(b);
     look_below();

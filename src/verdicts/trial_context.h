@@ -74,11 +74,11 @@ struct Density {
     std::vector<double> rings;  // ascending edges of a = 1 - cos, first 0, last 2
     int sectors = 0;
     Integral mass;
-    std::optional<Integral> second;      // in other coordinates, where the first does not come to one
-    std::vector<double> doubt;           // by bin, where p was tabulated; else empty
-    double doubts = 0;                   // their sum
-    double nothing = 0, nothing_se = 0;  // share of draws that draw nothing or a delta part, randomised lattice
-    double delta = 0;                    // of these a delta part
+    std::optional<Integral> second;         // in other coordinates, where the first does not come to one
+    std::vector<double> tabulation_errors;  // by bin, where p was tabulated; else empty
+    double tabulation_error = 0;            // their sum
+    double nothing = 0, nothing_se = 0;     // share of draws that draw nothing or a delta part, randomised lattice
+    double delta = 0;                       // of these a delta part
     std::size_t bin_of(Vec2d at) const;
 };
 
@@ -95,14 +95,14 @@ struct WarpFinding;
 
 class TrialContext {
 public:
-    TrialContext(const Trial& trial, const TestSettings& settings, TestCounts& tally, std::uint32_t index);
+    TrialContext(const Trial& trial, const TestSettings& settings, TestCounts& test_counts, std::uint32_t index);
     /// So many of the wanted questions as a program may still be asked here, `keep` of them left for later; 2000 at
     /// least.
     std::size_t affordable(std::size_t wanted, std::size_t keep = 0) const;
 
     const Trial& trial;
     const TestSettings& settings;
-    TestCounts& tally;
+    TestCounts& test_counts;
     const JudgedSampler& subject;
     const Traits traits;
 
@@ -117,14 +117,14 @@ public:
     SampleBatch draw(int technique, int round) const;  // round 0: the screening seed, 1: the confirming one
     const SampleBatch& first(int technique) const { return first_[static_cast<std::size_t>(technique)]; }
     const Density& density(int technique) const { return density_[static_cast<std::size_t>(technique)]; }
-    /// Rounding of the directions that come back: 2^-24 for floats, 2^-52 for doubles, or that of short decimals.
-    double direction_resolution() const { return grain_; }
-    std::span<const Vec3d> pilot_directions() const { return guides_; }
+    /// Rounding of the directions that come back: 2^-24 for floats, 2^-50 for doubles, or that of short decimals.
+    double direction_resolution() const { return direction_resolution_; }
+    std::span<const Vec3d> pilot_directions() const { return pilot_directions_; }
     /// Whether pdf and f are random estimates, right in the mean alone.
     const Scatter& scatter() const { return scatter_; }
     /// By cubature, or by points at random where the integrand is made of estimates.
     Integral integral_of(std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort, bool estimates,
-        const SamplesPerBin* witnesses = nullptr) const;
+        const SamplesPerBin* samples = nullptr) const;
 
     /// Under the surface: whether f is not 0 there, most at `at` of those tried, and whether the sampler reaches it.
     struct Below {
@@ -177,11 +177,11 @@ public:
     }
     /// Both stages of a statistical test: p(round) is its p-value on that round's draws.
     template <class P> bool fails(double p_first, P&& p_of_round) const {
-        ++tally.tests;
+        ++test_counts.tests;
         if (!(p_first < settings.screen)) return false;
-        ++tally.screened;
+        ++test_counts.screened;
         if (!(p_of_round(1) < settings.confirm)) return false;
-        ++tally.confirmed;
+        ++test_counts.confirmed;
         return true;
     }
 
@@ -199,13 +199,13 @@ private:
     std::vector<Density> density_;
     /// Questions for the verdicts after the density and its confirmation.
     std::size_t for_later() const;
-    std::vector<Vec3d> guides_, rims_;
-    std::size_t drawn_guides_ = 0;  // the first of the guides
+    std::vector<Vec3d> pilot_directions_, support_boundary_;
+    std::size_t drawn_pilots_ = 0;  // the first of the pilot directions
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
     std::optional<double> pole_;    // 1 - cos of that rim, where p has a pole along it
     std::optional<Vec3d> banded_;   // the axis about which p jumps at heights alone
     std::vector<double> heights_;   // these, as 1 - cos
-    double grain_ = 0;
+    double direction_resolution_ = 0;
     Scatter scatter_;
     void count_nothing(SampleBatch& b) const;
     void settle_zeros(SampleBatch& b) const;
@@ -216,10 +216,10 @@ private:
     Integral integrate_incoming(Where where, bool even, int channel = -1) const;
     Below below_;
     void look_below();
-    void find_guides();
-    void find_rims(int technique);
+    void find_pilot_directions();
+    void find_support_boundary(int technique);
     bool has_pole_at(const SphereMap& map, double height) const;
-    void add_rims(Density& d) const;
+    void add_edges_of_support(Density& d) const;
     struct Lobe;
     static Lobe lobe_of(const SampleBatch& b);
     Density density_of(int technique);
@@ -231,13 +231,13 @@ private:
     Density density_of_estimates(int technique, Vec3d axis);
     std::vector<Rect> cells_of(const Density& d) const;
     void refine_table(int technique, Density& d) const;
-    SamplesPerBin witnesses_of(int technique, const Density& d) const;
+    SamplesPerBin samples_per_bin_of(int technique, const Density& d) const;
     Density density_about(
         int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 4e-4) const;
     Density bins_about(Vec3d axis, bool about_n) const;
     Batch batch_of(int technique, const SphereMap& map) const;
     Integral mass_inside_pole(int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) const;
-    void grant_doubts(int technique, Density& d) const;
+    void grant_tabulation_error(int technique, Density& d) const;
     void share_nothing(int technique, Density& d) const;
     void estimate_null_fraction(int technique, Density& d, std::uint64_t points, std::optional<double> told) const;
     bool all_alike_below(int technique) const;

@@ -22,7 +22,7 @@ void sort_edges(std::vector<double>& rings) {
 }  // namespace
 
 void TrialContext::measure_density() {
-    find_guides();
+    find_pilot_directions();
     if (!traits.has_pdf) {  // bins alone
         density_.push_back(bins_about({0, 0, 1}, true));
         density_.back().mass.bins.assign(
@@ -79,7 +79,8 @@ Density TrialContext::density_of(int t) {
 
 std::optional<Integral> TrialContext::mass_by_caps(int t, const Density& bins) const {
     const std::size_t evaluations = affordable(settings.evaluations, for_later());
-    return integrate_caps(*this, t, bins, guided(cells_of(bins), bins.map, guides_), {tolerance(), evaluations, 5e-5});
+    return integrate_caps(*this, t, bins, refined_at_pilots(cells_of(bins), bins.map, pilot_directions_),
+        {tolerance(), evaluations, 5e-5});
 }
 
 /// Where the mass is far from known: many rims. Returns whether caps alone make it known.
@@ -117,10 +118,10 @@ void TrialContext::measure_further(int t, Density& d) const {
         if (affordable(at.size() + 2000, for_later()) < at.size() + 2000) throw OutOfQuestions{};
         ask(at, out);
     };
-    const SamplesPerBin seen = witnesses_of(t, d);
+    const SamplesPerBin seen = samples_per_bin_of(t, d);
     try {
-        Integral mass = integrate(guided(cells_of(d), d.map, guides_), static_cast<int>(d.mass.bins.size()),
-            while_affordable,
+        Integral mass = integrate(refined_at_pilots(cells_of(d), d.map, pilot_directions_),
+            static_cast<int>(d.mass.bins.size()), while_affordable,
             {tolerance(), affordable(6 * settings.evaluations, for_later()) + known, thrifty() ? 4e-4 : 1e-4}, &seen);
         if (mass.error < d.mass.error) d.mass = std::move(mass);
     } catch (const OutOfQuestions&) {}  // what is known so far stays
@@ -149,7 +150,7 @@ Batch TrialContext::batch_of(int technique, const SphereMap& map) const {
     };
 }
 
-SamplesPerBin TrialContext::witnesses_of(int technique, const Density& d) const {
+SamplesPerBin TrialContext::samples_per_bin_of(int technique, const Density& d) const {
     SamplesPerBin out;
     const SampleBatch& b = first(technique);
     out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
@@ -173,17 +174,17 @@ std::size_t Density::bin_of(Vec2d at) const {
 
 /// An edge at the nearest and the farthest rim, and one farther out, since a rim is known at a few places: what lies
 /// beyond expects nothing.
-void TrialContext::add_rims(Density& d) const {
-    if (rims_.empty()) return;
+void TrialContext::add_edges_of_support(Density& d) const {
+    if (support_boundary_.empty()) return;
     double least = 2, most = 0;
-    for (Vec3d w : rims_) {
+    for (Vec3d w : support_boundary_) {
         const double a = d.map.coordinates(w).x;
         least = std::min(least, a);
         most = std::max(most, a);
     }
     // Rounding takes draws beyond a rim at which p has a pole, where many of them fall.
     if (pole_ && circle_ && length(d.map.frame.n - *circle_) < 1e-12) {
-        const double rounding = 8 * std::max(grain_, 0x1p-24) * std::sqrt(2 * *pole_);
+        const double rounding = 8 * std::max(direction_resolution_, 0x1p-24) * std::sqrt(2 * *pole_);
         std::erase_if(d.rings, [&](double edge) { return std::fabs(edge - *pole_) < rounding; });
         least = most = *pole_ + rounding;
     }
@@ -201,7 +202,7 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     d.about_n = about_n;
     d.sectors = settings.sectors;
     std::vector<double> a;
-    for (Vec3d w : std::span(guides_).first(drawn_guides_)) a.push_back(d.map.coordinates(w).x);
+    for (Vec3d w : std::span(pilot_directions_).first(drawn_pilots_)) a.push_back(d.map.coordinates(w).x);
     std::sort(a.begin(), a.end());
     d.rings = {0};
     if (!a.empty()) {
@@ -228,7 +229,7 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     for (double extra : {2 * d.rings.back(), 8 * d.rings.back(), 64 * d.rings.back()})
         if (!about_n && extra < 1.9) d.rings.push_back(extra);
     d.rings.push_back(2);
-    add_rims(d);
+    add_edges_of_support(d);
     return d;
 }
 
@@ -248,15 +249,16 @@ Density TrialContext::density_about(
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
     if (pole_ && circle_ && length(axis - *circle_) < 1e-12) {
-        d.mass = mass_inside_pole(technique, d, guided(cells_of(d), d.map, guides_),
+        d.mass = mass_inside_pole(technique, d, refined_at_pilots(cells_of(d), d.map, pilot_directions_),
             {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass});
-        grant_doubts(technique, d);
+        grant_tabulation_error(technique, d);
         return d;
     }
-    const SamplesPerBin witnesses = witnesses_of(technique, d);
-    d.mass = integral_of(guided(cells_of(d), d.map, guides_), rings * d.sectors, batch_of(technique, d.map),
-        {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter_.pdf(), &witnesses);
-    grant_doubts(technique, d);
+    const SamplesPerBin samples = samples_per_bin_of(technique, d);
+    d.mass = integral_of(refined_at_pilots(cells_of(d), d.map, pilot_directions_), rings * d.sectors,
+        batch_of(technique, d.map), {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter_.pdf(),
+        &samples);
+    grant_tabulation_error(technique, d);
     return d;
 }
 

@@ -118,7 +118,7 @@ Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const
         for (std::size_t i = 0, upper = cells.size(); whole() && i < upper; ++i)
             cells.push_back({2 - cells[i].a1, 2 - cells[i].a0, cells[i].b0, cells[i].b1, 1});
         total = integral_of(
-            guided(std::move(cells), map, guides_), whole() ? 2 : 1,
+            refined_at_pilots(std::move(cells), map, pilot_directions_), whole() ? 2 : 1,
             [&](std::span<const Vec2d> at, std::span<double> out) {
                 std::vector<Vec3d> wi;
                 for (Vec2d v : at) wi.push_back(map.direction(v));

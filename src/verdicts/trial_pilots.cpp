@@ -12,7 +12,7 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr std::size_t fixed_guides = 768;
+constexpr std::size_t fixed_pilots = 768;
 
 /// The axis of the circle on which directions lie: the rim of a cone or a ring, whose jump is then a coordinate line.
 std::optional<Vec3d> axis_of_circle(std::span<const Vec3d> rim, double known_to) {
@@ -51,7 +51,7 @@ std::vector<Vec3d> exact_rim(const TrialContext& work, Vec3d axis, double height
 }  // namespace
 
 /// Where the sampler draws, by an even cover of u, and where a mirror lobe would be, at every scale.
-void TrialContext::find_guides() {
+void TrialContext::find_pilot_directions() {
     for (int t = 0; t < subject.techniques(); ++t) {
         std::vector<Draw> pilot;
         if (subject.draws_at_will()) {
@@ -67,22 +67,22 @@ void TrialContext::find_guides() {
                 all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(all.size(), 2048)));
         }
         for (const Draw& d : pilot)
-            if (d.pdf > 0 && is_finite(d.wi)) guides_.push_back(d.wi);
-        if (subject.draws_at_will()) find_rims(t);
+            if (d.pdf > 0 && is_finite(d.wi)) pilot_directions_.push_back(d.wi);
+        if (subject.draws_at_will()) find_support_boundary(t);
     }
-    drawn_guides_ = guides_.size();
+    drawn_pilots_ = pilot_directions_.size();
     // About the mirror, where lobes stand, and about w_o, where 1 / (w_o.h) has a pole for half vectors along the
     // surface.
     for (const SphereMap& about : {SphereMap(mirror(trial.wo)), SphereMap(-trial.wo)})
-        for (std::uint64_t i = 0; i < fixed_guides / 2; ++i) {
+        for (std::uint64_t i = 0; i < fixed_pilots / 2; ++i) {
             const Vec2d v = even_cover(i, {0.1, 0.7}, 2);
-            guides_.push_back(about.direction({0.5 * math::pow(10.0, -7 * v.x), v.y}));
+            pilot_directions_.push_back(about.direction({0.5 * math::pow(10.0, -7 * v.x), v.y}));
         }
 }
 
 /// Where the sides of the unit square go: for most warps the rim of what is drawn, to the last digit. What chooses
 /// among lobes is held at a few values.
-void TrialContext::find_rims(int technique) {
+void TrialContext::find_support_boundary(int technique) {
     constexpr std::size_t along = 32;
     const std::uint64_t choices = traits.numbers > 2 ? 4 : 1;
     std::vector<Numbers> u;
@@ -98,7 +98,7 @@ void TrialContext::find_rims(int technique) {
     std::vector<Draw> drawn(u.size());
     subject.sample(technique, trial.wo, u, drawn);
     for (const Draw& d : drawn)
-        if (d.pdf > 0 && is_finite(d.wi)) rims_.push_back(d.wi);
+        if (d.pdf > 0 && is_finite(d.wi)) support_boundary_.push_back(d.wi);
     std::optional<Vec3d> nearly;  // a circle along which p does not end
     for (std::size_t side = 0; side < 4 * choices && !circle_; ++side) {
         std::vector<Vec3d> rim;
@@ -116,8 +116,8 @@ void TrialContext::find_rims(int technique) {
         if (!exact.empty()) circle_ = axis_of_circle(exact, 1e-10);
         if (!circle_) continue;
         const SphereMap map(*circle_);
-        std::erase_if(rims_, [&](Vec3d w) { return std::fabs(map.coordinates(w).x / height - 1) < 1e-5; });
-        rims_.insert(rims_.end(), exact.begin(), exact.end());
+        std::erase_if(support_boundary_, [&](Vec3d w) { return std::fabs(map.coordinates(w).x / height - 1) < 1e-5; });
+        support_boundary_.insert(support_boundary_.end(), exact.begin(), exact.end());
         for (Vec3d w : exact) pole_ = std::max(pole_.value_or(0), map.coordinates(w).x);
         if (!has_pole_at(map, *pole_)) pole_.reset();
     }

@@ -28,9 +28,9 @@ Integral TrialContext::mass_inside_pole(
         if (cells[i].a0 < h && cells[i].a1 > h) cells.push_back(cells[i]), cells[i].a1 = cells.back().a0 = h;
         cells[i].a0 = there(cells[i].a0), cells[i].a1 = there(cells[i].a1);
     }
-    SamplesPerBin witnesses = witnesses_of(technique, d);
-    for (auto& bin : witnesses.bins)
-        for (Witness& w : bin) w.g *= w.at.x < h ? 2 * std::sqrt(1 - w.at.x / h) : 1, w.at.x = there(w.at.x);
+    SamplesPerBin samples = samples_per_bin_of(technique, d);
+    for (auto& bin : samples.bins)
+        for (SampleValue& w : bin) w.g *= w.at.x < h ? 2 * std::sqrt(1 - w.at.x / h) : 1, w.at.x = there(w.at.x);
     const Batch p = batch_of(technique, d.map);
     const auto g = [&](std::span<const Vec2d> at, std::span<double> out) {
         std::vector<Vec2d> where(at.begin(), at.end());
@@ -39,7 +39,7 @@ Integral TrialContext::mass_inside_pole(
         for (std::size_t i = 0; i < at.size(); ++i)
             if (at[i].x < h) out[i] *= 2 * (1 - at[i].x / h);
     };
-    return integrate(std::move(cells), static_cast<int>(witnesses.bins.size()), g, effort, &witnesses);
+    return integrate(std::move(cells), static_cast<int>(samples.bins.size()), g, effort, &samples);
 }
 
 }  // namespace crescent::inline verdicts

@@ -24,32 +24,34 @@ std::optional<Density> TrialContext::table_density(int t) {
             !mesh && !banded_ && !heights.empty() && heights.size() <= most_heights)
             banded_ = axis, heights_ = std::move(heights);
         if (!mesh) continue;
-        const SamplesPerBin seen = witnesses_of(t, d);
-        const Prepare crowd = [&](std::vector<Rect> cells) { return guided(std::move(cells), d.map, guides_); };
+        const SamplesPerBin seen = samples_per_bin_of(t, d);
+        const Prepare crowd = [&](std::vector<Rect> cells) {
+            return refined_at_pilots(std::move(cells), d.map, pilot_directions_);
+        };
         const std::size_t most = subject.serial() && !settings.full ? affordable(400000, for_later()) / 2 : 10000000;
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
             mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
-                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, grain_, crowd, &seen);
+                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, direction_resolution_, crowd, &seen);
         else
             mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
                 affordable(4 * settings.evaluations, for_later()));
         if (!mass) continue;
         d.mass = std::move(*mass);
-        grant_doubts(t, d);
+        grant_tabulation_error(t, d);
         share_nothing(t, d);
         return d;
     }
     return {};
 }
 
-void TrialContext::grant_doubts(int technique, Density& d) const {
-    for (const TabulationError& doubt : subject.doubts()) {
-        d.doubt.resize(d.mass.bins.size());
-        d.doubt[d.bin_of(d.map.coordinates(doubt.at))] += doubt.mass;
-        d.doubts += doubt.mass;
+void TrialContext::grant_tabulation_error(int technique, Density& d) const {
+    for (const TabulationError& part : subject.tabulation_errors()) {
+        d.tabulation_errors.resize(d.mass.bins.size());
+        d.tabulation_errors[d.bin_of(d.map.coordinates(part.at))] += part.mass;
+        d.tabulation_error += part.mass;
     }
-    if (!d.doubt.empty()) refine_table(technique, d);
+    if (!d.tabulation_errors.empty()) refine_table(technique, d);
 }
 
 /// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral /
@@ -59,7 +61,7 @@ void TrialContext::refine_table(int technique, Density& d) const {
     struct Ratio {
         double n = 0, sum = 0, squares = 0;
     };
-    std::vector<Ratio> ratio(d.doubt.size());
+    std::vector<Ratio> ratio(d.tabulation_errors.size());
     const SampleBatch& b = first(technique);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
@@ -69,15 +71,15 @@ void TrialContext::refine_table(int technique, Density& d) const {
         r.sum += v;
         r.squares += v * v;
     }
-    for (std::size_t k = 0; k < d.doubt.size(); ++k) {
+    for (std::size_t k = 0; k < d.tabulation_errors.size(); ++k) {
         const Ratio& r = ratio[k];
         if (r.n < 8 || !(d.mass.bins[k] > 0)) continue;
         const double mean = r.sum / r.n, sd = std::sqrt(std::max(r.squares / r.n - mean * mean, 0.0)),
-                     reach = d.doubt[k] / d.mass.bins[k];
+                     reach = d.tabulation_errors[k] / d.mass.bins[k];
         const double right = d.mass.bins[k] / std::clamp(mean, std::max(1 - reach, 0.1), 1 + reach);
         d.mass.value += right - d.mass.bins[k];
         d.mass.bins[k] = right;
-        d.doubt[k] = std::min(d.doubt[k], right * sd * (2 / std::sqrt(r.n) + 0.1));
+        d.tabulation_errors[k] = std::min(d.tabulation_errors[k], right * sd * (2 / std::sqrt(r.n) + 0.1));
     }
 }
 

@@ -1,7 +1,7 @@
-// A tail that no draw met. Where p is tiny and f is not, X = f L cos / p is huge and nobody draws there: every sample
-// then looks alike, and their mean is short by what comes from those directions. A mean is not accused before the
-// integral of f L cos over the directions whose X exceeds the largest drawn weight W is known, and the variance of the
-// weights up to W:
+// A tail that no draw met. Where p is tiny and f is not, X = f L cos / p is huge and nothing is drawn there: every
+// sample then looks alike, and their mean is short by what comes from those directions. A mean is not accused before
+// the integral of f L cos over the directions whose X exceeds the largest drawn weight W is known, and the variance of
+// the weights up to W:
 //
 //   E[X; X <= W] = int f L cos - M,  M = int_{X > W} f L cos,  E[X^2; X <= W] = int_{X <= W} (f L cos)^2 / p
 //
@@ -56,7 +56,7 @@ double chance_of(const TrialContext& work, int technique, double threshold, bool
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
     };
     return work
-        .integral_of(guided(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
+        .integral_of(refined_at_pilots(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
             {1e-7, work.affordable(work.settings.evaluations)}, work.scatter().any())
         .value;
 }

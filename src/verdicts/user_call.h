@@ -1,4 +1,4 @@
-// Calls of a sampler of somebody's own: which parameter is w_o, which are random numbers, what is written through, and
+// Calls of a user's sampler: which parameter is w_o, which are random numbers, what is written through, and
 // what a draw says.
 //
 //   sample(wo, u)   sample(wo, uc, u)   sample(wo, u, wi&, pdf&)   sample(u), of a sampler without w_o

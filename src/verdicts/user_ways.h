@@ -1,4 +1,4 @@
-// How a sampler of somebody's own takes directions and random numbers and gives its draws back, read off the signatures
+// How a user's sampler takes directions and random numbers and gives its draws back, read off the signatures
 // of its members: scalars, arrays, spans, pointers, and structs that are built from so many numbers with braces.
 #pragma once
 

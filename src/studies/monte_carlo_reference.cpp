@@ -1,4 +1,4 @@
-#include "studies/note_reference.h"
+#include "studies/monte_carlo_reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,10 +78,10 @@ bool may_be_missed(const ShadingPoints& sites, std::size_t i, std::size_t k, dou
 }
 
 /// The note's reference over one group of sites.
-class NotePixels {
+class MonteCarloPixels {
 public:
-    NotePixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& sites, const std::string& isa,
-        ProgressMonitor& monitor)
+    MonteCarloPixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& sites,
+        const std::string& isa, ProgressMonitor& monitor)
         : scene_(scene), sites_(sites) {
         const ReferencePlan& plan = experiment.reference;
         const auto seed = [&](std::uint32_t k) { return reference_seed(experiment, k); };
@@ -156,7 +156,7 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
                         for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
                         continue;
                     }
-                    const NotePixels pixels(views[e].scene(), experiment, sites, isa, monitor);
+                    const MonteCarloPixels pixels(views[e].scene(), experiment, sites, isa, monitor);
                     for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
                 }
             }

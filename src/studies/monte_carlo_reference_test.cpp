@@ -1,4 +1,4 @@
-#include "studies/note_reference.h"
+#include "studies/monte_carlo_reference.h"
 
 #include <gtest/gtest.h>
 
