@@ -44,12 +44,12 @@ Power exp2_split(float x) {
     return Power(value, k == 0.0 ? -q : 1.0 - value);
 }
 
-// log2(x) for normal x > 0; `near` is x - 1, used where x is close to 1. After FreeBSD's e_logf.c.
-float log2_near(float x, float near) {
+// log2(x) for normal x > 0; `x_minus_1` is used where x is close to 1. After FreeBSD's e_logf.c.
+float log2_from(float x, float x_minus_1) {
     uint t = floatBitsToUint(x) + (0x3f800000u - 0x3f3504f3u);  // mantissa range [sqrt(1/2), sqrt(2))
     float e = float(int(t >> 23u) - 127);
     float m = uintBitsToFloat((t & 0x007fffffu) + 0x3f3504f3u);
-    float f = e == 0.0 ? near : m - 1.0;
+    float f = e == 0.0 ? x_minus_1 : m - 1.0;
     float s = f / (2.0 + f);
     float z = s * s;
     float w = z * z;
@@ -60,21 +60,21 @@ float log2_near(float x, float near) {
 
 // x^y and 1 - x^y for x in [0, 1] given x and x - 1; x <= 0 gives 0 (the clamp of a lobe), and so does a
 // result under 2^-126.
-Power power_near(float x, float near, float y) {
+Power power(float x, float x_minus_1, float y) {
     bool positive = x > 1.17549435e-38;  // smallest normal
-    float l = y * log2_near(positive ? x : 1.0, positive ? near : 0.0);
+    float l = y * log2_from(positive ? x : 1.0, positive ? x_minus_1 : 0.0);
     bool in_range = positive && l > -126.0;
     Power p = exp2_split(in_range ? l : 0.0);
     return Power(in_range ? p.value : 0.0, in_range ? p.one_minus : 1.0);
 }
-Power power(float x, float y) { return power_near(x, x - 1.0, y); }
+Power power(float x, float y) { return power(x, x - 1.0, y); }
 
 // u^y and 1 - u^y for u in [2^-24, 1] and 0 < y <= 1/2, the inverse of a lobe's distribution.
-Power root(float u, float y) { return exp2_split(y * log2_near(u, u - 1.0)); }
+Power root(float u, float y) { return exp2_split(y * log2_from(u, u - 1.0)); }
 
 // (a.b)^s of unit vectors, from |a - b|^2, which loses nothing where they nearly meet.
 float cosine_power(vec3 a, vec3 b, float s) {
     vec3 d = a - b;
-    float near = -0.5 * dot(d, d);
-    return power_near(1.0 + near, near, s).value;
+    float x_minus_1 = -0.5 * dot(d, d);
+    return power(1.0 + x_minus_1, x_minus_1, s).value;
 }

@@ -122,8 +122,7 @@ TEST(ReportHtml, TellsOfTwoTechniquesAndOfLightThatAnArmCannotReach) {
     EXPECT_THAT(s.html(), HasSubstr("<b>both</b> joins two techniques: its <i>N</i> counts pairs"));
     EXPECT_THAT(s.html(), Not(HasSubstr("is biased in this scene"))) << "no fill: it reaches all light";
     s.experiment.fill = {1, 1, 1};
-    EXPECT_THAT(
-        s.html(), HasSubstr("<b>lamp</b> is biased in this scene: it cannot reach the fill"));
+    EXPECT_THAT(s.html(), HasSubstr("<b>lamp</b> is biased in this scene: it cannot reach the fill"));
     EXPECT_EQ(xml_error(s.html()), "");
 }
 

@@ -6,7 +6,7 @@
 
 Drawn sample_beckmann_d(vec3 wo, vec2 u) {
     float a2 = sqr(site.alpha);
-    float tan2 = -a2 * 0.69314718056 * log2_near(1.0 - u.x, -u.x);
+    float tan2 = -a2 * 0.69314718056 * log2_from(1.0 - u.x, -u.x);
     float cos = 1.0 / sqrt(1.0 + tan2), sin = cos * sqrt(tan2);
     SinCos phi = sincos_turns(u.y);
     vec3 m = vec3(sin * phi.cos, sin * phi.sin, cos);
