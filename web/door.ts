@@ -5,6 +5,13 @@ export class DoorError extends Error {
   constructor(readonly kind: string, text: string) {
     super(text);
   }
+
+  /** What is wrong and what to do. */
+  get sentence(): string {
+    if (this.kind === "memory") return "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below.";
+    if (this.kind === "input") return `This cannot be: ${this.message}.`;
+    return `The kernels stopped: ${this.message}. Reload the page; the address holds your settings.`;
+  }
 }
 
 export interface Box { x0: number; y0: number; x1: number; y1: number }

@@ -77,6 +77,30 @@ CRESCENT_EXPORT(tile_room)(std::size_t size)->void* {
     return scratch<std::byte>().data();
 }
 
+/// Room for film `index`, plane by plane: what begin() would take at once. {} when it is there.
+CRESCENT_EXPORT(film_room)(int index)->void {
+    Bench& b = bench();
+    const auto at = static_cast<std::size_t>(index);
+    if (b.slots.size() <= at) b.slots.resize(at + 1);
+    Parts parts;
+    const auto need = [&](auto plane) {
+        if ((b.slots[at].film.*plane).size() == b.pixels()) return;
+        parts.emplace_back([=] {
+            count_work(bench().pixels() / hashed);
+            (slot(index).film.*plane).assign(bench().pixels(), 0);
+        });
+    };
+    for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::y2, &Film::var, &Film::largest})
+        need(plane);
+    for (const auto plane : {&Film::horizon, &Film::hits}) need(plane);
+    parts.emplace_back([=] {
+        slot(index).film.width = bench().experiment.image.width,
+        slot(index).film.height = bench().experiment.image.height;
+        say(ordered_json::object());
+    });
+    begin(std::move(parts));
+}
+
 /// Film `index` is now of this arm at n; what it held stays until tiles are put over it.
 CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     Bench& b = bench();
@@ -85,7 +109,8 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     const ArmPlan& plan = b.experiment.arms.at(static_cast<std::size_t>(arm));
     Slot& s = b.slots[at];
     const auto samples = static_cast<std::uint64_t>(n);
-    if (s.film.size() != b.pixels()) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
+    const bool whole = std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
+    if (!whole) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
     s.film.n = samples, s.film.directions = directions_per_sample(plan.sampler), s.film.bad = 0;
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }

@@ -100,8 +100,7 @@ export class Model {
         return { arm, name, n: 0, rungs: [], tails: {} };
       });
       for (const [index, s] of this.shown.entries()) {
-        await this.turns.pass(); // a first film takes its memory
-        if (era !== this.era) return;
+        if (!(await this.room(era, index))) return;
         this.door.number("begin", index, s.arm, rungs[0]!);
       }
     } catch (error) {
@@ -155,12 +154,14 @@ export class Model {
     }));
   }
 
+  /** The memory of a film; undefined where something else was opened meanwhile. */
+  private room(era: number, film: number): Promise<object | undefined> { return this.parts<object>(() => era === this.era, "film_room", undefined, [film]); }
+
   /** A rung for its meters alone, in a film that no picture shows. */
   private async again(era: number, n: number): Promise<void> {
     const spare = this.shown.length;
     for (const s of this.shown) {
-      await this.turns.pass();
-      if (era !== this.era) return;
+      if (!(await this.room(era, spare))) return;
       this.door.number("begin", spare, s.arm, n);
       await Promise.all(this.boxes(this.cost([s], n)).map((box) => this.tile(era, [[spare, s.arm]], n, box)));
       const meters = await this.metersOf(era, spare);

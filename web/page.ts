@@ -15,9 +15,8 @@ import { Turns } from "./turns";
 import { command, fresh, nativeHash, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
+type Opened = Pick<State, "experiment" | "set" | "arms">;
 interface Sampler { name: string; label: string; summary: string }
-
-const tooLarge = "There is not enough memory for this scene here. Choose a smaller image or fewer arms, or run the command below.";
 
 export class Page implements Viewer {
   private state!: State;
@@ -32,6 +31,8 @@ export class Page implements Viewer {
   private opening = 0;
   private movedAt = 0; // when a hand changed what is not yet open
   private awaited = 0; // and what is not yet painted
+  private good: Opened | undefined; // what was opened last
+  private refused = false; // what was set since cannot be
   private said: string[] = []; // of the address, until something is opened
   private idle = true; // nothing is computed for a bench that is not seen
   private asRead = false; // an answered lesson that the address shows with settings of its own
@@ -93,11 +94,13 @@ export class Page implements Viewer {
     byId("wrong").replaceChildren(...said.map((line) => el("p", {}, line)));
     this.model.run(opening, state.arms, state.n).catch((error: unknown) => {
       const why = error instanceof DoorError ? error : new DoorError("bug", error instanceof Error ? error.message : String(error));
-      const plain = fresh(state.experiment, source);
-      const touched = Object.keys(state.set).length > 0 || state.arms.join() !== plain.arms.join();
-      if (!touched || why.kind === "memory") return this.failed(why, true);
-      Object.assign(state, { set: {}, arms: plain.arms, arm: 0 });
-      this.open([...said, `These settings cannot be: ${why.message}. The experiment is as it was written.`]);
+      const plain = fresh(state.experiment, source), { good } = this;
+      const differs = (from: Opened): boolean => JSON.stringify([from.set, from.arms]) !== JSON.stringify([state.set, state.arms]);
+      if (!differs(plain) || why.kind === "memory") return this.failed(why, true);
+      const back = good?.experiment === state.experiment && differs(good) ? good : undefined, { set, arms } = back ?? plain;
+      Object.assign(state, { set: { ...set }, arms: [...arms], arm: 0 });
+      this.refused = true;
+      this.open([...said, `These settings cannot be: ${why.message}. ${back ? "They are as they were before." : "The experiment is as it was written."}`]);
     });
   }
 
@@ -113,6 +116,7 @@ export class Page implements Viewer {
   opened(d: Described, shown: Shown[]): void {
     if (this.movedAt) (this.awaited = this.movedAt), (this.movedAt = 0);
     this.seen = d;
+    this.good = { experiment: this.state.experiment, set: { ...this.state.set }, arms: [...this.state.arms] };
     delete document.documentElement.dataset["took"];
     const at = this.state.pixel;
     if (at && (at[0] >= d.width || at[1] >= d.height)) {
@@ -142,13 +146,15 @@ export class Page implements Viewer {
     if (held) document.querySelector<HTMLElement>(`#pictures .reference [data-corner="${held}"]`)?.focus();
     if (byId("charts").childElementCount !== d.regions.length)
       byId("charts").replaceChildren(...d.regions.map(() => el("figure", { class: "narrow chart-to-come" })));
-    if (!document.activeElement?.closest("[data-path]")) this.knobs();
+    if (this.refused || !document.activeElement?.closest("[data-path]")) this.knobs();
+    this.refused = false;
   }
 
   /** All settings, or those that a lesson lets one play with. A hand on one of them keeps it: they are not made anew then. */
   private knobs(): void {
-    const { described } = this.model;
+    const { described } = this.model, held = document.activeElement?.closest("[data-path]") && document.activeElement.getAttribute("aria-label");
     if (described) byId("knobs").replaceChildren(...controlRows(described, (path, value) => this.change(path, value), this.lesson?.play));
+    if (held) document.querySelector<HTMLElement>(`#knobs [aria-label="${CSS.escape(held)}"]`)?.focus();
   }
 
   private choices(): void {
@@ -229,9 +235,7 @@ export class Page implements Viewer {
       this.pictures = [];
       this.choices();
     }
-    const what = error.kind === "memory" ? tooLarge : error.kind === "input" ? `This cannot be: ${error.message}.`
-      : `The kernels stopped: ${error.message}. Reload the page; the address holds your settings.`;
-    byId("wrong").replaceChildren(el("p", {}, what));
+    byId("wrong").replaceChildren(el("p", {}, error.sentence));
   }
 
   /** The bench, the lessons or the sheet. A lesson brings its arms and keeps the bench below it. */

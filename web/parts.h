@@ -16,7 +16,7 @@ inline constexpr std::uint64_t most_of_part = 100'000;
 inline constexpr std::uint64_t reference_cost = 2000;
 /// What a pixel counts in films beside its samples, put into its place, measured, for the scale of maps, as a colour.
 inline constexpr std::uint64_t film_cost = 30, put_cost = 2, meter_cost = 1, scale_cost = 3, colour_cost = 10;
-/// Pixels of a plane whose hash counts one.
+/// Pixels of a plane that count one where it is hashed, or takes its memory.
 inline constexpr std::uint64_t hashed = 10;
 /// And a sample that is looked at by itself, for a tail.
 inline constexpr std::uint64_t tail_cost = 4;
