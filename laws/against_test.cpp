@@ -54,6 +54,60 @@ TEST(Against, AnotherSamplerOfTheSameDistributionIsNotToldApart) {
     EXPECT_EQ(named(j, "same_f").state, State::right) << against_text(j);
 }
 
+/// Two delta parts and nothing else: the mirror direction with q, and straight through.
+Recipe mirror_or_straight(double q) {
+    Recipe r{"mirror or straight", "", {}, {}, {}};
+    r.traits.numbers = 3;
+    r.traits.delta = true;
+    r.traits.wo = Traits::Asked::both;
+    r.pdf = [](Vec3d, Vec3d) { return 0.0; };
+    r.f = [](Vec3d, Vec3d) { return 0.0; };
+    r.sample = [q](Vec3d wo, const Numbers& u) {
+        const bool mirrored = u[2] < q;
+        Draw d{mirrored ? Vec3d{-wo.x, -wo.y, wo.z} : -wo, 0};
+        d.delta = mirrored ? q : 1 - q;
+        d.weight = 0.5 / d.delta;
+        return d;
+    };
+    return r;
+}
+
+/// Mirrors `mirrored` of the draws, a delta part, and draws the cosine else.
+Recipe part_mirror(double mirrored) {
+    Recipe r{"part mirror", "", {}, {}, {}};
+    r.traits.numbers = 3;
+    r.traits.delta = true;
+    r.pdf = [=](Vec3d, Vec3d wi) { return (1 - mirrored) * std::max(wi.z, 0.0) / pi; };
+    r.f = [](Vec3d wo, Vec3d wi) { return wo.z > 0 && wi.z > 0 ? 0.5 / pi : 0.0; };
+    r.sample = [=](Vec3d wo, const Numbers& u) {
+        const double rad = std::sqrt(u.x), phi = 2 * pi * u.y, z = std::sqrt(1 - u.x);
+        Draw d{{rad * std::cos(phi), rad * std::sin(phi), z}, (1 - mirrored) * z / pi};
+        d.weight = 0.5 / (1 - mirrored);
+        if (u[2] >= mirrored) return d;
+        d = {{-wo.x, -wo.y, wo.z}, 0};
+        d.delta = mirrored;
+        d.weight = 0.1 / mirrored;
+        return d;
+    };
+    return r;
+}
+
+/// What draws nothing else is told apart by its delta parts too.
+TEST(Against, DeltaPartsThatAreDrawnMoreOftenAreAnotherDistribution) {
+    const std::vector<Trial> a = {trial_of_subject(subject_of(part_mirror(0.5)), 45, 130)};
+    const auto against_one = [&](double mirrored) {
+        return against(a, sampler_against(subject_of(part_mirror(mirrored)), a), true);
+    };
+    EXPECT_EQ(named(against_one(0.5), "same_distribution").state, State::right);
+    EXPECT_EQ(named(against_one(0.55), "same_distribution").state, State::wrong);
+    const std::vector<Trial> glass = {trial_of_subject(subject_of(mirror_or_straight(0.5)), 45, 130)};
+    const auto of_parts = [&](double q) {
+        return against(glass, sampler_against(subject_of(mirror_or_straight(q)), glass), true);
+    };
+    EXPECT_EQ(named(of_parts(0.5), "same_distribution").state, State::right);
+    EXPECT_EQ(named(of_parts(0.6), "same_distribution").state, State::wrong);
+}
+
 TEST(Against, ABetterOneIsSaidToBeSoWithItsInterval) {
     const std::vector<Trial> a = trials("uniform", "Lambert + Phong", 45);
     const std::vector<Trial> b = arm_against("mixture", a);

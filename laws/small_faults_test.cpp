@@ -11,6 +11,7 @@
 #include "verdicts/builtin.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
+#include "verdicts/ordered.h"
 
 namespace crescent {
 namespace {
@@ -257,6 +258,30 @@ TEST(Tails, OfFewValuesThatComeAgainAndAgainAreNone) {
     EXPECT_FALSE(tail.evidence.contains("k")) << tail.say;
     EXPECT_GT(tail.evidence["times_largest"].get<int>(), 100);
     EXPECT_EQ(named(j, "mean").state, State::right) << named(j, "mean").say;
+}
+
+/// A lobe that one draw in a hundred is of, whose weights, uniform about 15 means, are far above the rest: a step up
+/// into it is no tail. And weights u^-0.7, which have one, are told of by whatever is looked at.
+TEST(Tails, OfALobeThatIsSeldomChosenAreThoseOfItsOwnWeights) {
+    std::vector<double> stepped, heavy;
+    for (int i = 0; i < 32768; ++i) {
+        const double u = (i + 0.5) / 32768, v = math::exp(-0.7 * math::log(u));
+        stepped.push_back(i % 100 == 0 ? 14 + 2 * u : 0.8 + 0.1 * u);
+        heavy.push_back(v);
+    }
+    ASSERT_TRUE(tail_of(stepped));
+    EXPECT_LT(tail_of(stepped)->k, 0.0);
+    ASSERT_TRUE(tail_of(heavy));
+    EXPECT_NEAR(tail_of(heavy)->k, 0.7, 0.1);
+}
+
+/// Weights of which a few are a hundredth larger are no tail, whatever their skewness: those of a sharp lobe.
+TEST(Tails, AreNoneWhereTheLargestWeightIsHardlyMoreThanTheMean) {
+    std::vector<double> x(32768, 0.72);
+    x[7] *= 1.01;
+    EXPECT_TRUE(mean_is_testable(spread(x), tail_of(x), {}));
+    x[7] *= 2000;
+    EXPECT_FALSE(mean_is_testable(spread(x), tail_of(x), {}));
 }
 
 }  // namespace

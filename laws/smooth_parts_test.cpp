@@ -45,6 +45,45 @@ TEST(SmoothParts, AreRefractedByTheIndexThatIsTold) {
     EXPECT_EQ(v.evidence.value("diagnosis", ""), "1 / eta");
 }
 
+/// Smooth glass of three indices, one for a channel: a third of what is not reflected is of each, and weighs in its
+/// channel alone, by `scale`. Along the normal the three go one way.
+Recipe dispersive_glass(double scale) {
+    constexpr double eta[] = {1.45, 1.5, 1.6}, reflected = 0.1;
+    Recipe r{"dispersive glass", "", {}, {}, {}};
+    r.traits.numbers = 4;
+    r.traits.channels = 3;
+    r.traits.wo = Traits::Asked::both;
+    r.traits.delta = true;
+    r.traits.eta = Vec3d{eta[0], eta[1], eta[2]};
+    r.pdf = [](Vec3d, Vec3d) { return 0.0; };
+    r.f_channels = [](Vec3d, Vec3d) { return Vec3d{}; };
+    r.sample = [=](Vec3d o, const Numbers& u) {
+        const int channel = std::min(static_cast<int>(3 * u[2]), 2);
+        const double e = o.z > 0 ? eta[channel] : 1 / eta[channel], rest = 1 - (1 - o.z * o.z) / (e * e);
+        Draw d{{-o.x, -o.y, o.z}, 0};
+        d.delta = reflected;
+        d.weights = {1, 1, 1};
+        if (u[3] >= reflected) {
+            if (rest < 0) return Draw{{0, 0, 1}, 0, {}, {}};
+            const double w = 3 * scale / (e * e);
+            d.wi = {-o.x / e, -o.y / e, -std::copysign(std::sqrt(rest), o.z)};
+            d.delta = (1 - reflected) / 3;
+            d.weights = {channel == 0 ? w : 0, channel == 1 ? w : 0, channel == 2 ? w : 0};
+        }
+        d.weight = luminance(d.weights);
+        return d;
+    };
+    return r;
+}
+
+TEST(SmoothParts, OfThreeIndicesAreThreeAlongTheNormalToo) {
+    for (double theta : {0.0, 40.0, 160.0, 180.0}) {
+        const Judgement j = judged(dispersive_glass(1), theta);
+        EXPECT_EQ(j.state, State::right) << theta << what_is_wrong(j);
+    }
+    EXPECT_EQ(named(judged(dispersive_glass(1.02), 0), "physics").state, State::wrong);
+}
+
 TEST(SmoothParts, OfAThinWallGoStraightOnWhateverIndexIsTold) {
     const auto straight = [](Vec3d o, Vec3d) { return -o; };
     for (double theta : {30.0, 60.0, 150.0}) {

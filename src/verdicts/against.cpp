@@ -12,6 +12,7 @@
 #include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/asked_once.h"
+#include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 #include "verdicts/verdict_kind.h"
@@ -23,15 +24,40 @@ namespace {
 constexpr std::array compared_by = {"same_distribution", "same_f", "variance"};
 constexpr std::uint32_t other_stream = 1u << 20;  // B draws from streams that no A draws from
 
-/// Draws of every technique, by A's bins; what draws nothing is one more.
-std::vector<double> count(const TrialContext& work, const Density& bins, int round) {
-    std::vector<double> out(bins.mass.bins.size() + 1);
+/// Where both are known to draw: A's bins, and the directions of either one's delta parts.
+struct Common {
+    const Density& bins;
+    std::vector<Vec3d> ways;
+};
+
+Common common_of(const TrialContext& a, const TrialContext& b) {
+    constexpr double alike = 1e-4;
+    Common out{a.density(0), {}};
+    for (const TrialContext* work : {&a, &b})
+        for (const DeltaPart& part : delta_parts(*work, work->first(0)).parts)
+            if (std::ranges::none_of(out.ways, [&](Vec3d w) { return length(w - part.wi) < alike; }))
+                out.ways.push_back(part.wi);
+    return out;
+}
+
+/// Of the directions that are known the nearest.
+std::size_t way_of(std::span<const Vec3d> ways, Vec3d wi) {
+    const auto off = [wi](Vec3d w) { return length(w - wi); };
+    return static_cast<std::size_t>(std::ranges::min_element(ways, {}, off) - ways.begin());
+}
+
+/// Draws of every technique, by bins; what draws nothing is one more, and so is each direction of delta parts.
+std::vector<double> count(const TrialContext& work, const Common& common, int round) {
+    const Density& bins = common.bins;
+    const std::size_t of_nothing = bins.mass.bins.size();
+    std::vector<double> out(of_nothing + 1 + common.ways.size());
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const SampleBatch fresh = round == 0 ? SampleBatch{} : work.draw(t, round);
         const SampleBatch& b = round == 0 ? work.first(t) : fresh;
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
-            const bool nothing = is_null_sample(b.draws[i], b.pdf[i]);
-            ++out[nothing ? out.size() - 1 : bins.bin_of(bins.map.coordinates(b.draws[i].wi))];
+            const Draw& d = b.draws[i];
+            if (d.delta > 0 && !common.ways.empty()) ++out[of_nothing + 1 + way_of(common.ways, d.wi)];
+            else ++out[is_null_sample(d, b.pdf[i]) ? of_nothing : bins.bin_of(bins.map.coordinates(d.wi))];
         }
     }
     return out;
@@ -65,27 +91,39 @@ double two_sample_p(const std::vector<double>& a, const std::vector<double>& b) 
     return chi_squared_p(statistic, degrees);
 }
 
-/// Over all bins, over rings alone, over sectors alone.
-std::array<double, 3> two_sample(const Density& bins, const std::vector<double>& a, const std::vector<double>& b) {
+/// Over all bins, over rings alone, over sectors alone; and over the delta parts and what is none of them.
+std::vector<double> two_sample(const Common& common, const std::vector<double>& a, const std::vector<double>& b) {
+    const Density& bins = common.bins;
     const std::size_t sectors = static_cast<std::size_t>(bins.sectors), rings = bins.rings.size() - 1;
     std::vector<double> ring_a(rings), ring_b(rings), sector_a(sectors), sector_b(sectors);
     for (std::size_t i = 0; i < rings * sectors; ++i) {
         ring_a[i / sectors] += a[i], ring_b[i / sectors] += b[i];
         sector_a[i % sectors] += a[i], sector_b[i % sectors] += b[i];
     }
-    return {two_sample_p(a, b), two_sample_p(ring_a, ring_b), two_sample_p(sector_a, sector_b)};
+    std::vector<double> out = {two_sample_p(a, b), two_sample_p(ring_a, ring_b), two_sample_p(sector_a, sector_b)};
+    if (common.ways.empty()) return out;
+    const auto parts = [&common](const std::vector<double>& all) {
+        std::vector<double> each(all.end() - static_cast<std::ptrdiff_t>(common.ways.size()), all.end());
+        each.push_back(total(all) - total(each));
+        return each;
+    };
+    out.push_back(two_sample_p(parts(a), parts(b)));
+    return out;
 }
 
 Verdict same_distribution(const TrialContext& a, const TrialContext& b, bool expect_same) {
     Verdict v = a.verdict("same_distribution", State::right, "");
-    const Density& bins = a.density(0);
-    const std::array<double, 3> p = two_sample(bins, count(a, bins, 0), count(b, bins, 0));
+    const Common common = common_of(a, b);
+    const auto compared = [&](int round) {
+        return two_sample(common, count(a, common, round), count(b, common, round));
+    };
+    const std::vector<double> p = compared(0);
     bool differ = false;
-    std::optional<std::array<double, 3>> again;
-    for (std::size_t k = 0; k < 3; ++k)
+    std::optional<std::vector<double>> again;
+    for (std::size_t k = 0; k < p.size(); ++k)
         differ = a.fails(p[k],
                      [&](int round) {
-                         if (!again) again = two_sample(bins, count(a, bins, round), count(b, bins, round));
+                         if (!again) again = compared(round);
                          return (*again)[k];
                      }) ||
             differ;
@@ -93,12 +131,13 @@ Verdict same_distribution(const TrialContext& a, const TrialContext& b, bool exp
     v.evidence["p"] = p[0];
     v.evidence["p_rings"] = p[1];
     v.evidence["p_sectors"] = p[2];
+    if (p.size() > 3) v.evidence["p_delta_parts"] = p[3];
     v.evidence["draws"] = {a.first(0).draws.size(), b.first(0).draws.size()};
     v.state = differ && expect_same ? State::wrong : State::right;
-    v.say = fmt::format("{}: p = {:.3g}, rings {:.3g}, sectors {:.3g}.",
+    v.say = fmt::format("{}: p = {:.3g}, rings {:.3g}, sectors {:.3g}{}.",
         differ ? "They draw from different distributions, and again on fresh seeds"
                : "No difference between their distributions is seen",
-        p[0], p[1], p[2]);
+        p[0], p[1], p[2], p.size() > 3 ? fmt::format(", delta parts {:.3g}", p[3]) : "");
     return v;
 }
 
@@ -142,9 +181,12 @@ std::vector<Verdict> compare_one(
     return out;
 }
 
-/// Three tests of the distribution, two of means and variances, and what either is tested by alone.
+/// Three tests of the distribution, and one of delta parts, two of means and variances, and what either is tested by
+/// alone.
 std::uint64_t tests_against(std::span<const Trial> a, std::span<const Trial> b) {
-    std::uint64_t tests = 5 * a.size();
+    const auto draws_parts = [](const Trial& t) { return t.subject->traits().delta; };
+    const bool parts = std::ranges::any_of(a, draws_parts) || std::ranges::any_of(b, draws_parts);
+    std::uint64_t tests = (parts ? 6 : 5) * a.size();
     for (const auto& trials : {a, b})
         for (const Trial& t : trials)
             for (const VerdictKind* kind : judged_alone())

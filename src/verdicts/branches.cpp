@@ -103,6 +103,7 @@ Branches follow_branches(const TrialContext& work, int technique, std::span<cons
     out.choosers = static_cast<int>(choosers.size());
     if (choosers.empty()) std::fill(out.share.begin(), out.share.end(), 1.0);
     if (choosers.size() != 1) return out;
+    out.chooser = choosers[0];
     const Chooser chooser(work, technique, choosers[0]);
     // A small move changes nothing but at the end of an interval.
     std::vector<Numbers> beside;

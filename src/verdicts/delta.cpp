@@ -33,13 +33,18 @@ Vec3d DeltaParts::energy(int side) const {
     return sum;
 }
 
-DeltaParts delta_parts(const TrialContext& work, const SampleBatch& b) {
+namespace {
+
+/// The parts by direction and q, and by weight too where that is asked for.
+DeltaParts parts_of(const TrialContext& work, const SampleBatch& b, bool by_weight) {
     DeltaParts out;
     out.of = b.draws.size();
     for (const Draw& d : b.draws) {
         if (!(d.delta > 0)) continue;
         const Vec3d w = weight_of(work, d);
-        const auto same = [&](const DeltaPart& p) { return length(p.wi - d.wi) < 1e-4 && close(p.q, d.delta); };
+        const auto same = [&](const DeltaPart& p) {
+            return length(p.wi - d.wi) < 1e-4 && close(p.q, d.delta) && (!by_weight || close(p.weight, w));
+        };
         const auto at = std::find_if(out.parts.begin(), out.parts.end(), same);
         if (at != out.parts.end()) {
             ++at->drawn;
@@ -51,6 +56,27 @@ DeltaParts delta_parts(const TrialContext& work, const SampleBatch& b) {
         }
     }
     return out;
+}
+
+/// Every part is drawn as often as q says, but for six standard deviations.
+bool all_come_by_q(const DeltaParts& deltas) {
+    const double n = static_cast<double>(deltas.of);
+    return !deltas.scattered && std::all_of(deltas.parts.begin(), deltas.parts.end(), [n](const DeltaPart& p) {
+        return std::fabs(static_cast<double>(p.drawn) - n * p.q) <= 6 * std::sqrt(n * p.q * (1 - p.q)) + 2;
+    });
+}
+
+}  // namespace
+
+/// One direction and one q with several weights are several parts where each comes as often as q says: along the
+/// normal three indices refract three channels, chosen alike, to one direction.
+DeltaParts delta_parts(const TrialContext& work, const SampleBatch& b) {
+    DeltaParts out = parts_of(work, b, false);
+    const bool uneven =
+        std::any_of(out.parts.begin(), out.parts.end(), [](const DeltaPart& p) { return p.otherwise > 0; });
+    if (!uneven) return out;
+    DeltaParts apart = parts_of(work, b, true);
+    return all_come_by_q(apart) ? apart : out;
 }
 
 double delta_share_p(const DeltaParts& deltas, const SampleBatch& b) {

@@ -39,6 +39,7 @@ bool deltas_are_wrong(const TrialContext& work, const DeltaParts& deltas, Verdic
         }))
         return false;
     v.state = State::wrong;
+    v.evidence["parts_off"] = true;
     v.say = "Delta parts are not drawn as often as they say, and again on a fresh seed:" + told(deltas);
     return true;
 }

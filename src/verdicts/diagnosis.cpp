@@ -248,7 +248,11 @@ void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
             if (!of_identity) density = diagnose_density(work, t);
             if (!density) identity = diagnose_identity(work, t);
             if (of_identity && !identity) density = diagnose_density(work, t);
+            if (!density && !identity) density = diagnose_lobes(work, t);
         }
+        if (!density && !identity && v.evidence.contains("parts_off"))
+            density = Diagnosis{
+                "the chooser's probability", 1, 1, "the parts are chosen with other probabilities than q", {}};
         tell(work, v, density ? density : identity);
         first = v.name;
     }

@@ -65,6 +65,8 @@ std::optional<Diagnosis> exchanged_channels(const TrialContext& work, const Samp
 std::optional<Diagnosis> scaled_channels(const TrialContext& work, const SampleBatch& b, std::size_t most);
 /// The weights of the channels are off by unlike factors: their luminance tells nothing.
 bool channels_differ(const TrialContext& work, const SampleBatch& b, std::size_t most);
+/// Two lobes of a mixture are drawn with other probabilities than pdf(w) has; see diagnosis_lobes.cpp.
+std::optional<Diagnosis> diagnose_lobes(const TrialContext& work, int technique);
 /// What comes with the draws against what is asked: pdf, weight, f.
 std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int technique);
 /// Says of the first verdict that is wrong what explains it, or that nothing usual does; the later ones refer to it.

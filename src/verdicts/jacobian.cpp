@@ -250,8 +250,8 @@ WarpFinding studied(const TrialContext& work, int technique) {
         count_steps(work, d, std::span(w).subspan(i, stencil), out);
         if (!(share > 0)) continue;
         ++out.usable;
-        out.points.push_back({w[i].wi, d.j / share, d.error});
         const double pj = w[i].pdf * d.j / share, allowed = 5e-4 + 2 * d.error + branches.known_to / share;
+        out.points.push_back({w[i].wi, d.j / share, d.error, u[i], pj});
         if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf / share, pj, share, allowed});
         if (std::fabs(pj - 1) <= allowed) ++one;
         if (allowed < 8e-4) known.push_back(pj);
@@ -274,6 +274,22 @@ WarpFinding studied(const TrialContext& work, int technique) {
 }
 
 }  // namespace
+
+std::vector<std::optional<WarpPoint>> jacobians_at(
+    const TrialContext& work, int technique, std::span<const Numbers> at) {
+    std::vector<Numbers> u;
+    for (const Numbers& c : at)
+        for (const Numbers& v : stencil_at(c)) u.push_back(v);
+    std::vector<Draw> w(u.size());
+    work.subject.sample(technique, work.trial.wo, u, w);
+    std::vector<std::optional<WarpPoint>> out(at.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const Derivative d = derivative(std::span(w).subspan(i * stencil, stencil), work.direction_resolution());
+        const Draw& there = w[i * stencil];
+        if (d.usable) out[i] = WarpPoint{there.wi, d.j, d.error, at[i], there.pdf * d.j};
+    }
+    return out;
+}
 
 const WarpFinding& study_warp(const TrialContext& work, int technique) {
     auto& kept = work.warps[static_cast<std::size_t>(technique)];

@@ -123,8 +123,13 @@ std::vector<Vec3d> drawn_below(const TrialContext& work);
 /// reaches it.
 struct WarpPoint {
     Vec3d wi{};
-    double jacobian = 0, error = 0;  // sr; relative
+    double jacobian = 0, error = 0;  // sr, over the share of the number that chooses; relative
+    Numbers u{};
+    double p_jacobian = 0;
 };
+/// What finite differences say of the warp at these u; nothing where a seam is near.
+std::vector<std::optional<WarpPoint>> jacobians_at(
+    const TrialContext& work, int technique, std::span<const Numbers> at);
 /// The bin that is off most for its size.
 std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected);
 /// "Most at theta 31.2 deg, phi 250.1 deg: 812 seen, 640.3 due."
@@ -165,10 +170,25 @@ struct WarpFinding {
 struct Branches {
     std::vector<double> share;
     double known_to = 0;
-    int choosers = 0;
+    int choosers = 0, chooser = -1;  // chooser: the number that chooses, where it is the only one
 };
 /// Whether the third number and on choose between continuous branches.
 Branches follow_branches(const TrialContext& work, int technique, std::span<const Numbers> at);
+/// Directions that several lobes of the sampler reach, each from a u of its own, and what they draw there together; see
+/// preimages.cpp.
+struct Reached {
+    std::size_t looked_at = 0, denser = 0;  // directions; and those drawn more often than p says
+    Vec3d worst{};
+    double most = 1;  // drawn density over p there
+    /// What either of two lobes draws over p where no third was found; `low`: by the lower numbers that choose.
+    struct Pair {
+        double low, high;
+    };
+    std::vector<Pair> pairs;
+    int chooser = 0;  // the number that chooses; 0: the first leads to both
+};
+/// Looked at once; kept with the work.
+const Reached& preimages_of(const TrialContext& work, int technique);
 /// Looked at once; kept with the work.
 const WarpFinding& study_warp(const TrialContext& work, int technique);
 

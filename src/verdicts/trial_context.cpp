@@ -117,6 +117,7 @@ void TrialContext::redraw(std::uint32_t seed) {
     confirming_ = {};
     first_weights_ = {};
     warps = {};
+    reached = {};
     claimed = {};
     for (std::size_t k = 0; k < first_.size(); ++k) first_[k] = draw(static_cast<int>(k), 0);
 }

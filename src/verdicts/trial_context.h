@@ -92,6 +92,7 @@ struct Unmet {
 };
 
 struct WarpFinding;
+struct Reached;
 
 class TrialContext {
 public:
@@ -186,6 +187,7 @@ public:
     }
 
     mutable std::array<std::shared_ptr<const WarpFinding>, 2> warps;  // by technique; see study_warp
+    mutable std::array<std::shared_ptr<const Reached>, 2> reached;    // by technique; see preimages_of
     mutable std::array<std::vector<double>, 2> claimed;               // pdf(w) at the points of `warps`, once asked
     std::vector<BinMap> maps;
     std::vector<WeightPicture> pictures;

@@ -45,6 +45,21 @@ bool stands_still(const WarpFinding& warp, const std::string& suffix, Verdict& v
             warp.stuck, warp.steps_tried));
 }
 
+/// What several lobes draw together in one direction is more than p says.
+bool lobes_are_denser_than_p(const TrialContext& work, int technique, Verdict& v) {
+    if (!work.traits.has_pdf) return false;
+    const Reached& found = preimages_of(work, technique);
+    if (found.looked_at > 0) v.evidence["reached_by_several_lobes" + work.suffix(technique)] = found.looked_at;
+    if (found.denser < 3 || 20 * found.denser < found.looked_at) return false;
+    v.evidence["largest_drawn_over_p"] = found.most;
+    return tell(v,
+        fmt::format(
+            "Several lobes reach one direction, and together draw it more often than p says at {} of {} "
+            "directions, most at w = ({:.6g}, {:.6g}, {:.6g}): {:.5g} times. What a lobe is chosen with, or its own "
+            "density, is not what p has of it.",
+            found.denser, found.looked_at, found.worst.x, found.worst.y, found.worst.z, found.most));
+}
+
 }  // namespace
 
 bool warp_is_wrong(const TrialContext& work, int technique, WarpSummary& all, Verdict& v) {
@@ -54,7 +69,8 @@ bool warp_is_wrong(const TrialContext& work, int technique, WarpSummary& all, Ve
     v.evidence["p_jacobian_is_1" + suffix] = warp.one_to_one;
     all.one_to_one = std::min(all.one_to_one, warp.one_to_one);
     all.choosers = std::max(all.choosers, warp.choosers);
-    return is_denser_than_p(work, warp, suffix, v) || stands_still(warp, suffix, v);
+    return is_denser_than_p(work, warp, suffix, v) || stands_still(warp, suffix, v) ||
+        lobes_are_denser_than_p(work, technique, v);
 }
 
 std::string told_of_warp(const TrialContext& work, const WarpSummary& warps) {
