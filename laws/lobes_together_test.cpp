@@ -63,5 +63,32 @@ TEST(LobesTogether, AreFoundWhereOneIsDrawnALittleMoreOftenThanPSays) {
         }
 }
 
+TEST(LobesTogether, NameTheChoosersProbability) {
+    for (bool of_two : {false, true})
+        for (double claimed : {0.45, 0.51}) {
+            const Verdict v = identity_of(mixture(0.5, claimed, of_two), 1);
+            EXPECT_EQ(v.evidence.value("diagnosis", ""), "the chooser's probability") << v.say;
+        }
+}
+
+/// A lobe whose power is not the one that is drawn is off by no one share.
+TEST(LobesTogether, NameItNotWhereALobeIsOffInItself) {
+    for (bool of_two : {false, true}) {
+        Recipe r = mixture(0.5, 0.5, of_two);
+        r.pdf = [](Vec3d, Vec3d i) {
+            const double c = std::max(dot(i, tilt(20, 0)), 1e-300);
+            return i.z > 0 ? (2 * i.z + (power + 1.3) * std::exp((power + 0.3) * std::log(c))) / (4 * pi) : 0.0;
+        };
+        r.sample = [p = r.pdf, sample = r.sample](Vec3d o, const Numbers& u) {
+            Draw d = sample(o, u);
+            d.pdf = d.pdf > 0 ? p(o, d.wi) : 0;
+            return d;
+        };
+        const Verdict v = identity_of(r, 1);
+        EXPECT_EQ(v.state, State::wrong) << v.say;
+        EXPECT_NE(v.evidence.value("diagnosis", ""), "the chooser's probability") << v.say;
+    }
+}
+
 }  // namespace
 }  // namespace crescent

@@ -93,5 +93,51 @@ TEST(Meshes, OfTexelsOfASkyInSinglePrecisionAreSummed) {
     EXPECT_EQ(found->error, 0);
 }
 
+/// p of 40 x 40 texels of the equal-area octahedral map (Clarberg 2008), from a direction back to the square.
+double in_octahedral_texels(Vec3d w) {
+    const double x = std::fabs(w.x), y = std::fabs(w.y), r = std::sqrt(std::max(1 - std::fabs(w.z), 0.0));
+    const double phi = std::atan2(y, x) * 2 / pi, v = phi * r, u = r - v;
+    const double a = w.z < 0 ? 1 - v : u, b = w.z < 0 ? 1 - u : v;
+    const double s = (std::copysign(a, w.x) + 1) / 2, t = (std::copysign(b, w.y) + 1) / 2;
+    return 1 + (int(std::min(s, 1 - 1e-9) * 40) * 7 + int(std::min(t, 1 - 1e-9) * 40) * 5) % 11;
+}
+
+/// p sin theta of points 48 x 24 in phi x theta, bilinear between them.
+double in_bilinear_texels(Vec3d w) {
+    const double theta = std::acos(std::clamp(w.z, -1.0, 1.0)), turns = std::atan2(w.y, w.x) / (2 * pi);
+    const double x = 48 * (turns < 0 ? turns + 1 : turns), y = 24 * theta / pi;
+    const int i = std::min(int(x), 47), k = std::min(int(y), 23);
+    const auto at = [](int column, int row) { return 1.0 + (column % 48 * 7 + row * 5) % 11; };
+    const double f = x - i, g = y - k;
+    return ((1 - g) * ((1 - f) * at(i, k) + f * at(i + 1, k)) + g * ((1 - f) * at(i, k + 1) + f * at(i + 1, k + 1))) /
+        std::max(std::sin(theta), 1e-9);
+}
+
+DirectionBatch batch_of(double (*p)(Vec3d), int turned) {
+    return [=](std::span<const Vec3d> at, std::span<double> out) {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = p(turned ? Vec3d{at[i].y, at[i].z, at[i].x} : at[i]);
+    };
+}
+
+TEST(Texels, OfAnOctahedralMapAndBilinearOnesAreSummedAboutAnyAxis) {
+    double octahedral = 0, bilinear = 0;
+    for (int i = 0; i < 40; ++i)
+        for (int k = 0; k < 40; ++k) octahedral += 4 * pi / 1600 * (1 + (i * 7 + k * 5) % 11);
+    for (int i = 0; i < 48; ++i)
+        for (int k = 0; k < 24; ++k)
+            for (int corner = 0; corner < 4; ++corner)
+                bilinear += 2 * pi * pi / (48 * 24) / 4 * (1 + ((i + corner % 2) % 48 * 7 + (k + corner / 2) * 5) % 11);
+    for (int turned : {0, 1}) {
+        const std::optional<Integral> one = integrate_texels(batch_of(in_octahedral_texels, turned), 200000);
+        ASSERT_TRUE(one) << turned;
+        EXPECT_NEAR(one->value, octahedral, 1e-9 * octahedral);
+        const std::optional<Integral> two = integrate_texels(batch_of(in_bilinear_texels, turned), 200000);
+        ASSERT_TRUE(two) << turned;
+        EXPECT_NEAR(two->value, bilinear, 1e-5 * bilinear);
+    }
+    const auto smooth = [](Vec3d w) { return 1 + 0.5 * w.z + 0.2 * w.x * w.y; };
+    EXPECT_FALSE(integrate_texels(batch_of(smooth, 0), 200000));
+}
+
 }  // namespace
 }  // namespace crescent

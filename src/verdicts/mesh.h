@@ -42,4 +42,10 @@ std::optional<Integral> integrate_mesh(const Mesh& mesh, std::span<const double>
 Integral integrate_by_points(
     std::vector<Rect> cells, int bins, const Batch& g, std::size_t evaluations, bool estimates = false);
 
+/// A density at directions, many at once.
+using DirectionBatch = std::function<void(std::span<const Vec3d> at, std::span<double> out)>;
+/// The sum over the texels of a sky that is an equal-area octahedral map, or is bilinear in theta x phi or in cos theta
+/// x phi, about an axis of the frame; none where p is none of these, or has more texels than `most`. See texels.cpp.
+std::optional<Integral> integrate_texels(const DirectionBatch& p, std::size_t most);
+
 }  // namespace crescent::inline verdicts

@@ -4,6 +4,7 @@
 
 #include "math/functions.h"
 #include "verdicts/caps.h"
+#include "verdicts/mesh.h"
 #include "verdicts/trial_context.h"
 
 namespace crescent::inline verdicts {
@@ -17,6 +18,27 @@ struct OutOfQuestions {};
 void sort_edges(std::vector<double>& rings) {
     std::sort(rings.begin(), rings.end());
     rings.erase(std::unique(rings.begin(), rings.end(), [](double x, double y) { return y - x < 1e-12; }), rings.end());
+}
+
+}  // namespace
+
+namespace {
+
+/// A sky whose texels are summed: its mass is known to that, its bins to what the cubature says of them.
+bool measure_by_texels(const TrialContext& work, int t, Density& d) {
+    if (work.traits.wo != Traits::Asked::none || !(d.mass.error > work.enough())) return false;
+    const std::size_t most = work.subject.serial() && !work.settings.full ? work.affordable(200000) : 10000000;
+    const auto p = [&](std::span<const Vec3d> at, std::span<double> out) {
+        std::ranges::copy(work.pdf(t, at, true), out.begin());
+    };
+    const std::optional<Integral> sum = integrate_texels(p, most);
+    if (!sum) return false;
+    d.mass.value = d.mass.second = sum->value;
+    d.mass.error = sum->error;
+    d.mass.second_se = 0;
+    d.mass.settled = true;
+    d.mass.evaluations += sum->evaluations;
+    return true;
 }
 
 }  // namespace
@@ -65,10 +87,11 @@ Density TrialContext::density_of(int t) {
     Density d = lobe.sharp ? density_about(t, lobe.mean, false, settings.evaluations)
                            : density_about(t, axis, axis.z == 1, settings.evaluations);
     const bool capped = measure_by_caps(t, d);
-    measure_about_others(t, lobe, d);
+    const bool texels = measure_by_texels(*this, t, d);
+    if (!texels) measure_about_others(t, lobe, d);
     share_nothing(t, d);
     // A failure needs a second quadrature that confirms it; a sum over bands in which p is constant does not.
-    const bool summed = banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6;
+    const bool summed = texels || (banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6);
     if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se) {
         const Vec3d other = d.about_n ? normalize(lobe.peak) : normal;
         d.second = capped ? mass_by_caps(t, bins_about(other, !d.about_n))
