@@ -12,6 +12,7 @@
 
 #include "arms/info.h"
 #include "base/vec.h"
+#include "color/rgb.h"
 #include "scene/lights/all.h"
 
 namespace crescent::inline verdicts {
@@ -142,8 +143,7 @@ struct TrialLamp {
 
 /// Channel 0, 1 or 2 of a colour.
 inline double channel_of(Vec3d c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
-/// Rec. 709, linear.
-inline double luminance(Vec3d c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+inline double luminance(Vec3d c) { return color::luminance(Rgb{c.x, c.y, c.z}); }
 
 /// What shines on the surface: an even fill of the upper hemisphere, and lights that hide it and one another.
 struct TrialLight {
