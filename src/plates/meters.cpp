@@ -40,14 +40,18 @@ const BandMeter* band_of(const Metrics& m, const RunKey& key, const std::string&
     return nullptr;
 }
 
-std::string value(const std::string& meter, double v) {
+std::string value(const std::string& meter, double v, int digits = 4) {
     if (meter == "fireflies" && std::isfinite(v)) return count(static_cast<std::uint64_t>(std::llround(v)));
-    return figure(v, 4);
+    return figure(v, digits);
 }
 
-std::string band_text(const std::string& meter, const Band& b) {
+/// With as many digits, of four, as the width has room for.
+std::string band_text(const Canvas& c, const std::string& meter, const Band& b, double width) {
     if (b.heavy) return "heavy tail";
-    return value(meter, b.q05) + " – " + value(meter, b.q95);
+    const auto with_digits = [&](int n) { return value(meter, b.q05, n) + " – " + value(meter, b.q95, n); };
+    int digits = 4;
+    while (digits > 2 && c.measure(with_digits(digits), with_px(small_text, small_text.least)).w > width) --digits;
+    return with_digits(digits);
 }
 
 int seeds_of(const Metrics& m) {
@@ -145,7 +149,8 @@ void draw_row(Sheet& sheet, const Table& t, const RunMeter& r, double y, int see
             c.text(cell(t, k, next, under_h + 2), b && b->published ? value(meter, *b->published) : "–", under);
             next += under_h;
         }
-        if (t.band) c.text(cell(t, k, next, under_h + 2), b ? band_text(meter, b->band) : "–", under);
+        if (t.band)
+            c.text(cell(t, k, next, under_h + 2), b ? band_text(c, meter, b->band, cell(t, k, 0, 0).w) : "–", under);
     }
     c.line(content_band.x, y + t.row_h - 0.5, content_band.right(), y + t.row_h - 0.5, rule, 1);
 }

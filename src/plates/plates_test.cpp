@@ -225,6 +225,18 @@ TEST(Plates, SayWhereTheReferenceIsNotGoodEnoughForTheirNumbers) {
     EXPECT_TRUE(has(world.settings(world.plan(PlateKind::meters, 2)), say));
 }
 
+TEST(Meters, OfSevenColumnsGiveTheirBandsAsManyDigitsAsThereIsRoomFor) {
+    World world(96, 54);
+    world.e.regions.push_back({"all", {0, 0, 95, 53}, {}});
+    for (RunMeter& m : world.metrics.runs) m.regions.push_back({"all", 1.234, 0.5, 10, {}});
+    for (BandMeter& b : world.metrics.bands)
+        if (b.meter == "var.H") b.band.q05 = 7.5968e-4, b.band.q95 = 7.8312e-4;
+    const std::vector<Setting> settings = world.settings(world.plan(PlateKind::meters, 2));
+    EXPECT_TRUE(has(settings, "0.000760 – 0.000783"));
+    EXPECT_TRUE(has(settings, "1.100 – 1.300"));
+    for (const Setting& each : settings) EXPECT_FALSE(each.ellipsized) << each.text;
+}
+
 TEST(Plates, NameTheArmsThatCannotReachAllLight) {
     World world(96, 54);
     world.e.fill = {1, 1, 1};

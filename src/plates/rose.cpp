@@ -148,6 +148,13 @@ double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, c
     return line.y + (narrow ? 56 : 31);
 }
 
+/// The largest in the plane of incidence, or anywhere where an arm draws nothing in that plane.
+double peak_in_plane(const Part& part) {
+    double peak = 0;
+    for (int i = -900; i <= 900; ++i) peak = std::max(peak, part.p.in_plane(i * 0.1 * degree));
+    return peak > 0 ? peak : part.peak;
+}
+
 /// Why there is nothing to show of an arm.
 std::string why_no_density(const std::string& arm, const Experiment& e) {
     const ArmInfo* info = find_arm_info(sampler_of(arm, e));
@@ -172,7 +179,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
     PolarPlot plot;
     plot.slot = {col.x, content_band.y + 300, col.w, 240};
     plot.legend_w = narrow ? 0 : bar_room;
-    plot.peak = part.peak;
+    plot.peak = peak_in_plane(part);
     plot.tilt = part.p.tilt();
     for (std::size_t k = 0; k < parts.size(); ++k) {
         bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
