@@ -39,7 +39,7 @@ template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a
 /// where no light shines on it or R is n.
 double off_the_plane(const OpenPixel& pixel, double tilt) {
     const Vec3d r = pixel.mirror();
-    const double out = std::hypot(r.x, r.y);
+    const double out = math::hypot(r.x, r.y);
     double least = std::numeric_limits<double>::infinity();
     if (!(out > 0.01)) return least;
     for (const PixelLight& light : pixel.lights())
@@ -100,7 +100,7 @@ void Density::ask_at_a_pixel(const Experiment& e, const std::string& sampler, do
     const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, s, tilt_);
     if (!pixel) return;
     const Vec3d r = pixel->mirror();
-    const double out = std::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // towards R from n
+    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // towards R from n
     tilt_ = math::atan2(out, r.z);
     where_ = fmt::format("pixel ({}, {})", pixel->i(), pixel->j());
     pdf_ = [=](const Vec3d& wi) {
