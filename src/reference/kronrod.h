@@ -32,6 +32,7 @@ inline constexpr KronrodRule<8> kronrod_15 = {
 
 template <class V> struct TwoRules {
     V fine, off;  // Kronrod's integral; less Gauss's
+    V spread;     // Gauss's less the middle's
 };
 
 /// f gives any V with V + V, V - V and double * V.
@@ -44,7 +45,7 @@ template <std::size_t n, class F> auto by_two_rules(const KronrodRule<n>& rule, 
         fine = fine + rule.kronrod[k] * both;
         if (k % 2 == 0) coarse = coarse + rule.gauss[k / 2] * both;
     }
-    return TwoRules<decltype(first + first)>{half * fine, half * (fine - coarse)};
+    return TwoRules<decltype(first + first)>{half * fine, half * (fine - coarse), half * (coarse - 2.0 * first)};
 }
 
 }  // namespace crescent::inline reference

@@ -13,7 +13,7 @@ namespace {
 /// Halved a few times where two rules differ.
 template <std::size_t n, class F>
 AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, double good, int halvings) {
-    const auto [fine, off] = by_two_rules(rule, f, lo, hi);
+    const auto [fine, off, spread] = by_two_rules(rule, f, lo, hi);
     const double error = std::fabs(off);
     if (halvings == 0 || error <= good || error <= 1e-7 * std::fabs(fine)) return {fine, error};
     const double middle = 0.5 * (lo + hi);

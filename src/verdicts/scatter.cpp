@@ -98,10 +98,10 @@ std::string told(const Scatter& s) {
 /// A draw under the horizon is not nothing because its pdf(w) came out as 0 once, where others there have one.
 void TrialContext::settle_zeros(SampleBatch& b) const {
     const auto zero = [&](std::size_t i) { return b.draws[i].pdf > 0 && b.draws[i].wi.z <= 0 && b.pdf[i] == 0; };
-    bool reached = false;
-    for (std::size_t i = 0; i < b.draws.size() && !reached; ++i)
-        reached = b.draws[i].pdf > 0 && b.draws[i].wi.z <= 0 && b.pdf[i] > 0;
-    for (std::size_t i = 0; reached && i < b.draws.size(); ++i)
+    bool below = false;
+    for (std::size_t i = 0; i < b.draws.size() && !below; ++i)
+        below = b.draws[i].pdf > 0 && b.draws[i].wi.z <= 0 && b.pdf[i] > 0;
+    for (std::size_t i = 0; below && i < b.draws.size(); ++i)
         if (zero(i)) b.pdf[i] = b.draws[i].pdf;
 }
 

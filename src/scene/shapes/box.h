@@ -75,11 +75,15 @@ struct Box {
         return std::fabs(axis.x) * half.x + std::fabs(axis.y) * half.y + std::fabs(axis.z) * half.z;
     }
     std::array<Vec3d, 3> faces() const { return {Vec3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }
+    std::array<Vec3d, 8> corners() const {
+        std::array<Vec3d, 8> out;
+        for (unsigned k = 0; k < 8; ++k) out[k] = {k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z};
+        return out;
+    }
     Azimuths azimuths(Vec3d x, const Frame<double>& frame) const {
-        std::array<Vec3d, 8> corners;
-        for (unsigned k = 0; k < 8; ++k)
-            corners[k] = Vec3d{k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z} - x;
-        return azimuths_of_corners(corners, frame);
+        std::array from_x = corners();
+        for (Vec3d& c : from_x) c = c - x;
+        return azimuths_of_corners(from_x, frame);
     }
 
     BodyNumbers numbers(Vec3d origin) const { return {min - origin, max - origin, {}, 0, 0}; }

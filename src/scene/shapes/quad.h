@@ -51,9 +51,13 @@ struct Quad {
     Vec3d middle() const { return corner + 0.5 * (edge_u + edge_v); }
     double half_extent(Vec3d axis) const { return 0.5 * (std::fabs(dot(axis, edge_u)) + std::fabs(dot(axis, edge_v))); }
     std::array<Vec3d, 3> faces() const { return {cross(edge_u, edge_v), edge_u, edge_v}; }
+    std::array<Vec3d, 4> corners() const {
+        return {corner, corner + edge_u, corner + edge_v, corner + edge_u + edge_v};
+    }
     Azimuths azimuths(Vec3d x, const Frame<double>& frame) const {
-        const std::array corners = {corner - x, corner + edge_u - x, corner + edge_v - x, corner + edge_u + edge_v - x};
-        return azimuths_of_corners(corners, frame);
+        std::array from_x = corners();
+        for (Vec3d& c : from_x) c = c - x;
+        return azimuths_of_corners(from_x, frame);
     }
 
     /// Large: a point p of its plane has the shares x = a.x + b.p and y = a.y + c.p of the edges, from the corner that
