@@ -15,7 +15,7 @@ if "${CXX:-g++}" -x c -c planted.c -o planted.o 2>/dev/null; then
 fi
 
 mapfile -t parts < <(
-    find "${CRESCENT_BUILD:?the build folder}" -name 'libcrescent_*.a'
+    find "${CRESCENT_BUILD:?the build folder}" -maxdepth 2 -name 'libcrescent_*.a'  # deeper ones are other laws' builds
     find "$CRESCENT_BUILD/cli" "$CRESCENT_BUILD/gl" "$CRESCENT_BUILD/explainer" -name '*.cpp.o' 2>/dev/null |
         grep -v _test
 )
