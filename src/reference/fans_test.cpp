@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "reference/whole_disk.h"
 
@@ -24,12 +23,10 @@ DiskPoint lambert_point(const shapes::Disk& light) {
 
 const shapes::Disk light = {{0.15, 0.1, 2}, {0, 0, -1}, 0.6};
 
-double open_part(const std::vector<shapes::Quad>& walls) {
-    std::vector<Blocker> blockers;
-    for (const shapes::Quad& wall : walls) blockers.push_back({{wall}});
-    std::vector<const Blocker*> near;
-    for (const Blocker& b : blockers) near.push_back(&b);
-    return fan_by_fan(lambert_point(light), light, near, false, false).diffuse;
+/// What one wall leaves open.
+double open_part(const shapes::Quad& wall) {
+    const Blocker blocker{{wall}};
+    return fan_by_fan(lambert_point(light), light, {&blocker}, false, false).diffuse;
 }
 
 double whole() { return whole_disk(lambert_point(light), light, frame_about(light.normal)).diffuse; }
@@ -44,7 +41,7 @@ TEST(Fans, TwoHalvesOfALightAreTheWhole) {
         const Vec3d edge = Vec3d{0.075, 0.05, 1} + off * across;
         const shapes::Quad left = {edge - far_away * along, -far_away * across, 2 * far_away * along},
                            right = {edge - far_away * along, far_away * across, 2 * far_away * along};
-        EXPECT_NEAR((open_part({left}) + open_part({right})) / whole(), 1, 1e-6) << "edge " << off << " turn " << turn;
+        EXPECT_NEAR((open_part(left) + open_part(right)) / whole(), 1, 1e-6) << "edge " << off << " turn " << turn;
     }
 }
 
@@ -53,10 +50,10 @@ TEST(Fans, FourQuartersOfALightAreTheWhole) {
         const double turn = 0.53 * k, from = 0.3 * std::sqrt((k + 0.5) / 200);
         const Vec3d corner = Vec3d{0.075, 0.05, 1} + from * Vec3d{std::cos(2.4 * k), std::sin(2.4 * k), 0};
         const Vec3d a = {std::cos(turn), std::sin(turn), 0}, b = {-a.y, a.x, 0};
-        const std::vector<shapes::Quad> walls = {
-            quadrant(corner, a, b), quadrant(corner, b, -a), quadrant(corner, -a, -b), quadrant(corner, -b, a)};
         double sum = 0;
-        for (std::size_t shown = 0; shown < 4; ++shown) sum += whole() - open_part({walls[shown]});
+        for (const shapes::Quad& wall :
+            {quadrant(corner, a, b), quadrant(corner, b, -a), quadrant(corner, -a, -b), quadrant(corner, -b, a)})
+            sum += whole() - open_part(wall);
         EXPECT_NEAR(sum / whole(), 1, 5e-6) << "corner " << from << " turn " << turn;
     }
 }

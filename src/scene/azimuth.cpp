@@ -46,9 +46,9 @@ Azimuths azimuths_of_ball(Vec3d p, double radius, const Frame<double>& frame) {
     return of_ellipse(flat(p, frame), {radius, 0}, {0, radius});
 }
 
-Azimuths azimuths_of_corners(std::span<const Vec3d> points, const Frame<double>& frame) {
+Azimuths azimuths_of_corners(std::span<const Vec3d> points, Vec3d x, const Frame<double>& frame) {
     std::array<Flat, 8> corners;
-    for (std::size_t k = 0; k < points.size(); ++k) corners[k] = flat(points[k], frame);
+    for (std::size_t k = 0; k < points.size(); ++k) corners[k] = flat(points[k] - x, frame);
     Flat middle = {0, 0};
     for (std::size_t k = 0; k < points.size(); ++k) middle.x += corners[k].x, middle.y += corners[k].y;
     if (middle.x == 0 && middle.y == 0) return {};  // the axis meets their hull, and there is no azimuth to count from

@@ -21,7 +21,7 @@ struct Azimuths {
 Azimuths azimuths_of_ellipse(Vec3d p, Vec3d u, Vec3d v, const Frame<double>& frame);
 /// A ball about p.
 Azimuths azimuths_of_ball(Vec3d p, double radius, const Frame<double>& frame);
-/// The hull of some points.
-Azimuths azimuths_of_corners(std::span<const Vec3d> corners, const Frame<double>& frame);
+/// The hull of some points, at most eight, seen from x.
+Azimuths azimuths_of_corners(std::span<const Vec3d> corners, Vec3d x, const Frame<double>& frame);
 
 }  // namespace crescent::inline scene

@@ -80,11 +80,7 @@ struct Box {
         for (unsigned k = 0; k < 8; ++k) out[k] = {k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z};
         return out;
     }
-    Azimuths azimuths(Vec3d x, const Frame<double>& frame) const {
-        std::array from_x = corners();
-        for (Vec3d& c : from_x) c = c - x;
-        return azimuths_of_corners(from_x, frame);
-    }
+    Azimuths azimuths(Vec3d x, const Frame<double>& frame) const { return azimuths_of_corners(corners(), x, frame); }
 
     BodyNumbers numbers(Vec3d origin) const { return {min - origin, max - origin, {}, 0, 0}; }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {

@@ -54,11 +54,7 @@ struct Quad {
     std::array<Vec3d, 4> corners() const {
         return {corner, corner + edge_u, corner + edge_v, corner + edge_u + edge_v};
     }
-    Azimuths azimuths(Vec3d x, const Frame<double>& frame) const {
-        std::array from_x = corners();
-        for (Vec3d& c : from_x) c = c - x;
-        return azimuths_of_corners(from_x, frame);
-    }
+    Azimuths azimuths(Vec3d x, const Frame<double>& frame) const { return azimuths_of_corners(corners(), x, frame); }
 
     /// Large: a point p of its plane has the shares x = a.x + b.p and y = a.y + c.p of the edges, from the corner that
     /// the origin's own are nearest to; the radius is 1. Else a, b and c are corner and edges.
