@@ -37,7 +37,7 @@ std::vector<Channel> channels_of(const ReferenceFilm& f) {
 template <class AnyFilm>
 Imf::Header header_of(const std::string& name, const AnyFilm& film, const Attributes& attributes) {
     Imf::Header header(film.width, film.height);
-    header.compression() = Imf::RLE_COMPRESSION;  // noise hardly compresses; the counts, mostly zero, do
+    header.compression() = Imf::NO_COMPRESSION;  // noise hardly compresses
     header.setName(name);
     header.setType(Imf::SCANLINEIMAGE);
     for (const Channel& c : channels_of(film)) header.channels().insert(c.name, Imf::Channel(c.type));
