@@ -99,14 +99,15 @@ Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, 
 void prepare_reference() {
     Bench& b = bench();
     if (b.quadrature) return;
-    b.quadrature = std::make_unique<PixelQuadrature>(b.scene, [](std::size_t steps) { make_room(steps * step_cost); });
+    b.quadrature = std::make_unique<PixelQuadrature>(
+        b.scene, std::vector{b.scene.s()}, [](std::size_t steps) { make_room(steps * step_cost); });
 }
 
 void reference_over(const TileBox& box, ReferenceFilm& film) {
     Bench& b = bench();
     ensure(b.quadrature != nullptr, "the reference was prepared");
     count_work(pixels_of(box) * reference_cost);
-    b.quadrature->write(box, film);
+    b.quadrature->write(box, {&film, 1});
 }
 
 /// What is to be called before reference_tile(); {} once it is done.

@@ -20,12 +20,19 @@ template <class Call, template <class> class... L> constexpr void for_each_lobe(
     (f.template operator()<L>(), ...);
 }
 
+/// The same until one call gives true.
+template <class Call, template <class> class... L> constexpr void for_each_lobe_until(LobeList<L...>, Call&& f) {
+    (f.template operator()<L>() || ...);
+}
+
 /// A built-in lobe, 1/sr; 0 for none.
 template <class F> F lobe_value(LobeKind kind, F s, F alpha, Vec3<F> wo, Vec3<F> wi) {
     F out = number<F>(0);
     int index = 0;
-    for_each_lobe(Lobes{}, [&]<template <class> class L>() {
-        if (index++ == static_cast<int>(kind)) out = L<F>(s, alpha)(wo, wi);
+    for_each_lobe_until(Lobes{}, [&]<template <class> class L>() {
+        if (index++ != static_cast<int>(kind)) return false;
+        out = L<F>(s, alpha)(wo, wi);
+        return true;
     });
     return out;
 }

@@ -7,7 +7,7 @@
 //   expm1           all                          0.75
 //   log             x > 0                        0.9
 //   log10           x > 0                        0.51
-//   log1p           x > -1                       0.51
+//   log1p           x > -1                       0.9
 //   pow             all                          0.75
 //   sin, cos        |x| < 2^50, else NaN         0.8
 //   tan             |x| < 2^50, else NaN         2

@@ -72,7 +72,7 @@ const std::vector<Row>& rows() {
         {"expm1", expm1, mpfr_expm1, 0.75, {{-0.03, 0.03}, {-1, 1}, {-45, 700}, {-1e-10, 1e-10}}},
         {"log", log, mpfr_log, 0.9, {{0.9, 1.1}, {0, 2}, {0.97, 1.03}, {0, infinity}, {0, 1e-300}}},
         {"log10", log10, mpfr_log10, 0.51, {{0, 2}, {0.97, 1.03}, {0, infinity}}},
-        {"log1p", log1p, mpfr_log1p, 0.51,
+        {"log1p", log1p, mpfr_log1p, 0.9,
             {{-1, 1}, {-0.03, 0.03}, {-1e-10, 1e-10}, {-1e-18, 1e-15}, {0, infinity}, {0, 1e17}}},
         {"sin", sin, mpfr_sin, 0.8, circles},
         {"cos", cos, mpfr_cos, 0.8, circles},

@@ -179,15 +179,26 @@ double expm1(double x) {
     return rest.hi + (rest.lo + scale * (e.root.lo + e.root.hi * e.p));
 }
 
-double log(double x) {
-    double otherwise;
-    if (!has_logarithm(x, otherwise)) return otherwise;
+namespace {
+
+/// ln(x + rest), rest at most ulp(x)/2.
+double rounded_logarithm(double x, double rest) {
     const Parts at = parts_of(x);
-    if (std::fabs(at.m - 1) < 0.05) return logarithm<false>(x).hi;  // small beside its own terms
+    if (std::fabs(at.m - 1) < 0.05) {  // small beside its own terms
+        return (rest != 0 ? logarithm<true>(x, rest) : logarithm<false>(x)).hi;
+    }
     const Two log_c = logs[at.row];
     const double s = (at.m - at.c) / (at.m + at.c);
     const Two whole = ordered_sum(at.e * ln2_upper, log_c.hi);
-    return whole.hi + (2 * s + (whole.lo + (at.e * ln2_lower + log_c.lo + tail_of(s))));
+    const double more = at.e * ln2_lower + log_c.lo + tail_of(s);
+    return whole.hi + (2 * s + (whole.lo + (rest != 0 ? more + rest / x : more)));
+}
+
+}  // namespace
+
+double log(double x) {
+    double otherwise;
+    return has_logarithm(x, otherwise) ? rounded_logarithm(x, 0) : otherwise;
 }
 
 double log10(double x) {
@@ -199,7 +210,7 @@ double log1p(double x) {
     double otherwise;
     if (std::fabs(x) < 0x1p-54) return x;
     const Two y = sum(1, x);
-    return has_logarithm(y.hi, otherwise) ? logarithm<true>(y.hi, y.lo).hi : x == infinity ? x : otherwise;
+    return has_logarithm(y.hi, otherwise) ? rounded_logarithm(y.hi, y.lo) : x == infinity ? x : otherwise;
 }
 
 double pow(double x, double y) {

@@ -2,23 +2,16 @@
 // exactly; and the azimuths between which what they add up to is smooth. Radians, double precision.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "reference/disk_point.h"
 #include "reference/disk_quadrature.h"
 #include "reference/fan.h"
-#include "reference/lobe_along.h"
+#include "reference/replay.h"
 #include "scene/azimuth.h"
 
 namespace crescent::inline reference {
-
-/// What fans add up to: both parts, and the error of the lobe's rule along them.
-struct FanSum {
-    double diffuse = 0, lobe = 0, inner = 0;
-    friend FanSum operator+(FanSum a, FanSum b) { return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.inner + b.inner}; }
-    friend FanSum operator-(FanSum a, FanSum b) { return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.inner - b.inner}; }
-    friend FanSum operator*(double k, FanSum a) { return {k * a.diffuse, k * a.lobe, k * a.inner}; }
-};
 
 /// How many parts of a fan are open, and which of their ends are the light's: what changes where a shadow's edge meets
 /// the light's.
@@ -30,6 +23,16 @@ struct FanCut {
     bool root;
 };
 
+/// What a fan shows of the light, whatever the lobe is.
+struct OpenFan {
+    Vec3d axis, aside;   // as in Fan, in the surface's frame
+    double cos_azimuth;  // about the lobe's axis: from the plane of incidence
+    double slope;        // d azimuth / d tau
+    double diffuse = 0;  // Lambert's part without rho_d
+    FanEdges edges = 1;
+    std::size_t first_part = 0, parts = 0;  // among those of all fans
+};
+
 /// By a parameter tau in which the fans' integral is smooth where the light is a disk and open: the azimuth itself
 /// where the axis meets it; else middle + half sin(tau), as chords grow from a tangent like a root. For one thread.
 class AllFans {
@@ -39,39 +42,51 @@ public:
     AllFans(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies, bool about_lobe,
         bool at_horizon);
 
+    const Figure& light() const { return figure_; }
+    std::size_t bodies() const { return bodies_.size(); }
+    bool about_lobe() const { return about_lobe_; }
     /// In order, from the first fan to the last.
-    std::vector<FanCut> cuts() const;
+    const std::vector<FanCut>& cuts() const { return cuts_; }
     /// The bodies that fans between two tau may meet: the next calls look at no others.
     void look_between(double lo, double hi);
-    /// One fan, times what turns d tau into an azimuth.
-    FanSum operator()(double tau);
-    /// Of the fan that was integrated last, and of any.
-    FanEdges edges() const { return edges_; }
+    /// One fan, until the next call.
+    const OpenFan& operator()(double tau);
     FanEdges edges_at(double tau);
+    /// The open parts of a fan: al from and to.
+    std::span<const Interval> parts(const OpenFan& fan) const { return {parts_.data() + fan.first_part, fan.parts}; }
+    /// For another lobe: fans that were asked for are there.
+    void rewind() { fans_.rewind(), edges_.rewind(); }
 
 private:
     struct Body {
         const Blocker* blocker;
         Azimuths azimuths;
     };
-    /// Calls f with each part of the fan's line that nothing hides, and notes the edges.
-    template <class F> void each_open(const Fan& fan, F&& f);
+    /// Calls f with each part of the fan's line that nothing hides.
+    template <class F> FanEdges each_open(const Fan& fan, F&& f);
+    OpenFan look_at(double tau);
     double last() const { return light_.whole() ? pi : pi / 2; }  // tau runs from -last() to last()
     double azimuth_of(Vec3d d) const;
-    double azimuth(double tau) const;
-    void cut(double phi, bool root, std::vector<FanCut>& at) const;
-    void add_cuts(const Body& body, std::vector<FanCut>& at) const;
+    /// The azimuth at tau, and d azimuth / d tau.
+    struct Turn {
+        double azimuth, slope;
+    };
+    Turn turn(double tau) const;
+    void cut(double phi, bool root);
+    void add_cuts(const Body& body);
+    void add_all_cuts();
 
     const DiskPoint& point_;
     const Figure& figure_;
     Frame<double> about_;
-    LobeShape shape_;
     bool about_lobe_, at_horizon_;
     Azimuths light_;
     std::vector<Body> bodies_;
     std::vector<const Blocker*> near_;
-    std::vector<Interval> hidden_;
-    FanEdges edges_ = 1;
+    std::vector<FanCut> cuts_;
+    std::vector<Interval> hidden_, parts_;
+    Replay<OpenFan> fans_;
+    Replay<FanEdges> edges_;
 };
 
 }  // namespace crescent::inline reference

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "reference/disk_point.h"
 #include "reference/fans.h"
@@ -54,17 +55,37 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
         body.body);
 }
 
-/// The integral over the directions of a figure, what stands before it hidden.
-DiskIntegral over(const Figure& figure, const DiskPoint& point, Vec3d normal, const std::vector<const Blocker*>& near) {
-    const double height = dot(middle_of(figure) - point.x, normal), reach = half_extent_of(figure, normal);
-    for (const Blocker* blocker : near)
-        if (hides_all(*blocker, point.x, figure)) return {};
-    const bool soft = is_soft(point, figure, height);
-    const bool at_horizon = !(height - reach > 0);
-    const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure);
-    if (disk && near.empty() && soft && !at_horizon) return whole_disk(point, *disk, frame_about(disk->normal));
-    return fan_by_fan(point, figure, near, !soft, at_horizon);
-}
+/// The directions of a figure from a point, and what stands before it: lobes of other exponents share all but the
+/// integral.
+class FigureSeen {
+public:
+    FigureSeen(const DiskPoint& point, const Figure& figure, Vec3d normal, const std::vector<const Blocker*>& near)
+        : figure_(figure),
+          near_(near),
+          height_(dot(middle_of(figure) - point.x, normal)),
+          at_horizon_(!(height_ - half_extent_of(figure, normal) > 0)),
+          is_hidden_(
+              std::any_of(near.begin(), near.end(), [&](const Blocker* b) { return hides_all(*b, point.x, figure); })) {
+    }
+
+    /// At the same point, its lobe apart.
+    DiskIntegral operator()(const DiskPoint& point) {
+        if (is_hidden_) return {};
+        const bool soft = is_soft(point, figure_, height_);
+        const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure_);
+        if (disk && near_.empty() && soft && !at_horizon_) return whole_disk(point, *disk, frame_about(disk->normal));
+        std::optional<AllFans>& fans = soft ? about_light_ : about_lobe_;
+        if (!fans) fans.emplace(point, figure_, near_, !soft, at_horizon_);
+        return fan_by_fan(point, *fans);
+    }
+
+private:
+    const Figure& figure_;
+    const std::vector<const Blocker*>& near_;
+    double height_;
+    bool at_horizon_, is_hidden_;
+    std::optional<AllFans> about_light_, about_lobe_;
+};
 
 DiskIntegral operator+(const DiskIntegral& a, const DiskIntegral& b) {
     return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
@@ -111,14 +132,25 @@ DiskIntegral ring_by_ring(
             return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(at) / rings));
         };
         const auto up_to = [&](double off, double way) {
-            const shapes::Disk part = {whole.center, whole.normal, off};
-            return off > 0 ? over(moved(Figure(part), point.x, way), point, normal, near) : DiskIntegral{};
+            const Figure part = moved(shapes::Disk{whole.center, whole.normal, off}, point.x, way);
+            return off > 0 ? FigureSeen(point, part, normal, near)(point) : DiskIntegral{};
         };
         const double from = edge(k), to = edge(k + 1);
         const auto ring = [&](double way) { return up_to(to, way) - up_to(from, way); };
         sum = sum + enclosed(ring(met_at(from)), ring(met_at(to)));
     }
     return sum;
+}
+
+/// The same of a ball whose figure gives `out`: nothing may stand where the surface bulges before the figure.
+DiskIntegral before_bulge(const DiskPoint& point, Vec3d normal, const lights::Sphere& ball,
+    const std::vector<const Blocker*>& near, const DiskIntegral& out) {
+    const Figure nearest = moved(ball.seen_from(point.x), point.x, nearest_of(ball, point.x));
+    const DiskIntegral least = FigureSeen(point, nearest, normal, near)(point);
+    if (std::fabs(least.diffuse - out.diffuse) <= least.diffuse_error + out.diffuse_error &&
+        std::fabs(least.lobe - out.lobe) <= least.lobe_error + out.lobe_error)
+        return enclosed(out, least);
+    return ring_by_ring(point, normal, ball, near);
 }
 
 }  // namespace
@@ -144,21 +176,29 @@ std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Fig
 }
 
 DiskIntegral DiskQuadrature::operator()(const Hit& hit, const Surface& surface) const {
-    if (!light_.shines_on(hit.x)) return {};
+    DiskIntegral out;
+    (*this)(hit, {&surface, 1}, {&out, 1});
+    return out;
+}
+
+void DiskQuadrature::operator()(const Hit& hit, std::span<const Surface> surfaces, std::span<DiskIntegral> out) const {
+    std::fill(out.begin(), out.end(), DiskIntegral{});
+    if (!light_.shines_on(hit.x)) return;
     const Figure figure = light_.seen_from(hit.x);
-    if (dot(middle_of(figure) - hit.x, hit.n) + half_extent_of(figure, hit.n) <= 0) return {};
+    if (dot(middle_of(figure) - hit.x, hit.n) + half_extent_of(figure, hit.n) <= 0) return;
     const Frame<double> local = frame_about(hit.n);
-    const DiskPoint point = {hit.x, local.to_local(hit.wo), local, surface, normal_of(figure)};
+    DiskPoint point = {hit.x, local.to_local(hit.wo), local, surfaces[0], normal_of(figure)};
     const std::vector<const Blocker*> near = in_the_way(hit, figure);
-    const DiskIntegral out = over(figure, point, hit.n, near);
     const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
-    const auto reaches_in = [&](const Blocker* b) { return may_reach_into(b->body, ball->center, ball->radius); };
-    if (!ball || std::none_of(near.begin(), near.end(), reaches_in)) return out;
-    const DiskIntegral least = over(moved(figure, hit.x, nearest_of(*ball, hit.x)), point, hit.n, near);
-    if (std::fabs(least.diffuse - out.diffuse) <= least.diffuse_error + out.diffuse_error &&
-        std::fabs(least.lobe - out.lobe) <= least.lobe_error + out.lobe_error)
-        return enclosed(out, least);
-    return ring_by_ring(point, hit.n, *ball, near);
+    const bool bulges = ball && std::any_of(near.begin(), near.end(), [&](const Blocker* b) {
+        return may_reach_into(b->body, ball->center, ball->radius);
+    });
+    FigureSeen seen(point, figure, hit.n, near);
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        point.surface = surfaces[k];
+        out[k] = seen(point);
+        if (bulges) out[k] = before_bulge(point, hit.n, *ball, near, out[k]);
+    }
 }
 
 }  // namespace crescent::inline reference

@@ -2,6 +2,7 @@
 // f cos(theta_i) cos(theta_l) / r^2, less what bodies hide and what lies under the horizon. Double precision.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "scene/figure.h"
@@ -29,6 +30,8 @@ public:
     /// Bodies that may stand before disk `k` of the scene, other lights that face the point among them.
     DiskQuadrature(const Scene& scene, std::size_t k);
     DiskIntegral operator()(const Hit& hit, const Surface& surface) const;
+    /// The same for surfaces that differ in their lobe's exponent alone: out[k] for surfaces[k], the same bits.
+    void operator()(const Hit& hit, std::span<const Surface> surfaces, std::span<DiskIntegral> out) const;
 
 private:
     std::vector<const Blocker*> in_the_way(const Hit& hit, const Figure& figure) const;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/functions.h"
-
 namespace crescent::inline reference {
 
 namespace {
@@ -19,8 +17,8 @@ double sector(const Direction& d) {
 
 }  // namespace
 
-Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, double azimuth)
-    : axis(about.n), aside(math::cos(azimuth) * about.t + math::sin(azimuth) * about.b) {
+Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, const math::SinCos& azimuth)
+    : axis(about.n), aside(azimuth.cos * about.t + azimuth.sin * about.b) {
     const Vec3d k = cross(axis, aside);
     const std::optional<Line> line = std::visit(
         [&](const auto& figure) {

@@ -2,6 +2,7 @@
 // light. Directions in it are cos(al) axis + sin(al) aside, al in [0, pi]; double precision.
 #pragma once
 
+#include "math/functions.h"
 #include "reference/disk_point.h"
 #include "scene/figure.h"
 #include "scene/shadow.h"
@@ -18,7 +19,7 @@ struct Fan {
     Vec3d to0{}, step{};  // from the point to where the light begins, and on to where it ends
     bool empty = true;
 
-    Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, double azimuth);
+    Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, const math::SinCos& azimuth);
     /// Towards the light's point v of the way from its beginning to its end.
     Direction at(double v) const;
     /// Leaves the part that is above the surface's horizon; to.al < from.al where none is.

@@ -7,12 +7,45 @@
 #include <utility>
 #include <vector>
 
-#include "reference/all_fans.h"
 #include "reference/kronrod.h"
+#include "reference/lobe_along.h"
 
 namespace crescent::inline reference {
 
 namespace {
+
+/// What fans add up to: both parts, and the error of the lobe's rule along them.
+struct FanSum {
+    double diffuse = 0, lobe = 0, inner = 0;
+    friend FanSum operator+(FanSum a, FanSum b) { return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.inner + b.inner}; }
+    friend FanSum operator-(FanSum a, FanSum b) { return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.inner - b.inner}; }
+    friend FanSum operator*(double k, FanSum a) { return {k * a.diffuse, k * a.lobe, k * a.inner}; }
+};
+
+/// What a fan adds under the lobe of a point.
+class LobeOnFans {
+public:
+    LobeOnFans(const DiskPoint& point, const AllFans& fans) : point_(point), fans_(fans), shape_(point) {}
+
+    FanSum operator()(const OpenFan& fan) const {
+        FanSum sum = {fan.diffuse};
+        if (!(point_.surface.rho_s > 0)) return fan.slope * sum;
+        const double width = fans_.about_lobe() ? shape_.width_at(fan.cos_azimuth) : shape_.width,
+                     reach = fans_.about_lobe() ? shape_.reach : pi;
+        for (const Interval& open : fans_.parts(fan)) {
+            const Interval part = {open.lo, std::min(open.hi, reach)};
+            if (part.empty()) continue;
+            const AlongLobe along = lobe_along(point_, fan.axis, fan.aside, part, width);
+            sum.lobe += along.value, sum.inner += along.error;
+        }
+        return fan.slope * sum;
+    }
+
+private:
+    const DiskPoint& point_;
+    const AllFans& fans_;
+    LobeShape shape_;
+};
 
 /// The fans between two cuts, by u in [0, 1]: tau(u) has no slope at a cut where a shadow opens like a root, which
 /// makes that smooth.
@@ -41,13 +74,14 @@ struct Panel {
     FanSum fine, off, spread;
     std::optional<Interval> kink;  // in u: the edges at its ends are others
 
-    Panel(AllFans& fans, const Span& whole, double u0, double u1) : span(whole), lo(u0), hi(u1) {
+    Panel(AllFans& fans, const LobeOnFans& lobe, const Span& whole, double u0, double u1)
+        : span(whole), lo(u0), hi(u1) {
         std::array<std::pair<double, FanEdges>, 9> nodes;
         std::size_t count = 0;
         const auto f = [&](double u) {
-            const FanSum fan = span.slope(u) * fans(span.tau(u));
-            nodes[count++] = {u, fans.edges()};
-            return fan;
+            const OpenFan& fan = fans(span.tau(u));
+            nodes[count++] = {u, fan.edges};
+            return span.slope(u) * lobe(fan);
         };
         const TwoRules<FanSum> both = by_two_rules(kronrod_7, f, lo, hi);
         fine = both.fine, off = both.off, spread = both.spread;
@@ -85,6 +119,7 @@ constexpr int halvings = 14, first_halvings = 2;
 /// they may lie where no node is.
 struct Adaptive {
     AllFans& fans;
+    const LobeOnFans& lobe;
     const DiskPoint& point;
     double tolerance = 0;  // of one panel, in the unit of `weigh`
     DiskIntegral sum{};
@@ -99,35 +134,35 @@ struct Adaptive {
             return;
         }
         const double cut = panel.cut(fans);
-        add(Panel(fans, panel.span, panel.lo, cut), depth + 1);
-        add(Panel(fans, panel.span, cut, panel.hi), depth + 1);
+        add(Panel(fans, lobe, panel.span, panel.lo, cut), depth + 1);
+        add(Panel(fans, lobe, panel.span, cut, panel.hi), depth + 1);
     }
 };
 
 }  // namespace
 
-DiskIntegral fan_by_fan(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies,
-    bool about_lobe, bool at_horizon) {
-    const Vec3d d = middle_of(light) - point.x;
-    const double open = disk_area(light) / dot(d, d);  // Lambert's, about
-    if (!(point.weigh({1, 1}) > 0)) return {};         // a black surface
-    AllFans fans(point, light, bodies, about_lobe, at_horizon);
-    const std::vector<FanCut> cuts = fans.cuts();
+DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans) {
+    const Vec3d d = middle_of(fans.light()) - point.x;
+    const double open = disk_area(fans.light()) / dot(d, d);  // Lambert's, about
+    if (!(point.weigh({1, 1}) > 0)) return {};                // a black surface
+    fans.rewind();
+    const LobeOnFans lobe(point, fans);
+    const std::vector<FanCut>& cuts = fans.cuts();
     std::vector<Panel> panels;
     double all = 0.01 * point.weigh({std::min(open, 1.0), 0});
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         fans.look_between(cuts[k].tau, cuts[k + 1].tau);
-        panels.emplace_back(fans, Span{cuts[k], cuts[k + 1]}, 0, 1);
+        panels.emplace_back(fans, lobe, Span{cuts[k], cuts[k + 1]}, 0, 1);
         all += point.weigh({panels.back().fine.diffuse, panels.back().fine.lobe});
     }
     constexpr double tolerance = 4e-5;
-    Adaptive sum{fans, point, tolerance * all};
+    Adaptive sum{fans, lobe, point, tolerance * all};
     for (const Panel& panel : panels) {
         fans.look_between(panel.span.from.tau, panel.span.to.tau);
         sum.add(panel);
     }
     // Light that falls through a slit between two bodies may fall between two fans.
-    const double unseen = bodies.size() > 1 ? 3e-5 : 0;
+    const double unseen = fans.bodies() > 1 ? 3e-5 : 0;
     sum.sum.diffuse_error += unseen * std::min(open, 1.0), sum.sum.lobe_error += unseen * sum.sum.lobe;
     return sum.sum;
 }

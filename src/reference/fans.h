@@ -4,15 +4,11 @@
 // centre.
 #pragma once
 
-#include <vector>
-
-#include "reference/disk_point.h"
-#include "reference/disk_quadrature.h"
+#include "reference/all_fans.h"
 
 namespace crescent::inline reference {
 
-/// `bodies` may stand between the point and the light; `at_horizon`: part of it may lie under the surface's horizon.
-DiskIntegral fan_by_fan(const DiskPoint& point, const Figure& light, const std::vector<const Blocker*>& bodies,
-    bool about_lobe, bool at_horizon);
+/// At the point of the fans, with this or another exponent of its lobe.
+DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans);
 
 }  // namespace crescent::inline reference

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "reference/whole_disk.h"
 
@@ -26,7 +27,11 @@ const shapes::Disk light = {{0.15, 0.1, 2}, {0, 0, -1}, 0.6};
 /// What one wall leaves open.
 double open_part(const shapes::Quad& wall) {
     const Blocker blocker{{wall}};
-    return fan_by_fan(lambert_point(light), light, {&blocker}, false, false).diffuse;
+    const DiskPoint point = lambert_point(light);
+    const Figure figure = light;
+    const std::vector<const Blocker*> near = {&blocker};
+    AllFans fans(point, figure, near, false, false);
+    return fan_by_fan(point, fans).diffuse;
 }
 
 double whole() { return whole_disk(lambert_point(light), light, frame_about(light.normal)).diffuse; }

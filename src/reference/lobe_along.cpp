@@ -24,14 +24,14 @@ AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, do
 
 }  // namespace
 
-LobeShape::LobeShape(const DiskPoint& point) {
+double lobe_stretch(const DiskPoint& point) {
+    return lobe_info(point.surface.brdf).about_mirror ? 1 : std::max(point.wo.z, 1e-6);
+}
+
+LobeShape::LobeShape(const DiskPoint& point) : stretch(lobe_stretch(point)) {
     const Surface& surface = point.surface;
-    const LobeInfo& lobe = lobe_info(surface.brdf);
-    const LobeWidth across = lobe.width(surface.s, surface.alpha);
-    width = across.width, reach = across.reach;
-    if (!lobe.about_mirror) stretch = point.wo.z;
-    stretch = std::max(stretch, 1e-6);
-    width = std::min(width, 1.0);
+    const LobeWidth across = lobe_info(surface.brdf).width(surface.s, surface.alpha);
+    width = std::min(across.width, 1.0), reach = across.reach;
 }
 
 double LobeShape::width_at(double c) const {  // (al cos / width)^2 + (al sin / (width stretch))^2 = 1
@@ -40,8 +40,8 @@ double LobeShape::width_at(double c) const {  // (al cos / width)^2 + (al sin / 
 
 AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width) {
     const auto f = [&](double al) {
-        const double sin = math::sin(al);
-        const Vec3d wi = math::cos(al) * axis + sin * aside;
+        const auto [sin, cos] = math::sincos(al);
+        const Vec3d wi = cos * axis + sin * aside;
         return wi.z > 0 ? point.lobe(wi) * wi.z * sin : 0.0;
     };
     if (part.hi - part.lo < 0.3 * width) return panel(kronrod_7, f, part.lo, part.hi, 0, 2);

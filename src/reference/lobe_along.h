@@ -6,13 +6,16 @@
 
 namespace crescent::inline reference {
 
+/// A lobe's width across the plane of incidence over its width in it: lobes about half vectors are streaks at grazing
+/// wo.
+double lobe_stretch(const DiskPoint& point);
+
 /// How the lobe of a point falls off, which decides where a rule's nodes must lie.
 struct LobeShape {
     double width =
         1;  // al of a fan within which the lobe keeps its height, rad; at its narrowest: across the plane of incidence
-    double stretch = 1;  // the width across over the width in the plane of incidence: lobes about half vectors are
-                         // streaks at grazing wo
-    double reach = pi;   // beyond, nothing of it is left
+    double stretch = 1;
+    double reach = pi;  // beyond, nothing of it is left
     explicit LobeShape(const DiskPoint& point);
     /// Width in a fan at an azimuth whose cosine with the plane of incidence is c.
     double width_at(double c) const;

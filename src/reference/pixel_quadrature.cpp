@@ -3,8 +3,8 @@
 #include <cmath>
 #include <map>
 #include <tuple>
-#include <vector>
 
+#include "reference/by_tiles.h"
 #include "reference/disk_quadrature.h"
 
 namespace crescent::inline reference {
@@ -34,62 +34,92 @@ private:
 
 class PixelQuadrature::Made {
 public:
-    Made(const Scene& scene, const MakeWay& make_way) : scene_(scene), albedos_(scene_, make_way) {
-        for (std::size_t k = 0; k < scene_.lights().size(); ++k) disks_.emplace_back(scene_, k);
+    Made(const Scene& scene, const std::vector<double>& exponents, const MakeWay& make_way)
+        : scenes_(scenes_at(scene, exponents)) {
+        for (const Scene& at_s : scenes_) albedos_.emplace_back(at_s, make_way);
+        for (std::size_t k = 0; k < scene.lights().size(); ++k) disks_.emplace_back(scene, k);
     }
 
-    const Scene& scene() const { return scene_; }
-
-    std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) const {
-        const Rgb& fill = scene_.fill();
-        double albedo = 0, error = 0;
-        if (surface.rho_s > 0) {
-            const LobeAlbedo& table = albedos_.of(surface);
-            albedo = table(dot(hit.n, hit.wo));
-            error = surface.rho_s * surface.tinted(fill) * table.error(dot(hit.n, hit.wo));
-        }
-        Rgb out{};
-        for (std::size_t c = 0; c < 3; ++c)
-            out[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * surface.tint[c] * albedo);
-        for (std::size_t k = 0; k < disks_.size(); ++k) {
-            const DiskIntegral d = disks_[k](hit, surface);
-            Rgb part{};
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double step = scene_.lights()[k].radiance[c] - fill[c];
-                out[c] += step * (surface.rho_d[c] * d.diffuse + surface.rho_s * surface.tint[c] * d.lobe);
-                part[c] = std::fabs(step) *
-                    (surface.rho_d[c] * d.diffuse_error + surface.rho_s * surface.tint[c] * d.lobe_error);
+    void write(const TileBox& box, std::span<ReferenceFilm> films) const {
+        AtPixel pixel;
+        for (int j = box.y0; j < box.y1; ++j)
+            for (int i = box.x0; i < box.x1; ++i) {
+                const auto hit = scenes_[0].primary(i, j);
+                if (!hit) continue;
+                look_at(*hit, pixel);
+                const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(films[0].width) +
+                    static_cast<std::size_t>(i);
+                for (std::size_t e = 0; e < films.size(); ++e)
+                    if (e < pixel.sums.size()) store_pixel(films[e], at, pixel.sums[e].radiance, pixel.sums[e].error);
+                    else copy_pixel(films[0], films[e], at);
             }
-            error += luminance(part);
-        }
-        return {out, error};
     }
 
 private:
-    Scene scene_;
-    Albedos albedos_;
+    /// Radiance, and the error of its Y.
+    struct Sum {
+        Rgb radiance{};
+        double error = 0;
+    };
+
+    /// A pixel at every exponent, or at the first where it has no lobe.
+    struct AtPixel {
+        std::vector<Surface> surfaces;
+        std::vector<DiskIntegral> lights;
+        std::vector<Sum> sums;
+    };
+
+    void look_at(const Hit& hit, AtPixel& pixel) const {
+        auto& [surfaces, lights, sums] = pixel;
+        surfaces.clear(), sums.clear();
+        for (std::size_t e = 0; e < scenes_.size() && (e == 0 || surfaces[0].rho_s > 0); ++e) {
+            surfaces.push_back(scenes_[e].surface(hit));
+            sums.push_back(under_fill(hit, surfaces[e], albedos_[e]));
+        }
+        lights.resize(surfaces.size());
+        for (std::size_t k = 0; k < disks_.size(); ++k) {
+            disks_[k](hit, surfaces, lights);
+            for (std::size_t e = 0; e < sums.size(); ++e) add(lights[e], scenes_[0].lights()[k], surfaces[e], sums[e]);
+        }
+    }
+
+    Sum under_fill(const Hit& hit, const Surface& surface, const Albedos& albedos) const {
+        const Rgb& fill = scenes_[0].fill();
+        double albedo = 0;
+        Sum out;
+        if (surface.rho_s > 0) {
+            const LobeAlbedo& table = albedos.of(surface);
+            albedo = table(dot(hit.n, hit.wo));
+            out.error = surface.rho_s * surface.tinted(fill) * table.error(dot(hit.n, hit.wo));
+        }
+        for (std::size_t c = 0; c < 3; ++c)
+            out.radiance[c] = fill[c] * (surface.rho_d[c] + surface.rho_s * surface.tint[c] * albedo);
+        return out;
+    }
+
+    /// A light, which stands in for the fill behind it.
+    void add(const DiskIntegral& d, const Light& light, const Surface& surface, Sum& sum) const {
+        Rgb off{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double step = light.radiance[c] - scenes_[0].fill()[c], lobe = surface.rho_s * surface.tint[c];
+            sum.radiance[c] += step * (surface.rho_d[c] * d.diffuse + lobe * d.lobe);
+            off[c] = std::fabs(step) * (surface.rho_d[c] * d.diffuse_error + lobe * d.lobe_error);
+        }
+        sum.error += luminance(off);
+    }
+
+    std::vector<Scene> scenes_;  // one an exponent
+    std::vector<Albedos> albedos_;
     std::vector<DiskQuadrature> disks_;
 };
 
-PixelQuadrature::PixelQuadrature(const Scene& scene, const MakeWay& make_way)
-    : made_(std::make_unique<const Made>(scene, make_way)) {}
+PixelQuadrature::PixelQuadrature(const Scene& scene, const std::vector<double>& exponents, const MakeWay& make_way)
+    : made_(std::make_unique<const Made>(scene, exponents, make_way)) {}
 PixelQuadrature::~PixelQuadrature() = default;
 PixelQuadrature::PixelQuadrature(PixelQuadrature&&) noexcept = default;
 PixelQuadrature& PixelQuadrature::operator=(PixelQuadrature&&) noexcept = default;
 
-std::pair<Rgb, double> PixelQuadrature::operator()(const Hit& hit, const Surface& surface) const {
-    return (*made_)(hit, surface);
-}
-
-void PixelQuadrature::write(const TileBox& box, ReferenceFilm& film) const {
-    for (int j = box.y0; j < box.y1; ++j)
-        for (int i = box.x0; i < box.x1; ++i) {
-            const auto hit = made_->scene().primary(i, j);
-            if (!hit) continue;
-            const auto [radiance, error] = (*made_)(*hit, made_->scene().surface(*hit));
-            store_pixel(film, static_cast<std::size_t>(j * film.width + i), radiance, error);
-        }
-}
+void PixelQuadrature::write(const TileBox& box, std::span<ReferenceFilm> films) const { made_->write(box, films); }
 
 void store_pixel(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error) {
     film.r[at] = static_cast<float>(radiance[0]);

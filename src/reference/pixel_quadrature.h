@@ -3,7 +3,8 @@
 #pragma once
 
 #include <memory>
-#include <utility>
+#include <span>
+#include <vector>
 
 #include "color/rgb.h"
 #include "estimator/shading_points.h"
@@ -15,16 +16,15 @@ namespace crescent::inline reference {
 
 class PixelQuadrature {
 public:
-    /// `make_way`: told while the tables of the lobes' albedos are made.
-    explicit PixelQuadrature(const Scene& scene, const MakeWay& make_way = {});
+    /// At each of these exponents. `make_way`: told while the tables of the lobes' albedos are made.
+    PixelQuadrature(const Scene& scene, const std::vector<double>& exponents, const MakeWay& make_way = {});
     ~PixelQuadrature();
     PixelQuadrature(PixelQuadrature&&) noexcept;
     PixelQuadrature& operator=(PixelQuadrature&&) noexcept;
 
-    /// Radiance, and the error of its Y.
-    std::pair<Rgb, double> operator()(const Hit& hit, const Surface& surface) const;
-    /// Writes the pixels of a box into a film of the scene's size: the same bits as quadrature_reference().
-    void write(const TileBox& box, ReferenceFilm& film) const;
+    /// Writes the pixels of a box into films of the scene's size, one an exponent: the same bits in any box, and
+    /// whatever other exponents there are.
+    void write(const TileBox& box, std::span<ReferenceFilm> films) const;
 
 private:
     class Made;

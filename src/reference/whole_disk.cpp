@@ -36,9 +36,9 @@ struct PolarRule {
 };
 
 const std::vector<PolarRule>& polar_rules() {
-    static const std::vector<PolarRule> rules = {PolarRule::make<2>(5), PolarRule::make<3>(7), PolarRule::make<5>(12),
-        PolarRule::make<7>(17), PolarRule::make<10>(25), PolarRule::make<15>(36), PolarRule::make<25>(60),
-        PolarRule::make<40>(96)};
+    static const std::vector<PolarRule> rules = {PolarRule::make<1>(3), PolarRule::make<2>(5), PolarRule::make<3>(7),
+        PolarRule::make<5>(12), PolarRule::make<7>(17), PolarRule::make<10>(25), PolarRule::make<15>(36),
+        PolarRule::make<25>(60), PolarRule::make<40>(96)};
     return rules;
 }
 

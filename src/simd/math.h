@@ -173,8 +173,8 @@ template <class F> CRESCENT_INLINE F cosine_power(Vec3<F> a, Vec3<F> b, F s) {
 
 /// The functions above in double: the reference and the verdicts use them.
 inline SinCos<double> sincos_turns(double u) {
-    const double a = 2 * pi * u;
-    return {math::sin(a), math::cos(a)};
+    const auto [sin, cos] = math::sincos(2 * pi * u);
+    return {sin, cos};
 }
 /// 2^x and x^y; x <= 0 gives 0.
 inline double exp2(double x) { return math::exp2(x); }

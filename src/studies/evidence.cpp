@@ -26,9 +26,10 @@ struct FurnaceSubject {
     double s = 0, rho_d = 0, rho_s = 0;
     std::uint32_t seed = 0;
 
+    /// The cosine with R for u.
+    double cosine(double u) const { return math::exp(math::log(u) / (s + 1)); }
     /// X of the combined furnace for u, R = n: the angle about R does not matter.
-    double weight(double u) const {
-        const double cos = math::exp(math::log(u) / (s + 1));
+    double weight(double u, double cos) const {
         const double p = (s + 1) / (2 * pi) * (u / cos);
         const double lobe = (s + 2) / (2 * pi) * (u / cos);
         return (cos / p) * (rho_d / pi + rho_s * lobe);
@@ -59,10 +60,16 @@ constexpr std::array<int, 3> resolutions = {24, 32, 53};
 
 /// u as an odd multiple of 2^-bits, from 64 random bits.
 double unit_double(std::uint64_t h, int bits) {
-    return static_cast<double>(h >> (64 - bits) | 1u) * std::ldexp(1.0, -bits);
+    return static_cast<double>(h >> (64 - bits) | 1u) / static_cast<double>(std::uint64_t{1} << bits);
 }
 
-/// One draw of random bits serves every resolution.
+/// (1 + d)^k. In u's last bits it takes a few terms of the series: the next one is under 1e-17.
+double power_near_1(double d, double k) {
+    if (std::fabs(d) > 1e-3) return math::pow(1 + d, k);
+    return 1 + k * d * (1 + (k - 1) / 2 * d * (1 + (k - 2) / 3 * d * (1 + (k - 3) / 4 * d * (1 + (k - 4) / 5 * d))));
+}
+
+/// One draw of random bits serves every resolution, and one cosine: resolutions of a u differ by little.
 void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& monitor, Evidence& out) {
     using Means = std::vector<std::vector<double>>;  // [rung][replicate]
     std::array<Means, resolutions.size()> means;
@@ -75,8 +82,11 @@ void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& monitor, Ev
                 const auto h =
                     draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
                 const std::uint64_t bits = std::uint64_t{h.x} << 32 | h.y;
-                for (std::size_t i = 0; i < sums.size(); ++i)
-                    sums[i] += subject.weight(unit_double(bits, resolutions[i]));
+                const double finest = unit_double(bits, resolutions.back()), cos = subject.cosine(finest);
+                for (std::size_t i = 0; i < sums.size(); ++i) {
+                    const double u = unit_double(bits, resolutions[i]), off = (u - finest) / finest;
+                    sums[i] += subject.weight(u, cos * power_near_1(off, 1 / (subject.s + 1)));
+                }
             }
             for (std::size_t i = 0; i < sums.size(); ++i) means[i][rung][r] = sums[i] / static_cast<double>(j);
         }
