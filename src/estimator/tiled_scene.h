@@ -20,8 +20,8 @@ public:
     TiledScene(Scene scene);  // NOLINT(google-explicit-constructor): a scene is a tiled one that keeps nothing
     /// From now on the points of a tile are made when they are first asked for, and kept while this or a copy lives.
     void keep_points();
-    /// The same view with another exponent, see Scene::with_s. Where this one keeps points, the other keeps its own,
-    /// made from this one's.
+    /// The same view with another exponent, see Scene::with_s. Where this one keeps points, the other copies them each
+    /// time: that costs less than the memory to keep others.
     TiledScene with_s(double s) const;
 
     const Scene& scene() const { return scene_; }
@@ -39,7 +39,7 @@ private:
     std::shared_ptr<const TiledScene> other_s_;  // keeps points of the same view; null: none does
 };
 
-/// The view at each exponent, in order; they keep points where `view` does.
+/// The view at each exponent, in order; they share the points that `view` keeps.
 std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<double>& exponents);
 
 /// Bytes that the points of the whole image take where every pixel has one.

@@ -42,9 +42,9 @@ TEST(TiledScene, SharesThePointsThatEachJobWouldMake) {
         const TiledScene at_s = views_at(kept, {s}).front();
         for (std::size_t k = 0; k < kept.tiles().size(); ++k) {
             expect_same(*at_s.points(k), sites_of(scene.with_s(s), kept.tiles()[k], nullptr));
-            EXPECT_EQ(at_s.points(k), at_s.points(k)) << "made once";
         }
     }
+    EXPECT_EQ(kept.points(0), kept.points(0)) << "made once";
     EXPECT_EQ(kept.points(0), TiledScene(kept).points(0)) << "copies share them";
 }
 

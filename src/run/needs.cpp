@@ -46,7 +46,7 @@ std::uint64_t memory_needed(const Experiment& experiment) {
 }
 
 bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available) {
-    return memory_needed(plan.experiment) + plan.exponents.size() * bytes_of_points(scene) <= available / 2;
+    return memory_needed(plan.experiment) + bytes_of_points(scene) <= available / 2;
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {

@@ -17,8 +17,8 @@ std::uint64_t memory_needed(const Experiment& experiment);
 /// "this run needs about 70 GB of memory ...", with what would need less; "" where `available` bytes are enough.
 std::string why_too_large(const Experiment& experiment, std::uint64_t available);
 
-/// Whether half of `available` bytes hold what is needed and the shading points of the image at each exponent, which a
-/// run is faster with.
+/// Whether half of `available` bytes hold what is needed and the shading points of the image, which a run is
+/// faster with.
 bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available);
 
 /// Throws OutputError where the memory is not there.
