@@ -6,15 +6,13 @@ namespace crescent::inline pages {
 
 std::string base64(const std::vector<unsigned char>& bytes) {
     static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    out.reserve((bytes.size() + 2) / 3 * 4);
+    std::string out((bytes.size() + 2) / 3 * 4, '=');
+    char* to = out.data();
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
         const unsigned word = bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-        out += digits[word >> 18 & 63];
-        out += digits[word >> 12 & 63];
-        out += left > 1 ? digits[word >> 6 & 63] : '=';
-        out += left > 2 ? digits[word & 63] : '=';
+        for (std::size_t k = 0; k <= left; ++k) to[k] = digits[word >> (18 - 6 * k) & 63];
+        to += 4;
     }
     return out;
 }

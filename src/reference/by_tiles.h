@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/parallel.h"
 #include "estimator/estimator.h"
 
 namespace crescent::inline reference {
@@ -17,8 +18,9 @@ inline std::vector<Scene> scenes_at(const Scene& scene, const std::vector<double
 /// One film per exponent, made by calling work(k, tile k, films) for every tile.
 template <class Work> std::vector<ReferenceFilm> by_tiles(const Image& image, const std::vector<double>& exponents,
     ProgressMonitor& monitor, TileCheckpoint* checkpoint, Work&& work) {
-    std::vector<ReferenceFilm> films;
-    for (double s : exponents) films.emplace_back(image.width, image.height, s);
+    std::vector<ReferenceFilm> films(exponents.size());
+    parallel_for(std::size_t{0}, films.size(),
+        [&](std::size_t e) { films[e] = ReferenceFilm(image.width, image.height, exponents[e]); });
     const std::vector<TileBox> tiles = tiles_of(image.width, image.height);
     if (checkpoint) checkpoint->begin(tiles, outputs_of(films));
     for_each_tile(tiles, monitor, checkpoint, [&](std::size_t k) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -66,18 +67,26 @@ void add_tails(
     }
 }
 
+void add_hashes(Measured& out) {
+    std::vector<std::pair<std::string, std::function<std::string()>>> all;
+    for (const auto& [key, film] : out.films) all.emplace_back(to_string(key), [&] { return hash(film); });
+    for (const ReferenceFilm& film : out.quadrature)
+        all.emplace_back(fmt::format("quadrature s={}", film.s), [&] { return hash(film); });
+    for (const ReferenceFilm& film : out.monte_carlo)
+        all.emplace_back(fmt::format("note reference s={}", film.s), [&] { return hash(film); });
+    std::vector<std::string> hashes(all.size());
+    parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) { hashes[k] = all[k].second(); });
+    for (std::size_t k = 0; k < all.size(); ++k) out.metrics.film_hashes[all[k].first] = hashes[k];
+}
+
 void add_summaries(Measured& out) {
+    add_hashes(out);
     const Experiment& experiment = out.experiment;
     Metrics& metrics = out.metrics;
     const Published* published = figures_of(experiment);
     metrics.bands = bands(experiment, metrics.runs, published);
     metrics.published_seed = published ? published->seed : std::nullopt;
     metrics.ladders = ladders(experiment, metrics.runs);
-    for (const auto& [key, film] : out.films) metrics.film_hashes[to_string(key)] = hash(film);
-    for (const ReferenceFilm& film : out.quadrature)
-        metrics.film_hashes[fmt::format("quadrature s={}", film.s)] = hash(film);
-    for (const ReferenceFilm& film : out.monte_carlo)
-        metrics.film_hashes[fmt::format("note reference s={}", film.s)] = hash(film);
     for (std::size_t e = 0; e < out.quadrature.size(); ++e)
         for (const Region& region : experiment.regions)
             metrics.references.push_back(compare(out.quadrature[e],

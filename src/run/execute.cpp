@@ -24,9 +24,11 @@ std::vector<RunMeter> meters_of(
     const RunPlan& plan, const Prepared& prepared, const Job& job, const std::vector<Film>& films) {
     const ReferenceFilm* reference = reference_of(plan.experiment, prepared.quadrature, prepared.monte_carlo, job.s);
     ensure(reference != nullptr, "references are made before the jobs that are measured against them");
-    std::vector<RunMeter> out;
-    for (const Film& film : films)
-        out.push_back(measure(plan.experiment, {job.arm, film.n, job.s, job.seed}, film, *reference, prepared.shapes));
+    std::vector<RunMeter> out(films.size());
+    parallel_for(std::size_t{0}, films.size(), [&](std::size_t r) {
+        out[r] =
+            measure(plan.experiment, {job.arm, films[r].n, job.s, job.seed}, films[r], *reference, prepared.shapes);
+    });
     return out;
 }
 

@@ -55,9 +55,12 @@ void write_references(const Measured& m, Staging& staging) {
 /// Each as PNG; those of lines alone as SVG too.
 void write_plates(const Measured& m, Staging& staging) {
     for (const auto& [name, png] : m.plates) staging.write("plates/" + name + ".png", png);
-    for (const PlatePlan& plan : m.experiment.plates)
-        if (const std::string svg = draw_plate_svg(plan, plate_inputs(m)); !svg.empty())
-            staging.write("plates/" + plan.name + ".svg", svg);
+    const std::vector<PlatePlan>& plans = m.experiment.plates;
+    std::vector<std::string> svg(plans.size());
+    parallel_for(
+        std::size_t{0}, plans.size(), [&](std::size_t k) { svg[k] = draw_plate_svg(plans[k], plate_inputs(m)); });
+    for (std::size_t k = 0; k < plans.size(); ++k)
+        if (!svg[k].empty()) staging.write("plates/" + plans[k].name + ".svg", svg[k]);
 }
 
 /// The experiment's own assertions stand first; those of the instrument stay as they are.

@@ -174,9 +174,13 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
         const double k = (subject.s - 1) / (subject.s + 1);
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
-    for (double theta = 0; theta <= 75; theta += 7.5) out.lost.push_back(lost_support(subject, theta));
-    for (double s : {2.0, 3.0, 8.0, 32.0, 128.0})
-        out.rejections.push_back(false_rejection(subject, s, out.alpha, isa, monitor));
+    out.lost.resize(11);
+    parallel_for(std::size_t{0}, out.lost.size(),
+        [&](std::size_t k) { out.lost[k] = lost_support(subject, 7.5 * static_cast<double>(k)); });
+    constexpr std::array exponents = {2.0, 3.0, 8.0, 32.0, 128.0};
+    out.rejections.resize(exponents.size());
+    parallel_for(std::size_t{0}, exponents.size(),
+        [&](std::size_t k) { out.rejections[k] = false_rejection(subject, exponents[k], out.alpha, isa, monitor); });
     monitor.check();
     return out;
 }
