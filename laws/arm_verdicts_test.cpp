@@ -57,9 +57,6 @@ TEST(Verdicts, SeeTheNearerOfTwoLights) {
     EXPECT_GT(back, 50);
 }
 
-/// Sanitizers make all of it ten times slower: every third fault is judged there.
-constexpr std::size_t every = test::sanitized ? 3 : 1;
-
 class PlantedFaultsInQuickMode : public testing::TestWithParam<std::size_t> {
 public:
     static constexpr std::size_t shards = 6;
@@ -72,7 +69,7 @@ TEST_P(PlantedFaultsInQuickMode, AreCaughtAndExplained) {
     EXPECT_GE(faults.size(), 60u);
     std::size_t with = 0, named = 0;
     std::string told;
-    for (std::size_t k = GetParam(); k < faults.size(); k += shards * every) {
+    for (std::size_t k = GetParam(); k < faults.size(); k += shards * test::every) {
         // Of 0, 45 and 75 deg two that take turns; crescent check --planted asks at all three.
         std::vector<Trial> trials = faults[k].trials;
         if (trials.size() == 3) trials.erase(trials.begin() + 2 * static_cast<int>(k % 2));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
 #include "verdicts/against.h"
@@ -127,7 +128,7 @@ class FaultsOfPrograms : public testing::TestWithParam<std::size_t> {};
 /// A fourth of the faults of renderers, each at one w_o after the other until it is caught.
 TEST_P(FaultsOfPrograms, AreCaughtWithinWhatTheyAreAsked) {
     const std::vector<PlantedFault> faults = renderer_faults();
-    for (std::size_t i = GetParam(); i < faults.size(); i += 4) {
+    for (std::size_t i = GetParam(); i < faults.size(); i += 4 * test::every) {
         bool caught = false;
         for (const Trial& trial : faults[i].trials) {
             const Seen seen = judged({trial});

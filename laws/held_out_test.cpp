@@ -2,6 +2,7 @@
 // said of those that have no such cause.
 #include <gtest/gtest.h>
 
+#include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
 
 namespace crescent {
@@ -13,7 +14,8 @@ TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
     std::string told;
     const std::vector<PlantedFault> faults = held_out_faults();
     EXPECT_GE(faults.size(), 20u);
-    for (const PlantedFault& fault : faults) {
+    for (std::size_t k = 0; k < faults.size(); k += test::every) {
+        const PlantedFault& fault = faults[k];
         TestSettings settings;
         settings.draws = 16384;
         const Judgement j =

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "base/sanitized_test.h"
 #include "base/errors.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
@@ -41,8 +42,10 @@ void expect_settled(const Judgement& j, std::set<std::string>& met) {
 
 TEST(Limits, OfTheSchemaLeadToNoAccusation) {
     std::set<std::string> met;
-    for (const std::string& arm : sampler_names())
+    const std::vector<std::string> arms = sampler_names();
+    for (std::size_t k = 0; k < arms.size(); k += test::every)
         for (const Settings& at : {Settings{{"s", 1e-3}}, {{"s", 1e6}}, {{"alpha", 1e-4}}, {{"alpha", 1}}}) {
+            const std::string& arm = arms[k];
             if (!reads(arm, at)) continue;
             const Judgement j = at_a_few(arm, at);
             EXPECT_TRUE(j.as_expected) << arm << " " << at.begin()->first << "=" << at.begin()->second << "\n"

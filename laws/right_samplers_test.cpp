@@ -2,6 +2,7 @@
 // docs/error-rates.md has what came of it; here a few of every family.
 #include <gtest/gtest.h>
 
+#include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
 #include "laws/right/renderers.h"
@@ -18,8 +19,8 @@ std::string told(const RightLaw& law) {
 
 TEST(RightSamplers, OfEveryFamilyAreLeftAloneInQuickMode) {
     ProgressMonitor monitor;
-    const RightLaw law = measure_right(0, 60, TestSettings::quick(), monitor);
-    EXPECT_GE(law.families.size(), 20u);
+    const RightLaw law = measure_right(0, 60 / test::every, TestSettings::quick(), monitor);
+    EXPECT_GE(law.families.size(), 20u / test::every);
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
@@ -27,7 +28,7 @@ TEST(RightSamplers, OfEveryFamilyAreLeftAloneInFullMode) {
     ProgressMonitor monitor;
     TestSettings settings = TestSettings::thorough();
     settings.draws /= 8;  // as full mode integrates, with fewer draws
-    const RightLaw law = measure_right(1000, 20, settings, monitor);
+    const RightLaw law = measure_right(1000, 20 / test::every, settings, monitor);
     EXPECT_EQ(law.accused, 0u) << told(law);
 }
 
@@ -105,7 +106,7 @@ TEST(RightSamplers, OfSharpLobesInSinglePrecisionAreLeftAlone) {
 /// wrong.
 TEST(RightSamplers, HaveNothingThatADiagnosisExplains) {
     std::string told;
-    EXPECT_EQ(count_false_diagnoses(2000, 60, 1, told), 0u) << told;
+    EXPECT_EQ(count_false_diagnoses(2000, 60 / test::every, 1, told), 0u) << told;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace crescent::inline reference {
 namespace {
 
-constexpr std::uint32_t scenes_a_shard = test::sanitized ? 6 : 40;
+constexpr std::uint32_t scenes_a_shard = test::sanitized ? 5 : 15;
 constexpr std::uint32_t shards = 8, brighter_scenes = test::sanitized ? 8 : 20;
 constexpr int draws = 1500;
 
