@@ -42,8 +42,10 @@ target_compile_options(crescent_settings INTERFACE -ffp-contract=off -Wall -Wext
   # Masks of one lane are plain bool, and & on them is meant.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
 if(CRESCENT_SANITIZE)
-  target_compile_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE} -fno-sanitize-recover=all
-    -fno-omit-frame-pointer -g1)
+  # AddressSanitizer itself stops at null and behind an object's end; looking for these twice, and for the type behind
+  # each pointer, takes a fifth of the build and of the tests.
+  target_compile_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE}
+    -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   target_link_options(crescent_settings INTERFACE -fsanitize=${CRESCENT_SANITIZE})
 endif()
 if(CRESCENT_FUZZ)

@@ -166,11 +166,13 @@ DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene
 
 std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Figure& figure) const {
     std::vector<const Blocker*> out;
+    const Bodies::Any light = body_of(figure);
     for (const Blocker& b : blockers_) {
         if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
         // A light in this one's plane stands before it at the end of the way, or does not.
-        const Figure end = b.light ? moved(figure, hit.x, b.between.to) : figure;
-        if (!is_separated(b.body, {hit.x}, body_of(end))) out.push_back(&b);
+        const bool apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.between.to)))
+                                   : is_separated(b.body, {hit.x}, light);
+        if (!apart) out.push_back(&b);
     }
     return out;
 }

@@ -29,7 +29,8 @@ bool is_separated(const Occluder& body, const Extent& from, const Bodies::Any& l
 
 /// Calls f with each part of [0, 1] that no interval covers, in order. Sorts the intervals.
 template <class F> void each_open_part(std::span<Interval> hidden_parts, F&& f) {
-    std::sort(hidden_parts.begin(), hidden_parts.end(), [](Interval a, Interval b) { return a.lo < b.lo; });
+    if (hidden_parts.size() > 1)
+        std::sort(hidden_parts.begin(), hidden_parts.end(), [](Interval a, Interval b) { return a.lo < b.lo; });
     double from = 0;
     for (const Interval& part : hidden_parts) {
         if (part.empty()) continue;
