@@ -5,8 +5,8 @@
 
 What ./page has built is measured: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
 three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last meter, and from a
-slider's move to the first new pixels, the median of twenty moves. --write puts all of it under "The page" in
-docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
+slider's move to the first new pixels, the median of twenty moves, and to N = 64 again. --write puts all of it under
+"The page" in docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
 """
 import argparse
 import datetime
@@ -47,22 +47,32 @@ def opened(page):
         driver.quit()
 
 
-def moved(page, turns=20):
-    """ms from the move of the slider of s to the first new pixels, each time while the reference is being computed."""
+def move(driver, to):
+    """Moves the slider of s."""
+    driver.execute_script(
+        "for (const told of ['moved', 'films', 'took']) delete document.documentElement.dataset[told];"
+        "const at = document.querySelector('[data-path=\"sphere.s\"] input[type=range]');"
+        "at.focus(); at.value = arguments[0]; at.dispatchEvent(new Event('input', {bubbles: true}))", to)
+
+
+def moved(page, turns=20, whole=3):
+    """ms from the move of the slider of s to the first new pixels, each time while the reference is being computed: the
+    median and the largest; and to the last film, where no other move follows: the least."""
     driver = browser.chromium()
     try:
         browser.open_page(driver, page)
         driver.execute_script("document.getElementById('controls').open = true")
-        found = []
+        first, films = [], []
         for turn in range(turns):
-            driver.execute_script(
-                "delete document.documentElement.dataset.moved;"
-                "const at = document.querySelector('[data-path=\"sphere.s\"] input[type=range]');"
-                "at.focus(); at.value = arguments[0]; at.dispatchEvent(new Event('input', {bubbles: true}))",
-                400 + 10 * turn)
-            found.append(int(browser.wait(driver, "document.documentElement.dataset.moved")))
+            move(driver, 400 + 10 * turn)
+            first.append(int(browser.wait(driver, "document.documentElement.dataset.moved")))
             time.sleep(0.4)
-        return statistics.median(found), max(found)
+        for turn in range(whole):
+            move(driver, 300 + 10 * turn)
+            time.sleep(3)  # asking it would keep a core busy
+            browser.wait(driver, "document.documentElement.dataset.took")
+            films.append(int(driver.execute_script("return document.documentElement.dataset.films")))
+        return statistics.median(first), max(first), min(films)
     finally:
         driver.quit()
 
@@ -86,6 +96,7 @@ Msamples/s of one thread, the best of five turns: the page's module beside the p
 | the same with the reference and all meters | {least['took']} |
 | from a slider's move to the first new pixels, median of 20 moves | {slider[0]:.0f} |
 | the slowest of the 20 | {slider[1]} |
+| from a slider's move to the three arms at N = 64, best of 3 | {slider[2]} |
 
 - {datetime.date.today().isoformat()}, {processor()}, {os.cpu_count()} threads, load {load:.1f} at the end;
   {openings[0]['browser']}; {facts['engine']}; crescent {facts['commit']}
