@@ -81,6 +81,21 @@ TEST_P(ReferenceOfRandomScenes, IsTheTruthAndThatOfTheArmsWithinTheDoubts) {
 
 INSTANTIATE_TEST_SUITE_P(Shards, ReferenceOfRandomScenes, testing::Range(0u, shards));
 
+/// Exponents of a pixel share what they look at: none of it shows in another's film.
+TEST(ReferencesOfManyExponents, AreThoseOfEachAlone) {
+    ProgressMonitor monitor;
+    const std::vector<double> exponents = {3, 40, 700};
+    for (std::uint32_t seed = 9000; seed < 9012; ++seed) {
+        test::RandomScene draw = scene_drawn(seed);
+        const Scene scene(draw());
+        const std::vector<ReferenceFilm> all = quadrature_reference(scene, exponents, monitor);
+        for (std::size_t e = 0; e < exponents.size(); ++e)
+            EXPECT_EQ(hash(all[e]), hash(quadrature_reference(scene, {exponents[e]}, monitor)[0]))
+                << "scene " << seed << ", s " << exponents[e] << "\n"
+                << draw.what;
+    }
+}
+
 /// A reference of lamps that are 15 % brighter than the scene's is found out wherever arms know the pixels.
 TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
     ProgressMonitor monitor;
