@@ -35,11 +35,10 @@ struct PolarRule {
     }
 };
 
-/// Exact for polynomials of degree 3, 5, 7, 11, 17, 25, 37, 57 and 97: of 4 radial - 1 and angular - 1 the smaller.
 const std::vector<PolarRule>& polar_rules() {
-    static const std::vector<PolarRule> rules = {PolarRule::make<1>(4), PolarRule::make<2>(6), PolarRule::make<2>(8),
-        PolarRule::make<3>(12), PolarRule::make<5>(18), PolarRule::make<7>(26), PolarRule::make<10>(38),
-        PolarRule::make<15>(58), PolarRule::make<25>(98)};
+    static const std::vector<PolarRule> rules = {PolarRule::make<1>(3), PolarRule::make<2>(5), PolarRule::make<3>(7),
+        PolarRule::make<5>(12), PolarRule::make<7>(17), PolarRule::make<10>(25), PolarRule::make<15>(36),
+        PolarRule::make<25>(60), PolarRule::make<40>(96)};
     return rules;
 }
 
