@@ -84,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(Shards, ReferenceOfRandomScenes, testing::Range(0u, sha
 /// Exponents of a pixel share what they look at: none of it shows in another's film.
 TEST(ReferencesOfManyExponents, AreThoseOfEachAlone) {
     ProgressMonitor monitor;
-    const std::vector<double> exponents = {3, 40, 700};
-    for (std::uint32_t seed = 9000; seed < 9012; ++seed) {
+    const std::vector<double> exponents = {3, 700};
+    for (std::uint32_t seed = 9000; seed < 9003; ++seed) {
         test::RandomScene draw = scene_drawn(seed);
         const Scene scene(draw());
         const std::vector<ReferenceFilm> all = quadrature_reference(scene, exponents, monitor);
