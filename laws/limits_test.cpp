@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <set>
 
-#include "base/sanitized_test.h"
 #include "base/errors.h"
+#include "base/sanitized_test.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "verdicts/list.h"

@@ -96,9 +96,9 @@ void AllFans::add_all_cuts() {
 
 void AllFans::look_between(double lo, double hi) {
     near_.clear();
+    const double from = turn(lo).azimuth, to = turn(hi).azimuth;
     for (const Body& body : bodies_)
-        if (body.azimuths.whole() || body.azimuths.meet(turn(lo).azimuth, turn(hi).azimuth))
-            near_.push_back(body.blocker);
+        if (body.azimuths.whole() || body.azimuths.meet(from, to)) near_.push_back(body.blocker);
 }
 
 template <class F> FanEdges AllFans::each_open(const Fan& fan, F&& f) {

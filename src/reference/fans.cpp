@@ -22,29 +22,26 @@ struct FanSum {
     friend FanSum operator*(double k, FanSum a) { return {k * a.diffuse, k * a.lobe, k * a.inner}; }
 };
 
-/// What a fan adds under the lobe of a point.
-class LobeOnFans {
-public:
-    LobeOnFans(const DiskPoint& point, const AllFans& fans) : point_(point), fans_(fans), shape_(point) {}
+/// The fans of a point under one of its lobes.
+struct FansUnderLobe {
+    AllFans& fans;
+    const DiskPoint& point;
+    LobeShape shape{point};
 
+    /// What one fan adds.
     FanSum operator()(const OpenFan& fan) const {
         FanSum sum = {fan.diffuse};
-        if (!(point_.surface.rho_s > 0)) return fan.slope * sum;
-        const double width = fans_.about_lobe() ? shape_.width_at(fan.cos_azimuth) : shape_.width,
-                     reach = fans_.about_lobe() ? shape_.reach : pi;
-        for (const Interval& open : fans_.parts(fan)) {
+        if (!(point.surface.rho_s > 0)) return fan.slope * sum;
+        const double width = fans.about_lobe() ? shape.width_at(fan.cos_azimuth) : shape.width,
+                     reach = fans.about_lobe() ? shape.reach : pi;
+        for (const Interval& open : fans.parts(fan)) {
             const Interval part = {open.lo, std::min(open.hi, reach)};
             if (part.empty()) continue;
-            const AlongLobe along = lobe_along(point_, fan.axis, fan.aside, part, width);
+            const AlongLobe along = lobe_along(point, fan.axis, fan.aside, part, width);
             sum.lobe += along.value, sum.inner += along.error;
         }
         return fan.slope * sum;
     }
-
-private:
-    const DiskPoint& point_;
-    const AllFans& fans_;
-    LobeShape shape_;
 };
 
 /// The fans between two cuts, by u in [0, 1]: tau(u) has no slope at a cut where a shadow opens like a root, which
@@ -74,19 +71,18 @@ struct Panel {
     FanSum fine, off, spread;
     std::optional<Interval> kink;  // in u: the edges at its ends are others
 
-    Panel(AllFans& fans, const LobeOnFans& lobe, const Span& whole, double u0, double u1)
-        : span(whole), lo(u0), hi(u1) {
+    Panel(const FansUnderLobe& all, const Span& whole, double u0, double u1) : span(whole), lo(u0), hi(u1) {
         std::array<std::pair<double, FanEdges>, 9> nodes;
         std::size_t count = 0;
         const auto f = [&](double u) {
-            const OpenFan& fan = fans(span.tau(u));
+            const OpenFan& fan = all.fans(span.tau(u));
             nodes[count++] = {u, fan.edges};
-            return span.slope(u) * lobe(fan);
+            return span.slope(u) * all(fan);
         };
         const TwoRules<FanSum> both = by_two_rules(kronrod_7, f, lo, hi);
         fine = both.fine, off = both.off, spread = both.spread;
         for (const double u : {1e-3, 1 - 1e-3})  // what lies between an end of the span and the node next to it
-            if (u > lo && u < hi) nodes[count++] = {u, fans.edges_at(span.tau(u))};
+            if (u > lo && u < hi) nodes[count++] = {u, all.fans.edges_at(span.tau(u))};
         std::sort(nodes.begin(), nodes.begin() + count);
         for (std::size_t k = 0; k + 1 < count && !kink; ++k)
             if (nodes[k].second != nodes[k + 1].second) kink = Interval{nodes[k].first, nodes[k + 1].first};
@@ -118,24 +114,22 @@ constexpr int halvings = 14, first_halvings = 2;
 /// The sum of panels, cut where their rules differ, and first of all at kinks, where a shadow's edge meets the light's:
 /// they may lie where no node is.
 struct Adaptive {
-    AllFans& fans;
-    const LobeOnFans& lobe;
-    const DiskPoint& point;
+    const FansUnderLobe& all;
     double tolerance = 0;  // of one panel, in the unit of `weigh`
     DiskIntegral sum{};
 
     void add(const Panel& panel, int depth = 0) {
         const FanSum off = panel.expected_off();
-        const bool good = point.weigh({off.diffuse, off.lobe}) <= tolerance;
+        const bool good = all.point.weigh({off.diffuse, off.lobe}) <= tolerance;
         if (depth == halvings || (good && !(panel.kink && depth < first_halvings))) {
             sum.diffuse += panel.fine.diffuse, sum.lobe += panel.fine.lobe;
             sum.diffuse_error += std::fabs(panel.off.diffuse),
                 sum.lobe_error += std::fabs(panel.off.lobe) + panel.fine.inner;
             return;
         }
-        const double cut = panel.cut(fans);
-        add(Panel(fans, lobe, panel.span, panel.lo, cut), depth + 1);
-        add(Panel(fans, lobe, panel.span, cut, panel.hi), depth + 1);
+        const double cut = panel.cut(all.fans);
+        add(Panel(all, panel.span, panel.lo, cut), depth + 1);
+        add(Panel(all, panel.span, cut, panel.hi), depth + 1);
     }
 };
 
@@ -146,17 +140,17 @@ DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans) {
     const double open = disk_area(fans.light()) / dot(d, d);  // Lambert's, about
     if (!(point.weigh({1, 1}) > 0)) return {};                // a black surface
     fans.rewind();
-    const LobeOnFans lobe(point, fans);
+    const FansUnderLobe under_lobe{fans, point};
     const std::vector<FanCut>& cuts = fans.cuts();
     std::vector<Panel> panels;
     double all = 0.01 * point.weigh({std::min(open, 1.0), 0});
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         fans.look_between(cuts[k].tau, cuts[k + 1].tau);
-        panels.emplace_back(fans, lobe, Span{cuts[k], cuts[k + 1]}, 0, 1);
+        panels.emplace_back(under_lobe, Span{cuts[k], cuts[k + 1]}, 0, 1);
         all += point.weigh({panels.back().fine.diffuse, panels.back().fine.lobe});
     }
     constexpr double tolerance = 4e-5;
-    Adaptive sum{fans, lobe, point, tolerance * all};
+    Adaptive sum{under_lobe, tolerance * all};
     for (const Panel& panel : panels) {
         fans.look_between(panel.span.from.tau, panel.span.to.tau);
         sum.add(panel);

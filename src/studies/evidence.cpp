@@ -174,7 +174,7 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
         const double k = (subject.s - 1) / (subject.s + 1);
         out.caps.push_back({bits, out.rho_s + out.rho_d * (1 - math::exp2(-bits * (1 - k)))});
     }
-    out.lost.resize(11);
+    out.lost.resize(11);  // from 0 to 75 degrees
     parallel_for(std::size_t{0}, out.lost.size(),
         [&](std::size_t k) { out.lost[k] = lost_support(subject, 7.5 * static_cast<double>(k)); });
     constexpr std::array exponents = {2.0, 3.0, 8.0, 32.0, 128.0};
