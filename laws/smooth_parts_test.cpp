@@ -7,6 +7,7 @@
 #include "laws/judged.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/frame.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
@@ -133,8 +134,8 @@ Recipe mask(double open) {
     r.pdf = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 * std::fabs(i.z) / pi : 0; };
     r.f = [](Vec3d o, Vec3d i) { return o.z * i.z > 0 ? 0.5 / pi : 0; };
     r.sample = [open](Vec3d o, const Numbers& u) {
-        const double s = std::sqrt(u[0]), phi = 2 * pi * u[1], z = std::sqrt(1 - u[0]);
-        Draw d{{s * math::cos(phi), s * math::sin(phi), std::copysign(z, o.z)}, 0.5 * z / pi};
+        const double z = std::sqrt(1 - u[0]);
+        Draw d{math::spherical(std::sqrt(u[0]), std::copysign(z, o.z), 2 * pi * u[1]), 0.5 * z / pi};
         d.weight = 1;
         if (u[2] >= 0.5) return d;
         d = {-o, 0};
@@ -165,9 +166,8 @@ Recipe phase(double drawn, double claimed, double scale, Traits::Asked wo = Trai
     r.f = [=](Vec3d o, Vec3d i) { return i.z == 0 ? 0 : scale * p(claimed, o, i) / std::fabs(i.z); };
     r.sample = [=](Vec3d o, const Numbers& u) {
         const double s = (1 - drawn * drawn) / (1 - drawn + 2 * drawn * u[0]);
-        const double c = std::clamp((1 + drawn * drawn - s * s) / (2 * drawn), -1.0, 1.0), sin = std::sqrt(1 - c * c),
-                     phi = 2 * pi * u[1];
-        Draw d{frame_about(-o).to_world(Vec3d{sin * math::cos(phi), sin * math::sin(phi), c}), 0};
+        const double c = std::clamp((1 + drawn * drawn - s * s) / (2 * drawn), -1.0, 1.0);
+        Draw d{frame_about(-o).to_world(math::spherical(c, 2 * pi * u[1])), 0};
         d.pdf = p(claimed, o, d.wi);
         d.weight = scale;
         return d;

@@ -6,6 +6,7 @@
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
 #include "verdicts/summary.h"
@@ -17,10 +18,7 @@ Judgement judged(const Recipe& recipe, double theta = 45) {
     return judged_at(subject_of(recipe), theta, of_draws(16384));
 }
 
-Vec3d cosine(double u1, double u2) {
-    const double s = std::sqrt(u1), phi = 2 * pi * u2;
-    return {s * math::cos(phi), s * math::sin(phi), std::sqrt(1 - u1)};
-}
+Vec3d cosine(double u1, double u2) { return math::spherical(std::sqrt(u1), std::sqrt(1 - u1), 2 * pi * u2); }
 
 /// Lambert of 0.5 whose f is a walk's estimate, between 0.1 and 0.9; its weights are estimates too, `scale` times what
 /// they ought to be.

@@ -6,6 +6,7 @@
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "verdicts/list.h"
 
 namespace crescent {
@@ -58,14 +59,14 @@ Recipe coat(const Share& chooser, const Share& f) {
     r.f = [through, f](Vec3d o, Vec3d i) { return i.z > 0 ? through(o, i) * f(o, i) * base / pi : 0; };
     r.sample = [through, pdf = r.pdf](Vec3d o, const Numbers& u) {
         Draw d;
-        const double q = fresnel(o.z), s = std::sqrt(u[0]), phi = 2 * pi * u[1];
+        const double q = fresnel(o.z);
         if (u[2] < q) {
             d.wi = {-o.x, -o.y, o.z};
             d.delta = q;
             d.weight = 1;
             return d;
         }
-        d.wi = {s * math::cos(phi), s * math::sin(phi), std::sqrt(1 - u[0])};
+        d.wi = math::spherical(std::sqrt(u[0]), std::sqrt(1 - u[0]), 2 * pi * u[1]);
         d.pdf = pdf(o, d.wi);
         d.weight = d.pdf > 0 ? through(o, d.wi) * base / pi * d.wi.z / d.pdf : 0;
         return d;

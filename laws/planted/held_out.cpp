@@ -6,6 +6,7 @@
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/frame.h"
 #include "simd/scalar.h"
 #include "verdicts/list.h"
@@ -13,11 +14,6 @@
 namespace crescent {
 
 namespace {
-
-Vec3d spherical(double cos, double phi) {
-    const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
-    return {sin * math::cos(phi), sin * math::sin(phi), cos};
-}
 
 /// Beckmann's distribution, isotropic, half vectors drawn by D n.m: Walter et al. 2007, (25), (28), (29).
 struct Beckmann {
@@ -29,7 +25,7 @@ struct Beckmann {
     }
     Vec3d normal(const Numbers& u) const {
         const double t2 = -sqr(alpha) * math::log1p(-u[0]);
-        return spherical(1 / std::sqrt(1 + t2), 2 * pi * u[1]);
+        return math::spherical(1 / std::sqrt(1 + t2), 2 * pi * u[1]);
     }
     double pdf(Vec3d o, Vec3d i) const {
         const Vec3d m = normalize(o + i);
@@ -50,7 +46,7 @@ struct Phase {
     }
     Draw draw(Vec3d o, const Numbers& u) const {
         const double s = (1 - g * g) / (1 - g + 2 * g * u[0]), c = (1 + g * g - s * s) / (2 * g);
-        const Vec3d i = frame_about(-o).to_world(spherical(std::clamp(c, -1.0, 1.0), 2 * pi * u[1]));
+        const Vec3d i = frame_about(-o).to_world(math::spherical(std::clamp(c, -1.0, 1.0), 2 * pi * u[1]));
         return {i, pdf(o, i)};
     }
 };
@@ -60,7 +56,8 @@ struct Power {
     double s = 45;
     double pdf(Vec3d o, Vec3d i) const { return (s + 1) / (2 * pi) * math::pow(std::max(dot(i, mirror(o)), 0.0), s); }
     Draw draw(Vec3d o, const Numbers& u) const {
-        const Vec3d i = frame_about(mirror(o)).to_world(spherical(math::pow(1 - u[0], 1 / (s + 1)), 2 * pi * u[1]));
+        const Vec3d i =
+            frame_about(mirror(o)).to_world(math::spherical(math::pow(1 - u[0], 1 / (s + 1)), 2 * pi * u[1]));
         return {i, pdf(o, i)};
     }
 };
@@ -85,7 +82,7 @@ Recipe sheen() {
     r.pdf = [](Vec3d, Vec3d i) { return std::max(i.z, 0.0) / pi; };
     r.f_channels = f;
     r.sample = [f](Vec3d o, const Numbers& u) {
-        Draw d{spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]), 0};
+        Draw d{math::spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]), 0};
         d.pdf = d.wi.z / pi;
         d.weights = f(o, d.wi) * pi;
         d.weight = luminance(d.weights);
@@ -172,7 +169,7 @@ void spheres(std::vector<Planted>& out) {
         with_pdf(h, [](Vec3d, Vec3d i, double v) { return v * math::hypot(i.x, i.y); })});
     Recipe flat{"flat", "", {}, {}, {}};
     flat.sample = [](Vec3d, const Numbers& u) {
-        Draw d{spherical(1 - u[0], 2 * pi * u[1]), 0};
+        Draw d{math::spherical(1 - u[0], 2 * pi * u[1]), 0};
         d.pdf = d.wi.z / pi;
         return d;
     };

@@ -5,6 +5,7 @@
 
 #include "laws/planted/wrap.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "verdicts/list.h"
 
 namespace crescent {
@@ -22,11 +23,8 @@ struct Plan {
 };
 
 double power_cos(Vec3d a, Vec3d b, double s) { return math::pow(std::max(dot(a, b), 0.0), s); }
-Vec3d spherical(double cos, double turns) {
-    const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
-    return {sin * math::cos(2 * pi * turns), sin * math::sin(2 * pi * turns), cos};
-}
-Vec3d about(Vec3d axis, double cos, double turns) { return frame_about(axis).to_world(spherical(cos, turns)); }
+Vec3d about_normal(double cos, double turns) { return math::spherical(cos, 2 * pi * turns); }
+Vec3d about(Vec3d axis, double cos, double turns) { return frame_about(axis).to_world(about_normal(cos, turns)); }
 /// In a tenth of the sphere about a direction that is no axis of anything.
 bool in_patch(Vec3d w) { return dot(w, tilt(40, 70)) > 0.8; }
 double rounded(double v) { return static_cast<double>(static_cast<float>(v)); }
@@ -114,7 +112,7 @@ void other_density_faults(std::vector<Plan>& out) {
         [](S) { return with_pdf([](const Pair& a, double p) { return p * std::fabs(dot(a.wi, tilt(20, 60))); }); }});
     out.push_back({"axis about n but pdf about R", "phong", phong, false, "fill", 32, [](S f) {
                        return with_draw([s = f.s](Vec3d wo, Vec2d u, Draw& d) {
-                           d.wi = spherical(math::pow(u.x, 1 / (s + 1)), u.y);
+                           d.wi = about_normal(math::pow(u.x, 1 / (s + 1)), u.y);
                            d.pdf = (s + 1) / (2 * pi) * power_cos(d.wi, mirror(wo), s);
                        });
                    }});
@@ -177,7 +175,7 @@ void uniform_faults(std::vector<Plan>& out) {
         [](S) { return with_u([](Vec2d u) { return Vec2d{u.x, u.x}; }); }});
     out.push_back({"sqrt forgotten", "cosine", LobeKind::none, true, "fill", 32, [](S) {
                        return with_draw([](Vec3d, Vec2d u, Draw& d) {
-                           d.wi = spherical(u.x, u.y);
+                           d.wi = about_normal(u.x, u.y);
                            d.pdf = d.wi.z / pi;
                        });
                    }});
@@ -196,7 +194,7 @@ void direction_faults(std::vector<Plan>& out) {
     const auto phong = lobe_named("phong");
     out.push_back({"never reaches grazing", "cosine", LobeKind::none, true, "fill", 32, [](S) {
                        return with_draw([](Vec3d, Vec2d u, Draw& d) {
-                           d.wi = spherical(std::max(std::sqrt(u.x), 0.08), u.y);
+                           d.wi = about_normal(std::max(std::sqrt(u.x), 0.08), u.y);
                            d.pdf = d.wi.z / pi;
                        });
                    }});

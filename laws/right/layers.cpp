@@ -7,6 +7,7 @@
 
 #include "laws/right/renderers.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/math.h"
 #include "simd/scalar.h"
 
@@ -15,10 +16,7 @@ namespace crescent {
 namespace {
 
 Vec3d times(Vec3d a, Vec3d b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-Vec3d cosine(const Numbers& u) {
-    const double r = std::sqrt(u[0]), phi = 2 * pi * u[1];
-    return {r * math::cos(phi), r * math::sin(phi), std::sqrt(1 - u[0])};
-}
+Vec3d cosine(const Numbers& u) { return math::spherical(std::sqrt(u[0]), std::sqrt(1 - u[0]), 2 * pi * u[1]); }
 RoughGlass lobe_of(const Layers& l) { return {l.alpha, 1.5}; }
 Vec3d schlick(Vec3d f0, double c) {
     const double k = math::pow(std::max(1 - c, 0.0), 5);

@@ -6,13 +6,13 @@
 
 #include "laws/right/right.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/frame.h"
 
 namespace crescent {
 
 Vec3d about(Vec3d axis, double cos, double turns) {
-    const double sin = std::sqrt(std::max(1 - cos * cos, 0.0)), phi = 2 * pi * turns;
-    return frame_about(axis).to_world({sin * math::cos(phi), sin * math::sin(phi), cos});
+    return frame_about(axis).to_world(math::spherical(cos, 2 * pi * turns));
 }
 
 namespace {

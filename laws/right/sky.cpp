@@ -7,6 +7,7 @@
 
 #include "laws/right/renderers.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/scalar.h"
 
 namespace crescent {
@@ -80,8 +81,8 @@ Sky::Spot Sky::spot(Vec2d u) const {
 Draw Sky::at(const Spot& s) const {
     const double theta = pi * (s.i + s.x) / rows, phi = 2 * pi * (s.j + s.y) / columns, sin = math::sin(theta);
     if (!(sin > 0)) return {{0, 0, 1}, 0};  // a pole, where p has no bound
-    const Vec3d wi{sin * math::cos(phi), sin * math::sin(phi), math::cos(theta)};
-    return {wi, mass[static_cast<std::size_t>(s.i * columns + s.j)] * rows * columns / (2 * pi * pi * sin)};
+    return {math::spherical(sin, math::cos(theta), phi),
+        mass[static_cast<std::size_t>(s.i * columns + s.j)] * rows * columns / (2 * pi * pi * sin)};
 }
 
 Draw Sky::sample(const Numbers& u) const { return at(spot(u)); }

@@ -5,6 +5,7 @@
 
 #include "laws/right/right.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/scalar.h"
 
 namespace crescent {
@@ -50,10 +51,7 @@ double turns_of(Vec3d w) {
     const double t = math::atan2(w.y, w.x) / (2 * pi);
     return t < 0 ? t + 1 : t;
 }
-Vec3d spherical(double cos, double turns) {
-    const double sin = std::sqrt(std::max(1 - cos * cos, 0.0));
-    return {sin * math::cos(2 * pi * turns), sin * math::sin(2 * pi * turns), cos};
-}
+Vec3d about_up(double cos, double turns) { return math::spherical(cos, 2 * pi * turns); }
 int cell(double v, int count) { return std::clamp(static_cast<int>(v * count), 0, count - 1); }
 
 /// Weights with a factor of `contrast` between cells, and at times a sun of a few cells.
@@ -79,7 +77,7 @@ Recipe cells(Dice& d) {
     };
     r.sample = [t, floor, per_sr](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
-        return Draw{spherical(floor + (1 - floor) * (s.i + s.x) / t->rows, (s.j + s.y) / t->columns),
+        return Draw{about_up(floor + (1 - floor) * (s.i + s.x) / t->rows, (s.j + s.y) / t->columns),
             t->at(s.i, s.j) * per_sr, {}, {}};
     };
     return r;
@@ -101,8 +99,8 @@ Recipe even_texels(Dice& d) {
     };
     r.sample = [t, edge, value](Vec3d, Vec2d u) {
         const Table::Spot s = t->draw(u);
-        return Draw{spherical(edge(s.i) + (edge(s.i + 1) - edge(s.i)) * s.x, (s.j + s.y) / t->columns), value(s.i, s.j),
-            {}, {}};
+        return Draw{
+            about_up(edge(s.i) + (edge(s.i + 1) - edge(s.i)) * s.x, (s.j + s.y) / t->columns), value(s.i, s.j), {}, {}};
     };
     return r;
 }
@@ -128,7 +126,7 @@ Recipe texels(Dice& d) {
         const Table::Spot s = t->draw(u);
         const double theta = pi * (s.i + s.x) / t->rows, phi = 2 * pi * (s.j + s.y) / t->columns,
                      sin = math::sin(theta);
-        return Draw{{sin * math::cos(phi), sin * math::sin(phi), math::cos(theta)}, value(s.i, s.j, sin), {}, {}};
+        return Draw{math::spherical(sin, math::cos(theta), phi), value(s.i, s.j, sin), {}, {}};
     };
     return r;
 }
@@ -171,7 +169,7 @@ Recipe bilinear(Dice& d) {
         const double x = linear(p(s.i, s.j) + p(s.i, s.j + 1), p(s.i + 1, s.j) + p(s.i + 1, s.j + 1), s.x);
         const double y = linear(
             (1 - x) * p(s.i, s.j) + x * p(s.i + 1, s.j), (1 - x) * p(s.i, s.j + 1) + x * p(s.i + 1, s.j + 1), s.y);
-        return Draw{spherical((s.i + x) / t->rows, (s.j + y) / t->columns), value(s.i, s.j, x, y), {}, {}};
+        return Draw{about_up((s.i + x) / t->rows, (s.j + y) / t->columns), value(s.i, s.j, x, y), {}, {}};
     };
     return r;
 }

@@ -20,20 +20,19 @@ template <class Call, template <class> class... L> constexpr void for_each_lobe(
     (f.template operator()<L>(), ...);
 }
 
-/// The same until one call gives true.
-template <class Call, template <class> class... L> constexpr void for_each_lobe_until(LobeList<L...>, Call&& f) {
-    (f.template operator()<L>() || ...);
+/// Calls f.template operator()<L>() for the lobe of this kind; for none, nothing.
+template <class Call> constexpr void with_lobe(LobeKind kind, Call&& f) {
+    const auto among = [&]<template <class> class... L>(LobeList<L...>) {
+        int k = 0;
+        static_cast<void>(((k++ == static_cast<int>(kind) && (f.template operator()<L>(), true)) || ...));
+    };
+    among(Lobes{});
 }
 
 /// A built-in lobe, 1/sr; 0 for none.
 template <class F> F lobe_value(LobeKind kind, F s, F alpha, Vec3<F> wo, Vec3<F> wi) {
     F out = number<F>(0);
-    int index = 0;
-    for_each_lobe_until(Lobes{}, [&]<template <class> class L>() {
-        if (index++ != static_cast<int>(kind)) return false;
-        out = L<F>(s, alpha)(wo, wi);
-        return true;
-    });
+    with_lobe(kind, [&]<template <class> class L>() { out = L<F>(s, alpha)(wo, wi); });
     return out;
 }
 

@@ -36,13 +36,14 @@ template <class F> struct PhongLobe {
     template <class Integrate> static double albedo(double s, double, double cos_o, Integrate&& integrate) {
         const double sin_o = std::sqrt(1 - cos_o * cos_o);
         const auto ring = [&](double al) {
-            const double c = math::cos(al), a = c * cos_o, b = math::sin(al) * sin_o;
+            const auto [sin, cos] = math::sincos(al);
+            const double a = cos * cos_o, b = sin * sin_o;
             double band = 2 * pi * a;
             if (b > a) {
                 const double phi = math::acos(-a / b);
                 band = 2 * (a * phi + b * math::sin(phi));
             }
-            return math::pow(c, s) * math::sin(al) * band;
+            return math::pow(cos, s) * sin * band;
         };
         const double horizon = math::asin(cos_o);                     // al where the lobe first dips under the horizon
         const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)

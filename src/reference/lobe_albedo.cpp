@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "math/gauss.h"
 #include "lobes/all.h"
 
@@ -34,7 +35,7 @@ double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, c
         const double cut = (0.5 / c - c) * cos_o, all = sin_o * sin;
         const double last = cut <= -all ? pi : cut >= all ? 0 : math::acos(cut / all);
         const auto at = [&](double phi) {
-            const Vec3<double> m = {sin * math::cos(phi), sin * math::sin(phi), c};
+            const Vec3<double> m = math::spherical(sin, c, phi);
             const double d = dot(wo, m);
             const Vec3<double> wi = 2 * d * m - wo;
             return d > 0 && wi.z > 0 ? lobe(wo, wi) * wi.z * 4 * d / normals.density(c) : 0.0;
@@ -56,10 +57,8 @@ double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, c
 
 double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o, const MakeWay& make_way) {
     const double c = std::clamp(cos_o, 1e-6, 1.0);  // half vectors have no room at the horizon itself
-    int index = 0;
     double out = 0;
-    for_each_lobe(Lobes{}, [&]<template <class> class L>() {
-        if (index++ != static_cast<int>(kind)) return;
+    with_lobe(kind, [&]<template <class> class L>() {
         if constexpr (requires { typename L<double>::Normals; })
             out = half_vector_albedo(L<double>(s, alpha), c, typename L<double>::Normals(s, alpha), make_way);
         else

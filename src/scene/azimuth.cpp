@@ -27,7 +27,8 @@ Azimuths of_ellipse(Flat p, Flat u, Flat v) {
     if (!(outside > 0)) return {};
     const double middle = 0.5 * math::atan2(2 * xy, xx - yy),
                  half = 0.5 * math::atan2(std::sqrt(outside), 0.5 * (xx + yy));
-    const bool ahead = dot(p, {math::cos(middle), math::sin(middle)}) > 0;
+    const auto [sin, cos] = math::sincos(middle);
+    const bool ahead = dot(p, {cos, sin}) > 0;
     return {ahead ? middle : middle + pi, half};
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/random.h"
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
@@ -35,9 +35,8 @@ Shared f_of_both(const TrialContext& a, const TrialContext& b) {
     } else {
         for (std::uint64_t i = 0; i < 256; ++i) {
             const Vec2<float> u = draw(23, 0, i, 0);
-            const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z),
-                         phi = 2 * pi * static_cast<double>(u.y);
-            out.wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
+            out.wi.push_back(
+                math::spherical(0.02 + 0.98 * static_cast<double>(u.x), 2 * pi * static_cast<double>(u.y)));
         }
         add_drawn(out.wi, a);
         add_drawn(out.wi, b);

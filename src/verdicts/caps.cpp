@@ -22,7 +22,10 @@ struct Ray {
     Vec3d from, along;
     double t0 = 0, t1 = 0, p0 = 0, p1 = 0;  // angles before and after the jump, and p there
     bool jumped = false;
-    Vec3d at(double t) const { return normalize(from * math::cos(t) + along * math::sin(t)); }
+    Vec3d at(double t) const {
+        const auto [sin, cos] = math::sincos(t);
+        return normalize(from * cos + along * sin);
+    }
 };
 
 /// Ever longer steps along each ray until p jumps.
@@ -125,8 +128,8 @@ std::vector<Cap> caps_about(const TrialContext& work, int technique, std::span<c
     for (std::size_t i = 0; i < draws.size(); ++i) {
         const Frame<double> frame = frame_about(normalize(draws[i]));
         for (int k = 0; k < rays; ++k) {
-            const double phi = 2 * pi * (k + 0.17) / rays;
-            all.push_back({i, frame.n, frame.t * math::cos(phi) + frame.b * math::sin(phi), 0, 0, p[i], 0, false});
+            const auto [sin, cos] = math::sincos(2 * pi * (k + 0.17) / rays);
+            all.push_back({i, frame.n, frame.t * cos + frame.b * sin, 0, 0, p[i], 0, false});
         }
     }
     march(work, technique, all);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/random.h"
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
@@ -27,10 +28,9 @@ struct Reciprocity {
 /// Directions at large above the surface; below it for odd i, where both sides are asked.
 Vec3d at_large(std::uint64_t i, std::uint32_t which, bool both) {
     const Vec2<float> u = draw(17, 0, i, which);
-    const double z = 0.02 + 0.98 * static_cast<double>(u.x), sin = std::sqrt(1 - z * z),
-                 phi = 2 * pi * static_cast<double>(u.y);
     const bool below = both && (which == 0 ? i & 1 : i & 2);
-    return {sin * math::cos(phi), sin * math::sin(phi), below ? -z : z};
+    const double z = 0.02 + 0.98 * static_cast<double>(u.x);
+    return math::spherical(below ? -z : z, 2 * pi * static_cast<double>(u.y));
 }
 
 /// Pairs at large, and pairs of w_o with what the sampler draws, where a lobe is high. Those across the surface only

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/scalar.h"
 #include "verdicts/table_file.h"
 
@@ -212,8 +213,7 @@ std::vector<TabulationError> SampleFile::tabulation_errors() const {
                          dphi = (column_edges_[c + 1] - column_edges_[c]) / static_cast<double>(columns);
             const double z = row_edges_[r] + dz * (0.5 + static_cast<double>(i % rows)),
                          phi = column_edges_[c] + dphi * (0.5 + static_cast<double>(j % columns));
-            const double sin = std::sqrt(std::max(1 - z * z, 0.0));
-            const Vec3d w{sin * math::cos(phi), sin * math::sin(phi), z};
+            const Vec3d w = math::spherical(z, phi);
             const double mass = tabulation_error(w) * dz * dphi;
             if (mass > 0) out.push_back({w, mass});
         }

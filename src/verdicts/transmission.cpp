@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
@@ -19,10 +20,7 @@ namespace {
 std::vector<Vec3d> directions_below(const TrialContext& work) {
     std::vector<Vec3d> out;
     for (double z : {-0.02, -0.1, -0.25, -0.4, -0.6, -0.8, -0.95, -1.0})
-        for (int k = 0; k < 8; ++k) {
-            const double phi = 2 * pi * (k + 0.37) / 8, sin = std::sqrt(1 - z * z);
-            out.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
-        }
+        for (int k = 0; k < 8; ++k) out.push_back(math::spherical(z, 2 * pi * (k + 0.37) / 8));
     const Vec3d wo = work.trial.wo;
     for (double eta : {1 / 2.4, 1 / 1.5, 1 / 1.33, 1.0, 1.33, 1.5, 1.8, 2.4}) {  // below over above
         const double x = -wo.x / eta, y = -wo.y / eta, rest = 1 - x * x - y * y;

@@ -46,8 +46,9 @@ struct Sheet {
 Sheet sheet_of(const shapes::Disk& disk) {
     const Frame<double> frame = frame_about(disk.normal);  // a = (r/R)^2, b = turns
     return {disk.normal, pi * sqr(disk.radius), [disk, frame](Vec2d v) {
-                const double r = disk.radius * std::sqrt(v.x), phi = 2 * pi * v.y;
-                return disk.center + frame.t * (r * math::cos(phi)) + frame.b * (r * math::sin(phi));
+                const double r = disk.radius * std::sqrt(v.x);
+                const auto [sin, cos] = math::sincos(2 * pi * v.y);
+                return disk.center + frame.t * (r * cos) + frame.b * (r * sin);
             }};
 }
 Sheet sheet_of(const shapes::Quad& quad) {
