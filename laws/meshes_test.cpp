@@ -93,6 +93,28 @@ TEST(Meshes, OfTexelsOfASkyInSinglePrecisionAreSummed) {
     EXPECT_EQ(found->error, 0);
 }
 
+/// 12 x 20 cells, even in cos^2 theta and in phi from 0.0137 turns on, p / cos theta alike in each, nothing below.
+TEST(Meshes, EvenInTheSquareOfTheCosineAndTurnedAboutTheAxisAreSummed) {
+    constexpr double turned = 0.0137;
+    const auto held = [](int i, int k) { return 1.0 + (i * 7 + k * 5) % 11; };
+    const Batch g = [&](std::span<const Vec2d> at, std::span<double> out) {
+        for (std::size_t n = 0; n < at.size(); ++n) {
+            const double c = 1 - at[n].x, b = at[n].y - turned + (at[n].y < turned);
+            out[n] = c > 0 ? c * held(std::min(int(c * c * 12), 11), std::min(int(b * 20), 19)) : 0;
+        }
+    };
+    double sum = 0;
+    for (int i = 0; i < 12; ++i)
+        for (int k = 0; k < 20; ++k) sum += held(i, k) / (2 * 12 * 20);
+    const std::optional<Mesh> mesh = find_mesh(g);
+    ASSERT_TRUE(mesh);
+    const double rings[] = {0, 0.31, 1.3, 2};
+    const std::optional<Integral> found = integrate_mesh(*mesh, rings, 3, g, {2.5e-6, 100000, 5e-5});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->value, sum, 1e-9 * sum);
+    EXPECT_EQ(found->error, 0);
+}
+
 /// p of 40 x 40 texels of the equal-area octahedral map (Clarberg 2008), from a direction back to the square.
 double in_octahedral_texels(Vec3d w) {
     const double x = std::fabs(w.x), y = std::fabs(w.y), r = std::sqrt(std::max(1 - std::fabs(w.z), 0.0));
@@ -117,6 +139,29 @@ DirectionBatch batch_of(double (*p)(Vec3d), int turned) {
     return [=](std::span<const Vec3d> at, std::span<double> out) {
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = p(turned ? Vec3d{at[i].y, at[i].z, at[i].x} : at[i]);
     };
+}
+
+/// p of 16 x 16 texels of each face of a cube, alike per area of the face.
+double in_cube_texels(Vec3d w) {
+    const double v[3] = {w.x, w.y, w.z};
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+        if (std::fabs(v[k]) > std::fabs(v[axis])) axis = k;
+    const double far = std::fabs(v[axis]), s = v[(axis + 1) % 3] / far, t = v[(axis + 2) % 3] / far;
+    const auto cell = [](double x) { return std::clamp(static_cast<int>((x + 1) / 2 * 16), 0, 15); };
+    return std::pow(1 + s * s + t * t, 1.5) * (1 + (axis + (v[axis] < 0) * 3 + cell(s) * 7 + cell(t) * 5) % 11);
+}
+
+TEST(Texels, OfACubesFacesAreSummed) {
+    double sum = 0;
+    for (int face = 0; face < 6; ++face)
+        for (int i = 0; i < 16; ++i)
+            for (int k = 0; k < 16; ++k) sum += 4.0 / 256 * (1 + (face + i * 7 + k * 5) % 11);
+    for (int turned : {0, 1}) {
+        const std::optional<Integral> found = integrate_texels(batch_of(in_cube_texels, turned), 200000);
+        ASSERT_TRUE(found) << turned;
+        EXPECT_NEAR(found->value, sum, 1e-9 * sum);
+    }
 }
 
 TEST(Texels, OfAnOctahedralMapAndBilinearOnesAreSummedAboutAnyAxis) {

@@ -1,5 +1,6 @@
 // Samplers as renderers have them: several random numbers, both sides, delta parts, colour, no w_o, no pdf, a state;
 // and what programs say of themselves.
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -51,6 +52,43 @@ TEST(Renderers, ASkyHasNoViewAndIsJudgedOnce) {
     const Judgement j = judge(trials, TestSettings::quick(), monitor);
     EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
     EXPECT_EQ(named(j, "normalised").evidence["quadrature_error"].get<double>(), 0) << "its texels are summed";
+}
+
+/// 512 x 256 texels, of which bins hold hundreds: where one stands for its neighbour no bin is off.
+TEST(Renderers, AnAliasTableThatIsOffByOneIsFoundFromTexelToTexel) {
+    Dice dice(3);
+    Sky sky = *sky_with_sun(dice, 256, 512, 0.02, true);
+    const Judgement right = judged(recipe_of(std::make_shared<const Sky>(sky)), 0);
+    EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
+    EXPECT_GT(named(right, "density").evidence["p_heights"].get<double>(), 1e-3);
+    for (int& other : sky.other) other = (other + 1) % (256 * 512);
+    const Judgement wrong = judged(recipe_of(std::make_shared<const Sky>(sky)), 0);
+    EXPECT_EQ(named(wrong, "density").state, State::wrong);
+    EXPECT_NE(
+        what_is_wrong(wrong).find("density: wrong. The draws do not follow p from texel to texel"), std::string::npos)
+        << what_is_wrong(wrong);
+}
+
+/// Lambert about a normal that is tilted by 25 deg towards x, black where w_o lies behind it.
+Recipe tilted_lambert(bool draws) {
+    const Vec3d n = tilt(25, 0);
+    Recipe r{"tilted", "", {}, {}, {}};
+    r.traits.reciprocal = false;
+    r.pdf = [n](Vec3d o, Vec3d i) { return dot(o, n) > 0 && i.z > 0 ? std::max(dot(i, n), 0.0) / pi : 0; };
+    r.f = [n](Vec3d o, Vec3d i) { return dot(o, n) > 0 && i.z > 0 ? 0.5 / pi * std::max(dot(i, n), 0.0) / i.z : 0; };
+    r.sample = [n, draws, pdf = r.pdf](Vec3d o, const Numbers& u) {
+        const Vec3d wi = about(n, std::sqrt(1 - u[0]), u[1]);
+        return Draw{wi, draws ? pdf(o, wi) : 0};
+    };
+    return r;
+}
+
+TEST(Renderers, ThatDrawNothingAreRightWhereFIsZeroAndNowhereElse) {
+    const auto at = [](const Recipe& r, double phi) { return judged_at(subject_of(r), 89, of_draws(8192), phi); };
+    const Judgement behind = at(tilted_lambert(true), 180);
+    EXPECT_EQ(behind.state, State::right) << what_is_wrong(behind);
+    EXPECT_NE(named(behind, "valid").say.find("nothing to draw"), std::string::npos) << named(behind, "valid").say;
+    EXPECT_EQ(named(at(tilted_lambert(false), 0), "valid").state, State::wrong);
 }
 
 /// cos / pi over the upper half, asked of no pdf.

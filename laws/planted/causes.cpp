@@ -25,7 +25,7 @@ std::string cause_of(const std::string& fault) {
         {"bound forgotten in the density", "a constant"},
         {"eta not inverted for w_o below", "above and below exchanged"},
         {"delta mass counted in the pdf", "a constant"}, {"delta mass taken off the pdf twice", "a constant"},
-        {"delta part drawn less often than it says", "a constant"},
+        {"delta part drawn less often than it says", "the chooser's probability"},
         {"environment pdf without sin theta", "sin theta_i"}, {"4 pi for 2 pi^2 sin theta", "sin theta_i"},
         {"eta^2 left out of f", "eta^2"}, {"eta^2 for 1/eta^2 in f", "eta^2"},
         {"cosine of w_i left in f across the surface", "cos theta_i"},

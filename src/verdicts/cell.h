@@ -44,6 +44,9 @@ struct Cell {
     bool smooth = false;           // looked at for a jump, and none is there
     int suspected = 0;             // how often it was halved because of the draws in it alone
     std::vector<SampleValue> inside;
+    double higher = 0;  // how many of the first `compared` of them lie at more than 1.3 times `higher_than`
+    double higher_than = -1;
+    std::size_t compared = 0;
 
     Cell(const Rect& r, int suspicion) : rect(r), suspected(suspicion) {}
     double area() const { return (rect.a1 - rect.a0) * (rect.b1 - rect.b0); }

@@ -75,8 +75,8 @@ private:
     std::vector<std::size_t> crowd_;
 };
 
-bool lower(const PlacedDraw& x, const PlacedDraw& y) { return x.a < y.a; }
-bool before(const PlacedDraw& x, const PlacedDraw& y) { return x.b < y.b; }
+constexpr auto lower = [](const PlacedDraw& x, const PlacedDraw& y) { return x.a < y.a; };
+constexpr auto before = [](const PlacedDraw& x, const PlacedDraw& y) { return x.b < y.b; };
 
 /// Halves the block at its middle draw, across its longer side, down to a few draws.
 void look_at_blocks(const Rect& r, std::span<PlacedDraw> inside, Search& search) {
@@ -117,7 +117,8 @@ template <class Order> void sort(std::span<PlacedDraw> placed, const Order& orde
 
 /// Rings, or sectors, of so many draws each between those they are cut at.
 void look_at_slices(std::vector<PlacedDraw>& placed, bool rings, Search& search) {
-    sort(placed, rings ? lower : before, search);
+    if (rings) sort(placed, lower, search);
+    else sort(placed, before, search);
     const auto place = [&](std::size_t i) { return rings ? placed[i].a : placed[i].b; };
     for (std::size_t draws : {2 * fewest, 16 * fewest}) {
         double from = 0;

@@ -1,4 +1,5 @@
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "verdicts/cell.h"
 
 #include <algorithm>
@@ -71,14 +72,16 @@ void evaluate(std::span<Cell> cells, const Batch& g) {
 
 /// What the draws say of a cell, where it differs from its integral by more than chance allows: six standard
 /// deviations; or where they fell higher than the rule has seen.
-double disagreement(const Cell& cell, double total) {
+double disagreement(Cell& cell, double total) {
     constexpr int patience = 14;  // halvings; a density that is wrong never comes to agree
     if (total <= 0 || cell.suspected > patience) return 0;
     const double seen = static_cast<double>(cell.inside.size()), due = cell.value * total;
-    double higher = 0;  // draws at which the integrand is more than the rule knows of: a sliver behind a jump
-    for (const SampleValue& w : cell.inside) higher += w.g > 1.3 * cell.high;
+    // Draws at which the integrand is more than the rule knows of: a sliver behind a jump. The cell keeps their number.
+    if (cell.higher_than != cell.high) cell.higher = 0, cell.higher_than = cell.high, cell.compared = 0;
+    for (; cell.compared < cell.inside.size(); ++cell.compared)
+        cell.higher += cell.inside[cell.compared].g > 1.3 * cell.high;
     const bool off = std::fabs(seen - due) > 6 * std::sqrt(std::max(due, 0.0)) + 2;
-    return std::max(off ? std::fabs(seen - due) : 0.0, higher) / total;
+    return std::max(off ? std::fabs(seen - due) : 0.0, cell.higher) / total;
 }
 
 std::array<Cell, 2> halve(Cell& cell, double total) {
@@ -223,15 +226,18 @@ Integral integrate(
 }
 
 Vec3d SphereMap::direction(Vec2d at) const {
-    const double sin = std::sqrt(std::max(at.x * (2 - at.x), 0.0)), phi = 2 * pi * at.y;
-    return frame.to_world({sin * math::cos(phi), sin * math::sin(phi), 1 - at.x});
+    return frame.to_world(math::spherical(std::sqrt(std::max(at.x * (2 - at.x), 0.0)), 1 - at.x, 2 * pi * at.y));
+}
+
+double SphereMap::height(Vec3d w) const {
+    const Vec3d off = w - frame.n;
+    const double near = 0.5 * dot(off, off);  // 1 - cos for unit w, without cancellation near the axis
+    return near < 0.5 ? near : 1 - dot(w, frame.n);
 }
 
 Vec2d SphereMap::coordinates(Vec3d w) const {
-    const Vec3d off = w - frame.n, local = frame.to_local(w);
-    const double near = 0.5 * dot(off, off);  // 1 - cos for unit w, without cancellation near the axis
-    const double turns = math::atan2(local.y, local.x) / (2 * pi);
-    return {near < 0.5 ? near : 1 - local.z, turns < 0 ? turns + 1 : turns};
+    const double turns = math::atan2(dot(w, frame.b), dot(w, frame.t)) / (2 * pi);
+    return {height(w), turns < 0 ? turns + 1 : turns};
 }
 
 std::vector<Rect> graded_cells(double a_end) {

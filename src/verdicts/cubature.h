@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct Rect {
 /// Values of the integrand at points (a, b), many at once.
 using Batch = std::function<void(std::span<const Vec2d> at, std::span<double> out)>;
 
+/// Of a table whose cells are summed by their values, over what is drawn: ln p, or where p sin theta is what each cell
+/// holds the same, about the bins' axis, ln of that.
+struct LogHeights {
+    bool times_sin = false;
+    double mean = 0, variance = 0;
+};
+
 struct Integral {
     std::vector<double> bins;          // one a bin
     double value = 0, error = 0;       // sum over bins and its estimated error, no less than `second` differs from it
@@ -29,6 +37,7 @@ struct Integral {
     std::size_t evaluations = 0;
     bool sampled = false;  // a table of too many cells to sum, known from points at random alone
     bool settled = true;   // the tolerance was reached
+    std::optional<LogHeights> heights{};
 };
 
 struct Effort {
@@ -58,6 +67,7 @@ struct SphereMap {
     explicit SphereMap(Vec3d axis) : frame(frame_about(axis)) {}
     Vec3d direction(Vec2d at) const;
     Vec2d coordinates(Vec3d w) const;
+    double height(Vec3d w) const;  // their a alone, for less
 };
 
 /// Rings that narrow towards the axis, six sectors each, up to a = a_end.

@@ -63,6 +63,10 @@ std::string mismatch(const FitToDensity& f, const std::function<bool(const OfFit
     look([](const FitToDensity& x) { return x.outside_p; },
         fmt::format("where p integrates to next to nothing: {:.0f} fell there, {:.2g} are due, p = {:.2g}",
             f.outside_seen, f.outside_due, f.outside_p));
+    if (f.heights_p)
+        look([](const FitToDensity& x) { return x.heights_p.value_or(1); },
+            fmt::format("from texel to texel: the mean of ln p over them is off by {:.1f} standard errors, p = {:.2g}",
+                f.heights_off, *f.heights_p));
     return say;
 }
 
@@ -79,7 +83,8 @@ std::string grain_of_u(const TrialContext& work, int technique, const Density& d
                  wide = math::acos(std::clamp(1 - to, -1.0, 1.0)) - math::acos(std::clamp(1 - from, -1.0, 1.0)),
                  sin = std::sqrt(std::max(to * (2 - to), 0.0)),
                  least = std::min(wide, 2 * pi * sin / static_cast<double>(d.sectors));
-    if (!(step > 0.5 * least)) return "";
+    constexpr double seam = pi / 180;  // of a number that chooses: no rounding moves a direction so far
+    if (!(step > 0.5 * least) || !(least > 0) || step > seam) return "";
     const bool own = work.traits.own_random;
     return fmt::format(" {} {:.2g} deg, through a bin {:.2g} deg wide: it may be {} alone that the draws show, not p.",
         own ? "Directions that come again lie apart there by"
@@ -96,6 +101,11 @@ void note(const TrialContext& work, int technique, const FitToDensity& f, Verdic
     for (const auto& [name, p] : {std::pair("p", f.joint.p), {"p_rings", f.rings.p}, {"p_sectors", f.sectors.p},
              {"p_outside", f.outside_p}, {"p_clump", f.clump.p}})
         v.evidence[name + suffix] = p;
+    if (f.heights_p) {
+        const LogHeights& due = *work.density(technique).mass.heights;
+        v.evidence["p_heights" + suffix] = *f.heights_p;
+        v.evidence["heights" + suffix] = {{"z", f.heights_off}, {"due", due.mean}, {"variance", due.variance}};
+    }
     v.evidence["pools" + suffix] = f.joint.pools;
     v.evidence["empty_bins" + suffix] = f.joint.empty;
     v.evidence["drawn_in_empty_bins" + suffix] = f.joint.empty_observed;
@@ -163,10 +173,12 @@ Verdict judge(TrialContext& work) {
     return v;
 }
 
-/// Of each technique the chi-square over the sphere, over rings and over sectors, and what is drawn where p is next to
-/// nothing; and the shares of delta parts.
+/// Of each technique the chi-square over the sphere, over rings and over sectors, what is drawn where p is next to
+/// nothing, and of a sky the mean of ln p; and the shares of delta parts.
 std::uint64_t tests(const Trial& t) {
-    return 5 * static_cast<std::uint64_t>(t.subject->techniques()) + (t.subject->traits().delta ? 1 : 0);
+    const Traits traits = t.subject->traits();
+    return (traits.wo == Traits::Asked::none ? 6 : 5) * static_cast<std::uint64_t>(t.subject->techniques()) +
+        (traits.delta ? 1 : 0);
 }
 
 }  // namespace

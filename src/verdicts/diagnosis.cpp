@@ -136,6 +136,22 @@ std::optional<Diagnosis> explain_one_side(const TrialContext& work, std::span<co
     return {};
 }
 
+/// A constant above the surface and another below it, each of nine of ten ratios there.
+std::optional<Diagnosis> explain_by_sides(const TrialContext& work, std::span<const Ratio> ratios) {
+    const Factor plain{"a constant", [](Vec3d) { return 1.0; }};
+    std::vector<Ratio> above, below;
+    for (const Ratio& r : ratios) (r.wi.z > 0 ? above : below).push_back(r);
+    if (std::min(above.size(), below.size()) < least / 4) return {};
+    const Fitted a = fit(work, plain, above), b = fit(work, plain, below);
+    if (!a.fits || !b.fits || !(a.all + b.all > 0)) return {};
+    if (std::fabs(math::log(a.constant / b.constant)) < 2 * close) return {};
+    const double na = static_cast<double>(above.size()), nb = static_cast<double>(below.size());
+    return Diagnosis{"a constant on either side", 1,
+        std::clamp(1 - (na * a.left + nb * b.left) / (na * a.all + nb * b.all), 0.0, 1.0),
+        fmt::format("{:.5g} above the surface and {:.5g} below it", a.constant, b.constant),
+        [a = a.constant, b = b.constant](Vec3d w) { return w.z > 0 ? a : b; }};
+}
+
 }  // namespace
 
 std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio> ratios) {
@@ -157,7 +173,7 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
         if (factor.name == "a constant") break;
     }
     if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close) return {};
-    return best;
+    return best || !work.whole() ? best : explain_by_sides(work, ratios);
 }
 
 std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
@@ -225,6 +241,7 @@ void tell(const TrialContext& work, Verdict& v, const std::optional<Diagnosis>& 
     }
     v.say += fmt::format(" What explains it, {:.3g} % of it: {}.", 100 * found->explained, found->means);
     v.evidence["diagnosis"] = found->name;
+    v.evidence["diagnosis_says"] = found->means;
     v.evidence["diagnosis_constant"] = found->constant;
     v.evidence["diagnosis_explains"] = found->explained;
 }
@@ -250,7 +267,9 @@ void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
             if (of_identity && !identity) density = diagnose_density(work, t);
             if (!density && !identity) density = diagnose_lobes(work, t);
         }
-        if (!density && !identity && v.evidence.contains("parts_off"))
+        // What delta parts take too much of, the rest lacks: by a constant.
+        const bool rest_alone = density ? density->name == "a constant" : !identity;
+        if (rest_alone && v.evidence.contains("parts_off"))
             density = Diagnosis{
                 "the chooser's probability", 1, 1, "the parts are chosen with other probabilities than q", {}};
         tell(work, v, density ? density : identity);

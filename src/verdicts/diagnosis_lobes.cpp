@@ -29,6 +29,16 @@ Shares shares_of(std::span<const Reached::Pair> pairs) {
     return {(bb * a - ab * b) / det, (aa * b - ab * a) / det, true};
 }
 
+/// Of a p that integrates to one, one lobe is drawn more often than it says and the other less: a lobe whose draws are
+/// crowded into part of it looks like one that is drawn too often, and takes from no other.
+bool take_from_each_other(const Shares& s, const Density& d) {
+    constexpr double least_share = 1e-3;
+    if (std::fabs(d.mass.value + d.nothing - 1) > 1e-3) return true;
+    const double low = 1 / s.low - 1, high = 1 / s.high - 1;
+    return low * high < 0 &&
+        std::min(std::fabs(low), std::fabs(high)) > least_share * std::max(std::fabs(low), std::fabs(high));
+}
+
 double off(const Shares& s, const Reached::Pair& p) { return std::fabs(s.low * p.low + s.high * p.high - 1); }
 
 }  // namespace
@@ -40,6 +50,7 @@ std::optional<Diagnosis> diagnose_lobes(const TrialContext& work, int technique)
     const double wrong = std::max(std::fabs(s.low - 1), std::fabs(s.high - 1));
     if (found.pairs.size() < least_pairs || !s.known || !(s.low > 0.01) || !(s.high > 0.01)) return {};
     if (wrong < 2 * exact || std::fabs(s.low - s.high) < 2 * exact) return {};  // as it is, or a constant
+    if (!take_from_each_other(s, work.density(technique))) return {};
     double all = 0, left = 0;
     std::size_t inside = 0;
     for (const Reached::Pair& p : found.pairs) {

@@ -20,8 +20,10 @@ std::optional<double> parameter(const TrialContext& work, std::string_view name)
 /// "(s+1)", but not "(n.m) / (w_o.m)".
 bool in_brackets(const std::string& s) { return s.front() == '(' && s.find(')') == s.size() - 1; }
 
-/// "1 / n.m", "1 / (cos theta_i)", "1 / ((n.m) / (w_o.m))".
+/// "1 / n.m", "1 / (cos theta_i)"; of "(n.m) / (w_o.m)" it is "(w_o.m) / (n.m)".
 std::string one_over(const std::string& name) {
+    if (const std::size_t slash = name.find(") / ("); slash != std::string::npos)
+        return name.substr(slash + 4) + " / " + name.substr(0, slash + 1);
     return "1 / " + (name.find(' ') == std::string::npos || in_brackets(name) ? name : "(" + name + ")");
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "math/distributions.h"
+#include "math/functions.h"
 
 namespace crescent::inline verdicts {
 
@@ -110,6 +111,23 @@ void set_apart(const Density& d, double n, Binned& counts, FitToDensity& out) {
             math::poisson_tail(out.outside_due + n * (1e-4 + d.mass.error + d.tabulation_error), out.outside_seen);
 }
 
+/// The mean of ln p, or of ln (p sin theta), over the draws: what crowds in texels that are finer than bins.
+void hold_heights(const Density& d, const SampleBatch& b, FitToDensity& out) {
+    const std::optional<LogHeights>& due = d.mass.heights;
+    if (!due || !(due->variance > 1e-8)) return;
+    double n = 0, sum = 0;
+    for (std::size_t i = 0; i < b.draws.size(); ++i) {
+        if (is_null_sample(b.draws[i], b.pdf[i]) || !(b.pdf[i] > 0)) continue;
+        const double a = d.map.height(b.draws[i].wi), sin = std::sqrt(std::max(a * (2 - a), 0.0));
+        if (due->times_sin && !(sin > 0)) continue;
+        sum += math::log(due->times_sin ? b.pdf[i] * sin : b.pdf[i]);
+        ++n;
+    }
+    if (!(n > 0)) return;
+    out.heights_off = (sum / n - due->mean) / std::sqrt(due->variance / n);
+    out.heights_p = math::normal_two_sided(out.heights_off);
+}
+
 }  // namespace
 
 FitToDensity fit_to_density(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
@@ -127,6 +145,7 @@ FitToDensity fit_to_density(const TrialContext& work, int technique, const Densi
         counts.bins.due.insert(counts.bins.due.begin(), n * d.nothing);
         counts.bins.slack.insert(counts.bins.slack.begin(), 2 * n * d.nothing_se);
     }
+    if (work.traits.wo == Traits::Asked::none) hold_heights(d, b, out);
     out.joint = pearson(counts.bins);
     out.rings = pearson(counts.rings);
     out.sectors = pearson(counts.sectors);

@@ -2,6 +2,7 @@
 // double; bins are pooled along their ring, then outwards, until 5 are expected in each.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "verdicts/ordered.h"
@@ -20,6 +21,8 @@ struct FitToDensity {
     double outside_p = 1;  // of as many draws where p integrates to next to nothing
     double outside_seen = 0, outside_due = 0;
     Clump clump;
+    std::optional<double> heights_p;  // of the mean of ln p over draws of a sky's table,
+    double heights_off = 0;           // which is off by so many standard errors
     std::vector<double> observed, expected;
 };
 

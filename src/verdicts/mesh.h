@@ -1,6 +1,6 @@
 // Tables: densities that jump along lines of constant height and of constant azimuth. Where such lines are found,
-// evenly spaced in cos theta or in theta, and in phi, the cells between them are integrated one by one: a cell in which
-// p is constant by its value.
+// evenly spaced in cos theta, theta or cos^2 theta, and in phi, the cells between them are integrated one by one: one
+// in which p, p sin theta or p / |cos theta| is constant by its value.
 #pragma once
 
 #include <optional>
@@ -44,8 +44,9 @@ Integral integrate_by_points(
 
 /// A density at directions, many at once.
 using DirectionBatch = std::function<void(std::span<const Vec3d> at, std::span<double> out)>;
-/// The sum over the texels of a sky that is an equal-area octahedral map, or is bilinear in theta x phi or in cos theta
-/// x phi, about an axis of the frame; none where p is none of these, or has more texels than `most`. See texels.cpp.
+/// The sum over the texels of a sky that is an equal-area octahedral map or a cube's faces, or is bilinear in theta x
+/// phi or in cos theta x phi, about an axis of the frame; none where p is none of these, or has more texels than
+/// `most`. See texels.cpp.
 std::optional<Integral> integrate_texels(const DirectionBatch& p, std::size_t most);
 
 }  // namespace crescent::inline verdicts

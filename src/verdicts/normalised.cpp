@@ -103,7 +103,8 @@ Verdict judge(TrialContext& work) {
         ++work.test_counts.tests;
         if (const double sum = mass.value + d.nothing; !std::isfinite(sum) || is_off(work, t, excess(d, mass))) {
             v.state = State::wrong;
-            v.say = told(d, mass) + fmt::format(", not to 1: every weight is off by {:+.3g} %.", 100 * (1 / sum - 1));
+            v.say = told(d, mass) +
+                fmt::format(", not to 1: weights are off by {:+.3g} % on average.", 100 * (1 / sum - 1));
             return v;
         }
         tell_sum(work, d, mass, v);

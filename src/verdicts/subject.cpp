@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/scalar.h"
 
 namespace crescent::inline verdicts {
@@ -50,7 +51,7 @@ double TrialLight::operator()(Vec3d wi) const {
 
 std::string Trial::text() const {
     const bool none = subject && subject->traits().wo == Traits::Asked::none;
-    std::string s = none ? "no w_o" : fmt::format("w_o {:g} deg", theta_deg);
+    std::string s = none ? std::string(without_wo) : fmt::format("w_o {:g} deg", theta_deg);
     if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
     for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
     for (const std::string& part : {brdf, lighting})
@@ -59,8 +60,8 @@ std::string Trial::text() const {
 }
 
 Vec3d tilt(double theta_deg, double azimuth_deg) {
-    const double t = theta_deg * pi / 180, a = azimuth_deg * pi / 180;
-    return {math::sin(t) * math::cos(a), math::sin(t) * math::sin(a), math::cos(t)};
+    const math::SinCos theta = math::sincos(theta_deg * pi / 180);
+    return math::spherical(theta.sin, theta.cos, azimuth_deg * pi / 180);
 }
 
 }  // namespace crescent::inline verdicts

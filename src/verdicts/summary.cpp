@@ -70,6 +70,16 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
     }
 }
 
+/// A diagnosis of the same arm for a worst verdict that nothing usual explains.
+void find_explained(Finding& f, const Judgement& j) {
+    if (f.state != State::wrong || f.worst->evidence.value("diagnosis", "") != "none") return;
+    for (const Verdict& v : j.verdicts)
+        if (v.arm == f.arm && v.state == State::wrong && v.evidence.contains("diagnosis_says")) {
+            const bool better = !f.explained || (v.name == f.name && f.explained->name != f.name);
+            if (better) f.explained = &v;
+        }
+}
+
 }  // namespace
 
 std::string told(const Verdict& v) {
@@ -105,6 +115,7 @@ std::vector<Finding> findings_of(const Judgement& j) {
         members[at->second].push_back(&v);
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
+        find_explained(out[i], j);
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
         else
             for (const Verdict* v : members[i])
@@ -124,8 +135,13 @@ std::string told(const Finding& f) {
         return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
             f.worst->trial, told(*f.worst));
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    return fmt::format("{}: {} at {} of {} {}, {} {}. {}", f.name, word(f.state), f.count, f.of, f.cases, as,
-        f.worst->trial, told(*f.worst));
+    const bool alone = f.of == 1 && f.worst->trial == without_wo;
+    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state),
+        alone ? "" : fmt::format(" at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->trial), told(*f.worst));
+    if (f.explained)
+        out += fmt::format(" What explains it at {}: {}.", f.explained->trial,
+            f.explained->evidence["diagnosis_says"].get<std::string>());
+    return out;
 }
 
 std::string left_out_told(const Judgement& j) {

@@ -19,7 +19,8 @@ struct Finding {
     const char* cases = "w_o";       // what is counted
     const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
     std::vector<std::pair<std::string, std::vector<std::string>>>
-        sentences;  // each other than the worst's with its cases
+        sentences;                       // each other than the worst's with its cases
+    const Verdict* explained = nullptr;  // one of the arm that says what explains it, where the worst cannot
 };
 
 /// Wrong ones first, then errors, then what is inconclusive. What was left out for want of time is not among them, and

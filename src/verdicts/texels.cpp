@@ -1,5 +1,6 @@
 // Skies as renderers keep them: texels of the equal-area octahedral map (Clarberg 2008, "Fast Equal-Area Mapping of the
-// (Hemi)Sphere using SIMD", as pbrt-v4 has it), or bilinear between points in theta x phi or cos theta x phi. Where p,
+// (Hemi)Sphere using SIMD", as pbrt-v4 has it) or of a cube's faces (Greene 1986, "Environment Mapping and Other
+// Applications of World Projections"), or bilinear between points in theta x phi or cos theta x phi. Where p,
 // per area of the square, is straight along pieces of lines whose ends are evenly spaced, it is bilinear in each texel,
 // and its integral is the sum of what it is at their centres.
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cmath>
 
 #include "math/functions.h"
+#include "math/spherical.h"
 #include "simd/random.h"
 #include "simd/scalar.h"
 #include "verdicts/mesh.h"
@@ -22,14 +24,33 @@ constexpr double straight = 2e-6;  // relative, what single precision knows
 Vec3d octahedral(Vec2d at) {
     const double u = 2 * at.x - 1, v = 2 * at.y - 1, a = std::fabs(u), b = std::fabs(v), d = 1 - (a + b);
     const double r = 1 - std::fabs(d), phi = (r == 0 ? 1 : (b - a) / r + 1) * pi / 4, k = r * std::sqrt(2 - r * r);
-    return {std::copysign(math::cos(phi), u) * k, std::copysign(math::sin(phi), v) * k, std::copysign(1 - r * r, d)};
+    const auto [sin, cos] = math::sincos(phi);
+    return {std::copysign(cos, u) * k, std::copysign(sin, v) * k, std::copysign(1 - r * r, d)};
 }
-Vec3d about_pole(double cos, double turns) {
-    const double sin = std::sqrt(std::max(1 - cos * cos, 0.0)), phi = 2 * pi * turns;
-    return {sin * math::cos(phi), sin * math::sin(phi), cos};
+Vec3d by_theta(Vec2d at) { return math::spherical(math::cos(pi * at.y), 2 * pi * at.x); }
+Vec3d by_height(Vec2d at) { return math::spherical(1 - 2 * at.y, 2 * pi * at.x); }
+/// The six faces side by side along x, each [-1, 1]^2 at distance 1.
+struct OnCube {
+    int axis;
+    double side, s, t;
+};
+OnCube on_cube(Vec2d at) {
+    const double x = 6 * at.x;
+    const int face = std::clamp(static_cast<int>(x), 0, 5);
+    return {face / 2, face % 2 ? -1.0 : 1.0, 2 * (x - face) - 1, 2 * at.y - 1};
 }
-Vec3d by_theta(Vec2d at) { return about_pole(math::cos(pi * at.y), at.x); }
-Vec3d by_height(Vec2d at) { return about_pole(1 - 2 * at.y, at.x); }
+Vec3d by_cube(Vec2d at) {
+    const OnCube c = on_cube(at);
+    const Vec3d v = c.axis == 0 ? Vec3d{c.side, c.s, c.t}
+        : c.axis == 1           ? Vec3d{c.t, c.side, c.s}
+                                : Vec3d{c.s, c.t, c.side};
+    return normalize(v);
+}
+double area_by_cube(Vec2d at) {
+    const OnCube c = on_cube(at);
+    const double far2 = 1 + c.s * c.s + c.t * c.t;
+    return 24 / (far2 * std::sqrt(far2));
+}
 double even_area(Vec2d) { return 4 * pi; }
 double area_by_theta(Vec2d at) { return 2 * pi * pi * math::sin(pi * at.y); }
 
@@ -178,8 +199,9 @@ std::optional<Integral> sum_of(const Square& g, int columns, int rows) {
 
 std::optional<Integral> integrate_texels(const DirectionBatch& p, std::size_t most) {
     for (int turned = 0; turned < 3; ++turned)
-        for (const auto& [direction, area] :
-            {std::pair(&octahedral, &even_area), {&by_theta, &area_by_theta}, {&by_height, &even_area}}) {
+        for (const auto& [direction, area] : {std::pair(&octahedral, &even_area), {&by_theta, &area_by_theta},
+                 {&by_height, &even_area}, {&by_cube, &area_by_cube}}) {
+            if (turned > 0 && direction == &by_cube) continue;  // a cube's faces lie about every axis
             const Square g{direction, area, turned, p};
             const std::vector<Piece> pieces = straight_pieces(g);
             if (pieces.size() < lines) continue;

@@ -201,7 +201,7 @@ void TrialContext::add_edges_of_support(Density& d) const {
     if (support_boundary_.empty()) return;
     double least = 2, most = 0;
     for (Vec3d w : support_boundary_) {
-        const double a = d.map.coordinates(w).x;
+        const double a = d.map.height(w);
         least = std::min(least, a);
         most = std::max(most, a);
     }
@@ -225,7 +225,7 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     d.about_n = about_n;
     d.sectors = settings.sectors;
     std::vector<double> a;
-    for (Vec3d w : std::span(pilot_directions_).first(drawn_pilots_)) a.push_back(d.map.coordinates(w).x);
+    for (Vec3d w : std::span(pilot_directions_).first(drawn_pilots_)) a.push_back(d.map.height(w));
     std::sort(a.begin(), a.end());
     d.rings = {0};
     if (!a.empty()) {

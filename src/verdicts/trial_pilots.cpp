@@ -110,15 +110,15 @@ void TrialContext::find_support_boundary(int technique) {
         constexpr double closely = 1e-7;
         const std::optional<Vec3d> about = axis_of_circle(rim, std::max(closely, 16 * direction_resolution()));
         if (!about) continue;
-        const double height = SphereMap(*about).coordinates(rim[0]).x;
+        const double height = SphereMap(*about).height(rim[0]);
         const std::vector<Vec3d> exact = exact_rim(*this, *about, height);
         if (exact.empty() && !nearly) nearly = axis_of_circle(rim, closely);
         if (!exact.empty()) circle_ = axis_of_circle(exact, 1e-10);
         if (!circle_) continue;
         const SphereMap map(*circle_);
-        std::erase_if(support_boundary_, [&](Vec3d w) { return std::fabs(map.coordinates(w).x / height - 1) < 1e-5; });
+        std::erase_if(support_boundary_, [&](Vec3d w) { return std::fabs(map.height(w) / height - 1) < 1e-5; });
         support_boundary_.insert(support_boundary_.end(), exact.begin(), exact.end());
-        for (Vec3d w : exact) pole_ = std::max(pole_.value_or(0), map.coordinates(w).x);
+        for (Vec3d w : exact) pole_ = std::max(pole_.value_or(0), map.height(w));
         if (!has_pole_at(map, *pole_)) pole_.reset();
     }
     if (!circle_) circle_ = nearly;

@@ -1,9 +1,11 @@
 // valid: what comes back can be used at all.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
 
-#include "math/functions.h"
+#include "math/spherical.h"
+#include "simd/frame.h"
 #include "verdicts/numbers.h"
 #include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"
@@ -90,10 +92,7 @@ std::string fault_all_over(const TrialContext& work, int technique) {
     constexpr int turns = 16;
     for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1,
              -0.5, -0.9, -1.0})
-        for (int k = 0; k < turns; ++k) {
-            const double phi = 2 * pi * (k + 0.37) / turns, sin = std::sqrt(1 - z * z);
-            wi.push_back({sin * math::cos(phi), sin * math::sin(phi), z});
-        }
+        for (int k = 0; k < turns; ++k) wi.push_back(math::spherical(z, 2 * pi * (k + 0.37) / turns));
     const std::vector<double> p = work.pdf(technique, wi);
     for (std::size_t i = 0; i < wi.size(); ++i)
         if (!std::isfinite(p[i]) || p[i] < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(wi[i]), p[i]);
@@ -105,9 +104,16 @@ std::string fault_all_over(const TrialContext& work, int technique) {
     return "";
 }
 
-/// Seen from below, a surface that is opaque there.
+/// f is told, and is 0 wherever it is asked: seen from below a surface that is opaque there, or from behind a shading
+/// normal. Where nothing is drawn no draw tells of a sharp lobe: back along w_o, on through and by the mirror it is
+/// looked for.
 bool reflects_nothing(const TrialContext& work) {
-    return work.trial.wo.z < 0 && work.subject.has_f() &&
+    if (!work.subject.has_f()) return false;
+    const Vec3d wo = work.trial.wo;
+    std::vector<Vec3d> wi = {wo, -wo, mirror(wo), -mirror(wo)};
+    std::erase_if(wi, [&](Vec3d w) { return !work.counts(w); });
+    const std::vector<double> f = work.f(wi);
+    return std::ranges::all_of(f, [](double v) { return v == 0; }) &&
         work.incoming(TrialContext::Where::everywhere, false).value == 0;
 }
 
