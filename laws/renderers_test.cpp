@@ -60,7 +60,7 @@ TEST(Renderers, AnAliasTableThatIsOffByOneIsFoundFromTexelToTexel) {
     Sky sky = *sky_with_sun(dice, 256, 512, 0.02, true);
     const Judgement right = judged(recipe_of(std::make_shared<const Sky>(sky)), 0);
     EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
-    EXPECT_GT(named(right, "density").evidence["p_heights"].get<double>(), 1e-3);
+    EXPECT_GT(named(right, "density").evidence.value("p_heights", -1.0), 1e-3);
     for (int& other : sky.other) other = (other + 1) % (256 * 512);
     const Judgement wrong = judged(recipe_of(std::make_shared<const Sky>(sky)), 0);
     EXPECT_EQ(named(wrong, "density").state, State::wrong);

@@ -128,7 +128,7 @@ std::vector<double> columns_of(const std::vector<double>& b) {
 /// What a cell holds: g alike all over, or g sin theta, or g / |cos theta|.
 enum class Kind { plain, times_sin, over_cos };
 struct Held {
-    double value = 0, per_turn = -1;  // per_turn: its integral; -1 where it holds none of them
+    double per_turn = -1;  // its integral; -1 where it holds none of them
     Kind kind = Kind::plain;
 };
 
@@ -136,33 +136,47 @@ struct Held {
 /// what single precision knows, and near the poles to what directions of `resolution` tell of theta; g / |cos theta|,
 /// as tables by projected solid angle have it, likewise at the horizon.
 Held held_by(double v, double w, double a0, double a1, double x, double y, double resolution) {
-    if (std::fabs(v - w) <= 1e-9 * std::fabs(v)) return {v, (a1 - a0) * v, Kind::plain};
+    if (std::fabs(v - w) <= 1e-9 * std::fabs(v)) return {(a1 - a0) * v, Kind::plain};
     const double up = std::min(std::fabs(1 - x), std::fabs(1 - y)), by_x = v / std::fabs(1 - x),
                  by_y = w / std::fabs(1 - y);
     if (up > 0 && (1 - a0) * (1 - a1) >= 0 && std::fabs(by_x - by_y) <= (2e-6 + 2 * resolution / up) * by_x)
-        return {by_x, 0.5 * std::fabs(sqr(1 - a0) - sqr(1 - a1)) * by_x, Kind::over_cos};
+        return {0.5 * std::fabs(sqr(1 - a0) - sqr(1 - a1)) * by_x, Kind::over_cos};
     const double one = v * std::sqrt(x * (2 - x)), two = w * std::sqrt(y * (2 - y));
     const double to_pole = std::min({x, 2 - x, y, 2 - y});
     if (!(std::fabs(one - two) <= (2e-6 + 2 * resolution / to_pole) * std::fabs(one))) return {};
     const double value = x * (2 - x) > y * (2 - y) ? one : two;
-    return {value, (theta_of(a1) - theta_of(a0)) * value, Kind::times_sin};
+    return {(theta_of(a1) - theta_of(a0)) * value, Kind::times_sin};
 }
 
-/// ln of what cells hold, weighed by their masses.
+/// ln p and ln (p sin theta) of cells, weighed by their masses.
 struct LogSums {
-    double mass = 0, sum = 0, squares = 0, by_kind[3] = {0, 0, 0};
-    void add(const Held& cell, double cell_mass) {
+    struct Sum {
+        double ln = 0, squares = 0;
+        void add(double weight, double value) { ln += weight * value, squares += weight * value * value; }
+    };
+    double mass = 0, by_kind[3] = {0, 0, 0};
+    Sum plain{}, times_sin{};
+
+    /// A cell with this g at height x.
+    void add(Kind kind, double cell_mass, double g, double x) {
         if (!(cell_mass > 0)) return;
-        const double ln = math::log(cell.value / (2 * pi));
-        mass += cell_mass, sum += cell_mass * ln, squares += cell_mass * ln * ln;
-        by_kind[static_cast<int>(cell.kind)] += cell_mass;
+        const double ln = math::log(g / (2 * pi));
+        mass += cell_mass;
+        by_kind[static_cast<int>(kind)] += cell_mass;
+        plain.add(cell_mass, ln);
+        times_sin.add(cell_mass, ln + 0.5 * math::log(x * (2 - x)));
     }
-    /// None where cells hold unlike things: but for a few at the equator, where sin theta is 1 to the last digits.
+
+    /// None where cells hold unlike things, but for a few: where sin theta or cos theta is 1 to the last digits, one
+    /// passes for another.
     std::optional<LogHeights> heights() const {
         constexpr double few = 1e-3;
-        if (!(mass > 0) || by_kind[2] > 0 || std::min(by_kind[0], by_kind[1]) > few * mass) return {};
-        const double mean = sum / mass;
-        return LogHeights{by_kind[1] > by_kind[0], mean, std::max(squares / mass - mean * mean, 0.0)};
+        const bool sin = by_kind[static_cast<int>(Kind::times_sin)] > by_kind[static_cast<int>(Kind::plain)];
+        if (!(mass > 0) || mass - by_kind[static_cast<int>(sin ? Kind::times_sin : Kind::plain)] > few * mass)
+            return {};
+        const Sum& of = sin ? times_sin : plain;
+        const double mean = of.ln / mass;
+        return LogHeights{sin, mean, std::max(of.squares / mass - mean * mean, 0.0)};
     }
 };
 
@@ -243,7 +257,7 @@ struct MeshSum {
             }
             const double mass = (b[k + 1] - b[k]) * cell.per_turn;
             out.bins[static_cast<std::size_t>(bin)] += mass;
-            logs.add(cell, mass);
+            logs.add(cell.kind, mass, v[2 * k], where[2 * k].x);
         }
     }
 };
