@@ -1,6 +1,7 @@
 // What a program is asked: no more than quick mode promises, right samplers are conclusive within that, and the faults
 // that renderers have are caught within it.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include "verdicts/asked_once.h"
 #include "verdicts/list.h"
 #include "verdicts/print.h"
+#include "verdicts/user.h"
 
 namespace crescent {
 namespace {
@@ -121,6 +123,45 @@ TEST(Programs, AreAskedFourMillionTimesInAll) {
     EXPECT_EQ(j.state, State::right) << what_is_wrong(j);
     EXPECT_LE(j.questions, 4000000u);
     EXPECT_EQ(j.questions, program->spending().answers);
+}
+
+/// GGX by visible normals whose p jumps along thousands of curves, as a struct that counts what it is asked.
+struct Aimed {
+    Vec3d wi;
+    double pdf;
+};
+template <class Count> struct Wrinkled {
+    Count* asked;
+    Recipe smooth = ggx_visible_at(0.3, 0.3);
+    Aimed drawn(Vec3d wo, Vec2d u) const {
+        ++*asked;
+        const Draw d = smooth.sample(wo, Numbers{u.x, u.y});
+        return {d.wi, d.pdf};
+    }
+    double wrinkled(Vec3d wi) const {
+        ++*asked;
+        return wi.z > 0 && std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 0.3 : 0;
+    }
+};
+struct WrinkledForOneThread : Wrinkled<std::uint64_t> {
+    Aimed sample(Vec3d wo, Vec2d u) { return drawn(wo, u); }
+    double pdf(Vec3d, Vec3d wi) { return wrinkled(wi); }
+};
+struct WrinkledForMany : Wrinkled<std::atomic<std::uint64_t>> {
+    Aimed sample(Vec3d wo, Vec2d u) const { return drawn(wo, u); }
+    double pdf(Vec3d, Vec3d wi) const { return wrinkled(wi); }
+};
+
+/// A struct that one thread asks is spared as a program is; of every struct it is told how often it was asked.
+TEST(Structs, AreCountedAndThoseForOneThreadSpared) {
+    TestSettings settings = TestSettings::quick();
+    settings.wo = {{30, 0}, {85, 75}};
+    std::uint64_t by_one = 0;
+    EXPECT_EQ(judge_sampler("wrinkled", WrinkledForOneThread{{&by_one}}, settings).questions, by_one);
+    EXPECT_LE(by_one, 2 * promised);
+    EXPECT_GT(by_one, 200000u);
+    std::atomic<std::uint64_t> by_many = 0;
+    EXPECT_EQ(judge_sampler("wrinkled", WrinkledForMany{{&by_many}}, settings).questions, by_many);
 }
 
 class FaultsOfPrograms : public testing::TestWithParam<std::size_t> {};

@@ -16,6 +16,20 @@ sum() {
     ' "$@"
 }
 
+# failed_tests LOG: of each test of ctest that failed, its line and the last ones of what it printed.
+failed_tests() {
+    awk -v most=16 '
+        function tell() {
+            for (i = count > most ? count - most : 0; i < count; ++i) print "    " said[i % most]
+            count = in_one = 0
+        }
+        /^ *[0-9]+\/[0-9]+ +Test +#/ { tell(); if (/\*\*\*(Failed|Timeout|Exception|Not Run)/) { print; in_one = 1 } next }
+        /^ +Start +[0-9]+:/ || /% tests passed/ { tell(); next }
+        in_one && NF { said[count++ % most] = $0 }
+        END { tell() }
+    ' "$1"
+}
+
 # check PRESET: ctest on its build. A unit program counts as its test cases, a script as one.
 check() {
     local dir log xml start=$SECONDS before=$passed broken=$failures
@@ -44,7 +58,7 @@ check() {
     # A suite that never ran is a failure of its own.
     [ $((passed - before + failures - broken)) -gt 0 ] || add 0 1
     say "  $((passed - before)) passed, $((failures - broken)) failed in $((SECONDS - start)) s"
-    [ "$failures" -eq "$broken" ] || sed -n '/\*\*\*/p; /FAILED/p; /Failure$/,+6p' "$log" | head -n 60 >&2
+    [ "$failures" -eq "$broken" ] || failed_tests "$log" >&2
 }
 
 # fuzz PRESET TARGET SECONDS: no finding in that time counts as one test.

@@ -10,6 +10,7 @@ export class Turns {
   /** How many turns took so many ms; the last bin has what took longer. */
   private readonly took = new Array<number>(bins).fill(0);
   private work = 0;
+  private promised = 0; // to those whom pass() let go on in this turn, who have not counted yet: a part each
   private since = 0;
   private open = false;
   private readonly waiting: (() => void)[] = [];
@@ -23,7 +24,7 @@ export class Turns {
   private begin(): void {
     if (this.open) return;
     this.open = true;
-    this.work = 0;
+    this.work = this.promised = 0;
     this.since = performance.now();
     this.channel.port2.postMessage(0);
   }
@@ -43,13 +44,15 @@ export class Turns {
   count(work: number): void {
     this.begin();
     this.work += work;
+    this.promised = Math.max(0, this.promised - this.part);
   }
 
   /** Goes on in this turn while it has room, else in one of the next. */
   async pass(): Promise<void> {
     this.begin();
-    while (this.work >= mostParts * this.part || performance.now() - this.since >= mostMs)
+    while (this.work + this.promised >= mostParts * this.part || performance.now() - this.since >= mostMs)
       await new Promise<void>((go) => this.waiting.push(go));
+    this.promised += this.part;
   }
 
   /** The least number of ms within which this share of the turns ended. */

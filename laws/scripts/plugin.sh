@@ -66,7 +66,8 @@ sed 's|pdf\[i\] = cos_theta / pi|pdf[i] = i == 3 ? NAN : cos_theta / pi|
 sed 's|^plugin = .*|plugin = "bad.so"|; s|bad(mixture)|bad(mine)|' mine.toml >bad.toml
 expect 1 "$CRESCENT" run bad.toml --out bad --quiet
 
-expect 0 "$CRESCENT" check --quiet --plugin ./libcosine.so --json right.json
+expect 0 "$CRESCENT" check --plugin ./libcosine.so --json right.json
+grep -Eq '; [1-9][0-9]+ questions were answered' printed || die "nothing is told of questions: $(tail -n 1 printed)"
 sed 's|pdf\[i\] = wi|pdf[i] = 1.01 * wi|; s|pdf\[i\] = cos_theta|pdf[i] = 1.01 * cos_theta|' \
     "$CRESCENT_SOURCE/examples/plugin/cosine.c" >bright.c && cc_shared bright
 expect 1 "$CRESCENT" check --quiet --plugin ./bright.so

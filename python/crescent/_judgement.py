@@ -50,6 +50,7 @@ class _Kept:
     state: str
     as_expected: bool
     tests: int
+    questions: int
     verdicts: list[dict[str, Any]]
     texts: dict[str, str]
 
@@ -76,7 +77,9 @@ class Judgement:
     def __reduce__(self) -> tuple[Any, ...]:
         j = self._judged
         texts = {"table": j.text(), "all": j.text(True), "json": j.json(), "junit": j.junit(), "html": j.html()}
-        return Judgement, (_Kept(self.state, self.as_expected, self.tests, list(j.verdicts), texts),)
+        return Judgement, (
+            _Kept(self.state, self.as_expected, self.tests, self.questions, list(j.verdicts), texts),
+        )
 
     @property
     def state(self) -> State:
@@ -97,6 +100,11 @@ class Judgement:
     def tests(self) -> int:
         """How many statistical tests shared alpha."""
         return int(self._judged.tests)
+
+    @property
+    def questions(self) -> int:
+        """How many draws, densities and values of f the sampler was asked for; 0 of arms of the list."""
+        return int(self._judged.questions)
 
     def of(self, name: str) -> tuple[Verdict, ...]:
         """The verdicts of one name over all w_o."""

@@ -76,6 +76,7 @@ void CallableSampler::sample(int, Vec3d wo, std::span<const Numbers> u, std::spa
         }
     });
     draws_ += u.size();
+    count(u.size());
 }
 
 void CallableSampler::pdf(int, std::span<const Pair> at, std::span<double> out) const {
@@ -87,6 +88,7 @@ void CallableSampler::pdf(int, std::span<const Pair> at, std::span<double> out) 
         const nb::gil_scoped_release free;
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = c_.upper_only && at[i].wi.z <= 0 ? 0 : p(i);
     });
+    count(at.size());
 }
 
 void CallableSampler::f_channels(std::span<const Pair> at, std::span<Vec3d> out) const {
@@ -101,6 +103,7 @@ void CallableSampler::f_channels(std::span<const Pair> at, std::span<Vec3d> out)
             if (c_.upper_only && at[i].wi.z <= 0) out[i] = {};
         }
     });
+    count(at.size());
 }
 
 void CallableSampler::f(std::span<const Pair> at, std::span<double> out) const {

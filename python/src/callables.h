@@ -22,7 +22,7 @@ struct Callables {
     bool serial = false;      // they want one thread
 };
 
-class CallableSampler : public JudgedSampler {
+class CallableSampler : public CalledSampler {
 public:
     explicit CallableSampler(Callables callables) : c_(std::move(callables)) {}
     std::string name() const override { return c_.name; }

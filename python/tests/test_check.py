@@ -157,6 +157,22 @@ def test_progress_is_told_and_what_it_raises_ends_the_judgement():
         crescent.check(cosine, cosine_pdf, lambert, progress=stop)
 
 
+def test_a_sampler_is_asked_as_often_as_is_told():
+    rows = {"sample": 0, "pdf": 0, "f": 0}
+
+    def counting(name, function):
+        def counted(wo, second):
+            rows[name] += len(second)
+            return function(wo, second)
+
+        return counted
+
+    counted = [counting(name, f) for name, f in (("sample", cosine), ("pdf", cosine_pdf), ("f", lambert))]
+    j = crescent.check(*counted, wo_deg=[30, 85], serial=True)
+    assert 100_000 < j.questions <= sum(rows.values()) < j.questions + 1000  # a few rows show what arrays come back
+    assert j.questions <= 1_000_000 and json.loads(j.json())["questions"] == j.questions
+
+
 def test_a_serial_sampler_is_called_by_the_callers_thread_alone():
     threads = set()
 

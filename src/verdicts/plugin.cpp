@@ -74,6 +74,7 @@ public:
             for (int k = 0; k < numbers_; ++k) numbers.push_back(row[k]);
         std::vector<OutsideDraw> draws(u.size());
         if (!u.empty()) draw({wo, surface_, numbers}, draws);
+        count(u.size());
         std::ranges::transform(draws, out.begin(), [](const OutsideDraw& d) { return Draw{d.wi, d.pdf}; });
     }
     void pdf(int /*technique*/, std::span<const Pair> at, std::span<double> out) const override {
@@ -104,6 +105,7 @@ private:
         for (const Pair& pair : at) wo.push_back(pair.wo), wi.push_back(pair.wi);
         const std::vector<OutsideSurface> surface(at.size(), surface_);
         call(what, [&] { return answer(at.size(), &wo[0].x, &wi[0].x, &surface[0].s, out.data()); });
+        count(at.size());
     }
 
     std::string path_, name_;

@@ -11,7 +11,7 @@
 namespace crescent::inline verdicts {
 
 /// Drawn for any surface point as an arm; judged on one surface.
-class PluginSampler : public OutsideSampler, public JudgedSampler {
+class PluginSampler : public OutsideSampler, public CalledSampler {
 public:
     std::string name() const override = 0;
 };

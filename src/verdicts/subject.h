@@ -3,6 +3,7 @@
 // Calls come in batches, so that a pipe can be kept full.
 #pragma once
 
+#include <atomic>
 #include <array>
 #include <memory>
 #include <optional>
@@ -69,7 +70,7 @@ struct Pair {
     Vec3d wo, wi;
 };
 
-/// Answers that a program gave, the time they took and the time it has in all, in s.
+/// Answers that a sampler from outside gave; of a program, the time they took and the time it has in all, in s.
 struct Spending {
     std::uint64_t answers = 0;
     double seconds = 0, allowed = 0;  // allowed 0: it is never cut short
@@ -114,12 +115,24 @@ public:
     virtual std::string place(int /*round*/, std::size_t /*draw*/) const { return {}; }
     /// Whether the sampler can be asked for draws at any u, not only listed ones.
     virtual bool draws_at_will() const { return true; }
-    /// What was asked of a program so far, and how long that took.
+    /// What was asked of a sampler from outside so far; of a program, how long that took.
     virtual Spending spending() const { return {}; }
     /// Told by what computes long between two questions, before so many steps: a page may answer its reader meanwhile.
     virtual void make_way(std::size_t /*steps*/) const {}
     /// Only one thread may call.
     virtual bool serial() const { return false; }
+};
+
+/// A sampler from outside that is called in this process: its answers are counted.
+class CalledSampler : public JudgedSampler {
+public:
+    Spending spending() const override { return {answers_.load(std::memory_order_relaxed), 0, 0}; }
+
+protected:
+    void count(std::size_t answers) const { answers_.fetch_add(answers, std::memory_order_relaxed); }
+
+private:
+    mutable std::atomic<std::uint64_t> answers_{0};
 };
 
 /// A one-sided disk light: radiance, centre from the surface point and radius in m, unit normal.

@@ -125,7 +125,7 @@ template <class S> Traits traits_of(const S& s) {
 namespace crescent::inline verdicts {
 
 /// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
-template <class S> class UserSubject : public JudgedSampler {
+template <class S> class UserSubject : public CalledSampler {
 public:
     /// `name` is what messages call it.
     UserSubject(std::string name, S sampler) : name_(std::move(name)), sampler_(std::move(sampler)) {}
@@ -133,6 +133,7 @@ public:
     Traits traits() const override { return user::traits_of(sampler_); }
     bool serial() const override { return !user::all_const<S>(); }
     void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        count(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = called(
                 "sample(wo, u)", wo, [&] { return told(u[i]); }, [&] { return user::sample(sampler_, wo, u[i]); });
@@ -140,17 +141,19 @@ public:
         }
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
-        if constexpr (user::HasPdf<S>)
+        if constexpr (user::HasPdf<S>) {
+            count(at.size());
             for (std::size_t i = 0; i < at.size(); ++i)
                 out[i] = called(
                     "pdf(wo, wi)", at[i].wo, [&] { return told(at[i].wi); },
                     [&] { return user::pdf(sampler_, at[i]); });
-        else
+        } else
             for (double& p : out) p = 1;
     }
     bool has_f() const override { return user::HasF<S>; }
     bool has_drawn_f() const override { return user::HasF<S> || user::says_weights<S>(); }
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        if constexpr (user::HasF<S>) count(at.size());
         if constexpr (user::HasF<S>)
             for (std::size_t i = 0; i < at.size(); ++i)
                 out[i] = called(
