@@ -16,7 +16,7 @@ def chromium(width=1280, height=900, flags=()):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    driver.set_script_timeout(60)
+    driver.set_script_timeout(180)
     size(driver, width, height)
     return driver
 
@@ -35,7 +35,7 @@ def media(driver, kind="", **features):
         "media": kind, "features": [{"name": name, "value": value} for name, value in features.items()]})
 
 
-def wait(driver, script, seconds=60):
+def wait(driver, script, seconds=120):
     """Until `return SCRIPT` is true; what it was at last."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -50,7 +50,7 @@ def wait(driver, script, seconds=60):
 FINISHED = "document.documentElement.dataset.took"
 
 
-def open_page(driver, page, address="", seconds=90, until=FINISHED):
+def open_page(driver, page, address="", seconds=120, until=FINISHED):
     driver.get("about:blank")
     driver.get(page + address)
     return wait(driver, until, seconds)

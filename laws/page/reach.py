@@ -36,7 +36,7 @@ def laws(page, folder):
             browser.keys(driver, Keys.SPACE if kind == "radio" else Keys.ARROW_RIGHT)
         browser.tab_to(driver, "#measure")
         browser.keys(driver, Keys.ENTER)
-        browser.wait(driver, "document.getElementById('reveal') || document.querySelector('#lessons .bad')", 120)
+        browser.wait(driver, "document.getElementById('reveal') || document.querySelector('#lessons .bad')")
         assert not driver.find_elements(By.CSS_SELECTOR, "#lessons .bad"), \
             f"{lesson}: {browser.text(driver, '#lessons')}"
         said = browser.text(driver, "#reveal")
@@ -91,7 +91,7 @@ def laws(page, folder):
         if "answer=" not in driver.current_url:
             browser.open_page(driver, page, small)
         driver.find_element(By.CSS_SELECTOR, "[data-tab=sheet]").click()
-        browser.wait(driver, SHEET, 120)
+        browser.wait(driver, SHEET)
         articles = [a.text for a in driver.find_elements(By.CSS_SELECTOR, "#sheet article")]
         assert len(articles) == 12
         for text in articles:

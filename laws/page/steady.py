@@ -31,11 +31,19 @@ def laws(page):
 
     def a_pixel_before_its_reference(driver):
         """A pixel is opened as soon as there is a picture; what the reference says of it comes when there is one."""
-        browser.open_page(driver, page, "#n=4&arms=cosine", until="document.querySelector('#pictures canvas')")
-        said = driver.execute_async_script(
-            "document.querySelector('#pictures canvas').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));"
-            "const look = () => document.querySelectorAll('#pixel .disk').length === 2"
-            " ? arguments[0](document.getElementById('pixel').innerText) : setTimeout(look); look()")
+        driver.get("about:blank")
+        driver.get(page + "#n=4&arms=cosine")
+        said = driver.execute_async_script("""
+            const done = arguments[0];
+            const first = () => {
+                const canvas = document.querySelector('#pictures canvas');
+                if (!canvas) return setTimeout(first);
+                canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));
+                look();
+            };
+            const look = () => document.querySelectorAll('#pixel .disk').length === 2
+                ? done(document.getElementById('pixel').innerText) : setTimeout(look);
+            first();""")
         assert "the reference is being computed" in said, said
         browser.wait(driver, "/, the reference [0-9.]+/.test(document.getElementById('pixel').textContent)")
 

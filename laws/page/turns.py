@@ -26,7 +26,7 @@ def told(driver, word):
 def without_workers(driver, page, address, until, planted=""):
     """The page at an address in a browser that refuses workers."""
     script = driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": REFUSED + planted})
-    browser.open_page(driver, page, address, 120, until)
+    browser.open_page(driver, page, address, until=until)
     assert driver.execute_script("return document.documentElement.dataset.workers") == "0"
     driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
 
@@ -37,7 +37,7 @@ def laws(page):
         does more than ten parts may; a turn in which thirty were hidden does. Work is counted, so that no load of the
         machine can change it."""
         most, longest = 100_000, 1_000_000  # samples of one part, and of a turn, at a hundred million a second
-        browser.open_page(driver, page, "#experiment=three-glosses&n=16", 120)
+        browser.open_page(driver, page, "#experiment=three-glosses&n=16")
         hashes = browser.shown(driver)
         without_workers(driver, page, "#experiment=three-glosses&n=16", browser.FINISHED)
         assert os.environ["SHOWN"] in hashes and hashes == browser.shown(driver), (hashes, browser.shown(driver))
