@@ -23,7 +23,11 @@ failed_tests() {
             for (i = count > most ? count - most : 0; i < count; ++i) print "    " said[i % most]
             count = in_one = 0
         }
-        /^ *[0-9]+\/[0-9]+ +Test +#/ { tell(); if (/\*\*\*(Failed|Timeout|Exception|Not Run)/) { print; in_one = 1 } next }
+        /^ *[0-9]+\/[0-9]+ +Test +#/ {
+            tell()
+            if (/\*\*\*(Failed|Timeout|Exception|Not Run)/) { print; in_one = 1 }
+            next
+        }
         /^ +Start +[0-9]+:/ || /% tests passed/ { tell(); next }
         in_one && NF { said[count++ % most] = $0 }
         END { tell() }
