@@ -92,7 +92,7 @@ Msamples/s of one thread, the best of five turns: the page's module beside the p
 | in Chromium, {openings[0]['workers']} workers, best of {len(openings)} | ms |
 |---|---|
 | from opening the file to the first picture | {least['first']} |
-| the gallery's three arms at N = 64, its rungs 4 and 16 before | {least['films']} |
+| the gallery's three arms at N = 64, its rung 4 before | {least['films']} |
 | the same with the reference and all meters | {least['took']} |
 | from a slider's move to the first new pixels, median of 20 moves | {slider[0]:.0f} |
 | the slowest of the 20 | {slider[1]} |

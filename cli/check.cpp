@@ -214,7 +214,7 @@ void tell_cost(std::span<const Trial> trials, const TestSettings& settings, Prog
     std::size_t judged = 0;
     bool program = false, light = false;
     for (const Trial& t : trials) {
-        judged += !t.baseline, program = program || t.subject->serial();
+        judged += !t.baseline, program = program || t.subject->limited();
         light = light || t.subject->traits().wo == Traits::Asked::none;
     }
     if (!program || !settings.full) return;

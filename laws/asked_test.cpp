@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/parallel.h"
 #include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
@@ -152,8 +154,8 @@ struct WrinkledForMany : Wrinkled<std::atomic<std::uint64_t>> {
     double pdf(Vec3d, Vec3d wi) const { return wrinkled(wi); }
 };
 
-/// A struct that one thread asks is spared as a program is; of every struct it is told how often it was asked.
-TEST(Structs, AreCountedAndThoseForOneThreadSpared) {
+/// A struct is spared as a program is, whether one thread asks it or all, and it is told how often it was asked.
+TEST(Structs, AreCountedAndSparedAsProgramsAre) {
     TestSettings settings = TestSettings::quick();
     settings.wo = {{30, 0}, {85, 75}};
     std::uint64_t by_one = 0;
@@ -162,6 +164,26 @@ TEST(Structs, AreCountedAndThoseForOneThreadSpared) {
     EXPECT_GT(by_one, 200000u);
     std::atomic<std::uint64_t> by_many = 0;
     EXPECT_EQ(judge_sampler("wrinkled", WrinkledForMany{{&by_many}}, settings).questions, by_many);
+    EXPECT_LE(by_many, 2 * promised);
+    EXPECT_GT(by_many, 200000u);
+    by_many = 0;
+    judge_sampler("wrinkled", WrinkledForMany{{&by_many}});
+    EXPECT_LE(by_many, 8 * promised) << "four million at the w_o of the grid together";
+}
+
+/// However many threads ask it, a struct is asked the same.
+TEST(Structs, AreAskedTheSameByAnyNumberOfThreads) {
+    TestSettings settings = TestSettings::quick();
+    settings.wo = {{30, 0}, {60, 40}, {85, 75}};
+    std::atomic<std::uint64_t> asked = 0;
+    const auto told = [&] {
+        const Judgement j = judge_sampler("wrinkled", WrinkledForMany{{&asked}}, settings);
+        std::string out = fmt::format("{} questions\n", j.questions);
+        for (const Verdict& v : j.verdicts)
+            if (v.name != "efficiency") out += v.trial + " " + v.say + "\n";  // that one tells times
+        return out;
+    };
+    EXPECT_EQ(told(), on_threads(1, told));
 }
 
 class FaultsOfPrograms : public testing::TestWithParam<std::size_t> {};

@@ -86,7 +86,6 @@ private:
 Judgement judged(std::shared_ptr<const JudgedSampler> subject, double theta = 45) {
     TestSettings settings = of_draws(8192);
     settings.evaluations = 20000;
-    settings.questions = 200000;
     return judged_at(std::move(subject), theta, settings);
 }
 

@@ -29,6 +29,7 @@
 #include "stats/tail.h"
 #include "studies/furnace.h"
 #include "studies/region_tail.h"
+#include "verdicts/forwarded.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
 #include "verdicts/numbers.h"

@@ -28,6 +28,25 @@ template <class F> void put_planes(F& film, const TileBox& box, const std::byte*
         from += pixels_of(box) * 4;
     }
 }
+/// The memory of the reference, plane by plane.
+void reference_room() {
+    using Plane = std::vector<float> ReferenceFilm::*;
+    Parts parts;
+    for (const Plane plane :
+        {&ReferenceFilm::r, &ReferenceFilm::g, &ReferenceFilm::b, &ReferenceFilm::error, &ReferenceFilm::y})
+        parts.emplace_back([=] {
+            count_work(bench().pixels() / hashed);
+            (bench().reference.*plane).resize(bench().pixels());
+        });
+    parts.emplace_back([] {
+        ReferenceFilm& film = bench().reference;
+        film.width = bench().experiment.image.width, film.height = bench().experiment.image.height;
+        film.s = bench().scene.s();
+        say(ordered_json::object());
+    });
+    begin(std::move(parts));
+}
+
 template <class F> std::vector<std::byte>& all_planes(F& film) {
     std::vector<std::byte>& out = scratch<std::byte>();
     out.clear();
@@ -77,8 +96,10 @@ CRESCENT_EXPORT(tile_room)(std::size_t size)->void* {
     return scratch<std::byte>().data();
 }
 
-/// Room for film `index`, plane by plane: what begin() would take at once. {} when it is there.
+/// Room for film `index`, plane by plane: what begin() would take at once; for the reference where it is -1. {} when it
+/// is there.
 CRESCENT_EXPORT(film_room)(int index)->void {
+    if (index < 0) return reference_room();
     Bench& b = bench();
     const auto at = static_cast<std::size_t>(index);
     if (b.slots.size() <= at) b.slots.resize(at + 1);
@@ -137,12 +158,10 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
 }
 
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {
-    Bench& b = bench();
-    if (b.reference.size() == 0)
-        b.reference = ReferenceFilm(b.experiment.image.width, b.experiment.image.height, b.scene.s());
+    ensure(bench().reference.size() == bench().pixels(), "film_room(-1) came before");
     const TileBox box = box_of(x0, y0, x1, y1);
     count_work(pixels_of(box) * put_cost);
-    put_planes(b.reference, box, scratch<std::byte>().data());
+    put_planes(bench().reference, box, scratch<std::byte>().data());
 }
 
 /// The hash of film `index`, of the reference for -1.

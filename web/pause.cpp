@@ -24,45 +24,33 @@ template <class Ask> void in_blocks(std::size_t size, const Ask& ask) {
     }
 }
 
-class Paused : public JudgedSampler {
+class Paused : public ForwardedSampler {
 public:
-    explicit Paused(std::shared_ptr<const JudgedSampler> inner) : inner_(std::move(inner)) {}
-    std::string name() const override { return inner_->name(); }
-    Traits traits() const override { return inner_->traits(); }
-    int techniques() const override { return inner_->techniques(); }
+    using ForwardedSampler::ForwardedSampler;
     void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         in_blocks(u.size(), [&](std::size_t from, std::size_t count) {
-            inner_->sample(t, wo, u.subspan(from, count), out.subspan(from, count));
+            inner().sample(t, wo, u.subspan(from, count), out.subspan(from, count));
         });
     }
     void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner_->pdf(t, a, o); });
+        ask(at, out, [&](auto a, auto o) { inner().pdf(t, a, o); });
     }
     void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner_->exact_pdf(t, a, o); });
+        ask(at, out, [&](auto a, auto o) { inner().exact_pdf(t, a, o); });
     }
     void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner_->mis_weight(t, a, o); });
+        ask(at, out, [&](auto a, auto o) { inner().mis_weight(t, a, o); });
     }
-    bool has_f() const override { return inner_->has_f(); }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner_->f(a, o); });
+        ask(at, out, [&](auto a, auto o) { inner().f(a, o); });
     }
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner_->f_channels(a, o); });
+        ask(at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    bool has_true_f() const override { return inner_->has_true_f(); }
     void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        ask(at, out, [&](auto a, auto o) { inner_->true_f(a, o); });
+        ask(at, out, [&](auto a, auto o) { inner().true_f(a, o); });
     }
-    bool has_drawn_f() const override { return inner_->has_drawn_f(); }
-    std::vector<TabulationError> tabulation_errors() const override { return inner_->tabulation_errors(); }
-    double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
-    std::string place(int round, std::size_t draw) const override { return inner_->place(round, draw); }
-    bool draws_at_will() const override { return inner_->draws_at_will(); }
-    Spending spending() const override { return inner_->spending(); }
     void make_way(std::size_t steps) const override { make_room(steps * step_cost); }
-    bool serial() const override { return inner_->serial(); }
 
 private:
     template <class Value, class Ask>
@@ -70,7 +58,6 @@ private:
         in_blocks(at.size(),
             [&](std::size_t from, std::size_t count) { answer(at.subspan(from, count), out.subspan(from, count)); });
     }
-    std::shared_ptr<const JudgedSampler> inner_;
 };
 
 /// Where a call that is paused keeps its locals: two addresses, from and to, then the room between them.

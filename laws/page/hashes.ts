@@ -21,6 +21,7 @@ export function hashes(module: WebAssembly.Module, file: string, text: string): 
     }
   });
   for (let said = worker.say("prepare_reference"); said.includes("more"); said = worker.say("go_on"));
+  for (let said = page.say("film_room", undefined, -1); said.includes("more"); said = page.say("go_on"));
   for (let y0 = 0; y0 < d.height; y0 += side) {
     const box = { x0: 0, y0, x1: d.width, y1: Math.min(y0 + side, d.height) };
     page.give(worker.bytes("reference_tile", 20 * pixelsOf(box), 0, y0, d.width, box.y1));

@@ -231,7 +231,7 @@ Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, cons
     TestCounts test_counts;
     monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
-    AskedByDirection asked_a, asked_b;  // by one thread, where either is a program
+    AskedByDirection asked_a, asked_b;  // kept by one thread, where either is serial
     const auto one = [&](std::size_t i) {
         monitor.check();
         try {

@@ -4,6 +4,8 @@
 #include <bit>
 #include <unordered_map>
 
+#include "verdicts/forwarded.h"
+
 namespace crescent::inline verdicts {
 
 namespace {
@@ -46,59 +48,78 @@ void answer(Kept<Value>& kept, std::span<const Pair> at, std::span<Value> out, c
 
 bool same(const Numbers& a, const Numbers& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
 
-class AskedOnce : public JudgedSampler {
+/// What one trial asks, whichever others ask the same sampler meanwhile.
+class Counted : public ForwardedSampler {
 public:
-    AskedOnce(std::shared_ptr<const JudgedSampler> inner, bool draws) : inner_(std::move(inner)), keeps_draws_(draws) {}
-    std::string name() const override { return inner_->name(); }
-    Traits traits() const override { return inner_->traits(); }
-    int techniques() const override { return inner_->techniques(); }
+    using ForwardedSampler::ForwardedSampler;
     void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
-        if (!keeps_draws_) return inner_->sample(t, wo, u, out);
+        answers_ += u.size();
+        inner().sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().pdf(t, at, out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().exact_pdf(t, at, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        answers_ += at.size();
+        inner().f(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        answers_ += at.size();
+        inner().f_channels(at, out);
+    }
+    Spending spending() const override {
+        const Spending of_all = inner().spending();
+        return {answers_, of_all.seconds, of_all.allowed};
+    }
+
+private:
+    mutable std::uint64_t answers_ = 0;
+};
+
+class AskedOnce : public ForwardedSampler {
+public:
+    AskedOnce(std::shared_ptr<const JudgedSampler> sampler, bool draws)
+        : ForwardedSampler(std::make_shared<Counted>(std::move(sampler))), keeps_draws_(draws) {}
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        if (!keeps_draws_) return inner().sample(t, wo, u, out);
         for (const Drawn& d : drawn_)
             if (d.technique == t && Key({wo, wo}) == Key({d.wo, d.wo}) && std::ranges::equal(d.u, u, same)) {
                 std::ranges::copy(d.draws, out.begin());
                 return;
             }
-        inner_->sample(t, wo, u, out);
+        inner().sample(t, wo, u, out);
         drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
     }
     void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        if (!keeps_draws_ || t > 1) return inner_->pdf(t, at, out);
+        if (!keeps_draws_ || t > 1) return inner().pdf(t, at, out);
         answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
-            [&](std::span<const Pair> a, std::span<double> o) { inner_->pdf(t, a, o); });
+            [&](std::span<const Pair> a, std::span<double> o) { inner().pdf(t, a, o); });
     }
     void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        if (t > 1) return inner_->exact_pdf(t, at, out);
+        if (t > 1) return inner().exact_pdf(t, at, out);
         answer<double>(pdf_[static_cast<std::size_t>(t)], at, out,
-            [&](std::span<const Pair> a, std::span<double> o) { inner_->exact_pdf(t, a, o); });
+            [&](std::span<const Pair> a, std::span<double> o) { inner().exact_pdf(t, a, o); });
     }
-    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
-        inner_->mis_weight(t, at, out);
-    }
-    bool has_f() const override { return inner_->has_f(); }
     void f(std::span<const Pair> at, std::span<double> out) const override {
-        if (inner_->traits().channels == 1)
-            return answer<double>(f_, at, out, [&](auto a, auto o) { inner_->f(a, o); });
+        if (inner().traits().channels == 1)
+            return answer<double>(f_, at, out, [&](auto a, auto o) { inner().f(a, o); });
         std::vector<Vec3d> by_channel(at.size());
         f_channels(at, by_channel);
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = luminance(by_channel[i]);
     }
     void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        answer<Vec3d>(channels_, at, out, [&](auto a, auto o) { inner_->f_channels(a, o); });
+        answer<Vec3d>(channels_, at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    bool has_true_f() const override { return inner_->has_true_f(); }
     void true_f(std::span<const Pair> at, std::span<double> out) const override {
-        if (has_true_f()) inner_->true_f(at, out);
+        if (has_true_f()) inner().true_f(at, out);
         else f(at, out);
     }
-    bool has_drawn_f() const override { return inner_->has_drawn_f(); }
-    std::vector<TabulationError> tabulation_errors() const override { return inner_->tabulation_errors(); }
-    double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
-    std::string place(int round, std::size_t draw) const override { return inner_->place(round, draw); }
-    bool draws_at_will() const override { return inner_->draws_at_will(); }
-    Spending spending() const override { return inner_->spending(); }
-    bool serial() const override { return inner_->serial(); }
-    const JudgedSampler& inner() const { return *inner_; }
+    const JudgedSampler& anew() const { return inner(); }
 
 private:
     struct Drawn {
@@ -107,7 +128,6 @@ private:
         std::vector<Numbers> u;
         std::vector<Draw> draws;
     };
-    std::shared_ptr<const JudgedSampler> inner_;
     bool keeps_draws_;
     mutable std::vector<Drawn> drawn_;
     mutable std::array<Kept<double>, 2> plain_pdf_;  // by technique
@@ -123,18 +143,20 @@ std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSamp
 }
 
 Side AskedByDirection::of(const Trial& trial, std::uint32_t stream) {
-    if (!trial.subject->serial()) return {trial, stream};
+    Side out{trial, stream};
+    if (!trial.subject->limited()) return out;
+    if (!trial.subject->serial()) return out.trial.subject = asked_once(trial.subject), out;  // of many threads
     const std::array<double, 3> wo = {trial.wo.x, trial.wo.y, trial.wo.z};
     if (asked_ != trial.subject || wo != wo_)
         asked_ = trial.subject, wo_ = wo, stream_ = stream, kept_ = asked_once(trial.subject, true);
-    Side out{trial, stream_};
+    out.stream = stream_;
     out.trial.subject = kept_;
     return out;
 }
 
 const JudgedSampler& afresh(const JudgedSampler& sampler) {
     const auto* kept = dynamic_cast<const AskedOnce*>(&sampler);
-    return kept ? kept->inner() : sampler;
+    return kept ? kept->anew() : sampler;
 }
 
 }  // namespace crescent::inline verdicts

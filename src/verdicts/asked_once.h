@@ -1,5 +1,5 @@
 // A sampler that is asked for the same thing once: what p and f are at a pair of directions is kept as long as a trial
-// lasts. Integrals of one trial start from the same cells, so that a program answers for their nodes a single time.
+// lasts. Integrals of one trial start from the same cells, so that a sampler answers for their nodes a single time.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace crescent::inline verdicts {
 
-/// `sampler`, with its answers for quadrature and for f kept; for one thread. draws: those for the same u, and pdf(w)
+/// `sampler`, with its answers for quadrature and for f kept, and those that it gives counted; for one thread. draws: those for the same u, and pdf(w)
 /// at them, are kept too.
 std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSampler> sampler, bool draws = false);
 /// What answers anew, whatever was kept.

@@ -72,7 +72,7 @@ void measure_costs(std::span<const Trial> trials, const TestSettings& settings, 
             monitor.check();
             const Trial& trial = trials[all[i].trial];
             if (times[i].size() < turn || !trial.subject->draws_at_will()) continue;  // it was given up
-            const std::size_t n = trial.subject->serial() ? of_a_program : most;
+            const std::size_t n = trial.subject->limited() ? of_a_program : most;
             if (const std::optional<double> ns = time_once(trial, std::span(u).first(n), draws, all[i]))
                 times[i].push_back(*ns);
         }

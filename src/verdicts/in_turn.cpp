@@ -55,16 +55,25 @@ bool affords(const Spending& now, std::uint64_t dearest) {
     return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
 }
 
+/// What all w_o may be asked, but for what follows the last one.
+std::size_t questions_for(const TestSettings& settings, std::size_t count) {
+    constexpr std::size_t enough = 333000;  // of the even share, where more w_o are asked for than the grid has
+    return std::max(settings.questions_in_all, count * enough) / 40 * 39;
+}
+
 /// What one w_o may be asked: what is left, less nine tenths of an even share for each of those still to come. What one
 /// does not need the next may have.
 std::size_t share_of(const TestSettings& settings, std::size_t count, std::uint64_t asked, std::size_t to_come) {
-    constexpr std::size_t enough = 333000;  // of the even share, where more w_o are asked for than the grid has
-    const std::size_t all = std::max(settings.questions_in_all, count * enough) / 40 * 39, each = all / 10 * 9 / count;
+    const std::size_t all = questions_for(settings, count), each = all / 10 * 9 / count;
     const std::size_t kept = asked + to_come * each;
     return std::min(settings.questions, std::max(all > kept ? all - kept : 0, each));
 }
 
 }  // namespace
+
+std::size_t even_share(const TestSettings& settings, std::size_t count) {
+    return std::min(settings.questions, questions_for(settings, count) / std::max<std::size_t>(count, 1));
+}
 
 std::vector<Outcome> judge_in_turn(
     std::span<const Trial> trials, const TestSettings& settings, TestCounts& test_counts, ProgressMonitor& monitor) {

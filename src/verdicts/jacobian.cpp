@@ -16,7 +16,7 @@ namespace {
 
 constexpr double step = 0x1p-8;
 constexpr double tiny_step = 0x1p-19;
-constexpr std::ptrdiff_t most_suspects = 60;  // that a program is asked about again
+constexpr std::ptrdiff_t most_suspects = 60;  // that are asked about again
 constexpr int stencil = 11;                   // centre, +-h, +-h/2 along each side, and a tiny move along each
 
 /// The other numbers are held: what chooses among lobes stays with its choice.

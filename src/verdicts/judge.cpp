@@ -52,7 +52,7 @@ void expect(const Trial& trial, const VerdictKind& kind, Verdict& v) {
 
 /// Another arm on a program's own BRDF: each draw costs a question, and a variance to 3 % ranks well enough.
 TestSettings settings_of_baseline(const Trial& trial, TestSettings settings) {
-    if (trial.subject->serial()) settings.draws = std::min<std::uint64_t>(settings.draws, 4096);
+    if (trial.subject->limited()) settings.draws = std::min<std::uint64_t>(settings.draws, 4096);
     return settings;
 }
 
@@ -161,7 +161,7 @@ Outcome judge_one(const Trial& trial, std::size_t index, const TestSettings& set
     ProgressMonitor& monitor) {
     Outcome out;
     Trial kept = trial;
-    if (trial.subject->serial()) kept.subject = asked_once(trial.subject);
+    if (trial.subject->limited()) kept.subject = asked_once(trial.subject);
     try {
         if (trial.baseline) {
             out.efficiency = measure_efficiency(TrialContext(kept, settings_of_baseline(trial, settings), test_counts,
@@ -202,10 +202,13 @@ std::vector<Outcome> judge_all(
     std::span<const Trial> trials, const TestSettings& settings, TestCounts& test_counts, ProgressMonitor& monitor) {
     if (std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return t.subject->serial(); }))
         return judge_in_turn(trials, settings, test_counts, monitor);
+    const auto count = std::ranges::count_if(trials, [](const Trial& t) { return !t.baseline; });
+    TestSettings shared = settings;
+    shared.questions = even_share(settings, static_cast<std::size_t>(count));
     std::vector<Outcome> outcomes(trials.size());
     parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
         monitor.check();
-        outcomes[i] = judge_one(trials[i], i, settings, test_counts, monitor);
+        outcomes[i] = judge_one(trials[i], i, shared, test_counts, monitor);
         monitor.advance(1);
     });
     return outcomes;

@@ -27,6 +27,8 @@ struct Outcome {
 /// All verdicts of one trial but those that hold it against other trials.
 Outcome judge_one(const Trial& trial, std::size_t index, const TestSettings& settings, TestCounts& test_counts,
     ProgressMonitor& monitor);
+/// What each of `count` w_o may be asked where all are asked at once, by many threads.
+std::size_t even_share(const TestSettings& settings, std::size_t count);
 /// Trials of a program, one after the other: first `valid` at every w_o from a few draws, then all verdicts, the middle
 /// of the hemisphere and the most grazing w_o first, as far as the program's time goes.
 std::vector<Outcome> judge_in_turn(

@@ -14,6 +14,7 @@ public:
     Borrowed(std::shared_ptr<const JudgedSampler> owner, Vec3d wo) : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
     void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
     bool serial() const override { return owner_->serial(); }
+    bool limited() const override { return owner_->limited(); }
 
 private:
     std::shared_ptr<const JudgedSampler> owner_;
@@ -89,6 +90,7 @@ public:
     bool has_f() const override { return owner_->has_f(); }
     void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
     bool serial() const override { return owner_->serial(); }
+    bool limited() const override { return owner_->limited(); }
 
 private:
     std::shared_ptr<const JudgedSampler> arm_, owner_;

@@ -121,11 +121,14 @@ public:
     virtual void make_way(std::size_t /*steps*/) const {}
     /// Only one thread may call.
     virtual bool serial() const { return false; }
+    /// Each answer is worth something: it is asked no more often than TestSettings allows.
+    virtual bool limited() const { return serial(); }
 };
 
-/// A sampler from outside that is called in this process: its answers are counted.
+/// A sampler from outside that is called in this process: its answers are counted, and limited.
 class CalledSampler : public JudgedSampler {
 public:
+    bool limited() const override { return true; }
     Spending spending() const override { return {answers_.load(std::memory_order_relaxed), 0, 0}; }
 
 protected:

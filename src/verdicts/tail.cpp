@@ -126,7 +126,7 @@ Verdict judge(TrialContext& work) {
     const ExpectedBehaviour& theory = work.trial.theory;
     Verdict v = work.verdict("tail", State::right, "");
     // A program is asked for the picture in any case: what it is asked does not depend on what is written.
-    if (work.settings.pictures || work.subject.serial()) work.pictures.push_back(picture(work, x, tail));
+    if (work.settings.pictures || work.subject.limited()) work.pictures.push_back(picture(work, x, tail));
     v.evidence["relative_sd"] = s.mean > 0 ? s.sd / s.mean : 0;
     v.evidence["largest_over_mean"] = s.mean > 0 ? s.largest / s.mean : 0;
     if (theory.bounded) v.evidence["theory"] = "bounded";

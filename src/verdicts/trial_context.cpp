@@ -98,7 +98,7 @@ TrialContext::TrialContext(const Trial& t, const TestSettings& r, TestCounts& co
 }
 
 std::size_t TrialContext::affordable(std::size_t wanted, std::size_t keep) const {
-    if (!subject.serial()) return wanted;
+    if (!subject.limited()) return wanted;
     constexpr std::size_t small_change = 80000;  // the warp, conditioning and the least of every integral
     const std::size_t asked =
         static_cast<std::size_t>(subject.spending().answers - asked_before_) + keep + small_change;
@@ -124,14 +124,14 @@ void TrialContext::redraw(std::uint32_t seed) {
 
 SampleBatch TrialContext::draw(int technique, int round) const {
     std::optional<SampleBatch>* kept =
-        subject.serial() && round == 1 && technique < 2 ? &confirming_[static_cast<std::size_t>(technique)] : nullptr;
-    if (kept && *kept) return **kept;  // a program is asked for it once
+        subject.limited() && round == 1 && technique < 2 ? &confirming_[static_cast<std::size_t>(technique)] : nullptr;
+    if (kept && *kept) return **kept;  // a limited sampler is asked for it once
     SampleBatch b;
     if (const auto* tape = dynamic_cast<const RecordedSubject*>(&subject)) {
         tape->half(round, b.u, b.draws);
     } else {
         const std::uint64_t more =
-            subject.serial() ? affordable(12 * settings.draws) / 3 : 4 * settings.draws;  // each is asked three times
+            subject.limited() ? affordable(12 * settings.draws) / 3 : 4 * settings.draws;  // each is asked three times
         const std::uint64_t n = round == 0 ? settings.draws : more;
         const std::uint32_t seed = seed_of(seed_, static_cast<std::uint32_t>(round) * 7919u);
         b.u.resize(n);

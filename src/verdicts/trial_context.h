@@ -28,7 +28,7 @@ struct TestSettings {
     int rings = 20, sectors = 16;
     std::size_t evaluations = 80000;              // of one integral, at most
     bool pictures = false;                        // keep maps and weights for the HTML page
-    std::size_t questions = 500000;               // that a program is asked at one w_o, at most
+    std::size_t questions = 500000;               // of a limited sampler at one w_o, at most
     std::size_t questions_in_all = 4000000;       // and at the w_o of the grid together
     std::vector<std::pair<double, double>> wo{};  // theta and azimuth in degrees in place of the grid; empty: the grid
     bool accept_few = false;  // a program too slow for every w_o is judged by those that were looked at
@@ -97,8 +97,8 @@ struct Reached;
 class TrialContext {
 public:
     TrialContext(const Trial& trial, const TestSettings& settings, TestCounts& test_counts, std::uint32_t index);
-    /// So many of the wanted questions as a program may still be asked here, `keep` of them left for later; 2000 at
-    /// least.
+    /// So many of the wanted questions as a limited sampler may still be asked here, `keep` of them left for later;
+    /// 2000 at least.
     std::size_t affordable(std::size_t wanted, std::size_t keep = 0) const;
 
     const Trial& trial;
@@ -107,8 +107,9 @@ public:
     const JudgedSampler& subject;
     const Traits traits;
 
-    /// A program is asked no more than its answers are worth: integrals are known to a fifth of what the tests grant.
-    bool thrifty() const { return subject.serial() && !settings.full; }
+    /// A limited sampler is asked no more than its answers are worth: integrals are known to a fifth of what the tests
+    /// grant.
+    bool thrifty() const { return subject.limited() && !settings.full; }
     double tolerance() const { return thrifty() ? 2e-5 : 5e-6; }
     /// The error of a mass that is looked at no further.
     double enough() const { return thrifty() ? 8e-5 : 5e-5; }
@@ -143,7 +144,7 @@ public:
     /// Radiance from wi; the fill shines from below too where that counts.
     double light(Vec3d wi) const { return wi.z < 0 && whole() ? trial.light.fill : trial.light(wi); }
 
-    /// f of every draw above the horizon, 0 elsewhere; a program behind a pipe is asked once.
+    /// f of every draw above the horizon, 0 elsewhere; asked once.
     const std::vector<double>& f_of_drawn(const SampleBatch& b) const;
     std::vector<double> pdf_of_drawn(int technique, std::span<const Draw> draws) const;
     std::vector<double> pdf(int technique, std::span<const Vec3d> wi, bool exact = false) const;
@@ -195,9 +196,9 @@ public:
 
 private:
     std::uint32_t index_, seed_;
-    std::uint64_t asked_before_ = 0;  // of a program, when this trial began
+    std::uint64_t asked_before_ = 0;  // when this trial began
     std::vector<SampleBatch> first_;
-    mutable std::array<std::optional<SampleBatch>, 2> confirming_;  // of a program, by technique
+    mutable std::array<std::optional<SampleBatch>, 2> confirming_;  // of a limited sampler, by technique
     std::vector<Density> density_;
     /// Questions for the verdicts after the density and its confirmation.
     std::size_t for_later() const;

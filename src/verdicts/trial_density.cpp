@@ -27,7 +27,7 @@ namespace {
 /// A sky whose texels are summed: its mass is known to that, its bins to what the cubature says of them.
 bool measure_by_texels(const TrialContext& work, int t, Density& d) {
     if (work.traits.wo != Traits::Asked::none || !(d.mass.error > work.enough())) return false;
-    const std::size_t most = work.subject.serial() && !work.settings.full ? work.affordable(200000) : 10000000;
+    const std::size_t most = work.subject.limited() && !work.settings.full ? work.affordable(200000) : 10000000;
     const auto p = [&](std::span<const Vec3d> at, std::span<double> out) {
         std::ranges::copy(work.pdf(t, at, true), out.begin());
     };

@@ -28,7 +28,7 @@ std::optional<Density> TrialContext::table_density(int t) {
         const Prepare crowd = [&](std::vector<Rect> cells) {
             return refined_at_pilots(std::move(cells), d.map, pilot_directions_);
         };
-        const std::size_t most = subject.serial() && !settings.full ? affordable(400000, for_later()) / 2 : 10000000;
+        const std::size_t most = subject.limited() && !settings.full ? affordable(400000, for_later()) / 2 : 10000000;
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
             mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
