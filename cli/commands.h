@@ -31,7 +31,7 @@ struct RunFlags {
     int gl_device = -1;            // -1: a GPU where there is one
     int seeds = 0, threads = 0;    // 0: the file's; as many as the machine has
     double keep_after = 10;        // s
-    bool quiet = false;
+    bool quiet = false, preview = false;
 };
 int run(const RunFlags& flags);
 

@@ -64,12 +64,15 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")
         ->type_name("K")
         ->check(CLI::Range(1, 4096));
+    auto* preview = c->add_flag("--preview", f->preview, "DIR/preview.png alone: regions and crops on the reference");
     c->add_option("--seed-range", f->seed_range, "seeds A to B of the series alone, from 1")
         ->type_name("A:B")
-        ->check(seed_range);
+        ->check(seed_range)
+        ->excludes(preview);
     c->add_option("--only", f->only, "of metrics, films, plates, report: these alone")
         ->type_name("PART,..")
-        ->check(told);
+        ->check(told)
+        ->excludes(preview);
     c->add_option("--threads", f->threads, "default: as many as this process may use")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));

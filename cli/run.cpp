@@ -1,6 +1,7 @@
 // crescent run: an experiment file -> films, meters, plates, report.
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "commands.h"
 #include "crescent.h"
@@ -25,6 +26,18 @@ std::string command_of(const RunFlags& flags) {
     return command;
 }
 
+/// The picture, and where it is.
+int show_preview(const Experiment& experiment, const RunOptions& options, Progress& progress) {
+    Staging staging(options.out, "preview");
+    staging.expect({"preview.png"});
+    staging.write("preview.png", preview(experiment, {options.threads, options.isa, nullptr}, progress));
+    staging.commit(progress);
+    progress.clear();
+    print(fmt::format(
+        "{}/preview.png: the reference, its regions and the crops of plates on rulers of pixels\n", options.out));
+    return held;
+}
+
 }  // namespace
 
 int run(const RunFlags& flags) {
@@ -45,6 +58,7 @@ int run(const RunFlags& flags) {
 
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
+    if (flags.preview) return show_preview(experiment, options, progress);
     const RunResult result = crescent::run(experiment, options, progress);
     progress.clear();
     print(result.summary);

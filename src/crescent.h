@@ -57,6 +57,7 @@
 #include "pages/charts.h"
 #include "reference/reference.h"
 #include "report/report.h"
+#include "run/preview.h"
 #include "run/run.h"
 #include "scene/scene.h"
 #include "scene/shadow.h"

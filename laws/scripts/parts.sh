@@ -34,3 +34,14 @@ done
 expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --set ball.s=9 --set exposure=2 --set ball.s=12 --out set
 head -n 1 set/metrics.csv | grep -q ',value,ball.s,exposure' || die "no columns for --set: $(head -n 1 set/metrics.csv)"
 sed -n 2p set/metrics.csv | tr -d '\r' | grep -q ',12,2$' || die "no values for --set: $(sed -n 2p set/metrics.csv)"
+
+# A preview is one picture, beside what an earlier run left, and its boxes follow --set.
+expect 0 "$CRESCENT" run "$tiny" --preview --quiet --out metrics
+head -c 8 metrics/preview.png | cmp -s - <(printf '\211PNG\r\n\032\n') || die "no PNG: $(names metrics)"
+[ -e metrics/report.html ] || die "a preview took what a run had left"
+expect 0 "$CRESCENT" run "$tiny" --preview --quiet --out moved --set 'regions.ball.box=[1,2,9,9]'
+[ "$(names moved)" = "./preview.png " ] || die "a preview wrote more: $(names moved)"
+cmp -s metrics/preview.png moved/preview.png && die "the preview does not follow --set"
+expect 2 "$CRESCENT" run "$tiny" --preview --only plates --out nowhere
+expect 2 "$CRESCENT" run "$tiny" --preview --set 'regions.ball.box=[1,2,9999,9]' --out nowhere
+[ ! -e nowhere ] || die "a wrong call left an output folder"

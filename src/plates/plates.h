@@ -33,6 +33,10 @@ struct Picture {
 /// Draws one plate. Throws OutputError where the font Inter is missing.
 Picture draw_plate(const PlatePlan& plan, const PlateInputs& in);
 
+/// What `run --preview` writes: the reference at the experiment's own s between rulers of pixels, its regions and the
+/// crops of its plates on it. Throws OutputError where the font is missing.
+Picture draw_preview(const PlateInputs& in);
+
 /// The same plate as an SVG document, of a kind that is lines and text alone; "" of the others.
 std::string draw_plate_svg(const PlatePlan& plan, const PlateInputs& in);
 
@@ -46,6 +50,7 @@ std::vector<unsigned char> encode_png(
 namespace crescent {
 using plates::draw_plate;
 using plates::draw_plate_svg;
+using plates::draw_preview;
 using plates::encode_png;
 using plates::Picture;
 using plates::PlateInputs;

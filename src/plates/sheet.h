@@ -72,4 +72,8 @@ CRESCENT_PLATES(CRESCENT_PAINTER)
 /// Draws by kind onto a fresh sheet; what draw_plate and the tests of the layout share.
 void draw(Sheet& sheet);
 
+/// The same for draw_preview: what it is called and says under the picture, and the picture.
+PlatePlan preview_plan(const Experiment& e);
+void paint_preview(Sheet& sheet);
+
 }  // namespace crescent::plates

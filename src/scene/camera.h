@@ -14,6 +14,7 @@ struct Box {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     int width() const { return x1 - x0 + 1; }
     int height() const { return y1 - y0 + 1; }
+    bool operator==(const Box&) const = default;
 };
 
 struct Camera {

@@ -188,7 +188,7 @@ std::string spread_told(const TrialContext& work, Verdict& v) {
         const double mean = warp.whole ? warp.mean : by.constant, known_to = warp.whole ? 0 : 3 * by.relative_se;
         if (!spread && std::fabs(mean - 1) < close + known_to) continue;
         v.evidence["drawn_over_claimed"] = mean;
-        out = fmt::format(": what is drawn is pdf(w) times {:.5g} on average", mean);
+        out = mean > 0 ? fmt::format(": what is drawn is pdf(w) times {:.5g} on average", mean) : ": nothing is drawn";
         if (!warp.whole) continue;
         v.evidence["drawn_over_claimed_5_percent"] = quantile(0.05);
         v.evidence["drawn_over_claimed_95_percent"] = quantile(0.95);

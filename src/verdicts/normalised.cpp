@@ -104,7 +104,9 @@ Verdict judge(TrialContext& work) {
         if (const double sum = mass.value + d.nothing; !std::isfinite(sum) || is_off(work, t, excess(d, mass))) {
             v.state = State::wrong;
             v.say = told(d, mass) +
-                fmt::format(", not to 1: weights are off by {:+.3g} % on average.", 100 * (1 / sum - 1));
+                (d.nothing < 1
+                        ? fmt::format(", not to 1: weights are off by {:+.3g} % on average.", 100 * (1 / sum - 1))
+                        : ", not to 1: p is to be 0 where nothing is drawn.");
             return v;
         }
         tell_sum(work, d, mass, v);

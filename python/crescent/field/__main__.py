@@ -101,7 +101,8 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
         print(f"{it.title()}: {judgement.state} {judgement.broken()}", file=sys.stderr, flush=True)
         told = "; ".join(f"{f.verdicts[0].name}: {f.kind()}" for f in found)
         table.append(f"| `{it.title()}` | {judgement.state} | {told or '-'} |")
-        for f in found:  # one section an explanation, at the plugin where it is first met; bugs each
+        # One section an explanation, at the plugin where it is first met, by a verdict that a script shows; bugs each.
+        for f in sorted(found, key=lambda f: f.verdicts[0].name == "identity"):
             sections.setdefault(f.note.because if f.note else f"{it.title()} {f.verdicts[0].name}", f)
     yield f"## What ships in Mitsuba {mi.__version__}"
     yield "\n".join(table)

@@ -1,0 +1,41 @@
+// The steps of a run without its jobs: what the camera sees, the reference, one plate.
+#include "run/preview.h"
+
+#include "plates/plates.h"
+#include "run/collect.h"
+#include "run/needs.h"
+
+namespace crescent::inline runs {
+
+namespace {
+
+/// What is seen and measured, without those who measure it.
+Experiment without_arms(Experiment e) {
+    e.arms.clear();
+    e.exponent.reset();
+    e.furnaces.clear();
+    e.published.reset();
+    e.seeds = 1;
+    e.reference.kind = ReferenceKind::quadrature;
+    e.reference.monte_carlo = false;
+    return e;
+}
+
+}  // namespace
+
+std::vector<unsigned char> preview(const Experiment& experiment, const Engine& engine, ProgressMonitor& monitor) {
+    check_font(experiment);
+    RunPlan seen = plan(without_arms(experiment));
+    seen.exponents = {experiment.s()};
+    const Engine with = settled(engine);
+    const Prepared prepared = prepare(seen, with, monitor);
+    monitor.check();
+    const Metrics none;
+    const PlateInputs in{seen.experiment, none, prepared.shapes, [](const RunKey&) { return nullptr; },
+        [&](double s) { return reference_of(seen.experiment, prepared.quadrature, {}, s); }, with.instrument->name(),
+        experiment.theme.value_or(Theme::dark)};
+    const Provenance p = provenance_of(seen, *with.instrument, "");
+    return encode_png(draw_preview(in), {{"crescent", p.version + " " + p.commit}, {"plate", "preview"}});
+}
+
+}  // namespace crescent::inline runs
