@@ -1,3 +1,5 @@
+// Looks the word up among the kinds of instrument that registered themselves and opens the one it finds with the two
+// --gl flags, which the CPU refuses.
 #include "instruments.h"
 
 namespace crescent::cli {

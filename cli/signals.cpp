@@ -1,3 +1,5 @@
+// Handlers by sigaction(), waits by setitimer() and SIGALRM: while a run is watched, 0.5 s from the first signal to the
+// end, 5 s more where outputs have begun to move. The last words follow from the monitor's state; write() writes them.
 #include "signals.h"
 
 #include <atomic>

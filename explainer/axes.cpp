@@ -1,3 +1,5 @@
+// A value's place is its share of the scale, in logarithms where the scale is logarithmic. Round values are 1, 2 or 5
+// times a power of ten apart; powers of ten above 100 and below 0.01 are set as 10^k. Lengths in units of the sheet.
 #include "axes.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Captions are cut to the part and moved to its time; one of which 0.05 s or less is left is dropped. WebVTT is escaped
+// as markup, SubRip is numbered, chapters are in ffmpeg's FFMETADATA1 with frames for a time base.
 #include "captions.h"
 
 #include <fmt/format.h>

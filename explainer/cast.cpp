@@ -1,3 +1,5 @@
+// Arms are found by their sampler; the surround is the region after the first with the most pixels. N is the
+// experiment's where both ladders have it, else the middle one of the rungs they share. MIS gets N/2 pairs and N.
 #include "cast.h"
 
 #include <fmt/format.h>

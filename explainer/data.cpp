@@ -1,3 +1,5 @@
+// Runs the experiment once in memory with the arms that cast_of() adds, then the cosine arm at N = 1, 2, 4, ... up to
+// the highest shared rung, then takes the measures. Look-ups hand each number out with its source.
 #include "data.h"
 
 #include <fmt/format.h>

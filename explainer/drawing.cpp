@@ -1,3 +1,5 @@
+// Pictures are enlarged a whole number of times, 12 at most; image boxes count rows from the bottom, blocks from the
+// top. Residuals in W/(sr m^2); a plot's lines stand at 1, 2 and 5 times powers of ten.
 #include "drawing.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// One call of ffmpeg turns one pipe of yuv420p frames into an MP4 (H.264, poster, mov_text, AAC) and, where it is asked
+// for, a WebM (VP9, WebVTT, Opus), with its bitexact flags. What it can encode is read off `ffmpeg -encoders`.
 #include "encoder.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Words are measured, then set from left to right: 1/N and the sum, f, L and cos over the bar, p under its middle. The
+// ink of a term runs from muted to bright as it is lit.
 #include "estimator_formula.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Up to four crops, spread evenly over the ladder, appear from 5 s on, one every 2 s, the chart's points in the same
+// time, then the line. The axes hold the ladders of both arms, so that both shots have the same scale.
 #include "ladder_shot.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Draws the shot and its heading, then the ground over both, so that they fade in and out in 0.3 s, then the caption
+// over that. Nothing is drawn where the shot and its answers to the time are those of the canvas.
 #include "painter.h"
 
 #include "style.h"

@@ -1,3 +1,5 @@
+// fork() and execvp(). Over a pipe the child tells why exec failed; it leads a process group of its own and, on Linux,
+// is killed when its parent dies. wait() asks waitpid() and the monitor every 2 ms.
 #include "process.h"
 
 #include <fcntl.h>

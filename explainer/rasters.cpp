@@ -1,3 +1,5 @@
+// Y'CbCr by ITU-R BT.709-6, tables 3 and 4, in 16 fractional bits; chroma is filtered 1 2 1 across and averaged over
+// two rows. A oneTBB pipeline deals chunks of ten frames to threads, each with a painter of its own.
 #include "rasters.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>

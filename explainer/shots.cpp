@@ -1,3 +1,4 @@
+// The order of the film is a table of functions; each is called once with the film's data.
 #include "shots.h"
 
 namespace crescent::film {

@@ -1,3 +1,6 @@
+// A caption needs its characters over the reading speed, or 0.3 s more than it takes to say, and a question its
+// silence. What its slot lacks becomes a hold, in whole frames, half a frame before the slot's end. A line is broken at
+// the space that leaves the longer part shortest.
 #include "timeline.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// What the contexts of EGL and OSMesa share: entry points, version 3.3 at least, the last 20 errors and messages of
+// high severity of the driver. check() asks whether the context is current, then for a reset, then glGetError().
 #include "context.h"
 
 #include <fmt/format.h>

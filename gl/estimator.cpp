@@ -1,3 +1,6 @@
+// The image in rectangles, one after another: its sites, a program for each lobe there (compiled for the arm, the lobe
+// and the numbers of lights and bodies, kept by its text), then a Pass rung by rung, whose moments resolve_film() makes
+// radiance of.
 #include "estimator.h"
 
 #include <fmt/format.h>

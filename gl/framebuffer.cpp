@@ -1,3 +1,5 @@
+// Textures are made and attached, then GL is asked what came of them: status, bits and type of each attachment, colour
+// encoding, GL_SAMPLES. Reading is glReadPixels() of the whole, four channels a texel.
 #include "framebuffer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The lists' macros make a look-up of "gl" + name for each entry point, then a test of each name of core 3.3.
 #include "functions.h"
 
 #include "crescent.h"

@@ -1,3 +1,5 @@
+// Registers "gl" before main. Claims are made of the context and a 1280x720 framebuffer when it is opened, of the
+// film's framebuffer and of three blocks of random integers before the first film; films then come from Estimator.
 #include "instrument.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// A full-screen triangle into an RGBA32UI framebuffer for each block; what is read back is compared with draws()
+// integer by integer.
 #include "integers.h"
 
 #include "framebuffer.h"

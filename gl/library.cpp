@@ -1,3 +1,4 @@
+// dlopen() with every symbol bound at once and none given to others, dlsym(), no dlclose(); the reason is dlerror()'s.
 #include "library.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,5 @@
+// Depth first: what a file includes goes before all of it, its #include lines become empty, and #line starts its own
+// numbering at 1000 k + 1, k its place in the order in which files were met.
 #include "shader_source.h"
 
 #include <algorithm>

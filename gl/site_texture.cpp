@@ -1,3 +1,5 @@
+// sites_of() finds the sites tile by tile on all cores; they are put into one array of floats, layer after layer, and
+// uploaded once as RGBA32F. A pixel without a site has -1 in the place of its lobe. Lengths in m.
 #include "site_texture.h"
 
 #include <oneapi/tbb/parallel_for.h>

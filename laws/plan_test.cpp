@@ -1,3 +1,5 @@
+// The jobs of a plan against lists written out by hand: every arm at the experiment's own exponent, then the runs of
+// the exponent control that no arm has already.
 #include "run/plan.h"
 
 #include <gtest/gtest.h>

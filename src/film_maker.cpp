@@ -1,3 +1,4 @@
+// The maker is a static of its function, so that an initialiser of another file may be the first to ask for it.
 #include "film_maker.h"
 
 namespace crescent {

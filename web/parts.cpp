@@ -1,3 +1,5 @@
+// A question is a list of functions, one a call from the page; what they did is counted until the page asks. Boxes are
+// cut into parts at most 64 pixels across. Sites are kept by box for as many pixels as the page allows, else for one.
 #include "parts.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A sampler is asked in blocks of a quarter of a part; where the next one does not fit, the import door.pause leaves
+// the module. The locals go into 128 KiB of memory, whose first two words say from where to where.
 #include "pause.h"
 
 #include <array>

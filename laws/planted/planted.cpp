@@ -1,3 +1,5 @@
+// A row a fault: its arm, the lobe and light it is tried on, and the Bend (wrap.h) of u, draw, pdf, f or MIS weight.
+// Each is tried at the w_o of the grid that are 0, 45 and 75 degrees from n. Densities in 1/sr.
 #include "laws/planted/planted.h"
 
 #include <algorithm>

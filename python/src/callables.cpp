@@ -1,3 +1,5 @@
+// A question is written into column-major arrays of doubles that Python owns, the callable is called under the lock,
+// and its answer is copied with the lock free. Where one number stands for three channels it is their luminance.
 #include "callables.h"
 
 #include <nanobind/ndarray.h>

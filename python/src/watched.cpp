@@ -1,3 +1,5 @@
+// The work runs in a std::thread, while every 50 ms this thread takes the interpreter's lock and looks for signals; or
+// on this thread, with the lock released, which looks once at the end. The first exception of either is thrown again.
 #include "watched.h"
 
 #include <nanobind/stl/string.h>

@@ -1,3 +1,5 @@
+// A line a mistake, "file:line:column: message". nearest() takes the least edit distance (Levenshtein 1966, case
+// apart): at most 2 or a third of the word's letters, whichever is more, and always below its length.
 #include "base/errors.h"
 
 #include "base/text.h"

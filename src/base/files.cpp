@@ -1,3 +1,5 @@
+// The stage is a folder in OUT with 64 random bits in its name. A lock on OUT and one on the stage's owner file keep
+// runs apart; a stage whose lock nobody holds is settled, then removed. commit() leaves the moving to Publication.
 #include "base/files.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// openat() and its kin from the descriptor, O_NOFOLLOW at every step below it. New files are made with O_EXCL and
+// synced; errno outlives the closing of what a failed call had open.
 #include "base/folder.h"
 
 #include <dirent.h>

@@ -1,3 +1,5 @@
+// Recursive descent turns TeX into a tree of nodes; the tree is written out as MathML elements, or as Pango markup with
+// brackets where a fraction on one line needs them. Values are put into the tree in place of letters.
 #include "base/formula.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Both ways to set a formula against markup written out by hand; that what is not in the list is a Bug, and is known
+// for one where it is compiled; that every word of the list can be set.
 #include "base/formula.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// A record is its size, its XXH3-64 seeded with the key's, and its bytes, written together; the first one is the key
+// itself. Reading ends at the first that is not whole and cuts the file there. flock() keeps other processes out.
 #include "base/journal.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Processors: sched_getaffinity(), cpu.max or cpu.cfs_quota_us. Memory in bytes: MemAvailable; memory.max or
+// memory.limit_in_bytes less what is used and not just cached; RLIMIT_AS less VmSize. The least of the process's group,
+// of all groups around it and of the machine counts.
 #include "base/machine.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// The step is read off the link .crescent-current alone, and stage/names lists what is concerned, so that settle() can
+// go on in any process. Folders are synced before that link is made, replaced and removed.
 #include "base/publish.h"
 
 #include <fmt/format.h>

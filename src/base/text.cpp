@@ -1,3 +1,5 @@
+// UTF-8 as RFC 3629, section 4, has it: no overlong forms, no surrogates; U+FFFE and U+FFFF count as broken too. Each
+// character is then passed on, replaced or shown by its number. Shell words stand in single quotes.
 #include "base/text.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Neutral: toe, compression of the peak, desaturation, with the constants of the specification. sRGB: the standard's
+// two pieces; bytes by comparison with the decoded (k - 1/2)/255, from a first guess in 1024 steps.
 #include "color/tone.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// sRGB against values of the standard, bytes against the rounded encoding; Neutral against values worked out from its
+// specification, and that greys rise and hues stay; photographs of NaN, infinite and negative radiance.
 #include "color/tone.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Each channel runs linearly between neighbouring bytes of the published table and is rounded to the nearest.
 #include "color/turbo.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Looked up in ArmInfo by the arm's sampler. One that is not in the list draws one direction, misses nothing and tells
+// s. Arms that miss a light miss the fill: none does where the fill is black.
 #include "experiment/arm_facts.h"
 
 #include <algorithm>

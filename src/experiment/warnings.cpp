@@ -1,3 +1,4 @@
+// For each shape, the largest channel of rho_d plus rho_s against 1; reflectances have no unit.
 #include "experiment/warnings.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Slices point into the film's planes, rows from the last to the first by a negative stride: nothing is copied, nothing
+// compressed. OpenEXR's number of threads belongs to the process and is set under a lock while a file is written.
 #include "films/exr.h"
 
 #include <OpenEXR/ImfChannelList.h>

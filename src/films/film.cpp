@@ -1,3 +1,5 @@
+// The hash is XXH3-64 over the bytes of the planes r, g, b, y, y2, var, largest, horizon, hits, of a reference r, g, b,
+// y, error; sizes, n and bad samples are not in it.
 #include "films/film.h"
 
 #include <fmt/format.h>

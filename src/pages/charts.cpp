@@ -1,3 +1,6 @@
+// Linear axes tick at 1, 2 or 5 times a power of ten, log axes at one, two or four places in a decade, by how many
+// decades they hold. Lines and bands are cut off by an inner <svg>; names are pushed down, then up, until they are 13
+// pixels apart.
 #include "pages/charts.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Strings put together by {fmt}. A table opens a <tbody> at its first row and at each group; heading cells say by
+// `scope` what they head, and a true minus is set before digits alone.
 #include "pages/html.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Finite doubles go in as JSON numbers, others as the words of shortest(); nlohmann::json writes them.
 #include "pages/json_number.h"
 
 #include <cmath>

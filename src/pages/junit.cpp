@@ -1,3 +1,5 @@
+// One <testsuites> around one <testsuite>: counts by state, properties, then the cases in their order. Times are in
+// seconds to a thousandth and stand only where a case has one; a suite's is their sum.
 #include "pages/junit.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// shortest() is std::to_chars(); the others are rounded by {fmt}, figures() to the decimals that the number's power of
+// ten leaves. Code points are counted by the bytes that begin one in UTF-8.
 #include "pages/numbers.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// One template, filled by name; contents and sections are written in one walk over the sections that have html.
 #include "pages/page.h"
 
 #include <fmt/format.h>

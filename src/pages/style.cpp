@@ -1,3 +1,5 @@
+// CSS in one string: custom properties for light, dark and paper, then text, tables, figures and the classes of charts.
+// Lengths mostly in rem, in charts in pixels.
 #include "pages/style.h"
 
 namespace crescent::inline pages {

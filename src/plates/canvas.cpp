@@ -1,3 +1,5 @@
+// Pango sets text at its size, then half a pixel smaller each time until it fits its box; at the least size it is
+// ellipsized. What was set, where and how large is noted. Pictures are copied out of Cairo's 32-bit pixels.
 #include "plates/canvas.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Cairo draws on RGB24 pixels or as SVG into a string; Pango sets Inter unhinted, in grey, glyphs at unrounded places,
+// tabular figures throughout. That Inter is there is asked by the name of its family.
 #include "plates/canvas_surface.h"
 
 #include <cairo-svg.h>

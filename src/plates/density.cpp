@@ -1,3 +1,6 @@
+// The arm is made in double at a point with the material of the shape whose exponent is the experiment's; its peak is
+// the largest of 1801 angles. An arm that aims at lights is asked at the pixel, of a few thousand, with R nearest to
+// the tilt and a light nearest to R's plane; its peak is that of 1024 draws.
 #include "plates/density.h"
 
 #include <fmt/format.h>

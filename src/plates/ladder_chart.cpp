@@ -1,3 +1,6 @@
+// Logarithmic axes around all that is drawable, 0.15 in ln N and a factor of 1.4 wider on each side; lines at 1, 2 and
+// 5 times powers of ten, at powers alone over more than two decades. Names stand at the ends of curves, pushed down,
+// then up. Lengths in pixels.
 #include "plates/ladder_chart.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The plate's kind picks its painter from the list in experiment/plate_kinds.h; caption and footer are set after it.
 #include "plates/plates.h"
 
 #include "plates/sheet.h"

@@ -1,3 +1,5 @@
+// Every kind of plate, on experiments and films made up for it: nothing cut off, small or overlapping, equal bytes on
+// any thread, no measured number on photographs, faults of runs said, printed numbers those of the films.
 #include "plates/plates.h"
 
 #include <gtest/gtest.h>

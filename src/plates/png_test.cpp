@@ -1,3 +1,4 @@
+// encode_png() read back by libpng: size, pixels, provenance in Latin-1 and beyond it, no date.
 #include <gtest/gtest.h>
 #include <png.h>
 

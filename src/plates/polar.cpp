@@ -1,3 +1,5 @@
+// Rings at a round step, 1, 2, 2.5, 3, 4 or 5 times a power of ten, 44 pixels apart or more; rays every 30 degrees from
+// n. A curve is a polyline with a point every quarter of a degree. Densities in 1/sr.
 #include "plates/polar.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Reducing, a pixel is shared between at most two cells across and two down by the area it has in each, row after row,
+// before the tone mapper or turbo; enlarging, a row is written once and copied.
 #include "plates/raster.h"
 
 #include <fmt/format.h>

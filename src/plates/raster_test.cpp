@@ -1,3 +1,5 @@
+// Blocks against photograph() of single pixels and of averages worked out by hand: whole-number enlargement, rows
+// top-down, areas in linear light, constants at any ratio, one NaN at any size; and what fit() and inside() give.
 #include "plates/raster.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Words are measured before they get their place: the header's right part, a caption in two lines or smaller in three,
+// notes in one line or two. A name tag takes the first free of five places about its outline. Lengths in pixels.
 #include "plates/sheet.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Names, axes and formulas are those of ArmInfo for the arm's sampler, formulas set by base/formula.h. {fmt} prints
+// numbers, which are then given a true minus and powers of ten as superscripts.
 #include "plates/words.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Labels, numbers and formulas of plates against markup written out by hand, on an experiment made up for it.
 #include "plates/words.h"
 
 #include <gmock/gmock.h>

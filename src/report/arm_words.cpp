@@ -1,3 +1,6 @@
+// An arm's side follows from the axis that ArmInfo gives its density; one that combines others has none. Of those about
+// the normal the one with most rungs in common with the mirror's is taken, of equals the one with the least sum of ln
+// RMSE over the regions, at the headline N where both ran, else at the largest they share.
 #include "report/arm_words.h"
 
 #include <fmt/format.h>

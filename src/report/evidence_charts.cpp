@@ -1,3 +1,5 @@
+// Furnaces are grouped by arithmetic and bits of u, one panel each; what lies above the axis is held at its top. Lost
+// light stands beside (1 - cos theta_R)/2 with bars of two standard errors, rejections with their intervals.
 #include "report/evidence_charts.h"
 
 #include "report/arm_words.h"

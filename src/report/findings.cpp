@@ -1,3 +1,5 @@
+// Look-ups by arm, N and s, s and seed the experiment's own where none are given. Bands of n seeds of two equal arms
+// lie apart by chance with probability 2 / (2n choose n), at most 1: every choice of n out of 2n is as likely.
 #include "report/findings.h"
 
 #include <algorithm>

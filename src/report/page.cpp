@@ -1,3 +1,5 @@
+// Plates go into the page as base64; where all of them would take more than 14 MB the largest are linked instead, one
+// by one. Figures are numbered as sections ask for them. Meters have the labels of the table of meters.
 #include "pages/base64.h"
 #include "report/page.h"
 

@@ -1,3 +1,5 @@
+// The run's folder is named by the XXH3-64 of its key: version, commit, the files of program and library, the
+// experiment's hash, the instrument, the plugins. Meters are CBOR records of a Journal, tiles a file for each pass.
 #include "run/checkpoint.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,5 @@
+// Results are put into the plan's order; tails run beside evidence and furnaces; then hashes, bands, ladders and the
+// comparison of references are made of the films and meters, and the assertions that need no plate are judged.
 #include "run/collect.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,6 @@
+// Primary rays are traced once for all jobs, shading points kept where memory allows. A job whose meters are in the
+// checkpoint and whose films are not kept computes nothing; else the instrument makes its films, which are measured
+// side by side.
 #include "run/execute.h"
 
 #include <algorithm>

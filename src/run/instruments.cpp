@@ -1,3 +1,5 @@
+// The CPU hands a job on to estimate_films(). The list of kinds is a static of its function, so that it is there for
+// whoever registers before main.
 #include "run/instruments.h"
 
 #include "estimator/estimator.h"

@@ -1,3 +1,5 @@
+// A program is spoken to by verdicts/pipe.h, one question after another under a lock and with no limit to the whole; a
+// library is opened by verdicts/plugin.h. A wrapper around either puts the arm's name into what it throws.
 #include "run/outside.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,6 @@
+// What can fail early comes first: the font, the view, the samplers, the folder, the outputs' names. Then references,
+// jobs, collect, write, commit; the checkpoint goes last, and there is none where an arm is a program. Films alone need
+// but the first seed.
 #include "run/run.h"
 
 #include <fmt/format.h>

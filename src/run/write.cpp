@@ -1,3 +1,5 @@
+// EXR files are written beside the drawing of plates; then plates, the assertions on them, metrics.json, metrics.csv,
+// junit.xml and report.html, and last timing.json, with the date. Times in seconds.
 #include "run/write.h"
 
 #include <fmt/chrono.h>
