@@ -52,7 +52,7 @@ Arguments arguments(const Ingredients& in) {
             "-crf", "30", "-b:v", "0"});
     append(a, {"-deadline", "good", "-cpu-used", "5", "-row-mt", "1", "-threads", "2", "-pix_fmt", "yuv420p"});
     append(a, colour);
-    append(a, {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "webm", in.webm});
+    append(a, {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-flags:a", "+bitexact", "-f", "webm", in.webm});
     return a;
 }
 

@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #ifdef __linux__
 #include <sys/prctl.h>
@@ -27,8 +28,9 @@ int opened(const std::string& path, int flags) {
 
 struct Descriptors {
     int in = -1, out = -1, err = -1;
+    int feed = -1;  // the other end of `in`
     ~Descriptors() {
-        for (const int fd : {in, out, err})
+        for (const int fd : {in, out, err, feed})
             if (fd >= 0) ::close(fd);
     }
 };
@@ -58,7 +60,7 @@ Process::Process(const std::vector<std::string>& words, const std::string& stdin
     int feed[2] = {-1, -1}, tell[2];
     if (stdin_file.empty()) {
         if (!make_pipe(feed)) throw OutputError("no pipe to be had");
-        streams.in = feed[0], pipe_ = feed[1];
+        streams.in = feed[0], streams.feed = feed[1];
     } else {
         streams.in = opened(stdin_file, O_RDONLY);
     }
@@ -76,6 +78,7 @@ Process::Process(const std::vector<std::string>& words, const std::string& stdin
         pid_ = -1;
         throw OutputError(fmt::format("cannot start {}: {}", words[0], std::strerror(why)));
     }
+    pipe_ = std::exchange(streams.feed, -1);
 }
 
 Process::~Process() {

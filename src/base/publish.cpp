@@ -52,7 +52,7 @@ std::vector<std::string> names_in(const std::string& manifest) {
     for (std::size_t begin = 0; begin < manifest.size();) {
         const std::size_t end = std::min(manifest.find('\n', begin), manifest.size());
         std::string name = manifest.substr(begin, end - begin);
-        if (name.front() != '#' && stays_inside(name)) names.push_back(std::move(name));
+        if (stays_inside(name) && name.front() != '#') names.push_back(std::move(name));
         begin = end + 1;
     }
     return names;

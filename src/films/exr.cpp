@@ -58,7 +58,7 @@ template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
     return buffer;
 }
 
-/// OpenEXR compresses on threads of its own, of which a process has one set: as many as on_threads() allows while one
+/// OpenEXR reads and writes on threads of its own, of which a process has one set: as many as on_threads() allows while one
 /// file is written, then as many as there were.
 class ExrThreads {
 public:

@@ -1,6 +1,7 @@
 // Three bytes make 24 bits and four digits; one or two left over make two or three digits, and "=" fills up.
 #include "pages/base64.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace crescent::inline pages {

@@ -26,7 +26,7 @@ std::string tick_text(double x, bool log) {
     return fmt::format("{:g}", x);
 }
 
-/// The round step (1, 2 or 5 times a power of ten) that cuts `length` into four to eight parts.
+/// The round step (1, 2 or 5 times a power of ten) that cuts `length` into four to ten parts.
 double round_step(double length) {
     const double power = math::pow(10.0, std::floor(math::log10(length / 4)));
     for (const double step : {5.0, 2.0, 1.0})

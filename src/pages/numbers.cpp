@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "math/functions.h"
-
 namespace crescent::inline pages {
 namespace {
 
@@ -38,9 +36,9 @@ std::string figures(double x, int digits) {
     if (x == 0) return "0";
     const double size = std::fabs(x);
     if (size < 1e-4 || size >= 1e9) return fmt::format("{:.{}e}", x, std::max(0, digits - 2));
-    if (size >= 1000) return fmt::format("{:.0f}", x);
-    const int decimals = digits - 1 - static_cast<int>(std::floor(math::log10(size)));
-    return fmt::format("{:.{}f}", x, std::max(0, decimals));
+    const std::string rounded = fmt::format("{:.{}e}", size, digits - 1);  // 9.99996 is 1.000e+01 to four figures
+    const int power = std::stoi(rounded.substr(rounded.find('e') + 1));
+    return fmt::format("{:.{}f}", x, size >= 1000 || power >= 3 ? 0 : std::max(0, digits - 1 - power));
 }
 
 std::string compact(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : shortest(x); }

@@ -19,7 +19,7 @@ struct RatioOfErrors {
     double ratio = 1;  // high / low, >= 1; infinite where low is 0
     bool equal = false;
 };
-/// Which of two errors is larger, how many times, and whether their intervals part.
+/// Which of two errors is larger, and how many times.
 RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b);
 
 /// How many seeds had meter(a) > meter(b), of how many.

@@ -78,6 +78,9 @@ TEST(Numbers, ReadableFiguresKeepFourPlaces) {
     EXPECT_EQ(figures(0.1332529), "0.1333");
     EXPECT_EQ(figures(21358), "21358");
     EXPECT_EQ(figures(0), "0");
+    EXPECT_EQ(figures(9.99996), "10.00");
+    EXPECT_EQ(figures(999.96), "1000") << "whole from there on";
+    EXPECT_EQ(figures(999.94), "999.9");
     EXPECT_EQ(figures_of("fireflies", 12), "12");
     EXPECT_EQ(figures_of("fireflies", 536.5), "536.5");
     EXPECT_EQ(figures_of("fireflies", 3.75), "4");

@@ -20,7 +20,7 @@ constexpr double for_itself = 150e6;  // code, fonts, plates, the report; measur
 // A pixel: Scene::remember_primaries' 4, shape map, site counts and rows on their way to a file.
 constexpr double working_bytes = 12;
 
-double megapixels_that_fit(double pixels, double needed, double available) {
+double pixels_that_fit(double pixels, double needed, double available) {
     const double each = (needed - for_itself) / pixels;
     return std::max(0.0, (0.9 * available - for_itself) / each);
 }
@@ -55,7 +55,7 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
     const auto needed = static_cast<double>(memory_needed(experiment)), there = static_cast<double>(available);
     if (needed <= there) return "";
     const double pixels = static_cast<double>(experiment.image.width) * experiment.image.height;
-    const double scale = std::sqrt(megapixels_that_fit(pixels, needed, there) / pixels);
+    const double scale = std::sqrt(pixels_that_fit(pixels, needed, there) / pixels);
     const int width = static_cast<int>(experiment.image.width * scale),
               height = static_cast<int>(experiment.image.height * scale);
     std::string say = fmt::format(

@@ -76,6 +76,7 @@ std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm, const Experiment&
         refuse(program->traits());
         return std::make_shared<Program>(std::move(program));
     } catch (const InputError&) {
+        if (!arm.exec) throw;
         const std::string key = fmt::format("arms.{}.exec", arm.name);
         throw InputError(experiment.place_of(key), fmt::format("{}: the shell cannot start '{}'", key, *arm.exec));
     } catch (const std::runtime_error& fault) {  // OutputError, SubjectFault
