@@ -58,8 +58,8 @@ template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
     return buffer;
 }
 
-/// OpenEXR reads and writes on threads of its own, of which a process has one set: as many as on_threads() allows while one
-/// file is written, then as many as there were.
+/// OpenEXR reads and writes on threads of its own, of which a process has one set: as many as on_threads() allows while
+/// one file is written, then as many as there were.
 class ExrThreads {
 public:
     ExrThreads() : guard_(lock()), before_(Imf::globalThreadCount()) {
