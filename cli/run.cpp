@@ -28,9 +28,9 @@ std::string command_of(const RunFlags& flags) {
 
 /// The picture, and where it is.
 int show_preview(const Experiment& experiment, const RunOptions& options, Progress& progress) {
+    const std::vector<unsigned char> png = preview(experiment, {options.threads, options.isa, nullptr}, progress);
     Staging staging(options.out, "preview");
-    staging.expect({"preview.png"});
-    staging.write("preview.png", preview(experiment, {options.threads, options.isa, nullptr}, progress));
+    staging.write("preview.png", png);
     staging.commit(progress);
     progress.clear();
     print(fmt::format(

@@ -44,4 +44,5 @@ expect 0 "$CRESCENT" run "$tiny" --preview --quiet --out moved --set 'regions.ba
 cmp -s metrics/preview.png moved/preview.png && die "the preview does not follow --set"
 expect 2 "$CRESCENT" run "$tiny" --preview --only plates --out nowhere
 expect 2 "$CRESCENT" run "$tiny" --preview --set 'regions.ball.box=[1,2,9999,9]' --out nowhere
+expect 2 "$CRESCENT" run "$tiny" --preview --set 'camera.target=[0,90,9]' --out nowhere  # nothing is in view
 [ ! -e nowhere ] || die "a wrong call left an output folder"
