@@ -87,7 +87,7 @@ TEST(SmoothParts, OfThreeIndicesAreThreeAlongTheNormalToo) {
 
 TEST(SmoothParts, OfAThinWallGoStraightOnWhateverIndexIsTold) {
     const auto straight = [](Vec3d o, Vec3d) { return -o; };
-    for (double theta : {30.0, 60.0, 150.0}) {
+    for (double theta : {0.0, 30.0, 60.0, 150.0, 180.0}) {
         const Judgement j = judged(glass_towards(straight, 1), theta);
         EXPECT_NE(j.state, State::wrong) << theta << what_is_wrong(j);
     }
@@ -152,6 +152,45 @@ TEST(SmoothParts, ThatGoStraightOnCarryNoMoreThanArrives) {
         const Judgement bright = judged(mask(0.733), theta);
         EXPECT_EQ(named(bright, "physics").state, State::wrong) << named(bright, "physics").say;
         EXPECT_NE(named(bright, "physics").say.find("straight through"), std::string::npos);
+    }
+}
+
+/// A mirror that turns y round for half of all w_o alone: no index is told, and f has nothing to say of it.
+TEST(SmoothParts, SendLightBackTheWayItCame) {
+    Recipe r{"mirror", "", {}, {}, {}};
+    r.traits.delta = true;
+    r.pdf = [](Vec3d, Vec3d) { return 0; };
+    for (const bool whole : {true, false}) {
+        r.sample = [whole](Vec3d o, const Numbers&) {
+            Draw d{{-o.x, whole || o.x > 0 ? -o.y : o.y, o.z}, 0};
+            d.delta = 1, d.weight = 0.9;
+            return d;
+        };
+        const Judgement j = judged(r, 60);
+        const Verdict& v = named(j, "physics");
+        EXPECT_EQ(v.state, whole ? State::skipped : State::wrong) << v.say;
+        EXPECT_EQ(v.say.find("never back") != std::string::npos, !whole) << v.say;
+    }
+}
+
+/// A tenth of glass of 1.5 is holes. Along the normal glass refracts to where they let through.
+TEST(SmoothParts, MayBeHolesInWhatRefracts) {
+    Recipe r = smooth_glass(1.5);
+    const int chooser = r.traits.numbers++;
+    for (const double through : {1.0, 1.9}) {
+        Recipe holes = r;
+        holes.sample = [=, sample = r.sample](Vec3d o, const Numbers& u) {
+            Draw d = sample(o, u);
+            d.delta *= 0.9;
+            if (u[chooser] >= 0.1) return d;
+            d = {-o, 0};
+            d.delta = 0.1;
+            d.weight = through;
+            return d;
+        };
+        for (const double theta : {0.0, 30.0, 150.0, 180.0})
+            EXPECT_EQ(judged(holes, theta).state, through > 1 ? State::wrong : State::right)
+                << theta << what_is_wrong(judged(holes, theta));
     }
 }
 

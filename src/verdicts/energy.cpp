@@ -3,6 +3,7 @@
 // (Veach 1997, section 5.2; Walter et al. 2007, section 5.2). Where it is not, an albedo over the whole sphere may
 // exceed 1 and be right (transmission.cpp). What a delta part sends straight on, towards -w_o, no index scales, and a
 // phase function has none.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@ constexpr double allowed = 1 + 1e-4;
 struct Given {
     double above = 0, below = 0, error = 0;
     double straight = 0;  // of delta parts at -w_o, which cross no boundary that scales them: not in the halves
+    double holes = 0;     // the same along the normal, where a smooth boundary refracts to -w_o too: in the halves
 };
 
 struct Scales {
@@ -50,13 +52,13 @@ bool too_much(const TrialContext& work, const Given& g, int channel, const char*
     }
     const Scales scale = scales_of(work, channel);
     if (!scale.known || !work.whole()) return false;
-    const double power = back + g.straight + scale.through * through;
+    const double passed = scale.through * (through - g.holes) + g.holes, power = back + g.straight + passed;
     v.evidence[fmt::format(
         "power{}", channel < 0 || work.traits.channels == 1 ? "" : fmt::format("_{}", channel + 1))] = power;
     if (power - (1 + scale.through) * g.error <= allowed) return false;
     v.state = State::wrong;
     v.say = fmt::format("Of the power that arrives the surface reflects {:.6f} and lets {:.6f} through{}{}.", back,
-        g.straight + scale.through * through, tag,
+        g.straight + passed, tag,
         work.traits.eta ? ", by the index that is told: f creates energy, or scales by eta^2 the wrong way"
                         : ": f |cos| creates energy, as a phase function that integrates to more than 1");
     return true;
@@ -80,15 +82,38 @@ bool too_much_either_way(const TrialContext& work, const Given& g, Verdict& v) {
     return false;
 }
 
-/// Of delta parts at -w_o; at the normal a smooth boundary refracts there too.
+/// At the normal a smooth boundary refracts to -w_o.
+bool is_along_normal(Vec3d wo) {
+    constexpr double slanted = 0.01;
+    return std::sqrt(wo.x * wo.x + wo.y * wo.y) < slanted;
+}
+
+/// Of delta parts at -w_o.
 Vec3d straight_through(const TrialContext& work, const DeltaParts& deltas) {
-    constexpr double same = 1e-5, slanted = 0.01;
+    constexpr double same = 1e-5;
     const Vec3d wo = work.trial.wo;
     Vec3d sum{};
-    if (std::sqrt(wo.x * wo.x + wo.y * wo.y) < slanted || !work.whole()) return sum;
+    if (!work.whole()) return sum;
     for (const DeltaPart& p : deltas.parts)
         if (length(p.wi + wo) < same) sum = sum + p.weight * p.q;
     return sum;
+}
+
+/// Of the first delta part that goes straight on, as through a hole, and not where the index bends it, at a slanted w_o
+/// on the same side.
+Vec3d through_holes(const TrialContext& work) {
+    constexpr std::size_t asked = 512;
+    const Vec3d wo = tilt(work.trial.wo.z > 0 ? 30 : 150);
+    const std::vector<Numbers>& all = work.first(0).u;
+    const std::span<const Numbers> u = std::span(all).first(std::min(all.size(), asked));
+    std::vector<Draw> draws(u.size());
+    work.subject.sample(0, wo, u, draws);
+    for (const Draw& d : draws) {
+        if (!(d.delta > 0) || !(length(d.wi + wo) < 1e-5)) continue;
+        const double w = d.weight.value_or(0);
+        return (work.traits.channels == 3 ? d.weights : Vec3d{w, w, w}) * d.delta;
+    }
+    return {};
 }
 
 Given given(const TrialContext& work, const Integral& albedo, const DeltaParts& deltas, int channel) {
@@ -96,7 +121,15 @@ Given given(const TrialContext& work, const Integral& albedo, const DeltaParts& 
     Given out{work.whole() ? albedo.bins[0] : albedo.value, work.whole() ? albedo.bins[1] : 0, albedo.error};
     out.above += of(deltas.energy(1));
     if (work.whole()) out.below += of(deltas.energy(-1));
-    out.straight = of(straight_through(work, deltas));
+    const double onward = of(straight_through(work, deltas));
+    if (is_along_normal(work.trial.wo)) {
+        if (!(onward > 0) || !work.subject.draws_at_will()) return out;
+        const double slanted = of(through_holes(work));
+        out.holes =
+            slanted > 0.5 * onward ? onward : slanted;  // all of it, as by a pane, which lets other shares through
+        return out;
+    }
+    out.straight = onward;
     (work.trial.wo.z > 0 ? out.below : out.above) -= out.straight;
     return out;
 }

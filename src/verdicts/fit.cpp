@@ -76,11 +76,12 @@ double due_for_one(const Density& d, double n) {
 Binned binned(const Density& d, const std::vector<double>& seen, double due_for_one, bool estimates) {
     const std::size_t sectors = static_cast<std::size_t>(d.sectors);
     Binned out{Counts(seen.size()), Counts(d.rings.size() - 1), Counts(sectors)};
+    const double share_se = d.nothing < 1 ? d.nothing_se / (1 - d.nothing) : 0;  // of the share that is drawn
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const double due = due_for_one * d.mass.bins[i],
                      slack = due_for_one *
             ((d.tabulation_errors.empty() ? 0 : d.tabulation_errors[i]) + (estimates ? 1 : 3) * d.mass.bin_errors[i] +
-                2 * d.nothing_se * d.mass.bins[i]);
+                2 * share_se * d.mass.bins[i]);
         const auto add = [&](Counts& to, std::size_t k, double of_slack) {
             to.seen[k] += seen[i], to.due[k] += due, to.slack[k] += of_slack;
         };
@@ -140,10 +141,12 @@ FitToDensity fit_to_density(const TrialContext& work, int technique, const Densi
     Binned counts = binned(d, out.observed, due_for_one(d, n), estimates);
     out.expected = counts.bins.due;
     set_apart(d, n, counts, out);
-    if (n * d.nothing >= 5) {  // nothing drawn is one more bin
-        counts.bins.seen.insert(counts.bins.seen.begin(), nothing);
-        counts.bins.due.insert(counts.bins.due.begin(), n * d.nothing);
-        counts.bins.slack.insert(counts.bins.slack.begin(), 2 * n * d.nothing_se);
+    if (n * d.nothing >= 5) {  // nothing drawn is one more bin: all of them together are n
+        for (Counts* of : {&counts.bins, &counts.rings, &counts.sectors}) {
+            of->seen.insert(of->seen.begin(), nothing);
+            of->due.insert(of->due.begin(), n * d.nothing);
+            of->slack.insert(of->slack.begin(), 2 * n * d.nothing_se);
+        }
     }
     if (work.traits.wo == Traits::Asked::none) hold_heights(d, b, out);
     out.joint = pearson(counts.bins);

@@ -58,7 +58,7 @@ bool affords(const Spending& now, std::uint64_t dearest) {
 /// What all w_o may be asked, but for what follows the last one.
 std::size_t questions_for(const TestSettings& settings, std::size_t count) {
     constexpr std::size_t enough = 333000;  // of the even share, where more w_o are asked for than the grid has
-    return std::max(settings.questions_in_all, count * enough) / 40 * 39;
+    return std::max(settings.questions_in_all, count * enough) / 20 * 19;
 }
 
 /// What one w_o may be asked: what is left, less nine tenths of an even share for each of those still to come. What one

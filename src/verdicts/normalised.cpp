@@ -103,6 +103,10 @@ Verdict judge(TrialContext& work) {
         ++work.test_counts.tests;
         if (const double sum = mass.value + d.nothing; !std::isfinite(sum) || is_off(work, t, excess(d, mass))) {
             v.state = State::wrong;
+            if (!std::isfinite(sum)) {
+                v.say = "p is not finite everywhere: it has no integral.";
+                return v;
+            }
             v.say = told(d, mass) +
                 (d.nothing < 1
                         ? fmt::format(", not to 1: weights are off by {:+.3g} % on average.", 100 * (1 / sum - 1))

@@ -110,6 +110,8 @@ bool creates_energy(const TrialContext& work, const Integral& albedo, Verdict& v
 bool is_phase_function(const TrialContext& work);
 /// A delta part goes where neither the index that is told nor a thin wall lets it through; says so. See snell.cpp.
 bool refracts_elsewhere(const TrialContext& work, Verdict& v);
+/// Where a delta part goes, no delta part comes back from; says so.
+bool comes_not_back(const TrialContext& work, Verdict& v);
 /// Weights without a pdf whose mean under a light from one side is not the integral; says so. See mean_lights.cpp.
 bool directions_are_off(const TrialContext& work, Verdict& v);
 

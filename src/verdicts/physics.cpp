@@ -222,7 +222,7 @@ void judge_furnace(const TrialContext& work, const Spread& s, Verdict& v) {
 
 Verdict judge(TrialContext& work) {
     Verdict v = work.verdict("physics", State::right, "");
-    if (refracts_elsewhere(work, v)) return v;
+    if (refracts_elsewhere(work, v) || comes_not_back(work, v)) return v;
     if (!work.subject.has_f()) return work.verdict("physics", State::skipped, "There is no BRDF.");
     const Reciprocity r = reciprocity(work);
     v.evidence["reciprocity_pairs"] = r.tried;

@@ -82,11 +82,11 @@ std::optional<Contrasted> contrasted(const TrialContext& work) {
 
 namespace {
 
-/// Draws of a fresh seed at each of `count` w_o: four times as many; of a limited sampler as many again, as far as what it may
-/// be asked in all allows, a sample and its pdf each.
+/// Draws of a fresh seed at each of `count` w_o: four times as many; of a limited sampler as many again, as far as what
+/// it may be asked in all allows, a sample and its pdf each.
 std::uint64_t fresh_draws(const Trial& trial, std::size_t count, const TestSettings& settings) {
     if (!trial.subject->limited()) return 4 * settings.draws;
-    const std::uint64_t asked = trial.subject->spending().answers, all = settings.questions_in_all;
+    const std::uint64_t asked = trial.subject->spending().answers, all = settings.questions_in_all / 40 * 39;
     return std::min<std::uint64_t>(settings.draws, (all > asked ? all - asked : 0) / (2 * count));
 }
 

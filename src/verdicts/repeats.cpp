@@ -15,11 +15,16 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-/// How many are equal to one that stands before them.
-std::size_t met_before(const std::vector<std::array<double, 3>>& all) {
+/// Draws that are equal to one that stands before them.
+struct Met {
+    std::size_t count = 0;
+    std::size_t most = 0, first = 0;  // of one direction, and which draw was the first to go there
+};
+
+Met met_before(const std::vector<std::array<double, 3>>& all) {
     const std::size_t places = std::bit_ceil(2 * all.size());
-    std::vector<std::uint32_t> at(places, 0);  // one more than the index; 0: free
-    std::size_t out = 0;
+    std::vector<std::uint32_t> at(places, 0), times(places, 0);  // at: one more than the index; 0: free
+    Met out;
     for (std::size_t i = 0; i < all.size(); ++i) {
         std::uint64_t key = 0;
         for (double v : all[i]) {  // -0 is 0
@@ -32,7 +37,8 @@ std::size_t met_before(const std::vector<std::array<double, 3>>& all) {
                 break;
             }
             if (all[at[k] - 1] == all[i]) {
-                ++out;
+                ++out.count;
+                if (++times[k] > out.most) out.most = times[k], out.first = at[k] - 1;
                 break;
             }
         }
@@ -45,21 +51,35 @@ std::size_t met_before(const std::vector<std::array<double, 3>>& all) {
 namespace {
 
 /// Draws with the very direction of another, where that is no chance: rounding brings together as many pairs as N^2 / 2
-/// times the mean of p times the solid angle of a rounding. 0: none worth telling.
-std::size_t repeated_directions(const TrialContext& work, const SampleBatch& b) {
+/// times the mean of p times the solid angle of a rounding, and N p times that about one direction.
+struct RepeatedDirections {
+    std::size_t grid = 0, atom = 0;  // of many directions; of one: 0 where none are worth telling
+    Vec3d at{};                      // that one
+};
+
+RepeatedDirections repeated_directions(const TrialContext& work, const SampleBatch& b) {
     std::vector<std::array<double, 3>> all;
+    std::vector<double> density;
     double p = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0)) continue;
         all.push_back({d.wi.x, d.wi.y, d.wi.z});
+        density.push_back(b.pdf[i]);
         p += b.pdf[i];
     }
-    if (all.empty() || !work.traits.has_pdf || !work.subject.draws_at_will()) return 0;
-    const double n = static_cast<double>(all.size()),
-                 chance = 0.5 * n * p * 16 * work.direction_resolution() * work.direction_resolution();
-    const std::size_t out = met_before(all);
-    return static_cast<double>(out) > std::max(64.0, 20 * chance + 1e-3 * n) ? out : 0;
+    RepeatedDirections out;
+    if (all.empty() || !work.traits.has_pdf || !work.subject.draws_at_will()) return out;
+    const double n = static_cast<double>(all.size()), rounding = 16 * sqr(work.direction_resolution());
+    const Met met = met_before(all);
+    const auto of_one = static_cast<double>(met.most);
+    if (of_one > 8 + 20 * n * density[met.first] * rounding && 2 * met.most > met.count) {
+        const auto& [x, y, z] = all[met.first];
+        out.atom = met.most + 1, out.at = {x, y, z};
+    } else if (static_cast<double>(met.count) > std::max(64.0, 20 * 0.5 * n * p * rounding + 1e-3 * n)) {
+        out.grid = met.count;
+    }
+    return out;
 }
 
 /// Loops over packs treat the last few of a block by other instructions: last bits may differ, and what hangs on them.
@@ -120,14 +140,19 @@ bool answers_otherwise(const TrialContext& work, int technique, Verdict& v) {
 }
 
 bool repeats_directions(const TrialContext& work, const SampleBatch& b, Verdict& v) {
-    const std::size_t repeats = repeated_directions(work, b);
-    if (repeats == 0) return false;
+    const RepeatedDirections r = repeated_directions(work, b);
+    if (r.atom + r.grid == 0) return false;
     v.state = State::wrong;
-    v.evidence["repeated_directions"] = repeats;
-    v.say = fmt::format(
-        "{} of {} draws have the very direction of another draw: only a grid of directions is ever drawn, and p is a "
-        "density.",
-        repeats, b.draws.size());
+    v.evidence["repeated_directions"] = r.atom + r.grid;
+    v.say = r.atom > 0
+        ? fmt::format(
+              "{} of {} draws go to the very direction ({:.6g}, {:.6g}, {:.6g}): a part of what is drawn has no "
+              "density, and p says nothing of it.",
+              r.atom, b.draws.size(), r.at.x, r.at.y, r.at.z)
+        : fmt::format(
+              "{} of {} draws have the very direction of another draw: points or lines are drawn, and p "
+              "is a density of solid angle.",
+              r.grid, b.draws.size());
     return true;
 }
 

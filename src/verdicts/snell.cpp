@@ -1,5 +1,6 @@
 // Where delta parts go: a smooth boundary mirrors, and refracts by the index that is told (Snell); a thin wall lets
-// straight through. Where nothing is mirrored, that the boundary lies flat is seen by turning w_o about n.
+// straight through. Where nothing is mirrored, that the boundary lies flat is seen by turning w_o about n. Light goes
+// back the way that it came (Helmholtz), whatever the boundary is.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -88,6 +89,45 @@ bool refracts_elsewhere(const TrialContext& work, Verdict& v) {
             v.evidence["diagnosis"] = "1 / eta";
             v.say += " What explains it: 1 / eta for eta.";
         }
+        return true;
+    }
+    return false;
+}
+
+namespace {
+
+/// Where delta parts of the same kind, mirrored or passed on, send w_i, unless one sends it back to w_o.
+std::optional<Vec3d> sent_elsewhere(const TrialContext& work, Vec3d wi) {
+    constexpr std::size_t tried = 512, enough = 8;
+    const Vec3d wo = work.trial.wo;
+    const SampleBatch& b = work.first(0);
+    std::vector<Draw> there(std::min(tried, b.u.size()));
+    work.subject.sample(0, wi, std::span(b.u).first(there.size()), there);
+    std::erase_if(there, [&](const Draw& d) { return !(d.delta > 0) || (d.wi.z * wi.z < 0) != (wi.z * wo.z < 0); });
+    const auto back = [&](const Draw& d) { return near(d.wi, wo); };
+    if (there.size() < enough || std::ranges::any_of(there, back)) return {};
+    return there[0].wi;
+}
+
+}  // namespace
+
+bool comes_not_back(const TrialContext& work, Verdict& v) {
+    constexpr double grazing = 0.02;
+    const DeltaParts deltas = delta_parts(work, work.first(0));
+    if (!work.traits.reciprocal || work.traits.wo == Traits::Asked::none || !work.subject.draws_at_will() ||
+        deltas.scattered)
+        return false;
+    for (const DeltaPart& p : deltas.parts) {
+        if (p.wi.z < grazing && (work.traits.wo != Traits::Asked::both || p.wi.z > -grazing)) continue;
+        const std::optional<Vec3d> there = sent_elsewhere(work, normalize(p.wi));
+        if (!there) continue;
+        v.state = State::wrong;
+        v.evidence["delta_part"] = {p.wi.x, p.wi.y, p.wi.z};
+        v.say = fmt::format(
+            "A delta part sends w_o to ({:.5g}, {:.5g}, {:.5g}), but that one to ({:.5g}, {:.5g}, {:.5g}) and never "
+            "back "
+            "to w_o: light does not go back the way that it came.",
+            p.wi.x, p.wi.y, p.wi.z, there->x, there->y, there->z);
         return true;
     }
     return false;

@@ -84,11 +84,11 @@ struct Density {
 
 /// Light in directions whose weight X = f L cos / p is larger than any that was drawn; see unmet.cpp.
 struct Unmet {
-    double largest = 0;          // of the drawn weights
-    double mass = 0, error = 0;  // int f L cos there
-    double chance = 0;           // int p there: of one draw to meet it
-    double variance = 0;         // of the weights up to the largest, by quadrature
-    bool heavy = false;          // it explains what the mean lacks, and so many draws need not have met it
+    double largest = 0, mean = 0;  // of the drawn weights
+    double mass = 0, error = 0;    // int f L cos there
+    double chance = 0;             // int p there: of one draw to meet it
+    double variance = 0;           // of the weights up to the largest, by quadrature
+    bool heavy = false;            // it explains what the mean lacks, and so many draws need not have met it
 };
 
 struct WarpFinding;

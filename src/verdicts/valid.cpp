@@ -86,13 +86,19 @@ std::string share_of_faults(const TrialContext& work, int technique, Verdict& v)
                       : std::string());
 }
 
-/// pdf(w) and f(w) all over the sphere, near the horizon on both sides and near the normal, whether drawn or not.
-std::string fault_all_over(const TrialContext& work, int technique) {
+/// Near the horizon on both sides, near the normal and between.
+std::vector<Vec3d> all_over() {
     std::vector<Vec3d> wi;
     constexpr int turns = 16;
     for (double z : {1.0, 0.9999, 0.97, 0.85, 0.6, 0.35, 0.15, 0.05, 1e-2, 1e-3, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1,
              -0.5, -0.9, -1.0})
         for (int k = 0; k < turns; ++k) wi.push_back(math::spherical(z, 2 * pi * (k + 0.37) / turns));
+    return wi;
+}
+
+/// pdf(w) and f(w) there, whether drawn or not.
+std::string fault_all_over(const TrialContext& work, int technique) {
+    std::vector<Vec3d> wi = all_over();
     const std::vector<double> p = work.pdf(technique, wi);
     for (std::size_t i = 0; i < wi.size(); ++i)
         if (!std::isfinite(p[i]) || p[i] < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(wi[i]), p[i]);
@@ -115,6 +121,24 @@ bool reflects_nothing(const TrialContext& work) {
     const std::vector<double> f = work.f(wi);
     return std::ranges::all_of(f, [](double v) { return v == 0; }) &&
         work.incoming(TrialContext::Where::everywhere, false).value == 0;
+}
+
+/// Nothing was drawn. It need not have been where p is small, which normalised tells of; nor under a surface of which
+/// nothing is known but a p that is 0.
+std::optional<Verdict> judge_no_draw(const TrialContext& work, std::uint64_t draws) {
+    if (reflects_nothing(work))
+        return work.verdict("valid", State::right, "No sample draws anything here, and f is 0: nothing to draw.");
+    if (!work.traits.has_pdf) return {};
+    const std::vector<double> p = work.any_pdf(all_over());
+    if (std::ranges::any_of(p, [](double v) { return v > 0; }))
+        return work.verdict("valid", State::right,
+            fmt::format(
+                "None of {} samples drew anything here, where p is not 0 everywhere: what it integrates to tells "
+                "whether that can be.",
+                draws));
+    if (work.trial.wo.z < 0 && !work.subject.has_f() && !work.traits.eta && !work.traits.delta)
+        return work.verdict("valid", State::right, "No sample draws anything here, and p is 0: nothing to draw.");
+    return {};
 }
 
 /// What is wrong at corners of u or for a few draws alone leaves the rest to be judged.
@@ -162,11 +186,10 @@ Verdict judge(TrialContext& work) {
         nothing += work.first(t).nothing - work.first(t).deltas;
         for (const Draw& d : work.first(t).draws) drawn += d.pdf > 0 || d.delta > 0;
     }
-    if (drawn == 0 && !reflects_nothing(work))
-        return work.verdict(
-            "valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws));
     if (drawn == 0)
-        return work.verdict("valid", State::right, "No sample draws anything here, and f is 0: nothing to draw.");
+        return judge_no_draw(work, draws)
+            .value_or(work.verdict(
+                "valid", State::wrong, fmt::format("None of {} samples drew anything: every pdf is 0.", draws)));
     Verdict v = work.verdict("valid", State::right,
         fmt::format("Every direction is finite and unit to 1e-5 and every pdf finite and at least 0, at the corners of "
                     "u, over {} draws and all over the sphere.",
