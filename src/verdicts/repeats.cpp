@@ -73,7 +73,8 @@ RepeatedDirections repeated_directions(const TrialContext& work, const SampleBat
     const double n = static_cast<double>(all.size()), rounding = 16 * sqr(work.direction_resolution());
     const Met met = met_before(all);
     const auto of_one = static_cast<double>(met.most);
-    if (of_one > 8 + 20 * n * density[met.first] * rounding && 2 * met.most > met.count) {
+    constexpr double least = 2e-4;  // of the draws: a few steps of u that lead to one place are no atom
+    if (of_one > std::max(8.0, least * n) + 20 * n * density[met.first] * rounding && 2 * met.most > met.count) {
         const auto& [x, y, z] = all[met.first];
         out.atom = met.most + 1, out.at = {x, y, z};
     } else if (static_cast<double>(met.count) > std::max(64.0, 20 * 0.5 * n * p * rounding + 1e-3 * n)) {
