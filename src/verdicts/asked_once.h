@@ -9,8 +9,8 @@
 
 namespace crescent::inline verdicts {
 
-/// `sampler`, with its answers for quadrature and for f kept, and those that it gives counted; for one thread. draws: those for the same u, and pdf(w)
-/// at them, are kept too.
+/// `sampler`, with its answers for quadrature and for f kept, and those that it gives counted; for one thread. draws:
+/// those for the same u, and pdf(w) at them, are kept too.
 std::shared_ptr<const JudgedSampler> asked_once(std::shared_ptr<const JudgedSampler> sampler, bool draws = false);
 /// What answers anew, whatever was kept.
 const JudgedSampler& afresh(const JudgedSampler& sampler);
