@@ -61,18 +61,21 @@ std::size_t questions_for(const TestSettings& settings, std::size_t count) {
     return std::max(settings.questions_in_all, count * enough) / 20 * 19;
 }
 
+/// What one w_o may be asked, but for the least of what comes last, which is asked in any case.
+std::size_t most_of_one(const TestSettings& settings) { return settings.questions / 50 * 49; }
+
 /// What one w_o may be asked: what is left, less nine tenths of an even share for each of those still to come. What one
 /// does not need the next may have.
 std::size_t share_of(const TestSettings& settings, std::size_t count, std::uint64_t asked, std::size_t to_come) {
     const std::size_t all = questions_for(settings, count), each = all / 10 * 9 / count;
     const std::size_t kept = asked + to_come * each;
-    return std::min(settings.questions, std::max(all > kept ? all - kept : 0, each));
+    return std::min(most_of_one(settings), std::max(all > kept ? all - kept : 0, each));
 }
 
 }  // namespace
 
 std::size_t even_share(const TestSettings& settings, std::size_t count) {
-    return std::min(settings.questions, questions_for(settings, count) / std::max<std::size_t>(count, 1));
+    return std::min(most_of_one(settings), questions_for(settings, count) / std::max<std::size_t>(count, 1));
 }
 
 std::vector<Outcome> judge_in_turn(
