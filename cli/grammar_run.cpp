@@ -64,7 +64,7 @@ void add_run(CLI::App& app, Work& work) {
     c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")
         ->type_name("K")
         ->check(CLI::Range(1, 4096));
-    auto* preview = c->add_flag("--preview", f->preview, "DIR/preview.png alone: regions and crops on the reference");
+    auto* preview = c->add_flag("--preview", f->preview, "DIR/preview.png alone: where regions and crops lie");
     c->add_option("--seed-range", f->seed_range, "seeds A to B of the series alone, from 1")
         ->type_name("A:B")
         ->check(seed_range)
