@@ -1,8 +1,10 @@
 #include "estimator/estimator.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "base/errors.h"
@@ -27,26 +29,28 @@ void run_kernel(const std::string& isa, const ArmInUse& arm, KernelCall call) {
 class FilmResolve {
 public:
     FilmResolve(const Scene& scene, const ShadingPoints& sites, const Moments& m, Film& film)
-        : scene_(scene), sites_(sites), m_(m), film_(film) {}
+        : scene_(scene), sites_(sites), m_(m), film_(film), n_(static_cast<double>(film.n)) {}
 
     void pixel(std::size_t i) const {
         const std::size_t at = sites_.pixel[i];
-        const double n = static_cast<double>(film_.n);
-        const Rgb mean = radiance(i, n);
+        const Rgb mean = radiance(i);
         const double y = luminance(mean);
         film_.r[at] = static_cast<float>(mean[0]);
         film_.g[at] = static_cast<float>(mean[1]);
         film_.b[at] = static_cast<float>(mean[2]);
         film_.y[at] = static_cast<float>(y);
-        film_.y2[at] = static_cast<float>(m_.spread[i] / n + y * y);
-        film_.var[at] = film_.n > 1 ? static_cast<float>(m_.spread[i] / (n * (n - 1))) : 0.0f;
+        film_.y2[at] = static_cast<float>(over_n(m_.spread[i]) + y * y);
+        film_.var[at] = film_.n > 1 ? static_cast<float>(m_.spread[i] / (n_ * (n_ - 1))) : 0.0f;
         film_.largest[at] = m_.largest[i];
         film_.horizon[at] = m_.horizon[i];
         film_.hits[at] = m_.hits[i];
     }
 
 private:
-    Rgb radiance(std::size_t i, double n) const {
+    /// x / n: by a product, which is faster, where that has the same bits.
+    double over_n(double x) const { return is_power_of_2_ ? x * inverse_n_ : x / n_; }
+
+    Rgb radiance(std::size_t i) const {
         double fill_g = m_.g[i], fill_lobe = m_.g_lobe[i];
         Rgb diffuse{}, lobe{};
         for (std::size_t k = 0; k < m_.light_g.size(); ++k) {
@@ -61,7 +65,8 @@ private:
         for (std::size_t c = 0; c < 3; ++c) {
             diffuse[c] += scene_.fill()[c] * (fill_g < 0 ? 0 : fill_g);
             lobe[c] += scene_.fill()[c] * (fill_lobe < 0 ? 0 : fill_lobe);
-            out[c] = (sites_.rho_d[i][c] / pi * diffuse[c] + sites_.rho_s_exact[i] * (sites_.tint[i][c] * lobe[c])) / n;
+            const double lobes = sites_.rho_s_exact[i] * (sites_.tint[i][c] * lobe[c]);
+            out[c] = over_n(sites_.lambert[i][c] * diffuse[c] + lobes);
         }
         return out;
     }
@@ -70,6 +75,8 @@ private:
     const ShadingPoints& sites_;
     const Moments& m_;
     Film& film_;
+    double n_, inverse_n_ = 1 / n_;
+    bool is_power_of_2_ = std::has_single_bit(film_.n);
 };
 
 }  // namespace
@@ -147,35 +154,61 @@ Moments estimate_sites(const ShadingPoints& sites, const ArmInUse& arm, std::uin
     return std::move(moments[0]);
 }
 
+namespace {
+
+/// The largest `count` of what many threads give, whatever their order.
+class Largest {
+public:
+    explicit Largest(std::size_t count) : count_(count) {}
+
+    /// Changes `samples`. NaN is counted by the kernels and has no size.
+    void add(std::vector<float>& samples) {
+        const float least = least_.load(std::memory_order_relaxed);
+        const std::size_t drawn = samples.size();
+        std::erase_if(samples, [least](float x) { return !(x > least); });
+        const Guard guard(lock_);
+        drawn_ += drawn;
+        all_.insert(all_.end(), samples.begin(), samples.end());
+        if (all_.size() <= count_) return;
+        const auto last = all_.begin() + static_cast<std::ptrdiff_t>(count_) - 1;
+        std::nth_element(all_.begin(), last, all_.end(), std::greater<>());
+        all_.resize(count_);
+        least_.store(all_.back(), std::memory_order_relaxed);
+    }
+
+    std::uint64_t drawn() const { return drawn_; }
+    std::vector<float> in_order() && {
+        std::sort(all_.begin(), all_.end(), std::greater<>());
+        return std::move(all_);
+    }
+
+private:
+    std::size_t count_;
+    Mutex lock_;
+    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // nothing up to this is among them any more
+    std::vector<float> all_;
+    std::uint64_t drawn_ = 0;
+};
+
+}  // namespace
+
 std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn) {
-    std::vector<float> all;
-    Mutex lock;
-    drawn = 0;
     std::vector<TileBox> tiles;
     for (const TileBox& t : tiles_of(box.width(), box.height()))
         tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
+    Largest largest(count);
     parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
         for (const ShadingPoints& sites : sites_of(scene, tiles[k], nullptr)) {
             if (monitor.stop.load(std::memory_order_relaxed)) return;
             std::vector<float> samples(sites.count * n);
             estimate_sites(sites, arm, n, seed, isa, &monitor.stop, samples.data());
-            const std::uint64_t here = samples.size();
-            std::erase_if(samples, [](float x) { return std::isnan(x); });  // counted by the kernels; not a size
-            if (samples.size() > count) {
-                std::nth_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count), samples.end(),
-                    std::greater<>());
-                samples.resize(count);
-            }
-            const Guard guard(lock);
-            drawn += here;
-            all.insert(all.end(), samples.begin(), samples.end());
+            largest.add(samples);
         }
     });
     monitor.check();
-    std::sort(all.begin(), all.end(), std::greater<>());  // the same values in any order of tiles
-    if (all.size() > count) all.resize(count);
-    return all;
+    drawn = largest.drawn();
+    return std::move(largest).in_order();
 }
 
 }  // namespace crescent::inline estimator

@@ -25,7 +25,7 @@ void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments&
 /// Which shape each pixel sees.
 ShapeMap shape_map(const Scene& scene);
 
-/// The `count` largest samples X of one arm over the geometry pixels of a box, n samples each, in falling order.
+/// The `count` >= 1 largest samples X of one arm over the geometry pixels of a box, n samples each, in falling order.
 /// `drawn` receives how many samples there were.
 std::vector<float> largest_samples(const Scene& scene, const ArmInUse& arm, std::uint64_t n, std::uint32_t seed,
     const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn);

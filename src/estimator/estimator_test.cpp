@@ -152,7 +152,7 @@ TEST(LargestSamples, AreThoseOfTheSamplesThemselvesInFallingOrder) {
     const Scene scene(test::small_scene());
     ProgressMonitor monitor;
     constexpr std::uint64_t n = 40;
-    const Box box = {28, 18, 40, 27};
+    const Box box = {0, 0, scene.image().width - 1, scene.image().height - 1};  // many tiles
     std::vector<float> all;
     for (const ShadingPoints& sites : sites_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
         std::vector<float> x(sites.count * n);

@@ -79,6 +79,7 @@ ShadingPoints empty_sites(const Scene& scene, int lobe) {
 }
 
 Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
+    for (std::size_t c = 0; c < 3; ++c) lambert[c] = surface.rho_d[c] / pi;
     const double fill = reflected(scene.fill(), surface.rho_d);
     fill_d = worth(fill / pi);
     fill_s = worth(surface.tinted(scene.fill()) * surface.rho_s);
@@ -117,7 +118,7 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
         others[k].d[i] = shading.disk_d[light];
         others[k].s[i] = shading.disk_s[light];
     }
-    rho_d[i] = shading.surface.rho_d;
+    lambert[i] = shading.lambert;
     rho_s_exact[i] = shading.surface.rho_s;
     tint[i] = shading.surface.tint;
 }
@@ -125,7 +126,7 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
 template <class Work> void ShadingPoints::each_array(Work&& work) {
     const auto all = [&](auto&... arrays) { (work(arrays), ...); };
     all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
-        fill_s, rho_d, rho_s_exact, tint);
+        fill_s, lambert, rho_s_exact, tint);
     for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
     for (LightArrays& k : others) {
         for (std::vector<float>& numbers : k.numbers) all(numbers);

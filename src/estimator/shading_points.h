@@ -40,7 +40,8 @@ struct LightArrays {
 /// Constants of one surface: luminance of f L for the fill and for each disk light.
 struct Shading {
     Surface surface;
-    float fill_d = 0, fill_s = 0;       // as in ShadingPoints
+    Rgb lambert{};  // as in ShadingPoints, and the next two
+    float fill_d = 0, fill_s = 0;
     std::vector<float> disk_d, disk_s;  // as in DiskArrays, one a disk
     Shading(const Scene& scene, const Surface& on);
 };
@@ -71,7 +72,7 @@ struct ShadingPoints {
     std::vector<LightArrays> others;  // lights that are no disks
     std::size_t light_count() const { return disks.size() + others.size(); }
     std::vector<OccluderF> occluders;  // those that may hide a disk from one of the sites
-    std::vector<Rgb> rho_d;            // per pixel, for the colours of the film
+    std::vector<Rgb> lambert;          // rho_d / pi, for the colours of the film
     std::vector<double> rho_s_exact;
     std::vector<Rgb> tint;  // of the lobe, as in Surface
 

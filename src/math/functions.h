@@ -9,6 +9,7 @@
 //   log10           x > 0                        0.51
 //   log1p           x > -1                       0.9
 //   pow             all                          0.75
+//   whole_power     n >= 1                       n
 //   sin, cos        |x| < 2^50, else NaN         0.8
 //   tan             |x| < 2^50, else NaN         2
 //   atan2           all                          1.25
@@ -38,6 +39,15 @@ double log1p(double x);
 
 /// x^y; a negative x has a power for whole y alone.
 double pow(double x, double y);
+/// x^n by squaring: for small n it is many times as fast as pow().
+constexpr double whole_power(double x, unsigned n) {
+    double out = n & 1u ? x : 1;
+    for (n >>= 1; n > 0; n >>= 1) {
+        x *= x;
+        if (n & 1u) out *= x;
+    }
+    return out;
+}
 
 /// Of x in radians.
 double sin(double x);

@@ -111,6 +111,19 @@ TEST(Functions, StayWithinTheErrorOfTheirTable) {
     }
 }
 
+TEST(Functions, WholePowersStayWithinNUnits) {
+    const std::array<std::pair<double, double>, 4> ranges = {{{0, 1}, {0.9, 1.1}, {-3, 3}, {-infinity, infinity}}};
+    std::mt19937_64 bits(13);
+    for (unsigned n = 1; n <= 300; ++n)
+        for (const auto& range : ranges)
+            for (int k = 0; k < 100; ++k) {
+                const double x = drawn(bits, range);
+                Exact exact(x);
+                mpfr_pow_ui(exact.v, exact.v, n, MPFR_RNDN);
+                ASSERT_LE(ulps(whole_power(x, n), exact), n) << x << " to the power of " << n;
+            }
+}
+
 struct Pair {
     const char* name;
     double (*ours)(double, double);

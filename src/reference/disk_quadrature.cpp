@@ -167,8 +167,10 @@ DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene
 std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Figure& figure) const {
     std::vector<const Blocker*> out;
     const Bodies::Any light = body_of(figure);
+    const Ball all = {middle_of(figure), radius_of(figure)};
     for (const Blocker& b : blockers_) {
         if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
+        if (passes_by(b.around, hit.x, all)) continue;
         // A light in this one's plane stands before it at the end of the way, or does not.
         const bool apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.between.to)))
                                    : is_separated(b.body, {hit.x}, light);

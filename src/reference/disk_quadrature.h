@@ -23,6 +23,7 @@ struct Blocker {
     Occluder body;
     Between between = before_light;
     const Light* light = nullptr;  // which is not there from behind where it shines from one side alone
+    Ball around = ball_around(body);
 };
 
 class DiskQuadrature {

@@ -60,4 +60,14 @@ bool is_separated(const Occluder& body, const Extent& from, const Bodies::Any& l
     return std::visit([&](const auto& b, const auto& l) { return Apart(b, from, l).by_any_plane(); }, body.body, light);
 }
 
+Ball ball_around(const Occluder& body) {
+    return std::visit(
+        [](const auto& b) {
+            if (b.faces().empty()) return Ball{b.middle(), b.half_extent({1, 0, 0})};
+            const Vec3d half = {b.half_extent({1, 0, 0}), b.half_extent({0, 1, 0}), b.half_extent({0, 0, 1})};
+            return Ball{b.middle(), std::sqrt(dot(half, half))};
+        },
+        body.body);
+}
+
 }  // namespace crescent::inline scene

@@ -88,6 +88,24 @@ TEST(IsSeparated, NeverPartsABodyFromSegmentsThatItCrosses) {
     }
 }
 
+TEST(PassesBy, IsNeverSaidOfABodyThatHidesSome) {
+    for (const Kind kind : {Kind::sphere, Kind::box, Kind::quad, Kind::disk, Kind::plane}) {
+        Numbers next(17 + static_cast<std::uint32_t>(kind));
+        int clear = 0, in_the_way = 0;
+        for (int trial = 0; trial < 1000; ++trial) {
+            Obstacle s = some_obstacle(kind, next);
+            s.from.half = {};
+            const bool passes = passes_by(ball_around(s.body), s.from.middle, {s.disk.center, s.disk.radius});
+            const int hidden_ones = hidden_segments(s, next, 200);
+            EXPECT_FALSE(passes && hidden_ones > 0) << "body " << static_cast<int>(kind) << ", trial " << trial;
+            in_the_way += hidden_ones > 0;
+            clear += passes;
+        }
+        EXPECT_GT(in_the_way, 20) << static_cast<int>(kind);
+        EXPECT_EQ(clear > 200, kind != Kind::plane) << static_cast<int>(kind);  // no ball holds a plane
+    }
+}
+
 TEST(EachOpenPart, IsTheRestOfTheChord) {
     const auto parts_of = [](std::vector<Interval> hidden_parts) {
         std::vector<double> ends;

@@ -184,11 +184,13 @@ inline Power<double> power(double x, double y) {
     const double l = y * math::log(x);
     return {math::exp(l), -math::expm1(l)};
 }
-/// (a.b)_+^s for unit a and b.
+/// (a.b)_+^s for unit a and b. Whole s up to 256 are powers by squaring, to s ULP of c^s.
 inline double cosine_power(Vec3<double> a, Vec3<double> b, double s) {
     const Vec3<double> d = a - b;
     const double cos_minus_1 = -0.5 * dot(d, d);
-    return cos_minus_1 > -1 ? math::exp(s * math::log1p(cos_minus_1)) : 0.0;
+    if (!(cos_minus_1 > -1)) return 0;
+    if (s <= 256 && s == std::trunc(s)) return math::whole_power(1 + cos_minus_1, static_cast<unsigned>(s));
+    return math::exp(s * math::log1p(cos_minus_1));
 }
 
 template <class F> CRESCENT_INLINE Vec3<F> normalize(Vec3<F> a) {

@@ -28,11 +28,11 @@ struct FurnaceSubject {
 
     /// The cosine with R for u.
     double cosine(double u) const { return math::exp(math::log(u) / (s + 1)); }
-    /// X of the combined furnace for u, R = n: the angle about R does not matter.
+    /// X of the combined furnace for u, R = n, where the angle about R does not matter: (cos/p) (rho_d/pi + rho_s lobe)
+    /// with p = (s+1)/(2 pi) u/cos and lobe = (s+2)/(2 pi) u/cos.
     double weight(double u, double cos) const {
-        const double p = (s + 1) / (2 * pi) * (u / cos);
-        const double lobe = (s + 2) / (2 * pi) * (u / cos);
-        return (cos / p) * (rho_d / pi + rho_s * lobe);
+        const double diffuse = 2 * rho_d / (s + 1), lobe = rho_s * (s + 2) / (s + 1);
+        return diffuse * (cos * cos / u) + lobe * cos;
     }
 };
 
@@ -63,15 +63,19 @@ double unit_double(std::uint64_t h, int bits) {
     return static_cast<double>(h >> (64 - bits) | 1u) / static_cast<double>(std::uint64_t{1} << bits);
 }
 
-/// (1 + d)^k. In u's last bits it takes a few terms of the series: the next one is under 1e-17.
-double power_near_1(double d, double k) {
-    if (std::fabs(d) > 1e-3) return math::pow(1 + d, k);
-    return 1 + k * d * (1 + (k - 1) / 2 * d * (1 + (k - 2) / 3 * d * (1 + (k - 3) / 4 * d * (1 + (k - 4) / 5 * d))));
-}
+/// (1 + d)^k for many d. In u's last bits it takes a few terms of the series: the next one is under 1e-17.
+struct PowerNear1 {
+    double k, second = (k - 1) / 2, third = (k - 2) / 3, fourth = (k - 3) / 4, fifth = (k - 4) / 5;
+    double operator()(double d) const {
+        if (std::fabs(d) > 1e-3) return math::pow(1 + d, k);
+        return 1 + k * d * (1 + second * d * (1 + third * d * (1 + fourth * d * (1 + fifth * d))));
+    }
+};
 
 /// One draw of random bits serves every resolution, and one cosine: resolutions of a u differ by little.
 void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& monitor, Evidence& out) {
     using Means = std::vector<std::vector<double>>;  // [rung][replicate]
+    const PowerNear1 root = {1 / (subject.s + 1)};
     std::array<Means, resolutions.size()> means;
     means.fill(Means(furnace_rungs.size(), std::vector<double>(replicates)));
     parallel_for(std::size_t{0}, replicates, [&](std::size_t r) {
@@ -83,9 +87,10 @@ void double_furnaces(const FurnaceSubject& subject, ProgressMonitor& monitor, Ev
                     draws<std::uint32_t>(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(j), 0, subject.seed);
                 const std::uint64_t bits = std::uint64_t{h.x} << 32 | h.y;
                 const double finest = unit_double(bits, resolutions.back()), cos = subject.cosine(finest);
+                const double inverse = 1 / finest;
                 for (std::size_t i = 0; i < sums.size(); ++i) {
-                    const double u = unit_double(bits, resolutions[i]), off = (u - finest) / finest;
-                    sums[i] += subject.weight(u, cos * power_near_1(off, 1 / (subject.s + 1)));
+                    const double u = unit_double(bits, resolutions[i]);
+                    sums[i] += subject.weight(u, cos * root((u - finest) * inverse));
                 }
             }
             for (std::size_t i = 0; i < sums.size(); ++i) means[i][rung][r] = sums[i] / static_cast<double>(j);

@@ -28,7 +28,7 @@ ShadingPoints furnace_sites(const Surface& surface, std::size_t count, double co
     for (auto* one : {&sites.tx, &sites.by, &sites.nz}) fill(*one, 1);
     fill(sites.fill_d, luminance(surface.rho_d) / pi + 0.0);  // never -0
     fill(sites.fill_s, surface.rho_s);
-    sites.rho_d.assign(count, surface.rho_d);
+    sites.lambert.assign(count, {surface.rho_d[0] / pi, surface.rho_d[1] / pi, surface.rho_d[2] / pi});
     sites.rho_s_exact.assign(count, surface.rho_s);
     sites.tint.assign(count, surface.tint);
     sites.pad();

@@ -105,13 +105,12 @@ public:
         };
         Rgb out{};
         double variance = sites_.lobe >= 0 ? variance_of_mean(lobe_.spread[i], lobe_n_) : 0;
-        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (sites_.rho_d[i][c] + rho_s * tint[c] * lobe);
+        for (std::size_t c = 0; c < 3; ++c) out[c] = fill[c] * (pi * sites_.lambert[i][c] + rho_s * tint[c] * lobe);
         for (std::size_t k = 0; k < lights_.size(); ++k) {
             Rgb part{};
             for (std::size_t c = 0; c < 3; ++c) {
                 part[c] = (scene_.lights()[k].radiance[c] - fill[c]) *
-                    (sites_.rho_d[i][c] / pi * lights_[k].light_g[k][i] +
-                        rho_s * tint[c] * lights_[k].light_g_lobe[k][i]);
+                    (sites_.lambert[i][c] * lights_[k].light_g[k][i] + rho_s * tint[c] * lights_[k].light_g_lobe[k][i]);
                 out[c] += part[c] / light_n_;
             }
             variance += variance_of_mean(lights_[k].spread[i], light_n_);
