@@ -1,6 +1,6 @@
 #!/bin/bash
 # Every class, function and public member function of the headers that crescent.h includes, and of the matchers for
-# GoogleTest, has a comment: what it takes and gives.
+# GoogleTest, has a comment: what it takes and gives. Every file of C and C++ opens with one.
 . "$(dirname "$0")/common.sh"
 command -v python3 >/dev/null || skip "no python3 here"
 cd "$CRESCENT_SOURCE/src" || exit 1
@@ -49,3 +49,14 @@ look "$work/planted.h" >"$work/found" && die "nothing of what was planted is fou
 mapfile -t headers < <(sed -n 's/^#include "\(.*\)"$/\1/p' crescent.h)
 [ "${#headers[@]}" -gt 40 ] || die "too few headers in crescent.h: ${headers[*]}"
 look "${headers[@]}" verdicts/gtest.h >"$work/found" || die "$(cat "$work/found")"
+
+# unopened FILE...: those whose first line is no comment.
+unopened() { awk 'FNR == 1 && !/^\/[\/*]/ { print FILENAME; nextfile }' "$@"; }
+printf '// What it holds.\n#pragma once\n' >"$work/opened.h"
+printf '\n// Too late.\n' >"$work/late.h"
+[ "$(unopened "$work"/{opened,late,planted}.h | wc -l)" -eq 2 ] || die "files that open without a comment are not found"
+cd "$CRESCENT_SOURCE" || exit 1
+mapfile -t files < <(find src cli gl explainer python web laws bench examples -name '*.cpp' -o -name '*.h' -o -name '*.c')
+[ "${#files[@]}" -gt 500 ] || die "too few files: ${#files[@]}"
+unopened "${files[@]}" >"$work/found"
+[ ! -s "$work/found" ] || die "no comment says what these are: $(cat "$work/found")"

@@ -1,3 +1,5 @@
+// The table is made from the types of arms/all.h at first use: name, manual, techniques and theory are theirs. What a
+// manual's formulas may say is checked as it compiles.
 #include "arms/info.h"
 
 #include "arms/all.h"

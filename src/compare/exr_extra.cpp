@@ -1,3 +1,6 @@
+// By the names that renderers give: pbrt-v4's RelativeVariance layer, Mitsuba's m2_ moments, layers that end in
+// variance, error or stddev, channels that count samples. Three deviations of one pixel are added, not squared and
+// added: R, G and B of one sample rise and fall together.
 #include "compare/exr_extra.h"
 
 #include <OpenEXR/ImfChannelList.h>

@@ -1,3 +1,6 @@
+// FLIP (Andersson et al. 2020) and HDR-FLIP (Andersson et al. 2021), with their constants: contrast sensitivities as
+// Gaussians, HyAB after Hunt's adjustment, edges and points of lightness. Distances in degrees of view become pixels by
+// ppd, pixels a degree. Planes are float, sums double.
 #include "compare/flip.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A pixel's value is drawn from the stream of its render, its index the pixel's: any pixel can be made by itself. All
+// kinds of noise have the mean 1 before the bias; rare events carry a tenth of the light, whatever their rate.
 #include "compare/made.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,6 @@
+// Welch's t-test at each pixel over the renders, in chunks side by side. Two p: the histogram's is plain; the one that
+// names pixels takes a spread for no less than its tile's, since a pixel may give one value in every render by chance.
+// Named pixels are those of a false discovery rate of alpha.
 #include "compare/pixel_tests.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Colours in sRGB; a difference of t goes from the middle colour to an end's at |t| = 1, straight in sRGB. A block that
+// is shown smaller shows means over its pixels. Places in units of the sheet, a pixel each.
 #include "compare/plate_parts.h"
 
 #include <algorithm>

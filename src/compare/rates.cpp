@@ -1,3 +1,5 @@
+// compare is called on renders that made.cpp draws, `repeats` times a kind, each call from its own seed; what it says
+// is counted. The truth of a meter is its mean over all calls of the kind. Rates with exact binomial intervals.
 #include "compare/rates.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,6 @@
+// Variances of means over k renders are a pixel's over k. Where one file says nothing of its noise, half the mean
+// square difference of neighbours stands in for it, less the other side's noise, times how much more there is at low
+// frequencies than at high ones.
 #include "compare/sides.h"
 
 #include <algorithm>

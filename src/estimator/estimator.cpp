@@ -1,3 +1,5 @@
+// A kernel gives sums over a tile's sites for each rung; they become pixels here. Tiles go to threads in any order, and
+// what they write does not meet: the same bits however many threads there are.
 #include "estimator/estimator.h"
 
 #include <algorithm>

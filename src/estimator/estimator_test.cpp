@@ -1,3 +1,4 @@
+// Films are compared by their hashes, on a scene of 67 x 45 pixels: no whole number of packs or tiles.
 #include "estimator/estimator.h"
 
 #include <gtest/gtest.h>

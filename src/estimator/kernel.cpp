@@ -1,3 +1,5 @@
+// The instruction sets are the list of isas.h, each compiled in a file of its own; which of them run here is asked of
+// the machine once.
 #include "estimator/kernel.h"
 
 #include "arms/all.h"

@@ -1,3 +1,6 @@
+// All n draws of a site are fetched, then handed one after another to the scalar kernel as if an arm had drawn them. A
+// draw is usable where its pdf is above 0 and |w_i|^2 is 1 to 2e-4; what is not becomes a NaN pdf, which kernels count
+// as bad.
 #include "estimator/outside.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// One site of one pixel, in single precision and in the kernels' order of operations: X of a sample has the bits that
+// the film's has. What is drawn of it besides, directions and rims, is in double.
 #include "estimator/pixel.h"
 
 #include <cmath>
@@ -48,13 +50,13 @@ std::vector<LocalLight<float>> local_others(const ShadingPoints& sites) {
     return out;
 }
 
-/// As the kernels ask it of what an arm drew: the nearest disk first, then what stands before it.
 /// The lights of a site, disks first.
 struct Locals {
     const std::vector<LocalDisk<float>>& disks;
     const std::vector<LocalLight<float>>& others;
 };
 
+/// As the kernels ask it of what an arm drew: the nearest light first, then what stands before it.
 template <class D> int met_by(const ShadingPoints& sites, const Locals& locals, const D& drawn) {
     const auto& [disks, others] = locals;
     const Vec3f wi = drawn.wi;

@@ -1,3 +1,5 @@
+// Positions are kept in float from the scene's origin, directions in the local frame, a group of sites for each lobe.
+// Arrays end with copies of the last site, so that every pack is full; `count` tells the sites that are meant.
 #include "estimator/shading_points.h"
 
 #include <algorithm>

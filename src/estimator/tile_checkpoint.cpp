@@ -1,3 +1,5 @@
+// A tile's record: Head, its counts, then its rows plane by plane, as they stand in memory. Tiles wait to be written
+// until checkpoint_after_s have passed: a short run writes nothing. A record of another size is passed over.
 #include "estimator/tile_checkpoint.h"
 
 #include <cstring>

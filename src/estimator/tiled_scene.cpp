@@ -1,3 +1,5 @@
+// Points of a tile are made when they are asked for first, under that tile's lock. Of a scene at another s only s and
+// alpha change: they are copied from the first one's.
 #include "estimator/tiled_scene.h"
 
 #include <utility>

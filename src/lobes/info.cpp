@@ -1,3 +1,4 @@
+// The table is made from the types of lobes/all.h at first use. A lobe's kind is its place in that list.
 #include "lobes/info.h"
 
 #include "base/errors.h"

@@ -1,3 +1,4 @@
+// n points are exact for polynomials up to degree 2n - 1, here on [-1, 2], and no further.
 #include "math/gauss.h"
 
 #include <gtest/gtest.h>

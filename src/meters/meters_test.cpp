@@ -1,3 +1,4 @@
+// On films of a few pixels whose meters are worked out by hand, and on tails whose index is known.
 #include "meters/meters.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Runs are found one by one; run_index.h finds them by a table where there are many.
 #include "meters/metrics.h"
 
 #include <algorithm>

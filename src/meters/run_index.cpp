@@ -1,3 +1,4 @@
+// A hash table from arm, n, s and seed to the run; 0 and -0 are one s.
 #include "meters/run_index.h"
 
 #include <functional>

@@ -1,3 +1,4 @@
+// On 24 runs of two arms, two n, two s and three seeds, which are in no order.
 #include "meters/run_index.h"
 
 #include <gtest/gtest.h>

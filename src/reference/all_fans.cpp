@@ -1,3 +1,6 @@
+// A light is cut into half-planes about an axis, fans, by their azimuth. Where the light does not surround the axis the
+// azimuth runs as a sine, so that the integrand has no root at the ends. What is seen at a node is kept: lobes of other
+// exponents ask for the same ones. Angles in radians.
 #include "reference/all_fans.h"
 
 #include <algorithm>

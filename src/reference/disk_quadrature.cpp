@@ -1,3 +1,6 @@
+// Bodies that cannot stand before the light are ruled out by balls and planes first. Then by the cheapest way that
+// serves: nothing is left of the light, the whole disk by polar rules, or fan by fan. Lambert's part and the lobe's,
+// per unit of radiance; errors of parts are added up.
 #include "reference/disk_quadrature.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A half-plane from the axis through the point cuts the light's figure in a segment. Along it the angle al from the
+// axis rises; Lambert's part has a closed form in al, with a series where it would cancel.
 #include "reference/fan.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Gauss-Kronrod over the fans' azimuth, 7 points, each span between two cuts by itself; along each fan lobe_along.h.
+// Spans whose rules differ are halved, first at kinks, which bisection finds. Lambert's tolerance is 4e-5 of the whole.
 #include "reference/fans.h"
 
 #include <algorithm>

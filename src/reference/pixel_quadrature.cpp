@@ -1,3 +1,5 @@
+// L_o = fill (rho_d + rho_s albedo) + sum over lights of (L - fill) times its integral: a light stands in for the fill
+// behind it. Exponents differ in the lobe alone, so all of them share the search for what is hidden.
 #include "reference/pixel_quadrature.h"
 
 #include <cmath>

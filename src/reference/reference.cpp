@@ -1,3 +1,4 @@
+// Tile by tile and row by row, so that a stop is heard within a tile.
 #include "reference/reference.h"
 
 #include "reference/by_tiles.h"

@@ -1,3 +1,5 @@
+// Lambert's part in closed form. The lobe by polar rules of rising order, Gauss-Legendre in r^2 times even angles, from
+// 3 points to 3840, until two of them agree to 1e-5 of the pixel.
 #include "reference/whole_disk.h"
 
 #include <algorithm>

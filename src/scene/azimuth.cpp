@@ -1,3 +1,5 @@
+// A body's shadow on the plane across the axis is an ellipse or a polygon; its azimuths are those of the two tangents
+// from the origin. An ellipse's are the roots of a quadratic form, in closed form. Radians.
 #include "scene/azimuth.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The azimuths of random quads hold the azimuth of each of their points.
 #include "scene/azimuth.h"
 
 #include <gtest/gtest.h>

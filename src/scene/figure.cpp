@@ -1,3 +1,5 @@
+// Where a plane through the viewpoint, with normal k, cuts a disk or a quad: both ends of the segment. Positions in m
+// from the viewpoint.
 #include "scene/figure.h"
 
 namespace crescent::inline scene {

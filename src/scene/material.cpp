@@ -1,3 +1,5 @@
+// rho_s is the luminance of a coloured lobe and its tint the colour over that, so that grey lobes keep their bits.
+// alpha is sqrt(2 / (s + 2)) where it is not given (Walter et al. 2007).
 #include "scene/material.h"
 
 #include <cmath>

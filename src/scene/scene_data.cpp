@@ -1,3 +1,4 @@
+// The shape that s belongs to: the one that s_of names, else the first with a lobe, else the first that states an s.
 #include "scene/scene_data.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Each kind of body answers for itself.
 #include "scene/shadow.h"
 
 namespace crescent::inline scene {

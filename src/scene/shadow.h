@@ -32,6 +32,7 @@ struct Ball {
     Vec3d middle{};
     double radius = 0;
 };
+/// A ball that holds the body: its own where it is one, else one about its box along the axes of the world.
 Ball ball_around(const Occluder& body);
 
 /// Nothing of the first ball lies on a ray from x through the second one. Cheaper than planes, and seldom as good;

@@ -1,3 +1,4 @@
+// Random bodies between random points and disks: what is said to hide nothing is crossed by none of 200 segments.
 #include "scene/shadow.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Each kind of shape answers for itself. A shape that is not one body, such as a panel, adds the bodies it consists of.
 #include "scene/shape.h"
 
 namespace crescent::inline scene {

@@ -1,3 +1,4 @@
+// Where theory knows the answer: lost shares, rejections by exponent, the medians of furnaces.
 #include <gtest/gtest.h>
 
 #include <cmath>

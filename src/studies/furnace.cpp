@@ -1,3 +1,5 @@
+// A white sky of radiance 1 over one surface seen from straight above: the mean of X is its albedo. One pixel's
+// samples, all kept, for the tail.
 #include "studies/furnace.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Sites at the origin with the world's axes for a frame, under a fill of radiance 1 and no other light. Each has its
+// own index of a pixel, so its own random numbers.
 #include "studies/furnace_sites.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// The note's reference: the lobe under the fill by the lobe's own arm, each light by area, both by the kernels, added
+// up. Its error is the standard error, and all of a lobe's light where so few samples would meet it that none may have.
 #include "studies/monte_carlo_reference.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Against the quadrature over a whole image, in standard errors; and its random numbers against those of the arms.
 #include "studies/monte_carlo_reference.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Four million samples over the region's pixels, 256 a pixel at most; of them all the largest.
 #include "studies/region_tail.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Draws of both in A's bins: Pearson's two-sample chi-square over bins, rings and sectors, and again on fresh seeds
+// before anything is said. f and variances are compared in same_f and ratio_of_variances. A and B draw from different
+// streams.
 #include "verdicts/against.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Answers are kept by the bits of (w_o, w_i); draws by the bits of w_o and u. Only what is new is asked, in the order
+// in which it came. A sampler that throws leaves nothing behind of that call.
 #include "verdicts/asked_once.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A pdf of many spherical caps, each with one step at its rim: rays from draws find the first jump, three rims make a
+// circle, and the step is measured all round it. What the caps leave goes to the cubature; a cap's own mass is 2 pi a
+// step, a = 1 - cos of its half angle.
 #include "verdicts/caps.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Two processes a program: a guard, and under it the shell. The guard ends when the pipe `life` closes, however this
+// process dies, and takes everything that the shell has started with it. POSIX, with Linux's ways to find orphans.
 #include "verdicts/child.h"
 
 #include <cerrno>

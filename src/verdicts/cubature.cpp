@@ -1,3 +1,6 @@
+// Genz & Malik 1980 in two dimensions, degrees 7 and 5, 17 points a cell, over 1 - cos and turns. Cells are halved
+// worst first, also where draws fall more often than the integral says; those at a jump are cut along it
+// (jump_lines.h); points at random (audit) look for what the rule is blind to.
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "verdicts/cell.h"

@@ -1,3 +1,5 @@
+// Draws are gathered by direction and q, to 1e-4. A part's share of the draws is tested by chi-square against q; its
+// light is q times the weight times the radiance along it.
 #include "verdicts/delta.h"
 
 #include <algorithm>

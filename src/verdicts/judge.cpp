@@ -1,3 +1,6 @@
+// Each trial by itself on any thread, unless its sampler is serial: valid first, then the densities are integrated,
+// then the other verdicts in the list's order. What compares trials, or pools them, comes when all are there. A sampler
+// that breaks off leaves its other trials standing.
 #include "verdicts/judge.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Along a line across a cell the jump is bracketed by 12 bisections. On either side t = jump +- width x^2, so that a
+// root at the jump is smooth, with two Gauss points; two points at random, mirrored, take out what those leave.
 #include "verdicts/jump_lines.h"
 
 #include <array>

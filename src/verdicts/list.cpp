@@ -1,3 +1,5 @@
+// Every built-in arm on the surfaces that it states, or on every lobe; under a fill, disks, a ball or a rectangle; at 8
+// w_o, 16 in full mode. --set changes what a surface has.
 #include "verdicts/list.h"
 
 #include <algorithm>

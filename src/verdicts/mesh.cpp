@@ -1,3 +1,6 @@
+// Lines at which p jumps are taken for a table's where all are multiples of 1/N, in cos theta, theta or cos^2 theta,
+// and in azimuth. Each cell is then asked at two points; where they tell one value the sum is exact, and the rest goes
+// to the cubature.
 #include "verdicts/mesh.h"
 
 #include <algorithm>

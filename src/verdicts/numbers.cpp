@@ -1,3 +1,5 @@
+// Random numbers in pairs from the stream of the pixel; even ones by Roberts' additive recurrence, whose steps are
+// powers of the generalised golden ratio. All stay at or under 1 - 2^-24.
 #include "verdicts/numbers.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SVG as text; the cells of a map are painted by the page's own script from the numbers that stand beside it.
 #include "verdicts/pictures.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Rows of questions become lines or blocks and the answers rows of doubles, which are read the same way. Directions
+// under the horizon of a sampler of the hemisphere are not asked about. What `f` stands for is asked once, along the
+// normal.
 #include "verdicts/pipe.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// A table of keys, each with what it takes, from which the messages are made too. The name is all that stands before
+// the first word with '='.
 #include "verdicts/pipe_greeting.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// One loop over poll() writes requests and reads answers, whichever side is ready: neither can wait for the other for
+// ever. Time is looked at every 50 ms at least. A program that broke off once is not asked again.
 #include "verdicts/pipe_talk.h"
 
 #include <bit>

@@ -1,3 +1,5 @@
+// dlopen() and dlsym(); the functions of sampler_plugin.h are handed whole batches of plain doubles. Those of a library
+// that is serial are called under a lock.
 #include "verdicts/plugin.h"
 
 #include <dlfcn.h>

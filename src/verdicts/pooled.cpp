@@ -1,3 +1,5 @@
+// Four contrasts of the draws at each w_o, in standard errors, less what the integrals leave open. Their squares are
+// added up over all w_o of an arm, chi-square; what fails is drawn anew before it is told.
 #include "verdicts/pooled.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The terminal's table shows the worst state over all w_o; JSON and JUnit have every verdict. What takes time goes into
+// the timing alone, so that a judgement has the same bytes each time.
 #include "pages/junit.h"
 #include "verdicts/print.h"
 

@@ -1,3 +1,5 @@
+// The table is a full grid in cos theta and phi: cells where nine of ten samples carry their cell's very value, else
+// points with straight lines between, whose error is told by how much p bends.
 #include "verdicts/samples.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The same question twice, then at directions 2^-22 and 2^-18 beside: answers that differ, and no less where the step
+// is sixteen times smaller, are estimates. The mean over neighbours then stands for pdf(w).
 #include "verdicts/scatter.h"
 
 #include <algorithm>

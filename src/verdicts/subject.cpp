@@ -1,3 +1,4 @@
+// Of lights the nearest along w_i counts. Disks shine from the side that their normal points to; distances in m.
 #include "verdicts/subject.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Verdicts of one arm, name and state are one finding, told by the one that is furthest off; the other sentences follow
+// with the w_o at which they were said.
 #include "verdicts/summary.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// CSV with a header by its columns' names, in any order; NPY (format 1 to 3) of <f4 or <f8, two-dimensional, by its
+// number of columns. Numbers that overflow are infinite, those that underflow are 0. Every mistake is named with line
+// and column.
 #include "verdicts/table_file.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Files as spreadsheets and NumPy write them, and broken ones, each of which is refused with its place.
 #include "verdicts/table_file.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// The first draws are kept, and so are their f and weights. What rounding allows is read off the digits of the
+// directions: decimal, float or double. A limited sampler's batches are as large as what is left of its questions.
 #include "verdicts/trial_context.h"
 
 #include <algorithm>

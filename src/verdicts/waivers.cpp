@@ -1,3 +1,5 @@
+// A line is cut at its first '=' and at the ':' after it. Words are checked against the verdicts there are, arms
+// against those that are judged.
 #include "verdicts/waivers.h"
 
 #include <algorithm>
