@@ -173,6 +173,29 @@ TEST(SmoothParts, SendLightBackTheWayItCame) {
     }
 }
 
+/// Smooth glass that tints red from above and blue from below, and one that tints alike.
+TEST(SmoothParts, CarryAsMuchLightEitherWay) {
+    for (const bool alike : {true, false}) {
+        Recipe r = smooth_glass(1.5);
+        r.traits.channels = 3;
+        r.f_channels = [](Vec3d, Vec3d) { return Vec3d{}; };
+        r.sample = [alike, sample = r.sample](Vec3d o, const Numbers& u) {
+            Draw d = sample(o, u);
+            const double w = *d.weight;
+            const Vec3d tint = alike || o.z > 0 ? Vec3d{0.9, 0.8, 0.6} : Vec3d{0.6, 0.8, 0.9};
+            d.weights = d.wi.z * o.z > 0 ? Vec3d{w, w, w} : w * tint;
+            d.weight = luminance(d.weights);
+            return d;
+        };
+        for (double theta : {30.0, 150.0}) {
+            const Judgement j = judged(r, theta);
+            const Verdict& v = named(j, "physics");
+            EXPECT_EQ(v.state == State::wrong, !alike) << v.say;
+            EXPECT_EQ(v.say.find("the way back carries") != std::string::npos, !alike) << v.say;
+        }
+    }
+}
+
 /// A tenth of glass of 1.5 is holes. Along the normal glass refracts to where they let through.
 TEST(SmoothParts, MayBeHolesInWhatRefracts) {
     Recipe r = smooth_glass(1.5);

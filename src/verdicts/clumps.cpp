@@ -163,6 +163,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
         double stays = 0, goes = 0x1p-24, step = 0;  // moves of u
         double next() const { return step > 0 ? 0.5 * (stays + goes) : goes; }
     };
+    constexpr double longest = 0x1p-5;  // stairs of u that are longer are told as u with too few bits
     std::vector<Move> all;
     for (std::size_t i : draws)
         for (int k = 0; k < numbers; ++k) all.push_back({i, k});
@@ -171,7 +172,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
         std::vector<Numbers> u;
         for (Move& m : all) {
             const bool narrow = m.step > 0 && m.goes - m.stays <= 0x1p-24;
-            if (narrow || m.goes > 0x1p-8) continue;
+            if (narrow || m.goes > longest) continue;
             open.push_back(&m);
             const double by = m.next();
             u.push_back(b.u[m.draw]);

@@ -71,7 +71,14 @@ std::string mismatch(const FitToDensity& f, const std::function<bool(const OfFit
 }
 
 /// Where one step of u takes a direction through half a bin or more, draws show no more of p than the steps of u.
-std::string grain_of_u(const TrialContext& work, int technique, const Density& d, const FitToDensity& f) {
+struct Grain {
+    double step = 0, bin = 0;  // radians; step 0: bins are wide enough
+    std::size_t ring = 0;
+    bool own = false;         // steps of the sampler's own random numbers
+    bool off_beyond = false;  // in bins of many steps the draws do not follow p either
+};
+
+Grain grain_of_u(const TrialContext& work, int technique, const Density& d, const FitToDensity& f) {
     const std::size_t worst = worst_bin(f.observed, f.expected), sectors = static_cast<std::size_t>(d.sectors),
                       ring = worst / sectors;
     const SampleBatch& b = work.first(technique);
@@ -84,12 +91,19 @@ std::string grain_of_u(const TrialContext& work, int technique, const Density& d
                  sin = std::sqrt(std::max(to * (2 - to), 0.0)),
                  least = std::min(wide, 2 * pi * sin / static_cast<double>(d.sectors));
     constexpr double seam = pi / 180;  // of a number that chooses: no rounding moves a direction so far
-    if (!(step > 0.5 * least) || !(least > 0) || step > seam) return "";
-    const bool own = work.traits.own_random;
-    return fmt::format(" {} {:.2g} deg, through a bin {:.2g} deg wide: it may be {} alone that the draws show, not p.",
-        own ? "Directions that come again lie apart there by"
-            : "u comes in steps of 2^-24, of which one moves the direction there by",
-        step * 180 / pi, least * 180 / pi, own ? "such steps" : "the steps of u");
+    if (!(step > 0.5 * least) || !(least > 0) || step > seam) return {};
+    return {step, least, ring, work.traits.own_random, false};
+}
+
+std::string told(const Grain& g) {
+    if (!(g.step > 0)) return "";
+    return fmt::format(" {} {:.2g} deg, through a bin {:.2g} deg wide: {}.",
+        g.own ? "Directions that come again lie apart there by"
+              : "u comes in steps of 2^-24, of which one moves the direction there by",
+        g.step * 180 / pi, g.bin * 180 / pi,
+        g.off_beyond ? "bins of eight steps show it too"
+            : g.own  ? "it may be such steps alone that the draws show, not p"
+                     : "it may be the steps of u alone that the draws show, not p");
 }
 
 void note(const TrialContext& work, int technique, const FitToDensity& f, Verdict& v) {
@@ -111,26 +125,50 @@ void note(const TrialContext& work, int technique, const FitToDensity& f, Verdic
     v.evidence["drawn_in_empty_bins" + suffix] = f.joint.empty_observed;
 }
 
-/// The draws of a technique do not follow p, on the first seed and on a fresh one; says so.
-bool draws_are_off(const TrialContext& work, int t, const FitToDensity& f, Verdict& v) {
-    const Density& d = work.density(t);
+/// What `mismatch` says of the draws of a technique, on the first seed and on a fresh one.
+std::string twice_off(const TrialContext& work, int t, const Density& d, const FitToDensity& f) {
     std::optional<FitToDensity> fresh;
-    const auto fails = [&](const OfFit& p) {
+    return mismatch(f, [&](const OfFit& p) {
         return work.fails(p(f), [&](int round) {
             if (!fresh) fresh = fit_to_density(work, t, d, work.draw(t, round));
             return p(*fresh);
         });
-    };
-    if (const std::string fault = mismatch(f, fails); !fault.empty()) {
+    });
+}
+
+/// Bins that are narrower than steps of u are joined to eight steps: where draws follow p over these, `f` is of these.
+bool follow_in_wider_bins(const TrialContext& work, int t, Grain& grain, FitToDensity& f, Verdict& v) {
+    if (!(grain.step > 0)) return false;
+    constexpr double steps = 8;
+    const Density wide = joined(work.density(t), steps * grain.step, grain.ring);
+    FitToDensity coarse = fit_to_density(work, t, wide, work.first(t));
+    if (coarse.joint.pools < 2) return false;
+    grain.off_beyond = !twice_off(work, t, wide, coarse).empty();
+    if (grain.off_beyond) return false;
+    f = std::move(coarse);
+    note(work, t, f, v);
+    v.evidence["joined_to_deg" + work.suffix(t)] = steps * grain.step * 180 / pi;
+    return true;
+}
+
+/// The draws of a technique do not follow p, on the first seed and on a fresh one; says so. `f` may become that of
+/// wider bins.
+bool draws_are_off(const TrialContext& work, int t, FitToDensity& f, Verdict& v) {
+    const Density& d = work.density(t);
+    const Clump clump = f.clump;
+    if (const std::string fault = twice_off(work, t, d, f); !fault.empty()) {
+        Grain grain = grain_of_u(work, t, d, f);
+        if (follow_in_wider_bins(work, t, grain, f, v)) return false;
         v.state = State::wrong;
         v.say = fmt::format(
             "The draws do not follow p {} ({}), and again on a fresh seed with more draws.", fault, coordinates(d));
         tell_worst(v, d, f.observed, f.expected);
-        v.say += grain_of_u(work, t, d, f);
+        v.say += told(grain);
         return true;
     }
-    if (!fails([](const FitToDensity& x) { return x.clump.p; })) return false;
-    tell_clump(v, f.clump);
+    if (!work.fails(clump.p, [&](int round) { return fit_to_density(work, t, d, work.draw(t, round)).clump.p; }))
+        return false;
+    tell_clump(v, clump);
     return true;
 }
 
@@ -141,6 +179,10 @@ void tell_fit(const TrialContext& work, int t, const FitToDensity& f, Verdict& v
         unseen_share(f.expected, f.joint.degrees, static_cast<double>(draws), work.settings.screen);
     v.say = fmt::format("{} draws fall as p says: chi-square {:.4g} on {:g} degrees, p = {:.3g} ({}).", draws,
         f.joint.statistic, f.joint.degrees, f.joint.p, coordinates(work.density(t)));
+    const std::string joined = "joined_to_deg" + work.suffix(t);
+    if (v.evidence.contains(joined))
+        v.say += fmt::format(
+            " Bins are joined to {:.2g} deg: the steps of u lead no finer there.", v.evidence[joined].get<double>());
     if (f.joint.pools >= 2) return;
     v.state = State::inconclusive;
     v.say = fmt::format("Fewer than two bins expect 5 draws: {} draws are too few for a chi-square test.", draws);
@@ -161,7 +203,7 @@ Verdict judge(TrialContext& work) {
         if (!(d.mass.value > 0) || !std::isfinite(d.mass.value))
             return work.verdict("density", State::skipped,
                 fmt::format("p integrates to {:g}: there is nothing to compare draws with.", d.mass.value));
-        const FitToDensity f = fit_to_density(work, t, d, work.first(t));
+        FitToDensity f = fit_to_density(work, t, d, work.first(t));
         note(work, t, f, v);
         if (work.settings.pictures && t == 0)
             work.maps.push_back({work.trial.arm, work.trial.text(), coordinates(d),

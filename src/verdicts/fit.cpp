@@ -131,6 +131,32 @@ void hold_heights(const Density& d, const SampleBatch& b, FitToDensity& out) {
 
 }  // namespace
 
+Density joined(const Density& d, double least, std::size_t ring) {
+    const auto angle = [](double a) { return math::acos(std::clamp(1 - a, -1.0, 1.0)); };
+    Density out = d;
+    out.rings = {0};
+    std::vector<std::size_t> into;  // of each ring
+    for (std::size_t i = 0; i + 1 < d.rings.size(); ++i) {
+        into.push_back(out.rings.size() - 1);
+        const double edge = d.rings[i + 1];
+        if (angle(edge) - angle(out.rings.back()) >= least && angle(2) - angle(edge) >= least)
+            out.rings.push_back(edge);
+    }
+    out.rings.push_back(d.rings.back());
+    const double outer = out.rings[into[ring] + 1], round = 2 * pi * std::sqrt(std::max(outer * (2 - outer), 0.0));
+    while (out.sectors > 1 && (d.sectors % out.sectors != 0 || round / out.sectors < 4 * least)) --out.sectors;
+    const std::size_t sectors = static_cast<std::size_t>(d.sectors), fewer = static_cast<std::size_t>(out.sectors);
+    const auto sum = [&](std::vector<double>& to, const std::vector<double>& from) {
+        to.assign(from.empty() ? 0 : (out.rings.size() - 1) * fewer, 0.0);
+        for (std::size_t i = 0; i < from.size(); ++i)
+            to[into[i / sectors] * fewer + i % sectors * fewer / sectors] += from[i];
+    };
+    sum(out.mass.bins, d.mass.bins);
+    sum(out.mass.bin_errors, d.mass.bin_errors);
+    sum(out.tabulation_errors, d.tabulation_errors);
+    return out;
+}
+
 FitToDensity fit_to_density(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
     FitToDensity out;
     const bool estimates = work.scatter().pdf();

@@ -26,6 +26,10 @@ struct FitToDensity {
     std::vector<double> observed, expected;
 };
 
+/// The same density in wider bins: its rings are at least `least` radians wide, and its sectors as many as are four
+/// times as wide on the ring that holds `ring`: none about an axis, whose own direction has no azimuth.
+Density joined(const Density& d, double least, std::size_t ring);
+
 FitToDensity fit_to_density(const TrialContext& work, int technique, const Density& d, const SampleBatch& b);
 
 }  // namespace crescent::inline verdicts

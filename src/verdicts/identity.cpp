@@ -47,8 +47,9 @@ struct Mismatch {
     }
 };
 
+/// Numbers under float's smallest normal one have few digits left in single precision.
 bool close(double a, double b, double extra = 0) {
-    return std::fabs(a - b) <= tolerance * std::max(std::fabs(a), std::fabs(b)) + extra;
+    return std::fabs(a - b) <= tolerance * std::max(std::fabs(a), std::fabs(b)) + 0x1p-126 + extra;
 }
 
 Mismatch pdf_twice(const TrialContext& work, int t) {

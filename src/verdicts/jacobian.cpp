@@ -140,7 +140,8 @@ struct Suspect {
 /// cost most of its digits, of which the direction's own resolution knows nothing. By third differences over moves of
 /// u, which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the moves
 /// cross spoils three of nine. Small moves stay within the cell of a table; where floats make stairs of a warp only
-/// wide ones leave a stair, of several lengths, since stairs as long as the move look smooth.
+/// wide ones leave a stair, of several lengths, since stairs as long as the move look smooth. Where most moves stay on
+/// their stair, its height is what the warp is known to.
 void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
     constexpr std::size_t moves = 12;
     for (const double by : {tiny_step, 1267 * 0x1p-24, 2048 * 0x1p-24, 3001 * 0x1p-24}) {
@@ -152,14 +153,17 @@ void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& 
         work.subject.sample(technique, work.trial.wo, u, w);
         for (std::size_t line = 0; line < 2 * suspects.size(); ++line) {
             Suspect& s = suspects[line / 2];
-            std::array<double, moves - 3> rough{};
+            std::array<double, moves - 3> rough{}, moved{};
             for (std::size_t k = 0; k < rough.size(); ++k) {
                 const Draw* at = &w[line * moves + k];
+                if (at[0].pdf > 0 && at[1].pdf > 0) moved[k] = length(at[1].wi - at[0].wi);
                 if (at[0].pdf > 0 && at[1].pdf > 0 && at[2].pdf > 0 && at[3].pdf > 0)
                     rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
             }
             std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
-            s.resolution = std::max({s.resolution, work.direction_resolution(), 0.5 * rough[rough.size() / 2]});
+            std::ranges::sort(moved);
+            const double stair = moved[moved.size() / 2] > 0 ? 0 : moved.back();
+            s.resolution = std::max({s.resolution, work.direction_resolution(), 0.5 * rough[rough.size() / 2], stair});
         }
     }
 }
@@ -220,10 +224,6 @@ void count_steps(const TrialContext& work, const Derivative& d, std::span<const 
         if (length(w[9 + static_cast<std::size_t>(axis)].wi - w[0].wi) < 0.2 * due) ++out.stuck;
     }
 }
-
-}  // namespace
-
-namespace {
 
 WarpFinding studied(const TrialContext& work, int technique) {
     WarpFinding out;

@@ -50,6 +50,14 @@ Met met_before(const std::vector<std::array<double, 3>>& all) {
 
 namespace {
 
+/// The solid angle that may become one direction. In single precision a half vector's cosine rounds to 1 where its
+/// angle is up to some 4e-4 and the sine by sqrt(1 - cos^2) to 0; the direction turns by twice that angle.
+double solid_angle_of_one(const TrialContext& work) {
+    constexpr double single = 0x1p-24, roundings = 4;
+    const bool by_cosine = work.direction_resolution() >= single && work.direction_resolution() < 4 * single;
+    return 20 * 16 * sqr(work.direction_resolution()) + (by_cosine ? 2 * pi * 4 * roundings * single : 0);
+}
+
 /// Draws with the very direction of another, where that is no chance: rounding brings together as many pairs as N^2 / 2
 /// times the mean of p times the solid angle of a rounding, and N p times that about one direction.
 struct RepeatedDirections {
@@ -72,12 +80,13 @@ RepeatedDirections repeated_directions(const TrialContext& work, const SampleBat
     if (all.empty() || !work.traits.has_pdf || !work.subject.draws_at_will()) return out;
     const double n = static_cast<double>(all.size()), rounding = 16 * sqr(work.direction_resolution());
     const Met met = met_before(all);
-    const auto of_one = static_cast<double>(met.most);
+    const auto of_one = static_cast<double>(met.most), all_met = static_cast<double>(met.count),
+               may_be_one = n * density[met.first] * solid_angle_of_one(work);
     constexpr double least = 2e-4;  // of the draws: a few steps of u that lead to one place are no atom
-    if (of_one > std::max(8.0, least * n) + 20 * n * density[met.first] * rounding && 2 * met.most > met.count) {
+    if (of_one > std::max(8.0, least * n) + may_be_one && 2 * met.most > met.count) {
         const auto& [x, y, z] = all[met.first];
         out.atom = met.most + 1, out.at = {x, y, z};
-    } else if (static_cast<double>(met.count) > std::max(64.0, 20 * 0.5 * n * p * rounding + 1e-3 * n)) {
+    } else if (all_met - std::min(of_one, may_be_one) > std::max(64.0, 20 * 0.5 * n * p * rounding + 1e-3 * n)) {
         out.grid = met.count;
     }
     return out;

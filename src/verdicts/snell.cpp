@@ -96,38 +96,84 @@ bool refracts_elsewhere(const TrialContext& work, Verdict& v) {
 
 namespace {
 
-/// Where delta parts of the same kind, mirrored or passed on, send w_i, unless one sends it back to w_o.
-std::optional<Vec3d> sent_elsewhere(const TrialContext& work, Vec3d wi) {
-    constexpr std::size_t tried = 512, enough = 8;
-    const Vec3d wo = work.trial.wo;
+/// Draws for w_i of delta parts of the same kind: mirrored as w_o is to w_i, or passed on.
+std::vector<Draw> sent_from(const TrialContext& work, Vec3d wi) {
+    constexpr std::size_t tried = 512;
     const SampleBatch& b = work.first(0);
-    std::vector<Draw> there(std::min(tried, b.u.size()));
-    work.subject.sample(0, wi, std::span(b.u).first(there.size()), there);
-    std::erase_if(there, [&](const Draw& d) { return !(d.delta > 0) || (d.wi.z * wi.z < 0) != (wi.z * wo.z < 0); });
-    const auto back = [&](const Draw& d) { return near(d.wi, wo); };
-    if (there.size() < enough || std::ranges::any_of(there, back)) return {};
-    return there[0].wi;
+    std::vector<Draw> out(std::min(tried, b.u.size()));
+    work.subject.sample(0, wi, std::span(b.u).first(out.size()), out);
+    std::erase_if(
+        out, [&](const Draw& d) { return !(d.delta > 0) || (d.wi.z * wi.z < 0) != (wi.z * work.trial.wo.z < 0); });
+    return out;
+}
+
+/// Weight times q by channel, of the first channel alone where there is one.
+Vec3d carried(const TrialContext& work, const Draw& d) {
+    const double w = d.weight.value_or(0);
+    return d.delta * (work.traits.channels == 3 ? d.weights : Vec3d{w, w, w});
+}
+
+bool alike(double a, double b) {
+    constexpr double relative = 1e-2;  // Fresnel's T near the critical angle, in single precision
+    return std::fabs(a - b) <= relative * std::max(std::fabs(a), std::fabs(b)) + 1e-6;
+}
+bool alike(Vec3d a, Vec3d b) { return alike(a.x, b.x) && alike(a.y, b.y) && alike(a.z, b.z); }
+
+/// What goes back is to carry, over what comes: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach 1997, 5.2), and radiance
+/// is scaled by 1 / eta^2 either way. None where it is not known.
+std::optional<Vec3d> due_back(const TrialContext& work, Vec3d wi) {
+    const Vec3d wo = work.trial.wo, mirrored = {-wo.x, -wo.y, wo.z};
+    if (wi.z * wo.z > 0) return near(wi, mirrored) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
+    if (!work.traits.eta || near(wi, -wo) || !is_refracted(wo, wi, *work.traits.eta, false)) return {};
+    if (work.traits.importance) return Vec3d{1, 1, 1};
+    const auto of = [up = wo.z > 0](double eta) { return sqr(sqr(up ? eta : 1 / eta)); };
+    return Vec3d{of(work.traits.eta->x), of(work.traits.eta->y), of(work.traits.eta->z)};
+}
+
+/// The part's light and what it carries back differ, where both come in one piece.
+bool carries_otherwise_back(
+    const TrialContext& work, const DeltaParts& all, const DeltaPart& p, const std::vector<Draw>& back, Verdict& v) {
+    const std::optional<Vec3d> due = due_back(work, p.wi);
+    const auto in_one_piece = std::ranges::count_if(all.parts, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
+    if (!due || in_one_piece != 1 || p.otherwise > 0) return false;
+    const Vec3d first = carried(work, back[0]), come = p.q * p.weight,
+                expected = {come.x * due->x, come.y * due->y, come.z * due->z};
+    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike(carried(work, d), first); })) return false;
+    if (alike(first, expected)) return false;
+    v.state = State::wrong;
+    v.evidence["delta_part"] = {p.wi.x, p.wi.y, p.wi.z};
+    v.evidence["carried_back"] = {first.x, first.y, first.z};
+    v.evidence["due_back"] = {expected.x, expected.y, expected.z};
+    v.say = fmt::format(
+        "A delta part carries ({:.4g}, {:.4g}, {:.4g}) of the light from ({:.5g}, {:.5g}, {:.5g}), q times the weight; "
+        "the way back carries ({:.4g}, {:.4g}, {:.4g}) where ({:.4g}, {:.4g}, {:.4g}) is due: it is not reciprocal.",
+        come.x, come.y, come.z, p.wi.x, p.wi.y, p.wi.z, first.x, first.y, first.z, expected.x, expected.y, expected.z);
+    return true;
 }
 
 }  // namespace
 
 bool comes_not_back(const TrialContext& work, Verdict& v) {
     constexpr double grazing = 0.02;
+    constexpr std::size_t enough = 8;
     const DeltaParts deltas = delta_parts(work, work.first(0));
     if (!work.traits.reciprocal || work.traits.wo == Traits::Asked::none || !work.subject.draws_at_will() ||
         deltas.scattered)
         return false;
     for (const DeltaPart& p : deltas.parts) {
         if (p.wi.z < grazing && (work.traits.wo != Traits::Asked::both || p.wi.z > -grazing)) continue;
-        const std::optional<Vec3d> there = sent_elsewhere(work, normalize(p.wi));
-        if (!there) continue;
+        std::vector<Draw> back = sent_from(work, normalize(p.wi));
+        const Vec3d there = back.empty() ? Vec3d{} : back[0].wi;
+        const bool often = back.size() >= enough;
+        std::erase_if(back, [&](const Draw& d) { return !near(d.wi, work.trial.wo); });
+        if (!back.empty() && carries_otherwise_back(work, deltas, p, back, v)) return true;
+        if (!back.empty() || !often) continue;
         v.state = State::wrong;
         v.evidence["delta_part"] = {p.wi.x, p.wi.y, p.wi.z};
         v.say = fmt::format(
             "A delta part sends w_o to ({:.5g}, {:.5g}, {:.5g}), but that one to ({:.5g}, {:.5g}, {:.5g}) and never "
-            "back "
-            "to w_o: light does not go back the way that it came.",
-            p.wi.x, p.wi.y, p.wi.z, there->x, there->y, there->z);
+            "back to w_o: light does not go back the way that it came.",
+            p.wi.x, p.wi.y, p.wi.z, there.x, there.y, there.z);
         return true;
     }
     return false;
