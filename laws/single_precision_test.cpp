@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "laws/judged.h"
 #include "laws/right/law.h"
@@ -74,6 +77,83 @@ TEST(SinglePrecision, OfASharpLobeHidesNoFault) {
         const Judgement atom = judged(recipe_of({0.01f, 0.01f, 0.05f}), theta);
         EXPECT_EQ(named(atom, "identity").state, State::wrong) << theta << "\n" << what_is_wrong(atom);
     }
+}
+
+/// A sky of texels in theta x phi with a sun, drawn by cumulative sums in float.
+class FloatSky {
+public:
+    FloatSky(std::size_t width, std::size_t height, bool lines)
+        : width_(width),
+          height_(height),
+          lines_(lines),
+          value_(width * height),
+          columns_((width + 1) * height),
+          rows_(height + 1) {
+        double total = 0;
+        for (std::size_t j = 0; j < height; ++j) {
+            double sum = 0;
+            for (std::size_t i = 0; i < width; ++i) {
+                const double x = (i + 0.5) / width - 0.3, y = (j + 0.5) / height - 0.3;
+                const double sky = 0.3 + std::exp(-3 * std::fabs(y)) + 60 * std::exp(-(x * x + y * y) / 6e-4);
+                value_[j * width + i] = static_cast<float>(sky * std::sin(pi * (j + 0.5) / height));
+                sum += value_[j * width + i];
+                columns_[j * (width + 1) + i + 1] = static_cast<float>(sum);
+            }
+            for (std::size_t i = 0; i <= width; ++i) columns_[j * (width + 1) + i] /= static_cast<float>(sum);
+            rows_[j + 1] = static_cast<float>(total += sum);
+        }
+        for (float& row : rows_) row /= static_cast<float>(total);
+        mean_ = static_cast<float>(total / static_cast<double>(width * height));
+    }
+    Draw sample(const Numbers& u) const {
+        const auto [j, y] = place(rows_.data(), height_, static_cast<float>(u[1]));
+        const auto [i, x] = place(&columns_[j * (width_ + 1)], width_, static_cast<float>(u[0]));
+        const float theta = 3.14159265f * y / height_, phi = 6.2831853f * (lines_ ? i + 0.5f : x) / width_;
+        const float sin = std::sin(theta);
+        const Vec3d wi = {sin * std::cos(phi), sin * std::sin(phi), std::cos(theta)};
+        return {wi, pdf(wi)};
+    }
+    double pdf(Vec3d w) const {
+        const float theta = std::acos(static_cast<float>(w.z)),
+                    turn = std::atan2(static_cast<float>(w.y), static_cast<float>(w.x)) / 6.2831853f;
+        const auto j = std::min(static_cast<std::size_t>(theta / 3.14159265f * height_), height_ - 1),
+                   i = std::min(static_cast<std::size_t>((turn < 0 ? turn + 1 : turn) * width_), width_ - 1);
+        const float sin = std::sin(theta);
+        return sin > 0 ? static_cast<double>(value_[j * width_ + i] / (mean_ * 2 * 9.8696044f * sin)) : 0;
+    }
+
+private:
+    static std::pair<std::size_t, float> place(const float* sums, std::size_t cells, float u) {
+        const std::size_t k = std::min<std::size_t>(std::upper_bound(sums, sums + cells + 1, u) - sums - 1, cells - 1);
+        return {k, k + std::min((u - sums[k]) / (sums[k + 1] - sums[k]), 0.999999f)};
+    }
+    std::size_t width_, height_;
+    bool lines_;
+    std::vector<float> value_, columns_, rows_;
+    float mean_ = 1;
+};
+
+Judgement judged_sky(std::size_t width, std::size_t height, bool lines) {
+    const auto sky = std::make_shared<const FloatSky>(width, height, lines);
+    Recipe r{"a sky in float", "", {}, {}, {}};
+    r.sample = [sky](Vec3d, const Numbers& u) { return sky->sample(u); };
+    r.pdf = [sky](Vec3d, Vec3d w) { return sky->pdf(w); };
+    r.traits.wo = Traits::Asked::none;
+    return judged(r, 0);
+}
+
+/// The sums round the share of a dim texel by a few in a thousand: p |J| is off by that, to either side.
+TEST(SinglePrecision, OfATablesSumsIsNotAccused) {
+    for (const auto& [width, height] : {std::pair{64, 32}, {512, 256}, {2048, 1024}}) {
+        const Judgement j = judged_sky(width, height, false);
+        EXPECT_EQ(j.state, State::right) << width << "\n" << what_is_wrong(j);
+    }
+}
+
+/// Every texel of a row is drawn along its middle, whatever the first number is.
+TEST(SinglePrecision, DrawsNoLinesOfASky) {
+    const Judgement j = judged_sky(256, 128, true);
+    EXPECT_EQ(named(j, "identity").state, State::wrong) << what_is_wrong(j);
 }
 
 /// f falls to 1e-43 and further, weights with it: one in float, the other not.

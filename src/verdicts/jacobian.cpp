@@ -7,31 +7,17 @@
 #include <array>
 #include <cmath>
 
-#include "simd/math.h"
+#include "verdicts/median.h"
 #include "verdicts/ordered.h"
+#include "verdicts/suspects.h"
 
 namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr double step = 0x1p-8;
-constexpr double tiny_step = 0x1p-19;
-constexpr std::ptrdiff_t most_suspects = 60;  // that are asked about again
-constexpr int stencil = 11;                   // centre, +-h, +-h/2 along each side, and a tiny move along each
+using namespace differences;
 
-/// The other numbers are held: what chooses among lobes stays with its choice.
-std::array<Numbers, stencil> stencil_at(const Numbers& centre, double h = step) {
-    const double k = h / 2;
-    constexpr Vec2d none{0, 0};
-    const Vec2d moves[stencil] = {
-        none, {h, 0}, {-h, 0}, {0, h}, {0, -h}, {k, 0}, {-k, 0}, {0, k}, {0, -k}, {tiny_step, 0}, {0, tiny_step}};
-    std::array<Numbers, stencil> out;
-    for (std::size_t i = 0; i < stencil; ++i) {
-        out[i] = centre;
-        out[i].x += moves[i].x, out[i].y += moves[i].y;
-    }
-    return out;
-}
+constexpr std::ptrdiff_t most_suspects = 60;  // that are asked about again
 
 struct Derivative {
     double j = 0;      // |d w / d u1 x d w / d u2|
@@ -39,8 +25,6 @@ struct Derivative {
     bool usable = false;
     double along[2] = {};  // |d w / d u|
 };
-
-double area(Vec3d a, Vec3d b) { return length(cross(a, b)); }
 
 Derivative derivative(std::span<const Draw> w, double direction_resolution) {
     Derivative out;
@@ -67,25 +51,21 @@ Derivative derivative(std::span<const Draw> w, double direction_resolution) {
     return out;
 }
 
-/// The largest |J| of the four quadrants about u, by one-sided differences of second order, and its relative noise.
-struct Quadrants {
-    double largest = 0, noise = 1;
-};
-
-Quadrants quadrants(std::span<const Draw> w, double direction_resolution, double h) {
-    Quadrants out;
-    for (const Draw& d : w)
-        if (!(d.pdf > 0)) return out;
-    const Vec3d c = w[0].wi;
-    const auto sided = [&](int whole, int half) { return ((w[half].wi - c) * 4.0 - (w[whole].wi - c)) * (1 / h); };
-    for (const Vec3d& x : {sided(1, 5), sided(2, 6)})
-        for (const Vec3d& y : {sided(3, 7), sided(4, 8)}) {
-            const double j = area(x, y);
-            if (j <= out.largest) continue;
-            out.largest = j;
-            out.noise = 8 * direction_resolution / h * (1 / length(x) + 1 / length(y)) * (length(x) * length(y) / j);
-        }
-    return out;
+/// Three times the median distance of p |J| from 1 in single precision, where a table's sums are rounded; 0 where p |J|
+/// is not 1 in the mean.
+double scatter_about_one(const TrialContext& work, std::span<const WarpPoint> points) {
+    constexpr double single = 0x1p-24, near = 0.1;
+    std::vector<double> off;
+    double sum = 0, squares = 0;
+    for (const WarpPoint& at : points) {
+        const double by = at.p_jacobian - 1;
+        if (std::fabs(by) > near) continue;
+        off.push_back(std::fabs(by));
+        sum += by, squares += sqr(by);
+    }
+    if (work.direction_resolution() < single || off.size() < 100 || 10 * off.size() < 9 * points.size()) return 0;
+    if (std::fabs(sum) > 2.5 * std::sqrt(squares)) return 0;
+    return 3 * median_of(std::move(off));
 }
 
 /// p |J| that three of four points do not exceed, of those at which it is known to 3e-4; 1 where these are too few.
@@ -94,97 +74,6 @@ double third_quartile(std::vector<double> pj) {
     const auto at = pj.begin() + static_cast<std::ptrdiff_t>(3 * pj.size() / 4);
     std::nth_element(pj.begin(), at, pj.end());
     return *at;
-}
-
-constexpr std::array look_steps = {0x1p-7, 0x1p-8, 0x1p-10, 0x1p-12, 0x1p-14, 0x1p-16, 0x1p-18};
-
-struct Suspect {
-    Numbers u;
-    double p, p_j;  // over the share of the choosing number
-    double share = 1, allowed = 0;
-    bool stands = true;
-    double resolution = 0;                         // rounding of the warp there
-    std::array<double, look_steps.size()> here{};  // p |J| by each step, and its noise
-    std::array<double, look_steps.size()> noise{};
-
-    double lacking() const { return 1 - p_j; }
-    bool nearly(double a, double b) const { return std::fabs(a - b) < 0.1 * lacking(); }
-    /// The finest steps say the same and less than one, whatever the rounding is thought to be: a warp in doubles.
-    bool settles_below() const {
-        const std::size_t last = here.size() - 1;
-        return nearly(here[last], here[last - 1]) && nearly(here[last - 1], here[last - 2]) && here[last] > 0.1 &&
-            here[last] < 1 - 0.3 * lacking();  // on a stair nothing moves
-    }
-    bool settles_at_one() const {
-        for (std::size_t k = 2; k < here.size(); ++k)
-            if (nearly(here[k], 1) && nearly(here[k - 1], 1)) return true;
-        return false;
-    }
-    /// One that reaches 1 in any quadrant is let go, and so is one of which no two steps in turn say the same: there
-    /// the difference is the step's, not the density's.
-    bool stands_against_rounding() const {
-        double before = 0;
-        bool settled = false;
-        for (std::size_t k = 0; k < here.size(); ++k) {
-            const double h = look_steps[k];
-            if (h < step && 2 * noise[k] > 0.25 * lacking()) continue;  // lost in rounding: the wider steps decide
-            if (h <= step && (here[k] > 1 - 0.3 * lacking() || noise[k] > lacking())) return false;
-            settled = settled || (before > 0 && std::fabs(here[k] - before) < 0.5 * lacking());
-            before = here[k];
-        }
-        return settled;
-    }
-};
-
-/// How finely the warp is computed at each suspect. A difference of two nearly equal numbers within the sampler may
-/// cost most of its digits, of which the direction's own resolution knows nothing. By third differences over moves of
-/// u, which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the moves
-/// cross spoils three of nine. Small moves stay within the cell of a table; where floats make stairs of a warp only
-/// wide ones leave a stair, of several lengths, since stairs as long as the move look smooth. Where most moves stay on
-/// their stair, its height is what the warp is known to.
-void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
-    constexpr std::size_t moves = 12;
-    for (const double by : {tiny_step, 1267 * 0x1p-24, 2048 * 0x1p-24, 3001 * 0x1p-24}) {
-        std::vector<Numbers> u;
-        for (const Suspect& s : suspects)
-            for (int axis = 0; axis < 2; ++axis)
-                for (std::size_t k = 0; k < moves; ++k) u.push_back(s.u), u.back()[axis] += static_cast<double>(k) * by;
-        std::vector<Draw> w(u.size());
-        work.subject.sample(technique, work.trial.wo, u, w);
-        for (std::size_t line = 0; line < 2 * suspects.size(); ++line) {
-            Suspect& s = suspects[line / 2];
-            std::array<double, moves - 3> rough{}, moved{};
-            for (std::size_t k = 0; k < rough.size(); ++k) {
-                const Draw* at = &w[line * moves + k];
-                if (at[0].pdf > 0 && at[1].pdf > 0) moved[k] = length(at[1].wi - at[0].wi);
-                if (at[0].pdf > 0 && at[1].pdf > 0 && at[2].pdf > 0 && at[3].pdf > 0)
-                    rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
-            }
-            std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
-            std::ranges::sort(moved);
-            const double stair = moved[moved.size() / 2] > 0 ? 0 : moved.back();
-            s.resolution = std::max({s.resolution, work.direction_resolution(), 0.5 * rough[rough.size() / 2], stair});
-        }
-    }
-}
-
-/// Looks at every suspect again with steps down to 2^-18.
-void look_closer(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
-    find_grains(work, technique, suspects);
-    for (std::size_t k = 0; k < look_steps.size(); ++k) {
-        std::vector<Numbers> u;
-        for (const Suspect& s : suspects)
-            for (const Numbers& v : stencil_at(s.u, look_steps[k])) u.push_back(v);
-        std::vector<Draw> w(u.size());
-        work.subject.sample(technique, work.trial.wo, u, w);
-        for (std::size_t i = 0; i < suspects.size(); ++i) {
-            Suspect& s = suspects[i];
-            const Quadrants q = quadrants(std::span(w).subspan(i * stencil, stencil), s.resolution, look_steps[k]);
-            s.here[k] = s.p * q.largest, s.noise[k] = q.noise;
-        }
-    }
-    for (Suspect& s : suspects)
-        s.stands = s.stands && !s.settles_at_one() && (s.settles_below() || s.stands_against_rounding());
 }
 
 /// A number may choose at a few points alone: seen from the denser side glass lets little through. Every suspect is
@@ -225,6 +114,18 @@ void count_steps(const TrialContext& work, const Derivative& d, std::span<const 
     }
 }
 
+/// Where nothing is known of the slope: a move that leaves the direction as it is to the last bit, though wide ones
+/// lead on. Of three numbers one may choose and do nothing else.
+void count_stills(const TrialContext& work, std::span<const Draw> w, WarpFinding& out) {
+    if (work.traits.numbers != 2 || std::any_of(w.begin(), w.end(), [](const Draw& d) { return !(d.pdf > 0); })) return;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double due = length(w[5 + 2 * axis].wi - w[6 + 2 * axis].wi) / step * tiny_step;
+        if (due < 24 * work.direction_resolution()) continue;
+        ++out.steps_tried;
+        out.stuck += length(w[9 + axis].wi - w[0].wi) == 0;
+    }
+}
+
 WarpFinding studied(const TrialContext& work, int technique) {
     WarpFinding out;
     if (!work.subject.draws_at_will() || work.traits.own_random || work.scatter().any()) return out;
@@ -245,6 +146,7 @@ WarpFinding studied(const TrialContext& work, int technique) {
     std::vector<double> known;
     for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
         const Derivative& d = derivatives[i / stencil];
+        if (!d.usable) count_stills(work, std::span(w).subspan(i, stencil), out);
         if (!d.usable) continue;
         const double share = several ? branches.share[next++] : 1;
         count_steps(work, d, std::span(w).subspan(i, stencil), out);
@@ -258,6 +160,8 @@ WarpFinding studied(const TrialContext& work, int technique) {
     }
     if (!work.traits.has_pdf) return out;
     out.nowhere_above = third_quartile(std::move(known));
+    const double scatter = scatter_about_one(work, out.points);
+    std::erase_if(suspects, [scatter](const Suspect& s) { return s.lacking() < scatter; });
     if (work.thrifty() && std::ssize(suspects) > most_suspects)
         suspects.erase(suspects.begin() + most_suspects, suspects.end());
     if (several) recall_choosers(work, technique, suspects);

@@ -63,8 +63,28 @@ std::string told(const Density& d, const Integral& mass) {
         fmt::format(" and {:.6f} of the samples {}, together {:.6f}", d.nothing, rest, mass.value + d.nothing);
 }
 
+/// p |J| over points of u: where one u leads to each direction its mean is the integral of p over what is drawn.
+struct AlongTheWarp {
+    double mean = 0, se = 1;
+    bool is_one() const { return se < 6e-4 && std::fabs(mean - 1) < std::max(granted_mass, 2.5 * se); }
+};
+
+AlongTheWarp along_the_warp(const TrialContext& work, int technique) {
+    constexpr double one_to_one = 0.1;  // and rounding of a table's cells
+    constexpr std::size_t enough = 400;
+    const WarpFinding& warp = study_warp(work, technique);
+    double n = 0, sum = 0, squares = 0;
+    for (const WarpPoint& at : warp.points) {
+        if (std::fabs(at.p_jacobian - 1) > one_to_one) continue;
+        ++n, sum += at.p_jacobian, squares += sqr(at.p_jacobian - 1);
+    }
+    if (warp.points.size() < enough || n < 0.97 * static_cast<double>(warp.points.size())) return {};
+    const double mean = sum / n;
+    return {mean, std::sqrt(std::max(squares / n - sqr(mean - 1), 0.0) / n)};
+}
+
 /// A sum that is not accused: one, or known too badly to say so.
-void tell_sum(const TrialContext& work, const Density& d, const Integral& mass, Verdict& v) {
+void tell_sum(const TrialContext& work, int technique, const Density& d, const Integral& mass, Verdict& v) {
     if (mass.sampled && mass.error < 0.02) {
         v.say = told(d, mass) +
             fmt::format(", known to {:.2g}: {}", mass.error,
@@ -77,6 +97,15 @@ void tell_sum(const TrialContext& work, const Density& d, const Integral& mass, 
     }
     if (v.state != State::right) return;  // an earlier technique has been told of
     if (!mass.settled && mass.error > granted_mass) {
+        constexpr double little = 2e-3;  // that may lie where nothing is drawn
+        const AlongTheWarp warp = mass.error < little ? along_the_warp(work, technique) : AlongTheWarp{};
+        if (warp.is_one()) {
+            v.evidence["along_the_warp" + work.suffix(technique)] = {{"mean", warp.mean}, {"se", warp.se}};
+            v.say = told(d, mass) +
+                fmt::format(", known to {:.2g}, and to {:.5f} +- {:.2g} over what is drawn, by the warp: one.",
+                    mass.error, warp.mean, warp.se);
+            return;
+        }
         v.state = State::inconclusive;
         v.say = told(d, mass) +
             fmt::format(", but the quadrature itself is only good to {:.2g} after {} evaluations.", mass.error,
@@ -113,7 +142,7 @@ Verdict judge(TrialContext& work) {
                         : ", not to 1: p is to be 0 where nothing is drawn.");
             return v;
         }
-        tell_sum(work, d, mass, v);
+        tell_sum(work, t, d, mass, v);
     }
     return v;
 }
