@@ -73,7 +73,10 @@ std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<std::string> extra = app.remaining(true);
     if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extra.empty()) {
         const std::string near = nearest(extra.front().substr(0, extra.front().find('=')), words(command));
-        text = name + ": no '" + extra.front() + "' here" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+        const bool second = command.get_name() == "list" && !extra.front().starts_with('-');
+        text = second
+            ? name + ": takes one topic, and '" + extra.front() + "' is a second one"
+            : name + ": no '" + extra.front() + "' here" + (near.empty() ? "" : "; did you mean '" + near + "'?");
     }
     return text + "\n`" + name + " --help` says what it takes\n";
 }

@@ -157,6 +157,7 @@ std::string command_of(const CheckFlags& f) {
     for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
              {"--pdf-table", &f.table}, {"--against", &f.against}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
+    for (const std::string& text : f.wo) out += " --wo " + shell_word(text);
     for (const std::string& text : f.expect) out += " --expect " + shell_word(text);
     for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted},
              {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
@@ -185,30 +186,6 @@ void write_files(const CheckFlags& flags, const Judgement& j) {
 
 namespace {
 
-/// A program that never came to be judged.
-Judgement complaint(const SubjectFault& fault, const CheckFlags& flags) {
-    Judgement j;
-    j.alpha = flags.alpha;
-    j.state = dynamic_cast<const SubjectTooSlow*>(&fault) ? State::inconclusive : State::error;
-    for (std::string_view name : verdict_names) {
-        Verdict v;
-        v.arm = printable(flags.exec.empty() ? flags.plugin : flags.exec, 60);
-        v.trial = "start";
-        v.name = name;
-        v.state = j.state;
-        v.say = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."
-                                         : "It could not be asked: the sampler never came to be judged.";
-        v.expected = false;
-        j.verdicts.push_back(v);
-    }
-    j.as_expected = false;
-    return j;
-}
-
-}  // namespace
-
-namespace {
-
 /// How much a program will be asked, before it is asked for an hour.
 void tell_cost(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& monitor) {
     std::size_t judged = 0;
@@ -223,28 +200,6 @@ void tell_cost(std::span<const Trial> trials, const TestSettings& settings, Prog
         settings.questions, judged, more));
 }
 
-/// B on the trials of A: a built-in arm by its name, or a program.
-std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const ProgressMonitor& monitor) {
-    const std::vector<std::string> names = sampler_names();
-    if (std::find(names.begin(), names.end(), flags.against) != names.end()) return arm_against(flags.against, a);
-    const std::string near = nearest(flags.against, names);
-    if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
-        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm; did you mean '" + near + "'?");
-    for (const char* end : {".csv", ".npy"})
-        if (flags.against.ends_with(end) && flags.against.find(' ') == std::string::npos)
-            throw InputError({"--against " + flags.against, 0, 0},
-                "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
-                "or a program");
-    PipeLimits limits;
-    limits.stop = &monitor.stop;
-    if (flags.patience > 0) limits.total_seconds = flags.patience;
-    try {
-        return sampler_against(start_pipe(flags.against, limits), a);
-    } catch (const InputError&) {  // start_pipe calls it --exec
-        throw InputError({"--against " + flags.against, 0, 0}, "neither a built-in arm nor a command of the shell");
-    }
-}
-
 std::vector<std::string> names_of(std::span<const Trial> trials) {
     std::vector<std::string> out;
     for (const Trial& t : trials)
@@ -252,21 +207,10 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
     return out;
 }
 
-/// Exit 0: compared; 1: with --expect same, f or the distribution differs; 4: a tail is too heavy to tell.
-int check_against(
-    const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& monitor) {
-    std::erase_if(a, [](const Trial& t) { return t.baseline; });
-    Judgement j = judge_against(a, others_of(flags, a, monitor), test_settings_of(flags), same, monitor);
-    if (!waivers.empty()) waive(j, waivers);
-    monitor.clear();
-    print(against_text(j));
-    write_files(flags, j);
-    return exit_of(j.state, flags);
-}
-
 }  // namespace
 
 int check(const CheckFlags& flags) {
+    if (const std::optional<int> code = judged_by_child(flags)) return *code;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
     try_files(flags);
@@ -284,7 +228,7 @@ int check(const CheckFlags& flags) {
         if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
         tell_cost(trials, test_settings_of(flags), monitor);
         j = judge(trials, test_settings_of(flags), monitor);
-    } catch (const SubjectFault& fault) { j = complaint(fault, flags); }
+    } catch (const SubjectFault& fault) { j = complaint(fault, flags, flags.exec.empty() ? flags.plugin : flags.exec); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();

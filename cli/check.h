@@ -13,6 +13,13 @@ int exit_of(State state);
 int exit_of(State state, const CheckFlags& flags);
 void write_files(const CheckFlags& flags, const Judgement& j);
 std::string shortest(double v);
+/// What is said of a program or plugin that never came to be judged.
+Judgement complaint(const SubjectFault& fault, const CheckFlags& flags, const std::string& command);
+/// Of --plugin: the exit code, once a child process has judged it. Nothing in that child, and where there is none.
+std::optional<int> judged_by_child(const CheckFlags& flags);
+/// Exit 0: compared; 1: with --expect same, f or the distribution differs; 4: a tail is too heavy to tell.
+int check_against(
+    const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& monitor);
 
 /// Which verdict catches which fault. Exit 0 where every fault is caught.
 int check_planted(const CheckFlags& flags, Progress& monitor);

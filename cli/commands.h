@@ -29,7 +29,7 @@ struct RunFlags {
     std::string only, seed_range;  // "metrics,report", "1:8"; "": all
     std::string gl_context;        // "": EGL
     int gl_device = -1;            // -1: a GPU where there is one
-    int seeds = 0, threads = 0;    // 0: the file's; as many as the machine has
+    int seeds = 0, threads = 0;    // 0: the file's; as many as this process may use
     double keep_after = 10;        // s
     bool quiet = false, preview = false;
 };

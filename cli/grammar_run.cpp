@@ -117,7 +117,7 @@ void add_film(CLI::App& app, Work& work) {
         ->expected(1)
         ->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
-    c->add_option("--threads", o.threads, "default: as many as the machine has")
+    c->add_option("--threads", o.threads, "default: as many as this process may use")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
     c->add_option("--isa", o.isa, all_isas() + "; default: the best here")->type_name("NAME");

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "crescent.h"
 #include "signals.h"
+#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -58,5 +59,5 @@ int main(int argc, char** argv) {
     crescent::cli::open_standard_streams();
     for (const int failed_write : {SIGPIPE, SIGXFSZ}) std::signal(failed_write, SIG_IGN);  // write() says so too
     crescent::cli::end_on_signals();
-    return crescent::cli::perform(argc, argv);
+    return crescent::cli::ends_on_purpose(crescent::cli::perform(argc, argv));
 }

@@ -8,6 +8,7 @@
 #include "instruments.h"
 #include "progress.h"
 #include "signals.h"
+#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -50,6 +51,8 @@ int run(const RunFlags& flags) {
     const Experiment experiment = load(flags.file, overrides);
 
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
+    if (!flags.preview)  // which draws nothing
+        if (const std::optional<int> code = done_by_child(experiment, options.out, flags.quiet)) return *code;
     options.threads = flags.threads;
     options.isa = flags.isa;
     options.keep_after_s = flags.keep_after;

@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "crescent.h"
+#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -37,7 +38,7 @@ const char* last_words() {
 extern "C" void end_now(int) {
     const char* words = last_words();
     static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
-    ::_exit(interrupted);
+    ::_exit(ends_on_purpose(interrupted));
 }
 
 extern "C" void time_is_up(int signal) {

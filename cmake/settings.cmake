@@ -10,6 +10,7 @@ if(PROJECT_IS_TOP_LEVEL)  # as a part of another project, its choice
   if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")  # CMake's own; another choice stays
     set(CMAKE_CXX_FLAGS_RELEASE "-O2")
   endif()
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)  # build/compile_commands.json, for clang-tidy and editors
 endif()
 
 find_program(CCACHE ccache)
@@ -63,6 +64,9 @@ function(crescent_precompiled target)
       <functional> <map> <memory>
       <optional> <span> <sstream> <string> <string_view> <variant> <vector> <fmt/format.h> ${ARGN})
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
+    # CMake gives its list of headers the time of older files: by their hash ninja sees that they are others.
+    string(MD5 headers "${ARGN}")
+    target_compile_definitions(${target} PRIVATE CRESCENT_HEADERS=0x${headers})
   endif()
 endfunction()
 
@@ -78,6 +82,7 @@ function(crescent_unoptimised)
 endfunction()
 
 # crescent_folder(NAME LIBS...): src/NAME/*.cpp is the target crescent_NAME; it may use every folder named before it.
+# Headers in crescent_read_in_NAME are precompiled for it.
 # *_test.cpp stand beside their sources and are collected for laws/CMakeLists.txt.
 set(crescent_folders "")
 set(crescent_draws plates compare)
@@ -104,7 +109,7 @@ macro(crescent_folder name)
     endif()
     list(LENGTH folder_sources size)
     if(size GREATER 5)
-      crescent_precompiled(crescent_${name})
+      crescent_precompiled(crescent_${name} ${crescent_read_in_${name}})
     endif()
     list(PREPEND crescent_folders crescent_${name})
     if(EXISTS ${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)

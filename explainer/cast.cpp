@@ -65,8 +65,9 @@ Cast cast_of(Experiment& e) {
     }
     if (e.regions.size() < 2)
         wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
-    if (e.disks.empty())
-        wrong.push_back({e.place_of("disks"), "the film needs a disk light: it is what a cosine sample rarely meets"});
+    if (all_lights(e).empty())
+        wrong.push_back(
+            {e.place_of("disks"), "the film needs a light beside the fill: it is what a cosine sample rarely meets"});
     const bool lobe = std::ranges::any_of(
         e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe_named("phong"); });
     if (!lobe)

@@ -1,10 +1,11 @@
 // What a diagnosis says of parts of a sampler: sides of a surface, lobes, verdicts of the same arm.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "laws/judged.h"
-#include "laws/right/right.h"
+#include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "verdicts/summary.h"
@@ -43,6 +44,69 @@ TEST(Diagnosis, NamesTheShareOfEachSideOfTheSurface) {
     const Said said = first_said(judged(r, 60));
     EXPECT_EQ(said.diagnosis, "a constant on either side") << said.say;
     EXPECT_NE(said.say.find("0.96154 above the surface and 1.0417 below it"), std::string::npos) << said.say;
+}
+
+/// D for D n.m: m across the surface is by the index, told or of the common ones.
+Recipe glass_without_n_m(double eta, bool told, bool both_sides = true) {
+    const RoughGlass glass{0.25, eta};
+    Recipe r = recipe_of(glass);
+    if (!told) r.traits.eta = {};
+    r.pdf = [=](Vec3d o, Vec3d i) {
+        const double p = glass.pdf(o, i);
+        return p > 0 && (both_sides || glass.across(o, i)) ? p / glass.half(o, i).z : p;
+    };
+    r.sample = [glass, p = r.pdf](Vec3d o, const Numbers& u) {
+        Draw d = glass.sample(o, u);
+        if (d.pdf > 0) d.pdf = p(o, d.wi);
+        return d;
+    };
+    return r;
+}
+
+TEST(Diagnosis, NamesTheCosineOfTheHalfVectorOnBothSidesOfGlass) {
+    for (const auto& [theta, told] : {std::pair(45.0, false), {120.0, true}}) {
+        const Said said = first_said(judged(glass_without_n_m(1.4, told), theta));
+        EXPECT_EQ(said.diagnosis, "n.m") << theta << told << ": " << said.say;
+    }
+    const Said across = first_said(judged(glass_without_n_m(1.4, true, false), 45));
+    EXPECT_EQ(across.diagnosis, "n.m across the surface") << across.say;
+}
+
+/// 2.1 is none of the indices that are tried.
+TEST(Diagnosis, NamesNoCosineOfAHalfVectorThatItDoesNotKnow) {
+    const Said said = first_said(judged(glass_without_n_m(2.1, false), 45));
+    EXPECT_EQ(said.state, State::wrong);
+    EXPECT_EQ(said.diagnosis, "none") << said.say;
+}
+
+/// What another call answers is no factor of p.
+TEST(Diagnosis, LooksForNoFactorOfAState) {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d i) { return std::max(i.z, 0.0) / pi; };
+    r.sample = [p = r.pdf, calls = std::make_shared<std::atomic<unsigned>>(0)](Vec3d o, const Numbers& u) {
+        const double turn = (u[1] + 0.61803398875 * (*calls)++);
+        const Vec3d i = math::spherical(std::sqrt(1 - u[0]), 2 * pi * (turn - std::floor(turn)));
+        return Draw{i, p(o, i)};
+    };
+    const Judgement j = judged(r, 45);
+    const Verdict& v = named(j, "identity");
+    EXPECT_EQ(v.state, State::wrong);
+    EXPECT_EQ(v.say.find("usual factors"), std::string::npos) << v.say;
+    EXPECT_FALSE(v.evidence.contains("diagnosis")) << v.say;
+}
+
+/// A part that p says is next to never drawn: of 1e169 times as often no digit tells anything.
+TEST(Diagnosis, TellsNoRatioBeyondAMillion) {
+    Recipe r{"cosine", "", {}, {}, {}};
+    r.pdf = [](Vec3d, Vec3d i) { return i.z > 0 ? i.z / pi * (i.y < -0.77 ? 1e-100 : 1.1 + 0.2 * i.x) : 0; };
+    r.sample = [p = r.pdf](Vec3d o, const Numbers& u) {
+        const Vec3d i = math::spherical(std::sqrt(1 - u[0]), 2 * pi * u[1]);
+        return Draw{i, p(o, i)};
+    };
+    const Said said = first_said(judged(r, 45));
+    EXPECT_EQ(said.state, State::wrong);
+    EXPECT_NE(said.say.find("more than a million times at some directions"), std::string::npos) << said.say;
+    EXPECT_EQ(said.say.find("e+"), std::string::npos) << said.say;
 }
 
 /// Two phase functions, the second drawn with a number that is not stretched again: its first part is never drawn.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "verdicts/print.h"
+#include "verdicts/told_last.h"
 #include "verdicts/user.h"
 
 namespace crescent {
@@ -118,6 +119,27 @@ TEST(Glass, AHalfThatIsNotJudgedIsSaidNotToBe) {
     EXPECT_EQ(j.state, State::inconclusive);
     for (const char* name : {"support", "physics", "mean"}) EXPECT_EQ(count(j, name, State::inconclusive), 8u) << name;
     EXPECT_NE(what_is_wrong(j).find("of the upper half only"), std::string::npos);
+}
+
+/// The index is not told: right, and said to be half looked at. Told, the other side has to be answered for.
+TEST(Glass, WhatWasNotLookedAtIsSaid) {
+    TestSettings settings;
+    settings.draws = 4096;
+    settings.wo = {{45, 0}};
+    const Judgement j = judge_sampler("glass", Glass{}, settings);
+    EXPECT_NE(verdict_table(j).find("Not looked at: reciprocity across the surface"), std::string::npos)
+        << verdict_table(j);
+    EXPECT_NE(not_looked_at_told(j).find("eta="), std::string::npos) << not_looked_at_told(j);
+    EXPECT_NE(verdict_html(j).find("Not looked at: reciprocity across the surface"), std::string::npos);
+    struct Told : Glass {
+        Traits traits() const {
+            Traits t;
+            t.eta = Vec3d{1.5, 1.5, 1.5};
+            return t;
+        }
+    };
+    EXPECT_NE(not_looked_at_told(judge_sampler("told", Told{}, settings)).find("wo=both"), std::string::npos);
+    EXPECT_EQ(not_looked_at_told(judge_sampler("paper", Paper{0.4, 0, false}, settings)), "");
 }
 
 /// A weight that forgets what the lower half does is met there too.

@@ -79,6 +79,29 @@ TEST(SinglePrecision, OfASharpLobeHidesNoFault) {
     }
 }
 
+/// An even sphere whose draws crowd below by `tilt` (1 + tilt cos theta over 4 pi), which pdf does not have.
+Recipe tilted_sphere(float tilt) {
+    Recipe r{"a sphere in float", "", {}, {}, {}};
+    r.sample = [tilt](Vec3d, const Numbers& u) {
+        const float x = static_cast<float>(u[0]), phi = 6.2831853f * static_cast<float>(u[1]), from = 1 - tilt;
+        const float t = tilt > 0 ? (std::sqrt(from * from + 4 * tilt * x) - from) / (2 * tilt) : x;
+        const float z = 2 * t - 1, sin = std::sqrt(std::max(0.0f, 1 - z * z));
+        return Draw{{sin * std::cos(phi), sin * std::sin(phi), z}, 0.25 / pi};
+    };
+    r.pdf = [](Vec3d, Vec3d) { return 0.25 / pi; };
+    r.traits.wo = Traits::Asked::none;
+    return r;
+}
+
+TEST(SinglePrecision, HidesNoSmoothFaultThatNeighboursShowTogether) {
+    const Judgement right = judged(tilted_sphere(0), 0);
+    EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
+    for (const float tilt : {0.01f, 0.04f}) {
+        const Judgement wrong = judged(tilted_sphere(tilt), 0);
+        EXPECT_EQ(named(wrong, "identity").state, State::wrong) << tilt << "\n" << what_is_wrong(wrong);
+    }
+}
+
 /// A sky of texels in theta x phi with a sun, drawn by cumulative sums in float.
 class FloatSky {
 public:

@@ -211,7 +211,7 @@ TEST(SmallFaults, AnswersThatDifferInTheirLastBitsAreTheSame) {
 
 /// A ball hides a part of the rectangle behind it: light by solid angle finds what the quadrature over both finds.
 TEST(LightsOfATrial, ThatAreNoDisksAreAimedAtAndIntegrated) {
-    for (const char* lighting : {"ball", "disk + ball + rectangle"}) {
+    for (const char* lighting : {"sphere", "disk + sphere + rectangle"}) {
         const TrialSetup on = trial_setup(LobeKind::none, true, lighting, 32);
         const Trial trial = trial_on(on, 45, 130, "light-solid-angle",
             std::make_shared<BuiltIn<LightSolidAngle>>(on.surface, tilt(45, 130), on.light));
@@ -221,7 +221,7 @@ TEST(LightsOfATrial, ThatAreNoDisksAreAimedAtAndIntegrated) {
         EXPECT_GT(named(j, "mean").evidence["quadrature"].get<double>(), 0.1);
     }
     int hidden = 0;
-    const TrialLight light = trial_setup(LobeKind::none, true, "ball + rectangle", 32).light;
+    const TrialLight light = trial_setup(LobeKind::none, true, "sphere + rectangle", 32).light;
     for (double theta = 0; theta < 90; ++theta)
         for (double azimuth = 90; azimuth < 180; ++azimuth) {
             const Vec3d wi = tilt(theta, azimuth);
@@ -234,7 +234,7 @@ TEST(LightsOfATrial, ThatAreNoDisksAreAimedAtAndIntegrated) {
 
 /// By area p has a pole along the ball's outline, one over the root of the distance to it.
 TEST(LightsOfATrial, ABallByAreaIntegratesToOneAcrossThePoleAtItsOutline) {
-    const TrialSetup on = trial_setup(LobeKind::none, true, "ball", 32);
+    const TrialSetup on = trial_setup(LobeKind::none, true, "sphere", 32);
     for (double theta : {0.0, 45.0, 85.0}) {
         const Trial trial = trial_on(
             on, theta, 130, "light-area", std::make_shared<BuiltIn<LightArea>>(on.surface, tilt(theta, 130), on.light));

@@ -9,6 +9,7 @@
 #include "math/spherical.h"
 #include "verdicts/judge.h"
 #include "verdicts/list.h"
+#include "verdicts/print.h"
 #include "verdicts/summary.h"
 
 namespace crescent {
@@ -100,6 +101,70 @@ TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
     const Verdict& v = named(j, "density");
     EXPECT_NE(v.say.find("could not be examined"), std::string::npos) << v.say;
     EXPECT_NE(v.settle.find("weight=yes"), std::string::npos) << v.settle;
+}
+
+/// (k+1)/(2 pi) cos^k about n, asked of no pdf, with a weight; `halves`: one number chooses it or the cosine.
+Recipe power_lobe(double k, bool halves) {
+    Recipe r{"power", "", {}, {}, {}};
+    r.traits.has_pdf = false;
+    r.traits.numbers = halves ? 3 : 2;
+    r.pdf = [](Vec3d, Vec3d) { return 1.0; };
+    r.f = [](Vec3d, Vec3d i) { return i.z > 0 ? 0.5 / pi : 0; };
+    r.sample = [=](Vec3d, const Numbers& u) {
+        const bool by_cosine = halves && u[2] < 0.5;
+        const double z = by_cosine ? std::sqrt(1 - u[0]) : math::pow(1 - u[0], 1 / (k + 1));
+        const double lobe = (k + 1) / (2 * pi) * math::pow(z, k);
+        Draw d{math::spherical(z, 2 * pi * u[1]), 1};
+        d.weight = 0.5 / pi * z / (halves ? 0.5 * lobe + 0.5 * z / pi : lobe);
+        return d;
+    };
+    return r;
+}
+
+Judgement pictured(const Recipe& recipe) {
+    TestSettings settings = of_draws(32768);
+    settings.pictures = true;
+    return judged_at(subject_of(recipe), 45, settings);
+}
+
+TEST(WithoutAPdf, ThePeakIsToldByTheWarpOrWithItsStandardError) {
+    constexpr double k = 20, top = (k + 1) / (2 * pi);
+    const Judgement smooth = pictured(power_lobe(k, false)), bins = pictured(power_lobe(k, true));
+    const auto peak = [](const Judgement& j, const char* key) {
+        return named(j, "density").evidence["implied_peak"][key].get<double>();
+    };
+    EXPECT_NEAR(peak(smooth, "pdf"), top, 0.01 * top) << named(smooth, "density").say;
+    EXPECT_NE(named(smooth, "density").say.find("Jacobian"), std::string::npos);
+    EXPECT_EQ(named(bins, "density").evidence["implied_by"], "bins");
+    EXPECT_GT(peak(bins, "standard_error"), 0);
+    EXPECT_LT(peak(bins, "standard_error"), 0.2 * peak(bins, "pdf")) << "a bin of a handful of draws";
+    EXPECT_NE(named(bins, "density").say.find(" +- "), std::string::npos) << named(bins, "density").say;
+}
+
+/// The mean over each ring is what the lobe has there, to five standard errors.
+TEST(WithoutAPdf, TheImpliedDensityStandsByRings) {
+    constexpr double k = 20;
+    const Judgement j = pictured(power_lobe(k, false));
+    const auto rows = named(j, "density").evidence["implied_rings"]["rows"];
+    EXPECT_EQ(rows.size(), 18u);
+    for (const auto& row : rows) {
+        const double high = math::cos(row[0].get<double>() * pi / 180),
+                     low = math::cos(row[1].get<double>() * pi / 180);
+        const double due = (math::pow(high, k + 1) - math::pow(std::max(low, 0.0), k + 1)) / (2 * pi * (high - low));
+        EXPECT_NEAR(row[2].get<double>(), due, 5 * row[3].get<double>() + 1e-3) << row[0];
+    }
+}
+
+TEST(WithoutAPdf, ThePageHasOneMapAndATableAndTheTerminalALine) {
+    const Judgement j = pictured(power_lobe(20, false));
+    const std::string page = verdict_html(j), text = verdict_table(j);
+    EXPECT_EQ(page.find("<figcaption>expected"), std::string::npos) << "a copy of what was observed";
+    EXPECT_EQ(page.find("off most"), std::string::npos);
+    EXPECT_EQ(page.find("<polyline class=rose-p"), std::string::npos) << "p is not known";
+    EXPECT_NE(page.find("<figcaption>implied density"), std::string::npos);
+    EXPECT_NE(page.find("implied density, mean over the ring"), std::string::npos);
+    EXPECT_NE(text.find("The density that the draws imply"), std::string::npos) << text;
+    EXPECT_NE(text.find("0 to 15"), std::string::npos) << text;
 }
 
 }  // namespace

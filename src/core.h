@@ -14,6 +14,7 @@
 #include "estimator/pixel.h"
 #include "experiment/arm_facts.h"
 #include "experiment/experiment.h"
+#include "experiment/light_tables.h"
 #include "films/film.h"
 #include "films/film_hash.h"
 #include "math/functions.h"

@@ -37,6 +37,7 @@
 #include "estimator/kernel.h"
 #include "estimator/pixel.h"
 #include "experiment/experiment.h"
+#include "experiment/light_tables.h"
 #include "experiment/names.h"
 #include "experiment/quantity_text.h"
 #include "experiment/schema.h"

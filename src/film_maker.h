@@ -14,7 +14,7 @@ namespace crescent {
 struct FilmOptions {
     std::string out = "out/film";
     int height = 1080;     // of 16:9 frames
-    int threads = 0;       // 0: as many as the machine has
+    int threads = 0;       // 0: as many as this process may use
     int shot = 0;          // 1 ..: that shot alone; 0: all
     std::string still;     // "MM:SS" or "SS": this frame alone, as a PNG
     bool stills = false;   // one PNG a shot and nothing else

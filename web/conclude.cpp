@@ -20,7 +20,7 @@ struct Found {
 struct Series {
     std::string name;  // "cosine, N = 64: RMSE of H"
     double n = 0, median = 0, low = 0, high = 0;
-    double mean = 0, met = 0;  // Y of the reference; share of the directions that met a disk light
+    double mean = 0, met = 0;  // Y of the reference; share of the directions that met a light
     std::vector<double> rmse;
 
     std::string line() const {

@@ -138,7 +138,7 @@ private:
 }  // namespace
 
 /// {arm, n, region, box, seeds, as} -> {name, n, rmse: [one a seed], median, q05, q95, mean, met}; `as`: its name where
-/// that is not the arm's; mean: of the reference's Y; met: the share of directions that met a disk light.
+/// that is not the arm's; mean: of the reference's Y; met: the share of directions that met a light.
 CRESCENT_EXPORT(measure)()->void {
     const ordered_json asked = request();
     const auto m = std::make_shared<Measuring>(asked);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <variant>
 
 #include "door.h"
 
@@ -32,6 +33,27 @@ void add_material_knobs(const Shape& shape, ordered_json& to) {
         add(knob(shape.name + ".rho_s", "rho_s of " + shape.name, "", 0, 1, false), m.rho_s);
 }
 
+/// A light's lengths and its centre or edges; which way it faces is left to the page's address.
+void add_light_knobs(const Light& light, ordered_json& to) {
+    ordered_json places = ordered_json::array();  // after the lengths
+    std::visit(
+        [&]<class Kind>(const Kind& kind) {
+            for (const Parameter<Kind>& parameter : Kind::parameters()) {
+                const std::string key(parameter.name), path = light.name + "." + key;
+                const std::string label = (key == "center" ? "place" : key) + " of " + light.name;
+                if (const auto* length = std::get_if<double Kind::*>(&parameter.member)) {
+                    to.push_back(knob(path, label, "m", 0.01, 1, true));
+                    to.back()["value"] = kind.**length;
+                } else if (const auto* v = std::get_if<Vec3d Kind::*>(&parameter.member); v && !parameter.unit_vector) {
+                    places.push_back(knob(path, label, "m", -4, 4, false));
+                    places.back()["value"] = {(kind.**v).x, (kind.**v).y, (kind.**v).z};
+                }
+            }
+        },
+        light.form);
+    for (ordered_json& place : places) to.push_back(std::move(place));
+}
+
 ordered_json knobs(const Experiment& e) {
     ordered_json all = ordered_json::array();
     const Shape* main = e.shape_of_s();
@@ -42,11 +64,7 @@ ordered_json knobs(const Experiment& e) {
         k["value"] = std::move(value);
         all.push_back(std::move(k));
     };
-    for (const DiskLight& disk : e.disks) {
-        add(knob(disk.name + ".radius", "radius of " + disk.name, "m", 0.01, 1, true), disk.radius);
-        add(knob(disk.name + ".center", "place of " + disk.name, "m", -4, 4, false),
-            {disk.center.x, disk.center.y, disk.center.z});
-    }
+    for (const LightTable& table : all_lights(e)) add_light_knobs(table.light, all);
     add(knob("fill.radiance", "fill", "W/(sr m²)", 0, 4, false), e.fill);
     add(knob("firefly_k", "firefly k", "", 0.1, 100, true), e.firefly_k);
     add(knob("seed", "seed", "", 0, 4294967295.0, false), e.seed);

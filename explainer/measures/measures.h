@@ -17,7 +17,7 @@ struct ArmAtPixel {
     std::vector<double> mean;          // over the first 1, 2, ... N
     double film = 0;                   // the film's own Y, which mean.back() is
     std::size_t largest = 0;           // index of the largest X
-    std::uint64_t met = 0, under = 0;  // samples that met a disk light, and that fell under the horizon
+    std::uint64_t met = 0, under = 0;  // samples that met a light, and that fell under the horizon
     double share_met = 0;              // of a long series of draws of the same pixel
     std::uint64_t long_series = 0;     // how many those were
 
@@ -30,8 +30,8 @@ struct PixelStory {
     double reference = 0;  // Y
     ArmAtPixel cosine, phong;
     PixelSample by_phong;    // the largest of the cosine arm, had the phong arm drawn it; pdf 0: it could not
-    int disk = -1;           // the disk light that counts: the largest sample's, else the first; -1: there is none
-    double solid_angle = 0;  // of all disk lights that face the pixel, sr
+    int disk = -1;           // the light that counts: the largest sample's, else the first; -1: there is none
+    double solid_angle = 0;  // of all lights that face the pixel, sr
     double disk_share = 0;   // of the pixel's light, what does not come from the fill
     double top_f = 0;        // largest f over the hemisphere
 };

@@ -1,5 +1,6 @@
-// One pixel of the crescent opens into its hemisphere: f, then L with its disk, then the cosine; the estimator builds
+// One pixel of the crescent opens into its hemisphere: f, then L with its light, then the cosine; the estimator builds
 // term by term.
+#include <algorithm>
 #include <cmath>
 
 #include "../estimator_formula.h"
@@ -143,8 +144,17 @@ private:
         const Point at = dome_.at(disk.towards), label{900, at.y + 60};
         f.line({at.x + 26, at.y + 10}, {label.x - 10, label.y}, bright, 2, shown);
         f.text({label.x, label.y - 24, 240, 44}, Words(name(disk.name)), label_text, shown);
-        f.text({label.x, label.y + 20, 240, 44},
-            Words("radius ", number(disk.angular_radius, 3, "angle of the disk light"), "°"), small_text, shown);
+        if (round(disk))
+            f.text({label.x, label.y + 20, 240, 44},
+                Words("radius ", number(disk.angular_radius, 3, "angle of the light"), "°"), small_text, shown);
+    }
+
+    /// One whose angular radius says how large it is: no rectangle.
+    bool round(const PixelLight& light) const {
+        const std::vector<LightTable> all = all_lights(data_.experiment);
+        const auto is_it = [&](const LightTable& table) { return table.light.name == light.name; };
+        const auto found = std::ranges::find_if(all, is_it);
+        return found != all.end() && found->light.kind() != "rectangle";
     }
 
     /// The colour bar of the field that is shown, with what it is and its ends.
@@ -195,19 +205,20 @@ std::vector<Cue> OnePixel::cues() const {
     if (story_.disk < 0) {
         out.push_back({lights, Words("L: what comes in, here alike all round.")});
     } else if (const std::size_t disks = pixel_.lights().size(); disks > 1) {
-        out.push_back({lights, Words("L: what comes in, dim but for ", count(disks, "disk lights"), " disks.")});
-    } else {
-        const double angle = pixel_.lights()[std::size_t(story_.disk)].angular_radius;
+        out.push_back({lights, Words("L: what comes in, dim but for ", count(disks, "lights"), " lights.")});
+    } else if (const PixelLight& light = pixel_.lights()[std::size_t(story_.disk)]; round(light)) {
         out.push_back({lights,
-            Words("L: what comes in, dim but for a disk of ", number(angle, 3, "angular radius of the disk light"),
-                "° radius.")});
+            Words("L: what comes in, dim but for a disk of ",
+                number(light.angular_radius, 3, "angular radius of the light"), "° radius.")});
+    } else {
+        out.push_back({lights, Words("L: what comes in, dim but for the light.")});
     }
     out.push_back({leans, Words("cos θ: low light is spread thin.")});
     const double part = story_.solid_angle / (2 * pi);
     if (story_.disk >= 0)
         out.push_back({product,
-            Words("The product: ", percent(story_.disk_share, 2, "the disk's share of the light"),
-                " of the light comes through ", percent(part, 2, "the disk's share of the hemisphere"),
+            Words("The product: ", percent(story_.disk_share, 2, "what does not come from the fill"),
+                " of the light comes through ", percent(part, 2, "the light's share of the hemisphere"),
                 " of the hemisphere.")});
     else out.push_back({product, Words("The product is what must be summed over all directions.")});
     out.push_back({divided, Words("Draw directions, divide by their density p, average.")});

@@ -70,7 +70,7 @@ public:
 private:
     Words met(const ArmAtPixel& arm) const {
         if (arm.met == 0) return Words("None");
-        return Words(count(arm.met, "samples of " + arm.arm + " that met a disk light in the opened pixel"), " of ",
+        return Words(count(arm.met, "samples of " + arm.arm + " that met a light in the opened pixel"), " of ",
             count(arm.samples.size(), "samples of " + arm.arm));
     }
     Words one_in(const ArmAtPixel& arm) const {
@@ -78,7 +78,7 @@ private:
         const double every = 1 / arm.share_met,
                      unit = math::pow(10.0, std::max(0.0, std::floor(math::log10(every)) - 1));
         const auto rounded = static_cast<std::uint64_t>(unit * std::round(every / unit));  // to two digits
-        return Words("one in ", count(rounded, "share of a long series of " + arm.arm + " that met a disk light"));
+        return Words("one in ", count(rounded, "share of a long series of " + arm.arm + " that met a light"));
     }
 
     void randoms(Frame& f) const {
@@ -106,7 +106,7 @@ private:
         f.line({r.x + 40, r.y}, {1630, r.y}, bright, 2, mirror);
     }
 
-    /// The disk light's outline, over the dots.
+    /// The light's outline, over the dots.
     void light(Frame& f) const {
         if (story_.disk < 0) return;
         const double shown = f.ease(appeared, appeared + 0.8);
@@ -170,7 +170,7 @@ Shot same_randoms(const Data& data) {
     shot.seen = Words(
         "Dots in a square, one for each pair of random numbers, travel to the hemisphere seen from above: first by ",
         data.arm(data.cast.cosine), ", all over it; then by ", data.arm(data.cast.phong),
-        ", about the mirror direction. The disk light is outlined.");
+        ", about the mirror direction. The light is outlined.");
     shot.seconds = end;
     shot.still = end - 0.5;
     shot.cues = drawn->cues();

@@ -8,7 +8,7 @@ struct Drawn {
     float pdf;
 };
 
-// A direction that was drawn towards a disk light: its index, and whether wi meets that disk: known from the draw,
+// A direction that was drawn towards a light: its index, and whether wi meets that light: known from the draw,
 // where a test of the rounded direction may fail. Set by the arms that aim at lights.
 int aimed_disk = -1;
 bool aimed_met = false;

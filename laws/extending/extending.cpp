@@ -79,9 +79,9 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
     return film.bad == 0 && all > 0 && std::fabs(off) < 5 * std::sqrt(variance) + error;
 }
 
-bool is_judged_as_expected(const std::string& sampler) {
+bool is_judged_as_expected(const std::string& sampler, const Grid& wo = {}) {
     ProgressMonitor monitor;
-    const Judgement j = judge(trials_of(sampler, {}, false), TestSettings::quick(), monitor);
+    const Judgement j = judge(trials_of(sampler, {}, false, wo), TestSettings::quick(), monitor);
     if (!j.as_expected) std::cout << verdict_table(j);
     return j.as_expected;
 }
@@ -131,7 +131,8 @@ int main(int argc, char** argv) try {
         return has_the_references_mean("cosine", "phong", argv[2]) &&
                 has_the_references_mean("mis-balance", "ggx", argv[2]) &&
                 has_the_references_mean("light-area", "phong", argv[2], "[0, 0, 0]") &&
-                has_the_references_mean("light-solid-angle", "phong", argv[2], "[0, 0, 0]")
+                has_the_references_mean("light-solid-angle", "phong", argv[2], "[0, 0, 0]") &&
+                is_judged_as_expected("light-area", {{45, 0}}) && is_judged_as_expected("light-solid-angle", {{45, 0}})
             ? 0
             : 1;
     const ArmInfo* arm = find_arm_info(argv[1]);

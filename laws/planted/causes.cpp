@@ -41,8 +41,10 @@ std::string cause_of(const std::string& fault) {
         {"chooser's Fresnel at w_i in the pdf", "the chooser's 1 - Fresnel at w_i over that at w_o"},
         {"passes through the coat left out of f", "both passes through a coat"},
         {"one pass through the coat left out of f", "the pass of w_i through a coat"},
-        {"w_o.m for w_i.m in the Jacobian of refraction", "(w_o.m) / (w_i.m)"},
-        {"s+1 for s+2 in the BRDF", "a constant"}, {"non-reciprocal f", "a constant"},  // at one w_o
+        {"w_o.m for w_i.m in the Jacobian of refraction", "(w_i.m) / (w_o.m)"},
+        {"n.m left out of the pdf of glass", "n.m"},
+        {"n.m left out of the pdf of glass whose index is not told", "n.m"}, {"s+1 for s+2 in the BRDF", "a constant"},
+        {"non-reciprocal f", "a constant"},  // at one w_o
     };
     const auto at = causes.find(fault);
     return at == causes.end() ? "" : at->second;

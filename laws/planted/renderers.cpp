@@ -86,6 +86,19 @@ void glass_faults(Faults& out) {
     });
 }
 
+/// D for D n.m, on both sides of the surface.
+void half_vector_faults(Faults& out) {
+    const RoughGlass g{0.3, 1.5};
+    for (const bool told : {true, false}) {
+        Recipe r = recipe_of(g);
+        bend_pdf(r, [g](Vec3d o, Vec3d i, double p) { return p > 0 ? p / g.half(o, i).z : 0; });
+        if (!told) r.traits.eta = {};
+        plant(out,
+            told ? "n.m left out of the pdf of glass" : "n.m left out of the pdf of glass whose index is not told",
+            "glass", r);
+    }
+}
+
 /// Of what chooses reflection or refraction, and of w_o below.
 void choosing_faults(Faults& out) {
     const RoughGlass g{0.3, 1.5};
@@ -235,6 +248,7 @@ void state_faults(Faults& out) {
 std::vector<PlantedFault> renderer_faults() {
     Faults out;
     glass_faults(out);
+    half_vector_faults(out);
     choosing_faults(out);
     coat_faults(out);
     colour_faults(out);

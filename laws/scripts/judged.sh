@@ -16,6 +16,18 @@ printf '%s\n' '#include "verdicts/user.h"' 'struct V { double x, y, z; };' \
 grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep -c 'error:' said)" -eq 1 ] ||
     die "no sentence: $(grep error: said)"
 
+# refused MEMBERS WORDS: a sampler with these members beside sample is refused with one sentence that has these words.
+refused() {
+    printf '%s\n' '#include "verdicts/user.h"' 'struct V { float x, y, z; };' 'struct U { float x, y; };' \
+        "struct S { struct D { V wi; float pdf; }; D sample(V, U) const; $1 };" \
+        'auto j = crescent::judge_sampler("s", S{});' >odd.cpp
+    ! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" odd.cpp >said 2>&1 || die "this compiles: $1"
+    grep -q "$2" said && [ "$(grep -c 'error:' said)" -eq 1 ] || die "no sentence for $1: $(grep error: said)"
+}
+refused 'float pdf(V, V) const; std::array<float, 2> f(V, V) const;' "f takes (wo, wi).* and returns one number"
+refused 'float pdf(V, V) const; int traits();' "traits() is const and returns crescent::Traits"
+refused 'const char* pdf(V, V) const;' "pdf returns one number, 1/sr"
+
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
 # Every built-in arm gets the verdicts that are expected of it.
@@ -80,6 +92,8 @@ for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "
 done
 expect 2 "$CRESCENT" check --exec ''
 expect 0 "$CRESCENT" check --quiet cosine --wo 60,250 --wo 0,0,1 --json wo.json
+grep -q '"command": "crescent check cosine --wo 60,250 --wo 0,0,1"' wo.json ||
+    die "--wo is not in the command: $(grep '"command"' wo.json)"
 [ "$(grep -c '"case": "w_o 60 deg az 250' wo.json)" -gt 0 ] && ! grep -q "w_o 45 deg" wo.json ||
     die "--wo is not what is judged: $(grep case wo.json | sort | uniq -c)"
 expect 0 "$CRESCENT" check --quiet uniform --set alpha=0.5 --wo 45 --against cosine --json against.json

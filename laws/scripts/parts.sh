@@ -1,6 +1,6 @@
 #!/bin/bash
 # A run in parts: --only writes what was asked for, --seed-range splits the series so that its parts are the whole, and
-# metrics.csv has a column for each key that --set gave.
+# metrics.csv has a column for each key that --set gave, and no two of one name.
 . "$(dirname "$0")/common.sh"
 
 expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 5 --out whole
@@ -34,6 +34,9 @@ done
 expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --set ball.s=9 --set exposure=2 --set ball.s=12 --out set
 head -n 1 set/metrics.csv | grep -q ',value,ball.s,exposure' || die "no columns for --set: $(head -n 1 set/metrics.csv)"
 sed -n 2p set/metrics.csv | tr -d '\r' | grep -q ',12,2$' || die "no values for --set: $(sed -n 2p set/metrics.csv)"
+expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --set seed=9 --set n=4 --out twice
+head -n 1 twice/metrics.csv | grep -q ',value,set.seed,set.n' ||
+    die "two columns of one name: $(head -n 1 twice/metrics.csv)"
 
 # A preview is one picture, beside what an earlier run left, and its boxes follow --set.
 expect 0 "$CRESCENT" run "$tiny" --preview --quiet --out metrics

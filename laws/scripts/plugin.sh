@@ -66,6 +66,87 @@ sed 's|pdf\[i\] = cos_theta / pi|pdf[i] = i == 3 ? NAN : cos_theta / pi|
 sed 's|^plugin = .*|plugin = "bad.so"|; s|bad(mixture)|bad(mine)|' mine.toml >bad.toml
 expect 1 "$CRESCENT" run bad.toml --out bad --quiet
 
+# The rose asks a library for its density, and a program, and shows both as cosine; of a library that exports none it
+# says so: no colours then.
+cat >colours.py <<'PY'
+# The numbers of colours in the left and the right half of a PNG of 8-bit RGB.
+import struct, sys, zlib
+data, at, body = open(sys.argv[1], "rb").read(), 8, b""
+while at < len(data):
+    size, kind = struct.unpack(">I4s", data[at : at + 8])
+    if kind == b"IHDR": width, height, depth, colour = struct.unpack(">IIBB", data[at + 8 : at + 18])
+    if kind == b"IDAT": body += data[at + 8 : at + 8 + size]
+    at += size + 12
+assert (depth, colour) == (8, 2)
+raw, row, halves = zlib.decompress(body), bytearray(3 * width), (set(), set())
+for j in range(height):
+    begin = j * (3 * width + 1)
+    kind, line = raw[begin], bytearray(raw[begin + 1 : begin + 1 + 3 * width])
+    for i in range(3 * width):
+        a, b, c = (line[i - 3] if i > 2 else 0), row[i], (row[i - 3] if i > 2 else 0)
+        near = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+        line[i] = (line[i] + (0, a, b, (a + b) // 2, near)[kind]) & 255
+    row = line
+    for i in range(width): halves[2 * i >= width].add(bytes(row[3 * i : 3 * i + 3]))
+print(*map(len, halves))
+PY
+# rose FOLDER: the colours of its rose, of mine and of the built-in.
+rose() { read -r mine built_in < <(python3 colours.py "$1/plates/rose.png") || die "no rose in $1"; }
+for folder in out program; do
+    rose $folder
+    [ "$mine" -gt $((built_in * 4 / 5)) ] || die "the rose in $folder: $mine colours, of the built-in $built_in"
+done
+sed 's/^int crescent_sampler_pdf/int unasked/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >unasked.c && cc_shared unasked
+sed 's|^plugin = .*|plugin = "unasked.so"|' mine.toml >unasked.toml
+expect 0 "$CRESCENT" run unasked.toml --out unasked --quiet --only plates
+rose unasked
+[ "$mine" -lt $((built_in * 4 / 5)) ] || die "a rose without a density: $mine colours, with one $built_in"
+
+# A library that ends the process ends a child of crescent's: it is told what was called, at which arm. It is an error of
+# the sampler, and the outputs of before stand, with nothing half-written beside them.
+# broken NAME CODE HEADER: cosine whose samples begin with this.
+broken() {
+    printf '#include <%s>\n' "$3" >"$1.c"
+    sed "0,/(void)wo, (void)surface;/s//$2 &/" "$CRESCENT_SOURCE/examples/plugin/cosine.c" >>"$1.c"
+}
+broken leaves 'exit(0);' stdlib.h && cc_shared leaves
+broken slips '_exit(0);' unistd.h && cc_shared slips
+broken crashes 'raise(SIGSEGV);' signal.h && cc_shared crashes
+broken aborts 'abort();' stdlib.h && cc_shared aborts
+broken throws 'if (wo) throw std::runtime_error("no such light");' stdexcept
+expect 0 "${CXX:-c++}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/src" -x c++ -o throws.so throws.c
+expect 0 "$CRESCENT" run "$tiny" --out kept --quiet
+cp -a kept before
+while IFS='|' read -r name how; do
+    told "plugin = \"$name.so\"" 3 "the arm 'mine' broke off: .*$name.so.*$how"
+    expect 3 "$CRESCENT" run odd.toml --out kept --quiet
+    diff -r before kept >difference || die "after $name: $(head -n 5 difference)"
+    expect 3 "$CRESCENT" check --quiet --plugin "./$name.so" --wo 45 --json error.json --junit error.xml
+    tr -s ' \n' '  ' <printed | grep -q "$name.so.*$how" || die "check does not say '$how': $(head -c 600 printed)"
+    grep -q '"state": "error"' error.json && grep -q '<error' error.xml || die "the files call $name no error"
+done <<'END'
+leaves|crescent_sampler_sample at w_o = (.*by a call of exit()
+slips|exit code 0
+crashes|crescent_sampler_sample at w_o = (.*signal 11
+aborts|crescent_sampler_sample at w_o = (.*signal 6
+throws|crescent_sampler_sample at w_o = (.*threw 'no such light'
+END
+
+# Ctrl-C that reaches crescent alone ends the child too.
+broken waits 'sleep(60);' unistd.h && cc_shared waits
+sed 's|^plugin = .*|plugin = "waits.so"|' mine.toml >waits.toml
+set -m
+"$CRESCENT" run waits.toml --out kept --quiet >printed 2>said &
+run=$!
+set +m
+for _ in $(seq 200); do compgen -G 'kept/.crescent-stage-*/owner' >/dev/null && break || sleep 0.05; done
+children=$(cat /proc/$run/task/*/children 2>/dev/null)
+kill -s INT "$run"
+wait "$run"
+code=$?
+[ "$code" -eq 130 ] && grep -q 'not changed' said || die "SIGINT: exit $code: $(cat said)"
+for child in $children; do [ ! -e "/proc/$child" ] || die "the child $child lives on"; done
+
 expect 0 "$CRESCENT" check --plugin ./libcosine.so --json right.json
 grep -Eq '; [1-9][0-9]+ questions were answered' printed || die "nothing is told of questions: $(tail -n 1 printed)"
 sed 's|pdf\[i\] = wi|pdf[i] = 1.01 * wi|; s|pdf\[i\] = cos_theta|pdf[i] = 1.01 * cos_theta|' \

@@ -1,6 +1,6 @@
 // light-area: next-event estimation (NEE), a light by area, chosen by its power: Y(L) times the largest area
-// that it shows, pi r^2 of a disk. Of a disk:
-//   y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2);  p_A = 1/(pi r^2);  p = p_A |y - x|^2 / cos(light).
+// that it shows, pi r^2 of a disk. A point y is even over the light's area A (of a ball, over what x sees of it):
+//   p_A = 1/A;  p = p_A |y - x|^2 / cos(light).  Of a disk y = c + r sqrt(u1) (cos 2 pi u2, sin 2 pi u2).
 // Other kinds of light: scene/lights/. It reaches nothing but the lights: under a fill it is wrong by the fill, unless
 // another technique adds that.
 #pragma once
@@ -16,9 +16,9 @@ template <class F> struct LightArea {
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr ArmManual manual = {.label = "light-area (NEE)",
         .summary = "next-event estimation: a point of a light, even over its area",
-        .formula = R"(\frac{\lvert y-x\rvert^2}{\pi r^2\cos\theta_y})",
-        .draw = "even over the area of a disk",
-        .axis = "the disk",
+        .formula = R"(\frac{\lvert y-x\rvert^2}{A\cos\theta_y})",
+        .draw = "even over a light's area",
+        .axis = "the light",
         .misses = light_arm_misses,
         .trials = trials,
         .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};

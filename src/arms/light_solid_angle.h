@@ -23,9 +23,9 @@ template <class F> struct LightSolidAngle {
         {.lobe = "phong", .sharpness = 8, .lambert = true, .light = "disk"}, {.lambert = true, .light = "fill + disk"}};
     static constexpr ArmManual manual = {.label = "light-solid-angle (NEE)",
         .summary = "next-event estimation: a direction to a light, even over its solid angle",
-        .formula = R"(\frac{1}{2\pi\,(1-\cos\beta)})",
-        .draw = R"($\cos\theta=1-u_1(1-\cos\beta)$)",
-        .axis = R"(the middle of the cap, of half angle $\beta$, around the disk)",
+        .formula = R"(\frac{1}{\Omega})",
+        .draw = R"(even over a light's solid angle $\Omega$; of a disk, over a cap around it)",
+        .axis = "the light",
         .misses = light_arm_misses,
         .trials = trials,
         .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};

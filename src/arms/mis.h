@@ -1,4 +1,4 @@
-// Two-sample multiple importance sampling: one direction from the BRDF's mixture, one from the disk lights (area), both
+// Two-sample multiple importance sampling: one direction from the BRDF's mixture, one from the lights (by area), both
 // added, each weighed by what the other technique would have done there.
 //   X = w_1 f L cos / p_1 + w_2 f L cos / p_2,  w_1 + w_2 = 1 wherever p_1 + p_2 > 0.
 // Veach & Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering": one sample from each.

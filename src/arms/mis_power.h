@@ -1,4 +1,4 @@
-// mis-power: BRDF mixture and disk light, two samples, power heuristic.
+// mis-power: BRDF mixture and light by area, two samples, power heuristic.
 //   w_i = p_i^2 / (p_1^2 + p_2^2)      Veach & Guibas 1995, eq. (13) with beta = 2.
 #pragma once
 

@@ -43,6 +43,13 @@ public:
     virtual int numbers() const = 0;
     /// One draw a row of u. May be called by many threads at once. Throws OutputError where it does not answer.
     virtual void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const = 0;
+    /// Whether it can be asked for the density of any direction.
+    virtual bool has_density() const { return false; }
+    /// The density of each wi, 0 where it is never drawn. As draw() for threads and what it throws.
+    virtual void density(Vec3<double> /*wo*/, const OutsideSurface& /*surface*/, std::span<const Vec3<double>> /*wi*/,
+        std::span<double> out) const {
+        for (double& p : out) p = 0;
+    }
 };
 
 /// The samplers from outside that an experiment's arms name, by arm.

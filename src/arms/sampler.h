@@ -29,11 +29,11 @@ template <class F> struct Drawn {
     PerSr<F> pdf;
 };
 
-/// A direction that was drawn towards a disk light. Whether it meets that disk is known from the draw; a test of the
+/// A direction that was drawn towards a light. Whether it meets that light is known from the draw; a test of the
 /// rounded direction may fail: float directions are 1e-7 apart, and so a lamp of 1e-6 m at 3 m is three of them across.
 template <class F> struct DrawnToDisk : Drawn<F> {
-    F disk;         // its index, disks first
-    MaskOf<F> met;  // wi meets it; it may still be behind another disk, or hidden
+    F disk;         // the index of that light, disks first
+    MaskOf<F> met;  // wi meets it; it may still be behind another light, or hidden
 };
 
 /// A disk light as seen from the surface: everything in the local frame.

@@ -32,7 +32,7 @@ constexpr std::string_view owner_text = "a run of crescent that is writing, or w
 }
 
 [[noreturn]] void in_use(const std::string& folder) {
-    throw OutputError(fmt::format("another run is writing into {}: expected its end, or another folder", folder));
+    throw OutputError(fmt::format("{} is in use by another run; wait for it or choose another --out", folder));
 }
 
 /// It cannot be guessed, so nothing can be put in its place beforehand.

@@ -31,7 +31,7 @@ public:
 
     /// The flag kernels poll; set from a signal handler.
     std::atomic<bool> stop{false};
-    /// Read by the signal handler, so that what it says is so.
+    /// Which outputs stand at the moment: what the signal handler tells the user.
     std::atomic<Outputs> outputs{Outputs::untouched};
     void check() const {
         if (stop.load(std::memory_order_relaxed)) throw Interrupted{};

@@ -70,9 +70,7 @@ void Publication::check_place(const std::string& name, bool make) const {
     const Folder at = out_.parent_of(name, make);
     if (!at && errno == ENOENT && !make) return;
     if (!at)
-        fail(name,
-            errno == ELOOP || errno == ENOTDIR ? "something else than a folder stands on the way"
-                                               : std::strerror(errno));
+        fail(name, errno == ELOOP || errno == ENOTDIR ? "a part of its path is not a folder" : std::strerror(errno));
     const Folder::Kind there = at.kind(leaf_of(name));
     if (there == Folder::Kind::folder) fail(name, std::strerror(EISDIR));
     if (there != Folder::Kind::none && there != Folder::Kind::file) fail(name, "a link or a device has that name");

@@ -37,11 +37,11 @@ ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t 
 }
 
 double value_of(const std::string& text, const CompareResult& result, std::string& why) {
-    const auto check = parse_comparison(text + " == 0", why, compare_words());
-    if (check->left.number) return *check->left.number;
+    const auto side = parse_quantity(text, why, compare_words());
+    if (side->number) return *side->number;
     for (const ArmResult& arm : result.arms) {
-        if (arm.name != check->left.subject) continue;
-        const MeterValue& value = arm.region(check->left.region).meter(check->left.word);
+        if (arm.name != side->subject) continue;
+        const MeterValue& value = arm.region(side->region).meter(side->word);
         if (value.value) return *value.value;
         why = fmt::format("{} has no value: {}", text, value.why);
     }

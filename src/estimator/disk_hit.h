@@ -1,4 +1,4 @@
-// Which disk light a direction meets first, and whether something stands before it. Local frame for the disks, world
+// Which light a direction meets first, and whether something stands before it. Local frame for the disks, world
 // for the occluders; templates over the number type, the same bits for every pack width.
 #pragma once
 

@@ -1,6 +1,6 @@
 // The SIMD core's contract: one arm, one BRDF, one tile's sites in; raw moments at every rung out.
 //
-//   X = f L_i cos / p     with   f = rho_d/pi + rho_s lobe   and   L_i one of few constants (the fill, each disk),
+//   X = f L_i cos / p     with   f = rho_d/pi + rho_s lobe   and   L_i one of few constants (the fill, each light),
 //
 // so RGB means follow from sums of g = cos/p and of g * lobe per emitter; only Y needs its square and its largest.
 #pragma once

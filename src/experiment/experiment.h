@@ -53,7 +53,7 @@ struct ReferencePlan {
     bool monte_carlo = false;     // whether the note's is computed too where the meters do not use it
     std::uint32_t seed = 0;       // of the note's Monte Carlo reference
     std::uint64_t lobe_spp = 32;  // Phong-sampled lobe x fill
-    std::uint64_t disk_spp = 96;  // samples on each disk
+    std::uint64_t disk_spp = 96;  // samples on each light
 };
 
 /// The whole BRDF, or its lobe without the Lambert part.
@@ -100,7 +100,7 @@ struct Experiment : SceneData {
     std::string title;
     std::vector<std::string> overrides;  // PATH=VALUE, as given
     std::uint32_t seed = 0;
-    std::uint64_t n = 0;  // samples per pixel meant where a plate, check or exponent control names none; 0: none given
+    std::uint64_t n = 0;  // samples per pixel where an arm, plate, check or exponent control gives none; 0: none given
     int seeds = 1;        // how many seeds the bands are made of; the first is `seed`
     double exposure = 1;
     std::optional<Theme> theme;  // of plates; none: dark

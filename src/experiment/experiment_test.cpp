@@ -186,6 +186,13 @@ TEST(TheSchema, TellsEditorsOfEveryKey) {
     EXPECT_EQ(told, take_every_key(schema(), "") + titled);
 }
 
+TEST(TheSchema, JoinsTheKindsThatTakeAKeyInWords) {
+    EXPECT_EQ(alternatives("sphere"), "sphere");
+    EXPECT_EQ(alternatives("sphere disk"), "sphere or disk");
+    EXPECT_EQ(alternatives("quad panel triangle"), "quad, panel or triangle");
+    EXPECT_EQ(alternatives("a b c d"), "a, b, c or d");
+}
+
 TEST(TheSchema, FitsEightyColumns) {
     std::size_t start = 0;
     const std::string text = schema_text();

@@ -44,7 +44,8 @@ struct Comparison {
 
 /// Reads one side, or a whole check over a list of words; where the text is wrong, nothing, and `why` says what was
 /// expected.
-std::optional<ParsedQuantity> parse_quantity(std::string_view text, std::string& why);
+std::optional<ParsedQuantity> parse_quantity(
+    std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
 std::optional<Comparison> parse_comparison(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
 /// The quantity in full, as parse_quantity reads it.

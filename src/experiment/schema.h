@@ -118,6 +118,9 @@ bool has_kind(const Key& key, std::string_view kind);
 /// "a number above 0 (m)": what a key takes, for messages and for the manual.
 std::string expectation(const Key& key);
 
+/// Kinds between blanks, as in Key::kinds, in words: "sphere disk box" -> "sphere, disk or box".
+std::string alternatives(std::string_view kinds);
+
 /// "a, b, c".
 template <class T> std::string listed(const std::vector<T>& all, std::string_view between = ", ") {
     std::string text;

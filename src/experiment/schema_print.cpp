@@ -44,13 +44,6 @@ std::string need_text(const Key& key) {
     return fmt::format("default {}", key.default_value);
 }
 
-/// "sphere disk" -> "sphere or disk".
-std::string alternatives(std::string_view kinds) {
-    const std::size_t blank = kinds.find(' ');
-    if (blank == std::string_view::npos) return std::string(kinds);
-    return fmt::format("{} or {}", kinds.substr(0, blank), kinds.substr(blank + 1));
-}
-
 std::string key_text(const Key& key) {
     std::string line = fmt::format("{}: {}; {}", key.name, expectation(key), need_text(key));
     if (!key.kinds.empty()) line += "; of a " + alternatives(key.kinds);
@@ -70,6 +63,17 @@ void print(const Section& section, const std::string& parent, std::string& out) 
 }
 
 }  // namespace
+
+std::string alternatives(std::string_view kinds) {
+    std::string out;
+    for (std::size_t at = 0; at < kinds.size();) {
+        const std::size_t end = std::min(kinds.find(' ', at), kinds.size());
+        if (at > 0) out += end == kinds.size() ? " or " : ", ";
+        out += kinds.substr(at, end - at);
+        at = end + 1;
+    }
+    return out;
+}
 
 std::string manual_of(const Section& root) {
     std::string out;

@@ -160,7 +160,7 @@ Section reference() {
                 to<&ReferencePlan::seed>},
             {"lobe_spp", Type::integer, count_range, "samples/pixel", defaulted, "32",
                 "Samples of the lobe for lobe x fill.", to<&ReferencePlan::lobe_spp>},
-            {"disk_spp", Type::integer, count_range, "samples/pixel", defaulted, "96", "Samples on each disk.",
+            {"disk_spp", Type::integer, count_range, "samples/pixel", defaulted, "96", "Samples on each light.",
                 to<&ReferencePlan::disk_spp>}},
         {}};
 }
@@ -226,12 +226,12 @@ Section assertions() {
 const Section& schema() {
     static const Section root = {"", Multiplicity::one, required, "The experiment.", {},
         {{"title", Type::text, none, "", defaulted, "\"untitled\"", "One line.", to<&Experiment::title>},
-            {"seed", Type::integer, seed_range, "", defaulted, "1", "The published seed, of all arms.",
+            {"seed", Type::integer, seed_range, "", defaulted, "1", "The first seed, shared by all arms.",
                 to<&Experiment::seed>},
             {"seeds", Type::integer, {1, 4096}, "", defaulted, "1",
                 "How many seeds the bands are made of; the first is `seed`.", to<&Experiment::seeds>},
             {"n", Type::integer, count_range, "samples/pixel", optional, "an arm's highest rung",
-                "The experiment's n: meant where a plate, a check or the exponent control names none.",
+                "Samples per pixel where an arm, a plate, a check or the exponent control gives no n.",
                 to<&Experiment::n>},
             {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1",
                 "Radiance is multiplied by it before the tone map.", to<&Experiment::exposure>},

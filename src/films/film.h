@@ -31,7 +31,7 @@ struct Film {
     std::vector<float> var;              // variance of the mean of X: 1/(n(n-1)) sum (X - mean)^2; 0 where n = 1
     std::vector<float> largest;          // largest single X
     std::vector<std::uint32_t> horizon;  // directions at or under the horizon, of n * directions
-    std::vector<std::uint32_t> hits;     // directions that met a disk light, of n * directions
+    std::vector<std::uint32_t> hits;     // directions that met a light, of n * directions
     std::uint64_t bad = 0;               // NaN, infinite or negative samples in the whole film
 
     /// Every plane as bytes, 4 a pixel.

@@ -1,4 +1,4 @@
-// Both sides of a check are parsed again from their text and looked up in what was measured. What was not measured is
+// Both sides of a check are parsed from their text, once, and looked up in what was measured. What was not measured is
 // NaN, and no comparison with NaN holds. An RMSE that the reference's own error is a large part of is no evidence.
 #include "meters/quantity.h"
 
@@ -107,8 +107,7 @@ struct Measurements {
 };
 
 /// One side of a check: its value, and what is to be said of it.
-double side(const std::string& text, bool over_seeds, const Measurements& of, AssertionResult& out) {
-    ParsedQuantity q = parsed(text);
+double side(ParsedQuantity q, bool over_seeds, const Measurements& of, AssertionResult& out) {
     (void)resolve_quantity(q, of.experiment);  // an experiment built in code may leave n out
     std::vector<double> values;
     const std::vector own{of.experiment.seed};
@@ -122,10 +121,9 @@ double side(const std::string& text, bool over_seeds, const Measurements& of, As
 }
 
 /// "plate_bytes(hero) > 0": what a run measures of it is above 0 wherever it ends.
-bool cannot_fail(const AssertionPlan& plan) {
-    const ParsedQuantity left = parsed(plan.left), right = parsed(plan.right);
+bool cannot_fail(const ParsedQuantity& left, const std::string& op, const ParsedQuantity& right) {
     const bool always_there = left.word == "plate_bytes" || left.word == "region_pixels";
-    return !left.number && always_there && right.number && *right.number <= 0 && (plan.op == ">" || plan.op == ">=");
+    return !left.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");
 }
 
 }  // namespace
@@ -143,9 +141,10 @@ std::vector<AssertionResult> judge(
     for (const AssertionPlan& plan : experiment.assertions) {
         AssertionResult r;
         r.name = plan.name, r.op = plan.op;
-        r.measured = side(plan.left, plan.median, measurements, r);
-        r.bound = side(plan.right, plan.median, measurements, r);
-        r.cannot_fail = cannot_fail(plan);
+        const ParsedQuantity left = parsed(plan.left), right = parsed(plan.right);
+        r.measured = side(left, plan.median, measurements, r);
+        r.bound = side(right, plan.median, measurements, r);
+        r.cannot_fail = cannot_fail(left, plan.op, right);
         r.pass = r.skipped.empty() && r.reference_good && holds(r.measured, r.op, r.bound);
         r.text = plan.left + " " + plan.op + " " + plan.right + (plan.median ? " (medians over seeds)" : "");
         if (!r.reference_good)

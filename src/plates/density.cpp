@@ -1,6 +1,6 @@
-// The arm is made in double at a point with the material of the shape whose exponent is the experiment's; its peak is
-// the largest of 1801 angles. An arm that aims at lights is asked at the pixel, of a few thousand, with R nearest to
-// the tilt and a light nearest to R's plane; its peak is that of 1024 draws.
+// The arm is made in double at a point with the material of the shape whose exponent is the experiment's, and one from
+// outside is asked there; its peak is the largest of 1801 angles. An arm that aims at lights is asked at the pixel, of
+// a few thousand, with R nearest to the tilt and a light nearest to R's plane; its peak is that of 1024 draws.
 #include "plates/density.h"
 
 #include <fmt/format.h>
@@ -38,6 +38,9 @@ ShadingPoint<double> site_of(const Experiment& e, double s, double tilt) {
 // An arm without one density (several techniques, each with its own) is left at 0.
 template <class Arm> constexpr bool has_pdf = requires(const Arm a, Vec3d w) { a.pdf(w, w); };
 
+/// `angle` radians from n, in the plane of incidence.
+Vec3d in_incidence(double angle) { return {math::sin(angle), 0, math::cos(angle)}; }
+
 /// How far a pixel's picture is from one with R at `tilt` and a light in the plane of incidence, in radians; infinite
 /// where no light shines on it or R is n.
 double off_the_plane(const OpenPixel& pixel, double tilt) {
@@ -73,6 +76,13 @@ std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, double s, double
     return best;
 }
 
+/// A density that is asked for one direction after the other.
+auto one_by_one(std::function<double(const Vec3d&)> pdf) {
+    return [pdf = std::move(pdf)](std::span<const Vec3d> wi, std::span<double> out) {
+        for (std::size_t i = 0; i < wi.size(); ++i) out[i] = pdf(wi[i]);
+    };
+}
+
 bool aims_at_lights_alone(const std::string& sampler) {
     const ArmInfo* info = find_arm_info(sampler);
     return info && !info->combines && !info->misses.empty();
@@ -81,7 +91,7 @@ bool aims_at_lights_alone(const std::string& sampler) {
 }  // namespace
 
 Density::Density(const Experiment& e, const std::string& sampler, double s, double tilt)
-    : pdf_([](const Vec3d&) { return 0.0; }), tilt_(tilt) {
+    : ask_(one_by_one([](const Vec3d&) { return 0.0; })), tilt_(tilt) {
     if (aims_at_lights_alone(sampler)) {
         ask_at_a_pixel(e, sampler, s);
         return;
@@ -90,13 +100,30 @@ Density::Density(const Experiment& e, const std::string& sampler, double s, doub
     for_each_arm(Arms{}, [&]<template <class> class A>() {
         if constexpr (has_pdf<A<double>>) {
             if (sampler != A<double>::name) return;
-            pdf_ = [arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
+            ask_ = one_by_one([arm = A<double>(site), wo = site.wo](const Vec3d& wi) {
                 double p = arm.pdf(wo, wi).v;
                 return std::isfinite(p) ? p : 0.0;
-            };
+            });
         }
     });
-    for (int i = -900; i <= 900; ++i) peak_ = std::max(peak_, in_plane(i * pi / 1800));
+    find_peak();
+}
+
+Density::Density(const Experiment& e, const OutsideSampler& outside, double s, double tilt) : tilt_(tilt) {
+    const ShadingPoint<double> site = site_of(e, s, tilt);
+    ask_ = [&outside, wo = site.wo, on = OutsideSurface{site.s, site.alpha, site.diffuse, site.lobe}](
+               std::span<const Vec3d> wi, std::span<double> out) {
+        outside.density(wo, on, wi, out);
+        for (double& p : out) p = p > 0 && std::isfinite(p) ? p : 0.0;
+    };
+    if (!outside.has_density()) ask_ = one_by_one([](const Vec3d&) { return 0.0; });
+    find_peak();
+}
+
+void Density::find_peak() {
+    std::vector<Vec3d> plane;
+    for (int i = -900; i <= 900; ++i) plane.push_back(in_incidence(i * pi / 1800));
+    for (const double p : at(plane)) peak_ = std::max(peak_, p);
 }
 
 void Density::ask_at_a_pixel(const Experiment& e, const std::string& sampler, double s) {
@@ -106,14 +133,20 @@ void Density::ask_at_a_pixel(const Experiment& e, const std::string& sampler, do
     const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // towards R from n
     tilt_ = math::atan2(out, r.z);
     where_ = fmt::format("pixel ({}, {})", pixel->i(), pixel->j());
-    pdf_ = [=](const Vec3d& wi) {
+    ask_ = one_by_one([=](const Vec3d& wi) {
         const double p = pixel->pdf(sampler, {wi.x * x - wi.y * y, wi.x * y + wi.y * x, wi.z});
         return wi.z > 0 && std::isfinite(p) ? p : 0.0;
-    };
+    });
     for (const PixelSample& drawn : pixel->samples(sampler, 1024, 1))
         if (drawn.cos > 0) peak_ = std::max(peak_, static_cast<double>(drawn.pdf));
 }
 
-double Density::in_plane(double angle) const { return pdf_({math::sin(angle), 0, math::cos(angle)}); }
+std::vector<double> Density::at(std::span<const Vec3d> wi) const {
+    std::vector<double> out(wi.size());
+    ask_(wi, out);
+    return out;
+}
+
+double Density::in_plane(double angle) const { return at(in_incidence(angle)); }
 
 }  // namespace crescent::plates

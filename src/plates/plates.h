@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "arms/outside.h"
 #include "experiment/experiment.h"
 #include "films/film.h"
 #include "meters/metrics.h"
@@ -22,6 +23,7 @@ struct PlateInputs {
     std::function<const ReferenceFilm*(double s)> reference;  // the one the meters use
     std::string instrument;                                   // "CPU" or the GL strings, for the instrument plates
     Theme theme = Theme::dark;
+    std::function<const OutsideSampler*(const std::string& arm)> outside{};  // nullptr: it is built in
 };
 
 /// A finished picture: 8-bit sRGB, 3 bytes a pixel, rows top-down.

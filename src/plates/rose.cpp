@@ -1,5 +1,6 @@
 // rose: the densities themselves, in 1/sr, each over the hemisphere of n as a dome through turbo, and under it in the
-// plane of incidence as a polar plot. Nothing is sampled: the numbers are the arms' own pdf.
+// plane of incidence as a polar plot. Nothing is sampled: the numbers are the arms' own pdf, those of arms from outside
+// as they answer for it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,14 +44,20 @@ Direction from_angles(double theta, double phi) {
 // The dome's pixels: what lies on the sphere towards the viewer and above the surface.
 Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
     Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
+    std::vector<Direction> seen;
+    std::vector<std::pair<int, int>> pixels;
     for (int j = 0; j < block.height; ++j) {
         for (int i = 0; i < block.width; ++i) {
             double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
             double w = w2 > 0 ? std::sqrt(w2) : 0;
             Direction d{u, v * up - w * away, v * away + w * up};
-            block.set(i, j, w2 > 0 && d.z >= 0 ? turbo(p.at(d) / peak) : nothing);
+            block.set(i, j, nothing);
+            if (w2 > 0 && d.z >= 0) seen.push_back(d), pixels.emplace_back(i, j);
         }
     }
+    const std::vector<double> density = p.at(seen);
+    for (std::size_t k = 0; k < seen.size(); ++k)
+        block.set(pixels[k].first, pixels[k].second, turbo(density[k] / peak));
     return block;
 }
 
@@ -117,6 +124,11 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
     colour_bar(sheet, bar, part.peak, false);
 }
 
+/// Null where the arm is built in, or nobody is there to be asked.
+const OutsideSampler* from_outside(const Sheet& sheet, const std::string& arm) {
+    return sheet.in.outside ? sheet.in.outside(arm) : nullptr;
+}
+
 std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
     const Experiment& e = sheet.experiment();
     std::vector<RunKey> keys = keys_of(sheet.plan, e);
@@ -124,7 +136,10 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
         for (const ArmPlan& a : e.arms) keys.push_back({a.name, 0, e.s(), e.seed});
     }
     std::vector<Part> parts;
-    for (const RunKey& k : keys) { parts.push_back({k, Density(e, sampler_of(k.arm, e), k.s, tilt)}); }
+    for (const RunKey& k : keys) {
+        const OutsideSampler* own = from_outside(sheet, k.arm);
+        parts.push_back({k, own ? Density(e, *own, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
+    }
     return parts;
 }
 
@@ -156,12 +171,16 @@ double peak_in_plane(const Part& part) {
 }
 
 /// Why there is nothing to show of an arm.
-std::string why_no_density(const std::string& arm, const Experiment& e) {
+std::string why_no_density(const Sheet& sheet, const std::string& arm) {
+    const Experiment& e = sheet.experiment();
     const ArmInfo* info = find_arm_info(sampler_of(arm, e));
+    const OutsideSampler* own = from_outside(sheet, arm);
     return arm_name(arm, e) +
-        (!info                   ? " comes from outside: its density is not known here"
-                : info->combines ? " joins several densities, each with its own weight"
-                                 : " aims at lights: none shines where the camera sees");
+        (own && own->has_density() ? " says that its density is 0 in the plane of incidence"
+                : own              ? " is a library without crescent_sampler_pdf: its density is not known"
+                : !info            ? " comes from outside, and is not there to be asked for its density"
+                : info->combines   ? " joins several densities, each with its own weight"
+                                   : " aims at lights: none shines where the camera sees");
 }
 
 void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
@@ -172,7 +191,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
     double y = draw_words(sheet, parts, i, col, narrow);
     Rect dome{col.x, y, col.w, content_band.y + 294 - y};
     if (!(part.peak > 0)) {
-        paint_missing(sheet, dome, why_no_density(part.key.arm, e));
+        paint_missing(sheet, dome, why_no_density(sheet, part.key.arm));
         return;
     }
     draw_dome(sheet, part, dome);

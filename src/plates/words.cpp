@@ -104,7 +104,7 @@ std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, boo
 std::string reference_words(const Experiment& e) {
     const ReferencePlan& r = e.reference;
     if (r.kind == ReferenceKind::quadrature) return "by quadrature, no samples";
-    return fmt::format("lobe {} spp, disk {} spp, seed {}", r.lobe_spp, r.disk_spp, r.seed);
+    return fmt::format("lobe {} spp, lights {} spp, seed {}", r.lobe_spp, r.disk_spp, r.seed);
 }
 
 std::string number(double v, int digits) {

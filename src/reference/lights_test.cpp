@@ -56,6 +56,9 @@ template <class Kind> void expect_sound(const Kind& kind, Vec3d x) {
 }
 
 TEST(LightKinds, AreAimedAtWithTheDensityTheyState) {
+    for_each_lamp([]<class Kind>() {
+        for (const Vec3d x : {Vec3d{0, 0, 0}, {0.5, -0.3, 0.1}, {-2, -1, 0}}) expect_sound(Kind::example(), x);
+    });
     for (const double radius : {1e-3, 0.1, 0.9}) expect_sound(lights::Sphere{{0.2, -0.3, 1.2}, radius}, {0, 0, 0});
     for (const double size : {0.02, 0.3, 2.0, 30.0})
         for (const Vec3d off : {Vec3d{0, 0, 1}, {3, 0.4, 0.5}, {-0.2, 0.1, -0.6}})

@@ -11,8 +11,8 @@
 
 namespace crescent::inline reference {
 
-/// Told before so many steps, a tenth of a microsecond each, on the thread that takes them: a page may answer its
-/// reader meanwhile. Near the horizon one albedo takes millions.
+/// Called before every `steps` steps, a tenth of a microsecond each, on the thread that takes them, so that a page
+/// stays responsive: near the horizon one albedo takes millions of steps.
 using MakeWay = std::function<void(std::size_t steps)>;
 
 /// A at one angle by adaptive quadrature: lobes about R to about 1e-10, lobes about the half vector to about 1e-6.

@@ -1,4 +1,4 @@
-// Values that were made for numbers, kept for those who ask for the same numbers again, mostly in the same order.
+// A cache of values by number, in the order of first use: whoever asks again asks mostly in that order.
 #pragma once
 
 #include <algorithm>

@@ -140,6 +140,55 @@ TEST(ReportHtml, WarnsOfASurfaceThatReflectsMoreThanItReceives) {
     EXPECT_THAT(terminal_summary(s.inputs(), s.timing, "out"), HasSubstr("warning: ball: rho_d + rho_s is 1.05"));
 }
 
+TEST(ReportHtml, WarnsOfEvidenceThatCannotBeMeasured) {
+    Sample s;
+    const auto warned = [&](const char* of) {
+        const std::string text = terminal_summary(s.inputs(), s.timing, "out");
+        EXPECT_THAT(text, HasSubstr(std::string("warning: note_evidence measures nothing: ") + of));
+        return text;
+    };
+    s.experiment.note_evidence = true;
+    EXPECT_THAT(s.html(), Not(HasSubstr("note_evidence measures nothing")));
+    s.experiment.shapes[0].material.brdf = lobe_named("ggx");
+    warned("exponent.shape has no Phong lobe");
+    s.experiment.exponent.reset();
+    warned("no shape has a Phong lobe");
+    s.experiment.arms[1].sampler = "ggx-d";
+    warned("no arm has the sampler 'phong'");
+    s.experiment.note_evidence = false;
+    EXPECT_THAT(s.html(), Not(HasSubstr("note_evidence measures nothing")));
+}
+
+TEST(ReportHtml, AsksForAnotherLobeByTheKeyThatShapesIt) {
+    Sample s;
+    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.s=64"));
+    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.s=8"));
+    Material& m = s.experiment.shapes[0].material;
+    m.brdf = lobe_named("ggx"), m.alpha = 0.25;
+    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.alpha=0.125"));
+    EXPECT_THAT(s.html(), HasSubstr("shapes.ball.alpha=0.5"));
+    EXPECT_THAT(s.html(), Not(HasSubstr("shapes.ball.s=64")));
+    m.alpha = 0.75;
+    EXPECT_THAT(s.html(), Not(HasSubstr("alpha=1.5"))) << "a file may have no such alpha";
+    m.alpha.reset();
+    EXPECT_THAT(s.html(), Not(HasSubstr("A sharper lobe")));
+}
+
+TEST(ReportHtml, TellsOfALightWhicheverTableNamesIt) {
+    Sample s;
+    EXPECT_THAT(s.html(), HasSubstr("disks.key.radius=0.4"));
+    s.experiment.disks.clear();
+    EXPECT_FALSE(has_section(s.html(), "failure-a")) << "no light to miss";
+    EXPECT_THAT(s.html(), Not(HasSubstr("A larger light")));
+    s.experiment.lights = {{"lamp", lights::Sphere{{0, 3, 0}, 0.25}, {5, 5, 5}, {}}};
+    EXPECT_TRUE(has_section(s.html(), "failure-a"));
+    EXPECT_THAT(s.html(), HasSubstr("lights.lamp.radius=1<"));
+    EXPECT_THAT(s.html(), HasSubstr("lights.lamp.radiance=[1, 1, 1]"));
+    s.experiment.lights = {{"window", lights::Rectangle{{0, 3, 0}, {1, 0, 0}, {0, 0, 1}, false}, {5, 5, 5}, {}}};
+    EXPECT_THAT(s.html(), HasSubstr("lights.window.edge_u=[4, 0, 0]"));
+    EXPECT_EQ(xml_error(s.html()), "");
+}
+
 TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
     Sample s;
     EXPECT_THAT(s.html(), Not(HasSubstr("<th>GGX")));

@@ -1,6 +1,8 @@
 // metrics.csv: every run in long form, one number a row, in RFC 4180 (CRLF, quotes doubled). The region is empty for
-// the meters of the whole frame; a column follows for each key that --set gave. Units are those of meters/metrics.h.
+// the meters of the whole frame; a column follows for each key that --set gave, named as --set named it, `set.seed` and
+// `set.n` for the two keys that are columns already. Units are those of meters/metrics.h.
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "pages/csv.h"
@@ -9,6 +11,8 @@
 
 namespace crescent::inline report {
 namespace {
+
+constexpr std::array<std::string_view, 7> fixed_columns = {"arm", "n", "s", "seed", "meter", "region", "value"};
 
 struct Rows {
     std::string out;
@@ -48,13 +52,18 @@ std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& 
     return out;
 }
 
+/// A key's column: the key as it was given, but for one that would be the second column of its name.
+std::string column_of(const std::string& path) {
+    return std::ranges::find(fixed_columns, path) == fixed_columns.end() ? path : "set." + path;
+}
+
 }  // namespace
 
 std::string metrics_csv(const ReportInputs& in) {
     Rows rows;
-    rows.out = "arm,n,s,seed,meter,region,value";
+    for (const std::string_view name : fixed_columns) rows.out += (rows.out.empty() ? "" : ",") + std::string(name);
     for (const auto& [path, value] : overrides_of(in.experiment)) {
-        rows.out += "," + csv_field(path);
+        rows.out += "," + csv_field(column_of(path));
         rows.set += "," + csv_field(value);
     }
     rows.out += "\r\n";

@@ -124,6 +124,15 @@ TEST(MetricsCsv, QuotesNamesAsRfc4180Says) {
     EXPECT_NE(csv.find(",tail_k,S,0.1\r\n"), std::string::npos);
 }
 
+TEST(MetricsCsv, HasAColumnForEachKeyThatWasSetAndNoTwoOfOneName) {
+    Sample s;
+    s.metrics.runs.resize(1);
+    s.experiment.overrides = {"seed=9", "n=64", "fill.radiance=[1, 1, 1]", "exposure=2", "seeds=3", "exposure=4"};
+    const std::string csv = metrics_csv(s.inputs());
+    EXPECT_TRUE(csv.starts_with("arm,n,s,seed,meter,region,value,set.seed,set.n,fill.radiance,exposure\r\n")) << csv;
+    EXPECT_NE(csv.find(",rmse,H,6,9,64,\"[1, 1, 1]\",4\r\n"), std::string::npos) << csv;
+}
+
 TEST(JunitXml, IsWellFormedAndEscapedWhateverTheNames) {
     Sample s;
     s.experiment.title = "<&\"'>\x01\xff";

@@ -5,6 +5,8 @@
 
 #include "arms/info.h"
 #include "base/text.h"
+#include "experiment/light_tables.h"
+#include "lobes/info.h"
 #include "report/arm_words.h"
 
 namespace crescent::inline report {
@@ -48,32 +50,41 @@ struct Row {
 
 void light_rows(const Page& page, std::vector<Row>& rows) {
     const Experiment& e = page.in.experiment;
-    if (e.disks.empty()) return;
-    const DiskLight& d = e.disks.front();
-    rows.push_back({"A larger light?", with(page, {fmt::format("disks.{}.radius={}", d.name, shortest(4 * d.radius))}),
-        "Broad densities meet it more often; the fireflies thin out."});
-    rows.push_back({"A smaller one?", with(page, {fmt::format("disks.{}.radius={}", d.name, shortest(d.radius / 4))}),
-        "Every arm that does not aim at lights misses it; in the limit none can find it."});
+    const std::vector<LightTable> lights = all_lights(e);
+    if (lights.empty()) return;
+    if (const auto larger = widened(lights.front(), 4), smaller = widened(lights.front(), 0.25); !larger.empty()) {
+        rows.push_back(
+            {"A larger light?", with(page, larger), "Broad densities meet it more often; the fireflies thin out."});
+        rows.push_back({"A smaller one?", with(page, smaller),
+            "Every arm that does not aim at lights misses it; in the limit none can find it."});
+    }
     std::vector<std::string> furnace{"fill.radiance=[1, 1, 1]"};
-    for (const DiskLight& disk : e.disks) furnace.push_back(fmt::format("disks.{}.radiance=[1, 1, 1]", disk.name));
-    for (const Light& light : e.lights) furnace.push_back(fmt::format("lights.{}.radiance=[1, 1, 1]", light.name));
+    for (const LightTable& table : lights) furnace.push_back(table.path + ".radiance=[1, 1, 1]");
     rows.push_back({"The whole scene as a white furnace?", with(page, furnace),
         "Each surface shows its albedo; what departs is the arm’s."});
+}
+
+/// What --set takes to multiply the number that shapes a lobe, its exponent or its roughness; "" where the shape has no
+/// such number, or would have one that a file may not have.
+std::string lobe_setting(const Shape& shape, double of_s, double of_alpha) {
+    const bool by_alpha = lobe_info(shape.material.brdf).parameter == LobeParameter::alpha;
+    const std::optional<double> now = by_alpha ? shape.material.alpha : shape.material.s;
+    if (!now) return {};
+    const double then = *now * (by_alpha ? of_alpha : of_s);
+    if (then > (by_alpha ? 1 : 1e6)) return {};
+    return fmt::format("shapes.{}.{}={}", shape.name, by_alpha ? "alpha" : "s", shortest(then));
 }
 
 void material_rows(const Page& page, std::vector<Row>& rows) {
     const Shape* shape = glossy(page.in.experiment);
     if (!shape) return;
     rows.push_back({"A metal instead?", with(page, {fmt::format("shapes.{}.rho_d=[0, 0, 0]", shape->name)}),
-        "Without a Lambert part it has nothing that a narrow density starves; the Lambertian surfaces around it "
-        "have."});
-    if (!shape->material.s) return;
-    const double s = *shape->material.s;
-    rows.push_back(
-        {"More samples under the horizon?", with(page, {fmt::format("shapes.{}.s={}", shape->name, shortest(s / 4))}),
+        "It has no diffuse part, so Failure B does not show on it."});
+    if (const auto wide = lobe_setting(*shape, 0.25, 2); !wide.empty())
+        rows.push_back({"More samples under the horizon?", with(page, {wide}),
             "A wider lobe reaches under the surface more often; those samples weigh nothing and count."});
-    rows.push_back({"A sharper lobe?", with(page, {fmt::format("shapes.{}.s={}", shape->name, shortest(2 * s))}),
-        "Better where the lobe is, worse everywhere else."});
+    if (const auto sharp = lobe_setting(*shape, 2, 0.5); !sharp.empty())
+        rows.push_back({"A sharper lobe?", with(page, {sharp}), "Better where the lobe is, worse everywhere else."});
 }
 
 void sampling_rows(const Page& page, std::vector<Row>& rows) {

@@ -19,8 +19,9 @@ is 2π<i>u</i><sub>2</sub> for all; they part over the polar angle θ and over t
 
 constexpr const char* other_prose = R"(
 <p>Each arm turns two uniform numbers <i>u</i><sub>1</sub>, <i>u</i><sub>2</sub> in (0, 1) into a direction, and a
-two-sample arm does so twice. <i>m</i> is the half vector, of which the direction is a mirror image; <i>y</i> a point on
-a disk of radius <i>r</i>.</p>
+two-sample arm does so twice. <i>m</i> is the half vector, of which the direction is a mirror image; <i>y</i> a point
+of a light of area <i>A</i> and <i>θ</i><sub>y</sub> the angle there between its normal and the ray; Ω the solid angle
+that the directions to a light are drawn from.</p>
 )";
 
 std::string rungs(const ArmPlan& arm) {

@@ -18,9 +18,9 @@ from a table of its albedo, every light by quadrature. It has no seed, and state
 
 constexpr const char* both_prose = R"(
 <p>Two references are computed. The quadrature integrates each pixel to convergence and has no seed. The Monte Carlo one
-adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn from it, and each disk by {disk} on its
-surface, on a seed of its own ({seed}). The meters of this run use the <b>{used}</b>. The table shows how far the two
-lie apart, what the random one claims as its standard error, and by how much the RMSE of any arm would change if the
+adds an analytic Lambert term for the fill, the lobe on the fill by {lobe} drawn from it, and each light by {disk} on
+its surface, on a seed of its own ({seed}). The meters of this run use the <b>{used}</b>. The table shows how far the
+two lie apart, what the random one claims as its standard error, and by how much the RMSE of any arm would change if the
 other one were used.</p>
 )";
 

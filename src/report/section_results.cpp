@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiment/arm_facts.h"
+#include "experiment/light_tables.h"
 #include "report/arm_words.h"
 
 namespace crescent::inline report {
@@ -67,8 +68,8 @@ bool larger_in(
 }
 
 constexpr const char* a_prose = R"(
-<p>A small bright disk fills little of the hemisphere. A density that spreads its rays over all of it meets the disk
-seldom; when one ray does, it carries the light of all those that missed. On a glossy highlight that one ray also meets
+<p>A small bright light fills little of the hemisphere. A density that spreads its rays over all of it meets the light
+seldom; when one ray does, it stands for all those that missed. On a glossy highlight that one ray also meets
 the lobe at its height, which the density knows nothing of, so one sample can weigh as much as {largest} with {broad},
 in a picture whose mean is {mean}. Where that happens, most pixels come out too dark and a few far too bright. Counted
 as fireflies at <i>N</i> = {n} are {fireflies_broad} pixels with {broad} and {fireflies_narrow} with {narrow}.</p>
@@ -89,7 +90,7 @@ std::string failures_not_seen(const Page& page, const ArmPair& pair) {
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
     std::string out;
     if (!larger_in(page, broad, narrow, pair.n, page.find.region_where_worst(broad, narrow, pair.n)) &&
-        !page.in.experiment.disks.empty())
+        !all_lights(page.in.experiment).empty())
         out += not_seen(pair, broad, narrow);
     if (!larger_in(page, narrow, broad, pair.n, page.find.region_where_worst(narrow, broad, pair.n)))
         out += not_seen(pair, narrow, broad);
@@ -125,7 +126,7 @@ PageSection results(Page& page) {
 
 PageSection failure_a(Page& page) {
     const ArmPair pair = arm_pair(page);
-    if (!pair || page.in.experiment.regions.empty() || page.in.experiment.disks.empty()) return {};
+    if (!pair || page.in.experiment.regions.empty() || all_lights(page.in.experiment).empty()) return {};
     const std::string broad = pair.broad->name, narrow = pair.narrow->name;
     const std::string region = page.find.region_where_worst(broad, narrow, pair.n);
     const RunMeter *of_broad = page.find.run(broad, pair.n), *of_narrow = page.find.run(narrow, pair.n);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "experiment/light_tables.h"
 #include "experiment/warnings.h"
 #include "report/page.h"
 
@@ -54,7 +55,7 @@ std::string lobe(const Material& m) {
 std::string shapes_table(const Page& page) {
     html::Table table("Shapes. Pixels: how many primary rays meet the shape first",
         {words("Shape"), words("Kind"), words("Where"), words("<i>ρ</i><sub>d</sub>"), words("Lobe"),
-            words("Blocks the disks"), {"Pixels", true}});
+            words("Blocks the lights"), {"Pixels", true}});
     for (const Shape& shape : page.in.experiment.shapes) {
         const auto found = page.in.metrics.shape_pixels.find(shape.name);
         const bool known = found != page.in.metrics.shape_pixels.end();
@@ -68,9 +69,7 @@ std::string shapes_table(const Page& page) {
 std::string lights_table(const Experiment& e) {
     html::Table table("Lights. Sampled rays alone meet them; the fill comes from wherever no other light is met",
         {words("Light"), words("Where"), words("Radiance, W/(sr m²)")});
-    std::vector<Light> lights = e.lights;
-    for (auto disk = e.disks.rbegin(); disk != e.disks.rend(); ++disk) lights.insert(lights.begin(), disk->light());
-    for (const Light& light : lights)
+    for (const auto& [path, light] : all_lights(e))
         table.row({html::heading(escape(light.name)),
             words(fmt::format("{}: {}", light.kind(), parameters_of(light.form))), words(rgb(light.radiance))});
     table.row({html::heading("fill"), words("the whole hemisphere"), words(rgb(e.fill))});

@@ -83,6 +83,19 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     return fmt::format("\n{}\n{}", paint(bold, head), rows);
 }
 
+/// The hashes of the films; a film's name without s where s says nothing of its arm.
+std::map<std::string, std::string> hashes_shown(const ReportInputs& in) {
+    std::map<std::string, std::string> out = in.metrics.film_hashes;
+    for (const RunMeter& run : in.metrics.runs) {
+        if (tells_s(run.key.arm, run.key.s, in.experiment)) continue;
+        if (auto film = out.extract(to_string(run.key)); film) {
+            film.key() = fmt::format("{} n={}", run.key.arm, run.key.n);
+            out.insert(std::move(film));
+        }
+    }
+    return out;
+}
+
 std::string films(const std::map<std::string, std::string>& hashes, const Paint& paint) {
     if (hashes.empty()) return {};
     std::string out = fmt::format("\n{}\n", paint(bold, "  films (XXH3-64)"));
@@ -130,7 +143,7 @@ std::string where(const ReportInputs& in, const std::string& out_dir, const Outp
 std::string terminal_summary(
     const ReportInputs& in, const Timing& timing, const std::string& out_dir, const OutputParts& parts, bool colour) {
     const Paint paint{colour};
-    std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(in.metrics.film_hashes, paint);
+    std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(hashes_shown(in), paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format(
             "\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));

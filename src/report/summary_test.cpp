@@ -54,6 +54,13 @@ TEST(Summary, PrintsHashesSpeedAndWhereToLook) {
     EXPECT_NE(text.find("out/here/report.html"), std::string::npos);
 }
 
+TEST(Summary, NamesAFilmWithoutSWhereItsArmDoesNotAimByS) {
+    Sample s;
+    EXPECT_NE(summary(s).find("  cosine n=64  "), std::string::npos) << summary(s);
+    EXPECT_EQ(summary(s).find("cosine n=64 s="), std::string::npos) << summary(s);
+    EXPECT_NE(summary(s).find("phong n=64 s=32"), std::string::npos) << summary(s);
+}
+
 TEST(Summary, WritesHeavyTailInPlaceOfTheBand) {
     Sample s;
     EXPECT_EQ(summary(s).find("heavy tail"), std::string::npos);

@@ -140,7 +140,7 @@ void Checkpoint::discard() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
     if (fs::remove(all_, ignored) || !fs::exists(all_, ignored)) return;
-    monitor_.log("what another, unfinished run kept is still in " + all_);
+    monitor_.log(all_ + " still holds the checkpoint of another, unfinished run");
 }
 
 }  // namespace crescent::inline runs

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "arms/outside.h"
 #include "studies/evidence.h"
 #include "meters/metrics.h"
 #include "report/report.h"
@@ -24,6 +25,7 @@ struct Measured {
     std::vector<std::pair<RunKey, Film>> films;          // of the jobs whose films were kept
     std::vector<ReferenceFilm> quadrature, monte_carlo;  // one an exponent; none where not asked for
     Plates plates;                                       // none before write()
+    OutsideSamplers outside;                             // plates ask them for their densities
     bool stopped = false;
 
     const Film* film(const RunKey& key) const;       // null: not kept

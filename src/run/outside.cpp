@@ -32,6 +32,14 @@ public:
         program_->sample(0, batch.wo, u, draws);
         std::ranges::transform(draws, out.begin(), [](const Draw& d) { return OutsideDraw{d.wi, d.pdf}; });
     }
+    bool has_density() const override { return program_->traits().has_pdf; }
+    void density(
+        Vec3d wo, const OutsideSurface& /*surface*/, std::span<const Vec3d> wi, std::span<double> out) const override {
+        std::vector<Pair> at;
+        for (const Vec3d& w : wi) at.push_back({wo, w});
+        const std::lock_guard<std::mutex> one_at_a_time(lock_);
+        program_->pdf(0, at, out);
+    }
 
 private:
     std::shared_ptr<const JudgedSampler> program_;
@@ -45,14 +53,23 @@ public:
     std::string name() const override { return of_->name(); }
     int numbers() const override { return of_->numbers(); }
     void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const override {
+        named([&] { of_->draw(batch, out); });
+    }
+    bool has_density() const override { return of_->has_density(); }
+    void density(
+        Vec3d wo, const OutsideSurface& surface, std::span<const Vec3d> wi, std::span<double> out) const override {
+        named([&] { of_->density(wo, surface, wi, out); });
+    }
+
+private:
+    template <class Call> void named(Call&& call) const {
         try {
-            of_->draw(batch, out);
+            call();
         } catch (const SubjectFault& fault) {
             throw OutputError(fmt::format("the arm '{}' broke off: {}", arm_, fault.what()));
         }
     }
 
-private:
     std::string arm_;
     std::shared_ptr<const OutsideSampler> of_;
 };

@@ -24,7 +24,8 @@ namespace {
 
 PlateInputs plate_inputs(const Measured& m) {
     return {m.experiment, m.metrics, m.shapes, [&m](const RunKey& key) { return m.film(key); },
-        [&m](double s) { return m.reference(s); }, m.provenance.instrument, m.experiment.theme.value_or(Theme::dark)};
+        [&m](double s) { return m.reference(s); }, m.provenance.instrument, m.experiment.theme.value_or(Theme::dark),
+        [&m](const std::string& arm) { return outside_of(m.outside, arm); }};
 }
 
 std::vector<unsigned char> draw(const PlatePlan& plan, const Measured& m, Attributes text) {

@@ -12,6 +12,7 @@
 #include "arms/all.h"
 #include "color/rgb.h"
 #include "estimator/estimator.h"
+#include "experiment/evidence_subject.h"
 #include "studies/furnace_sites.h"
 #include "math/distributions.h"
 #include "math/functions.h"
@@ -153,24 +154,13 @@ FalseRejection false_rejection(
     return out;
 }
 
-const Shape* subject_shape(const Experiment& experiment) {
-    if (experiment.exponent) return experiment.find_shape(experiment.exponent->shape);
-    for (const Shape& shape : experiment.shapes)
-        if (shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong")) return &shape;
-    return nullptr;
-}
-
 }  // namespace
 
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor) {
     Evidence out;
-    if (!experiment.note_evidence) return out;
-    const bool phong = std::any_of(
-        experiment.arms.begin(), experiment.arms.end(), [](const ArmPlan& a) { return a.sampler == "phong"; });
-    const Shape* shape = subject_shape(experiment);
-    if (!phong || !shape || shape->material.brdf != lobe_named("phong") || !(shape->material.rho_s > 0)) return out;
+    if (!experiment.note_evidence || !why_no_evidence(experiment).empty()) return out;
     FurnaceSubject subject;
-    subject.surface = furnace_surface(experiment, *shape, false);
+    subject.surface = furnace_surface(experiment, *evidence_shape(experiment), false);
     subject.s = out.s = subject.surface.s;
     subject.rho_d = out.rho_d = luminance(subject.surface.rho_d);
     subject.rho_s = out.rho_s = subject.surface.rho_s;

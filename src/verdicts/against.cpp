@@ -7,15 +7,16 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <numeric>
 #include <tuple>
 
-#include "base/errors.h"
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "simd/random.h"
 #include "verdicts/asked_once.h"
 #include "verdicts/delta.h"
+#include "verdicts/named_side.h"
 #include "verdicts/ordered.h"
 #include "verdicts/outcome.h"
 #include "verdicts/verdict_kind.h"
@@ -31,11 +32,13 @@ constexpr std::uint32_t other_stream = 1u << 20;  // B draws from streams that n
 struct Common {
     const Density& bins;
     std::vector<Vec3d> ways;
+    bool nothing_below = false;  // without a pdf(w) a draw under the horizon of a surface that lets nothing through
 };
 
 Common common_of(const TrialContext& a, const TrialContext& b) {
     constexpr double alike = 1e-4;
     Common out{a.density(0), {}};
+    out.nothing_below = !(a.traits.has_pdf && b.traits.has_pdf) && !a.whole() && !b.whole();
     for (const TrialContext* work : {&a, &b})
         for (const DeltaPart& part : delta_parts(*work, work->first(0)).parts)
             if (std::ranges::none_of(out.ways, [&](Vec3d w) { return length(w - part.wi) < alike; }))
@@ -60,7 +63,8 @@ std::vector<double> count(const TrialContext& work, const Common& common, int ro
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
             const Draw& d = b.draws[i];
             if (d.delta > 0 && !common.ways.empty()) ++out[of_nothing + 1 + way_of(common.ways, d.wi)];
-            else ++out[is_null_sample(d, b.pdf[i]) ? of_nothing : bins.bin_of(bins.map.coordinates(d.wi))];
+            else if (is_null_sample(d, b.pdf[i]) || (common.nothing_below && d.wi.z <= 0)) ++out[of_nothing];
+            else ++out[bins.bin_of(bins.map.coordinates(d.wi))];
         }
     }
     return out;
@@ -207,9 +211,22 @@ std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFau
         v.trial = a.text();
         v.name = name;
         v.state = cut.state;
-        v.say = cut.first;
+        v.say = dynamic_cast<const SubjectGone*>(&fault) ? fmt::format("It could not be asked: {}.", fault.what())
+                                                         : cut.first;
         if (v.state == State::inconclusive) v.settle = "More time (--patience), or a program that answers faster.";
         out.push_back(std::move(v));
+    }
+    return out;
+}
+
+/// What breaks off says which side it was. A subject stays one for all of its trials.
+std::vector<Trial> named_trials(std::span<const Trial> trials, const std::string& side) {
+    std::vector<Trial> out(trials.begin(), trials.end());
+    std::map<std::shared_ptr<const JudgedSampler>, std::shared_ptr<const JudgedSampler>> named;
+    for (Trial& t : out) {
+        std::shared_ptr<const JudgedSampler>& one = named[t.subject];
+        if (!one) one = named_side(t.subject, side);
+        t.subject = one;
     }
     return out;
 }
@@ -225,22 +242,19 @@ State state_of(const std::vector<Verdict>& verdicts) {
 
 Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& given, bool expect_same,
     ProgressMonitor& monitor) {
-    for (const auto& trials : {a, b})
-        for (const Trial& t : trials)
-            if (!t.subject->traits().has_pdf)
-                throw InputError({t.arm, 0, 0}, "has no pdf(w), which two samplers are held against each other by");
     TestSettings settings = given;
     settings.share(tests_against(a, b));
     TestCounts test_counts;
     monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> all(a.size());
+    const std::vector<Trial> of_a = named_trials(a, "A"), of_b = named_trials(b, "B");
     AskedByDirection asked_a, asked_b;  // kept by one thread, where either is serial
     const auto one = [&](std::size_t i) {
         monitor.check();
         try {
             const auto stream = static_cast<std::uint32_t>(i);
-            all[i] = compare_one(
-                asked_a.of(a[i], stream), asked_b.of(b[i], stream + other_stream), settings, expect_same, test_counts);
+            all[i] = compare_one(asked_a.of(of_a[i], stream), asked_b.of(of_b[i], stream + other_stream), settings,
+                expect_same, test_counts);
         } catch (const SubjectFault& fault) { all[i] = broken_off(a[i], b[i], fault); }
         monitor.advance(1);
     };

@@ -4,6 +4,8 @@
 //   same_distribution  two-sample chi-square over bins about A's lobe, over rings, over sectors, in both stages
 //   same_f             f of both at directions all over, and where either draws; q times weight of delta parts
 //   variance           Var X_A / Var X_B with its 95 % interval; "heavy tail" where either has one
+//
+// Without a pdf(w) the bins are about n, and X is the weight that comes with a draw.
 #pragma once
 
 #include "verdicts/judge.h"

@@ -82,9 +82,12 @@ Reweighed reweigh(const TrialContext& a, const TrialContext& b, const SampleBatc
 
 /// f is known at A's draws alone, and B has none of its own: E[X_B^2] = E[X_A^2 p_A / p_B] over A's draws.
 Verdict variance_over_draws(const TrialContext& a, const TrialContext& b, Verdict v) {
-    if (b.subject.techniques() > 1) {
+    const bool known = a.traits.has_pdf && b.traits.has_pdf;
+    if (!known || b.subject.techniques() > 1) {
         v.state = State::skipped;
-        v.say = "f is known at A's draws alone, and B weighs two draws by MIS: its variance does not follow from them.";
+        v.say = known
+            ? "f is known at A's draws alone, and B weighs two draws by MIS: its variance does not follow from them."
+            : "f is known at A's draws alone, and there is no p_A / p_B, by which these would tell of B.";
         return v;
     }
     const Reweighed first = reweigh(a, b, a.first(0));
@@ -225,12 +228,17 @@ Verdict ratio_of_variances(TrialContext& a, TrialContext& b, const Verdict& of_f
         return skipped(std::move(v),
             a.subject.draws_at_will() ? "There is no f, hence no variance of f L cos / p."
                                       : "The file of A has no column f, hence there are no weights f L cos / p.");
-    if (!b.subject.has_f() && a.subject.has_f())
+    if (!b.subject.has_drawn_f() && a.subject.has_f())
         return skipped(std::move(v), "B has no f, hence no variance of f L cos / p.");
+    for (const auto& [work, who] : {std::pair(&a, "A"), {&b, "B"}})
+        if (work->subject.has_drawn_f() && !work->weighs())
+            return skipped(std::move(v),
+                fmt::format(
+                    "{} has neither a pdf(w) nor a weight with its draws (weight=yes), hence no variance.", who));
     for (const auto& [work, who] : {std::pair(&a, "A"), {&b, "B"}})
         if (const std::optional<std::string> fault = own_fault(*work, who))
             return skipped(std::move(v), *fault + " The variance of a wrong sampler is not ranked.");
-    if (!b.subject.has_f()) return variance_over_draws(a, b, std::move(v));
+    if (!b.subject.has_drawn_f()) return variance_over_draws(a, b, std::move(v));
     const Efficiency ea = measure_efficiency(a, 0), eb = measure_efficiency(b, 0);
     v.evidence["variance_a"] = ea.variance;
     v.evidence["variance_b"] = eb.variance;

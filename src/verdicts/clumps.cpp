@@ -4,8 +4,12 @@
 // whatever the density is, m - 1 being the draws inside. The last cut of a block is at its highest p: what is left of
 // it holds at most its solid angle times that p, which is known with the draws already.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
+#include <numeric>
 #include <tuple>
 
 #include "math/distributions.h"
@@ -20,9 +24,10 @@ namespace {
 
 constexpr std::size_t fewest = 5;  // draws of a block
 
+/// Coordinates and p in single precision, which moves a draw by less than the rounding that is granted to every block.
 struct PlacedDraw {
-    double a, b, p;
-    std::size_t draw;
+    float a, b, p;
+    std::uint32_t draw;
 };
 
 double theta_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))); }
@@ -45,16 +50,17 @@ public:
         if (inside.size() < fewest) return;
         make_way(inside.size());
         ++tried_;
-        double highest = 0;
+        float highest = 0;
         for (const PlacedDraw& s : inside) highest = std::max(highest, s.p);
-        const double m = static_cast<double>(inside.size()), worth = per_sr_ * highest;
+        const double m = static_cast<double>(inside.size()), worth = per_sr_ * static_cast<double>(highest);
         if (!(worth * 2 * pi * (r.a1 - r.a0) * (r.b1 - r.b0) < 0.5 * m)) return;
         const double room = solid_angle(r, rounding_), due = worth * room;
         const double p = due < 0.5 * m ? math::poisson_tail(due, m) : 1;  // P(Beta(m, n + 1 - m) <= due / n), or more
         if (p >= least_) return;
         least_ = p;
         found_ = {1, m, due, room, {}};
-        at_ = {inside[inside.size() / 2].a, inside[inside.size() / 2].b};
+        const PlacedDraw& middle = inside[inside.size() / 2];
+        at_ = {static_cast<double>(middle.a), static_cast<double>(middle.b)};
         crowd_.clear();
         for (std::size_t i = 0; i < inside.size() && crowd_.size() < 32; ++i) crowd_.push_back(inside[i].draw);
     }
@@ -91,39 +97,40 @@ void look_at_blocks(const Rect& r, std::span<PlacedDraw> inside, Search& search)
     Rect low = r, high = r;
     if (along_a) {
         std::nth_element(inside.begin(), mid, inside.end(), lower);
-        low.a1 = high.a0 = mid->a;
+        low.a1 = high.a0 = static_cast<double>(mid->a);
     } else {
         std::nth_element(inside.begin(), mid, inside.end(), before);
-        low.b1 = high.b0 = mid->b;
+        low.b1 = high.b0 = static_cast<double>(mid->b);
     }
     look_at_blocks(low, inside.first(half), search);
     look_at_blocks(high, inside.subspan(half + 1), search);
 }
 
-/// In halves first where they are many: it makes way between them.
-template <class Order> void sort(std::span<PlacedDraw> placed, const Order& order, const Search& search) {
-    constexpr std::size_t most = 1 << 13;
-    if (placed.size() <= most) {
+/// Sorts by a coordinate: those of floats that are not negative are in the order of their bits, 11 of them at a time.
+void sort(std::vector<PlacedDraw>& placed, float PlacedDraw::* coordinate, const Search& search) {
+    constexpr std::uint32_t digits = 1 << 11;
+    std::vector<PlacedDraw> sorted(placed.size());
+    for (int shift = 0; shift < 32; shift += 11) {
         search.make_way(placed.size());
-        std::sort(placed.begin(), placed.end(), order);
-        return;
+        const auto digit = [&](const PlacedDraw& s) {
+            return std::bit_cast<std::uint32_t>(s.*coordinate) >> shift & (digits - 1);
+        };
+        std::array<std::uint32_t, digits> next{};
+        for (const PlacedDraw& s : placed) ++next[digit(s)];
+        std::exclusive_scan(next.begin(), next.end(), next.begin(), 0u);
+        for (const PlacedDraw& s : placed) sorted[next[digit(s)]++] = s;
+        placed.swap(sorted);
     }
-    const std::size_t half = placed.size() / 2;
-    search.make_way(half / 8);
-    std::nth_element(placed.begin(), placed.begin() + static_cast<std::ptrdiff_t>(half), placed.end(), order);
-    sort(placed.first(half), order, search);
-    sort(placed.subspan(half), order, search);
 }
 
 /// Rings, or sectors, of so many draws each between those they are cut at.
 void look_at_slices(std::vector<PlacedDraw>& placed, bool rings, Search& search) {
-    if (rings) sort(placed, lower, search);
-    else sort(placed, before, search);
-    const auto place = [&](std::size_t i) { return rings ? placed[i].a : placed[i].b; };
+    float PlacedDraw::* const coordinate = rings ? &PlacedDraw::a : &PlacedDraw::b;
+    sort(placed, coordinate, search);
     for (std::size_t draws : {2 * fewest, 16 * fewest}) {
         double from = 0;
         for (std::size_t i = 0; i + draws < placed.size(); i += draws + 1) {
-            const double to = place(i + draws);
+            const double to = static_cast<double>(placed[i + draws].*coordinate);
             search.look(rings ? Rect{from, to, 0, 1, 0} : Rect{0, 2, from, to, 0}, std::span(placed).subspan(i, draws));
             from = to;
         }
@@ -201,11 +208,13 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
 Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
     std::vector<PlacedDraw> placed;
     placed.reserve(b.draws.size());
+    const std::vector<Vec2d>& at = work.coordinates_of(b, d.map);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         work.subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
-        const Vec2d at = d.map.coordinates(b.draws[i].wi);
-        placed.push_back({at.x, at.y, b.pdf[i] + work.subject.tabulation_error(b.draws[i].wi), i});
+        const double p = b.pdf[i] + work.subject.tabulation_error(b.draws[i].wi);
+        placed.push_back({static_cast<float>(std::fabs(at[i].x)), static_cast<float>(std::fabs(at[i].y)),
+            static_cast<float>(p), static_cast<std::uint32_t>(i)});
     }
     double rounding = 4 * std::max(work.direction_resolution(), 0x1p-24);  // u itself is a multiple of 2^-24
     for (int turn = 0;; ++turn) {

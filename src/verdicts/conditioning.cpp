@@ -37,7 +37,8 @@ double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, doubl
     work.subject.pdf(technique, at, values);
     const double most = largest_change(values, p);
     // At the very rim of what p covers it is rounding that tells inside from outside, and p may have a pole there.
-    return p == 0 && most > 0 ? std::numeric_limits<double>::infinity() : 2 * most;
+    const bool rim = p == 0 ? most > 0 : std::ranges::find(values, 0.0) != values.end();
+    return rim ? std::numeric_limits<double>::infinity() : 2 * most;
 }
 
 double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, int channel) {

@@ -82,10 +82,10 @@ Grain grain_of_u(const TrialContext& work, int technique, const Density& d, cons
     const std::size_t worst = worst_bin(f.observed, f.expected), sectors = static_cast<std::size_t>(d.sectors),
                       ring = worst / sectors;
     const SampleBatch& b = work.first(technique);
+    const std::vector<Vec2d>& at = work.coordinates_of(b, d.map);
     std::vector<std::size_t> inside;
     for (std::size_t i = 0; i < b.draws.size() && inside.size() < 32; ++i)
-        if (!is_null_sample(b.draws[i], b.pdf[i]) && d.bin_of(d.map.coordinates(b.draws[i].wi)) == worst)
-            inside.push_back(i);
+        if (!is_null_sample(b.draws[i], b.pdf[i]) && d.bin_of(at[i]) == worst) inside.push_back(i);
     const double step = least_step(work, technique, b, inside), from = d.rings[ring], to = d.rings[ring + 1],
                  wide = math::acos(std::clamp(1 - to, -1.0, 1.0)) - math::acos(std::clamp(1 - from, -1.0, 1.0)),
                  sin = std::sqrt(std::max(to * (2 - to), 0.0)),

@@ -256,6 +256,7 @@ void diagnose(const TrialContext& work, std::span<Verdict> verdicts) {
         const bool of_density = v.name == "normalised" || v.name == "density", of_identity = v.name == "identity";
         const bool follows = !first.empty() && v.name == "physics" && v.evidence.contains("furnace_expected");
         if (v.state != State::wrong || !(of_density || of_identity || follows || v.name == "mean")) continue;
+        if (v.evidence.contains("answered_otherwise")) continue;  // a state: no factor is looked for
         if (!first.empty()) {
             v.say += fmt::format(" See {}, which comes first.", first);
             if (density || identity) v.evidence["diagnosis"] = (density ? density : identity)->name;

@@ -27,6 +27,7 @@ Binned weigh(const TrialContext& work, int technique, const Factor& factor) {
     Binned out;
     out.sum.resize(d.mass.bins.size());
     out.squares = out.count = out.variance = out.sum;
+    const std::vector<Vec2d>& at = work.coordinates_of(b, d.map);
     const double n = static_cast<double>(b.draws.size());
     double total = 0, squares = 0;
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
@@ -34,7 +35,7 @@ Binned weigh(const TrialContext& work, int technique, const Factor& factor) {
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
         const double g = factor.g(b.draws[i].wi);
         if (!(g > 0) || !std::isfinite(g)) continue;
-        const std::size_t bin = d.bin_of(d.map.coordinates(b.draws[i].wi));
+        const std::size_t bin = d.bin_of(at[i]);
         out.sum[bin] += 1 / (g * n);
         out.squares[bin] += sqr(1 / (g * n));
         ++out.count[bin];
@@ -113,9 +114,9 @@ bool bins_show_a_constant(const TrialContext& work, int technique, const Binned&
 }
 
 /// What no constant changes: where along p the draws fall. Each is a standard normal deviate where p is off by one.
-bool contrasts_differ(const Density& d, const SampleBatch& b) {
+bool contrasts_differ(const TrialContext& work, int technique) {
     constexpr double most = 3;
-    const Contrasts z = contrasts_of(d, b);
+    const Contrasts z = contrasts_of(work, work.density(technique), work.first(technique));
     return std::any_of(z.begin(), z.end(), [](double v) { return std::fabs(v) > most; });
 }
 
@@ -139,7 +140,6 @@ bool is_known(const TrialContext& work, const Binned& by) {
 
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique) {
     const Density& d = work.density(technique);
-    const SampleBatch& b = work.first(technique);
     if (!(d.mass.value > 0) || !std::isfinite(d.mass.value)) return {};
     const Factor one{"a constant", [](Vec3d) { return 1.0; }};
     const Binned as_is = weigh(work, technique, one);
@@ -157,7 +157,7 @@ std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int techniqu
         if (!shape && factor.name != "a constant") continue;
         if (!shape &&
             (look_at_warp(work, technique, by).denies || !bins_show_a_constant(work, technique, by) ||
-                !is_even(d, by) || contrasts_differ(d, b)))
+                !is_even(d, by) || contrasts_differ(work, technique)))
             return {};
         return Diagnosis{factor.name, by.constant, shape ? 1 - unexplained(by, as_is) : 1,
             "what is drawn is pdf(w) times " + factor_text(work, factor.name, by.constant), factor.g};
@@ -174,6 +174,7 @@ bool comes_to_one(const TrialContext& work, int technique, const Diagnosis& foun
 }
 
 std::string spread_told(const TrialContext& work, Verdict& v) {
+    constexpr double telling = 1e6;  // of a ratio: beyond it only how far is of use, not its digits
     if (!work.traits.has_pdf || v.name == "mean" || v.name == "physics") return "";
     std::string out;
     for (int t = 0; t < work.subject.techniques() && out.empty(); ++t) {
@@ -188,11 +189,16 @@ std::string spread_told(const TrialContext& work, Verdict& v) {
         const double mean = warp.whole ? warp.mean : by.constant, known_to = warp.whole ? 0 : 3 * by.relative_se;
         if (!spread && std::fabs(mean - 1) < close + known_to) continue;
         v.evidence["drawn_over_claimed"] = mean;
-        out = mean > 0 ? fmt::format(": what is drawn is pdf(w) times {:.5g} on average", mean) : ": nothing is drawn";
+        out = mean > telling ? ": what is drawn is more than a million times pdf(w) on average"
+            : mean > 0       ? fmt::format(": what is drawn is pdf(w) times {:.5g} on average", mean)
+                             : ": nothing is drawn";
         if (!warp.whole) continue;
         v.evidence["drawn_over_claimed_5_percent"] = quantile(0.05);
         v.evidence["drawn_over_claimed_95_percent"] = quantile(0.95);
-        out += fmt::format(", {:.5g} to {:.5g} at nine of ten directions", quantile(0.05), quantile(0.95));
+        const auto [least, most] = std::pair(quantile(0.05), quantile(0.95));
+        if (most > telling) out += ", and more than a million times at some directions";
+        else if (least < 1 / telling) out += ", and less than a millionth at some directions";
+        else out += fmt::format(", {:.5g} to {:.5g} at nine of ten directions", least, most);
     }
     return out;
 }

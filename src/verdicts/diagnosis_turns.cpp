@@ -16,8 +16,10 @@ constexpr double enough = 0.9;  // of all points
 struct Turn {
     const char* name;
     Vec3d (*of)(Vec3d);
+    bool of_media = false;  // of a phase function alone, where along an axis another turn is the same
 };
-constexpr Turn turns[] = {{"x and y exchanged", [](Vec3d w) { return Vec3d{w.y, w.x, w.z}; }},
+constexpr Turn turns[] = {{"forward and back exchanged", [](Vec3d w) { return -w; }, true},
+    {"x and y exchanged", [](Vec3d w) { return Vec3d{w.y, w.x, w.z}; }},
     {"the frame mirrored in x", [](Vec3d w) { return Vec3d{-w.x, w.y, w.z}; }},
     {"the frame mirrored in y", [](Vec3d w) { return Vec3d{w.x, -w.y, w.z}; }},
     {"the azimuth turned by 180 deg", [](Vec3d w) { return Vec3d{-w.x, -w.y, w.z}; }},
@@ -27,6 +29,7 @@ constexpr Turn turns[] = {{"x and y exchanged", [](Vec3d w) { return Vec3d{w.y, 
 
 /// Below is there to be taken for above: w_o is answered for there, or w_i lies there.
 bool can_be_turned(const TrialContext& work, const Turn& turn, int which) {
+    if (turn.of_media && !is_phase_function(work)) return false;
     if (turn.of({0, 0, 1}).z > 0) return true;
     return (!(which & 1) || work.traits.wo == Traits::Asked::both) && (!(which & 2) || work.whole());
 }

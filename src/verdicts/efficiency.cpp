@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 #include "math/functions.h"
 #include "simd/random.h"
@@ -62,7 +63,7 @@ std::optional<double> time_once(
 
 void measure_costs(std::span<const Trial> trials, const TestSettings& settings, std::span<Efficiency> all,
     const ProgressMonitor& monitor) {
-    constexpr std::size_t turns = 7, most = 2048, of_a_program = 512;
+    constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
     std::vector<Numbers> u(most);
     for (std::size_t i = 0; i < most; ++i) u[i] = drawn_numbers(seed_of(settings.seed, 0), 0, i, 0, Numbers::most);
     std::vector<std::vector<double>> times(all.size());
@@ -91,14 +92,12 @@ struct Ranks {
     std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
 };
 
-Ranks ranks_of(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency> all) {
+Ranks ranks_of(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency* const> company) {
     Ranks out;
-    for (const Efficiency& o : all) {
-        if (o.trial == e.trial || !(o.nanoseconds > 0) || o.whole != e.whole ||
-            company_of(trials[o.trial]) != company_of(trials[e.trial]))
-            continue;
-        const bool level = o.heavy || (o.low() <= e.high() && e.low() <= o.high());
-        (level ? out.level : e.high() < o.low() ? out.better : out.worse).push_back(trials[o.trial].arm);
+    for (const Efficiency* o : company) {
+        if (o->trial == e.trial || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
+        const bool level = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
+        (level ? out.level : e.high() < o->low() ? out.better : out.worse).push_back(trials[o->trial].arm);
     }
     return out;
 }
@@ -115,7 +114,8 @@ std::string told(const Efficiency& e, const Ranks& ranks) {
 }
 
 /// Of a trial whose weights were looked at.
-void judge_one(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency> all, Verdict& v) {
+void judge_one(
+    const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency* const> company, Verdict& v) {
     v.evidence["variance"] = e.variance;
     v.evidence["variance_relative_se"] = e.relative_se;
     if (!e.fault.empty()) {
@@ -128,12 +128,12 @@ void judge_one(const Efficiency& e, std::span<const Trial> trials, std::span<con
     if (e.heavy) {
         v.state = State::inconclusive;
         v.say = "inconclusive: heavy tail. The variance is not known, hence no rank.";
-        v.settle = "What settles the tail.";
+        v.settle = "The same as for the tail.";
         return;
     }
     v.state = State::right;
     v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
-    if (e.nanoseconds > 0) v.say_timed = told(e, ranks_of(e, trials, all));
+    if (e.nanoseconds > 0) v.say_timed = told(e, ranks_of(e, trials, company));
 }
 
 }  // namespace
@@ -147,7 +147,10 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         out[i].state = State::skipped;
         out[i].say = "There are no weights to take a variance of.";
     }
-    for (const Efficiency& e : all) judge_one(e, trials, all, out[e.trial]);
+    std::map<std::string, std::vector<const Efficiency*>> companies;
+    for (const Efficiency& e : all) companies[company_of(trials[e.trial])].push_back(&e);
+    for (const auto& [on, company] : companies)
+        for (const Efficiency* e : company) judge_one(*e, trials, company, out[e->trial]);
     return out;
 }
 

@@ -1,7 +1,8 @@
 // Whether f creates energy: what it reflects and lets through of an even light, by channel. Where the index is told,
 // what comes through is counted as power: radiance scales by (n_o / n_i)^2 across the surface, importance not at all
 // (Veach 1997, section 5.2; Walter et al. 2007, section 5.2). Where it is not, an albedo over the whole sphere may
-// exceed 1 and be right (transmission.cpp). What a delta part sends straight on, towards -w_o, no index scales, and a
+// exceed 1 and be right (transmission.cpp), unless f is the same both ways across the surface: then no index scales it.
+// What a delta part sends straight on, towards -w_o, no index scales, and a
 // phase function has none.
 #include <algorithm>
 #include <cmath>
@@ -28,14 +29,35 @@ struct Scales {
     bool known = false;
 };
 
-Scales scales_of(const TrialContext& work, int channel) {
-    if (!work.traits.eta) return {1, is_phase_function(work)};
+/// f is the same both ways across the surface, where the sampler draws: no index scales it.
+bool is_alike_across(const TrialContext& work) {
+    constexpr std::size_t fewest = 16, most = 64;
+    constexpr double same = 1e-3;
+    if (work.traits.wo != Traits::Asked::both || !work.subject.has_f()) return false;
+    const SampleBatch& b = work.first(0);
+    std::vector<Pair> there, back;
+    for (std::size_t i = 0; i < b.draws.size() && there.size() < most; ++i) {
+        const Vec3d wo = work.trial.wo, wi = b.draws[i].wi;
+        if (is_null_sample(b.draws[i], b.pdf[i]) || !(wi.z * wo.z < 0)) continue;
+        there.push_back({wo, wi}), back.push_back({wi, wo});
+    }
+    std::vector<double> f(there.size()), g(there.size());
+    work.subject.f(there, f);
+    work.subject.f(back, g);
+    std::size_t alike = 0;
+    for (std::size_t i = 0; i < f.size(); ++i) alike += f[i] > 0 && std::fabs(g[i] - f[i]) < same * f[i];
+    return alike >= fewest && alike == f.size();
+}
+
+/// unscaled: no index scales f.
+Scales scales_of(const TrialContext& work, bool unscaled, int channel) {
+    if (!work.traits.eta) return {1, unscaled};
     const double eta2 = sqr(channel_of(*work.traits.eta, channel));
     if (work.traits.importance) return {1, true};
     return {work.trial.wo.z > 0 ? eta2 : 1 / eta2, true};
 }
 
-bool too_much(const TrialContext& work, const Given& g, int channel, const char* tag, Verdict& v) {
+bool too_much(const TrialContext& work, const Given& g, bool unscaled, int channel, const char* tag, Verdict& v) {
     const bool over = work.trial.wo.z > 0;
     const double back = over ? g.above : g.below, through = over ? g.below : g.above;
     if (back - g.error > allowed) {
@@ -50,7 +72,7 @@ bool too_much(const TrialContext& work, const Given& g, int channel, const char*
             g.straight, tag);
         return true;
     }
-    const Scales scale = scales_of(work, channel);
+    const Scales scale = scales_of(work, unscaled, channel);
     if (!scale.known || !work.whole()) return false;
     const double passed = scale.through * (through - g.holes) + g.holes, power = back + g.straight + passed;
     v.evidence[fmt::format(
@@ -60,7 +82,9 @@ bool too_much(const TrialContext& work, const Given& g, int channel, const char*
     v.say = fmt::format("Of the power that arrives the surface reflects {:.6f} and lets {:.6f} through{}{}.", back,
         g.straight + passed, tag,
         work.traits.eta ? ", by the index that is told: f creates energy, or scales by eta^2 the wrong way"
-                        : ": f |cos| creates energy, as a phase function that integrates to more than 1");
+            : is_phase_function(work) ? ": f |cos| creates energy, as a phase function that integrates to more than 1"
+                                      : ": f is the same both ways across it, so that no index scales it, and creates "
+                                        "energy");
     return true;
 }
 
@@ -141,15 +165,16 @@ bool creates_energy(const TrialContext& work, const Integral& albedo, Verdict& v
     const Given all = given(work, albedo, deltas, -1);
     if (work.whole()) v.evidence["albedo_above"] = all.above, v.evidence["albedo_below"] = all.below;
     if (all.straight > 0) v.evidence["straight_through"] = all.straight;
+    const bool unscaled = work.whole() && !work.traits.eta && (is_phase_function(work) || is_alike_across(work));
     if (!deltas.parts.empty()) v.evidence["albedo_of_delta_parts"] = luminance(deltas.energy(0));
     if (work.traits.channels == 3) {
         const char* names[] = {" in the first channel", " in the second channel", " in the third channel"};
         for (int c = 0; c < 3; ++c) {
             const Integral one = work.albedo_of(c);
             v.evidence[fmt::format("albedo_{}", c + 1)] = one.value;
-            if (too_much(work, given(work, one, deltas, c), c, names[c], v)) return true;
+            if (too_much(work, given(work, one, deltas, c), unscaled, c, names[c], v)) return true;
         }
-    } else if (too_much(work, all, 0, "", v)) {
+    } else if (too_much(work, all, unscaled, 0, "", v)) {
         return true;
     }
     return too_much_either_way(work, all, v);

@@ -36,33 +36,6 @@ void add(std::vector<Factor>& out, const std::string& name, std::function<double
                    }});
 }
 
-void add_microfacets(std::vector<Factor>& out, const TrialContext& work) {
-    const Vec3d wo = work.trial.wo, r = mirror(wo);
-    const auto half = [wo](Vec3d wi) {
-        const Vec3d sum = wo + wi;
-        const double size = length(sum);
-        return size > 1e-9 ? sum * (1 / size) : Vec3d{0, 0, 1};
-    };
-    add(out, "4 (w_o.m)", [=](Vec3d wi) { return 4 * std::fabs(dot(wo, half(wi))); });
-    add(out, "(n.m) / (w_o.m)", [=](Vec3d wi) { return half(wi).z / std::max(std::fabs(dot(wo, half(wi))), 1e-12); });
-    add(out, "n.m", [=](Vec3d wi) { return half(wi).z; });
-    add(out, "w_i.R", [=](Vec3d wi) { return dot(wi, r); });
-    std::vector<double> alphas = {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1};
-    if (const std::optional<double> alpha = parameter(work, "alpha")) alphas = {*alpha};
-    for (double alpha : alphas)
-        add(out, "G1(w_i)", [alpha](Vec3d wi) { return wi.z > 0 ? Ggx<double>{alpha}.G1(wi) : 0; });
-}
-
-void add_light(std::vector<Factor>& out, const TrialContext& work) {
-    if (work.trial.light.disks.size() != 1 || !work.trial.light.lamps.empty()) return;
-    const TrialDisk disk = work.trial.light.disks[0];
-    add(out, "cosine at the light", [disk](Vec3d wi) { return -dot(wi, disk.normal); });
-    add(out, "distance^2 / cosine at the light", [disk](Vec3d wi) {
-        const std::optional<double> d = disk.distance(wi);
-        return d ? *d * *d / -dot(wi, disk.normal) : 0;
-    });
-}
-
 /// Reflection and refraction at a boundary whose index is told. Walter et al. 2007, (13), (14), (16), (17), (22).
 struct Boundary {
     Vec3d wo;
@@ -92,6 +65,31 @@ std::optional<Boundary> boundary_of(const TrialContext& work) {
     return Boundary{work.trial.wo, work.trial.wo.z > 0 ? eta : 1 / eta};
 }
 
+void add_microfacets(std::vector<Factor>& out, const TrialContext& work) {
+    const Vec3d wo = work.trial.wo, r = mirror(wo);
+    // Of index 1 where none is told: then m across the surface is not known, and on one side it is as with any.
+    const auto half = [b = boundary_of(work), wo](Vec3d wi) { return b ? b->half(wi) : Boundary{wo, 1}.half(wi); };
+    add(out, "4 (w_o.m)", [=](Vec3d wi) { return 4 * std::fabs(dot(wo, half(wi))); });
+    add(out, "(n.m) / (w_o.m)",
+        [=](Vec3d wi) { return std::fabs(half(wi).z) / std::max(std::fabs(dot(wo, half(wi))), 1e-12); });
+    add(out, "n.m", [=](Vec3d wi) { return std::fabs(half(wi).z); });
+    add(out, "w_i.R", [=](Vec3d wi) { return dot(wi, r); });
+    std::vector<double> alphas = {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1};
+    if (const std::optional<double> alpha = parameter(work, "alpha")) alphas = {*alpha};
+    for (double alpha : alphas)
+        add(out, "G1(w_i)", [alpha](Vec3d wi) { return wi.z > 0 ? Ggx<double>{alpha}.G1(wi) : 0; });
+}
+
+void add_light(std::vector<Factor>& out, const TrialContext& work) {
+    if (work.trial.light.disks.size() != 1 || !work.trial.light.lamps.empty()) return;
+    const TrialDisk disk = work.trial.light.disks[0];
+    add(out, "cosine at the light", [disk](Vec3d wi) { return -dot(wi, disk.normal); });
+    add(out, "distance^2 / cosine at the light", [disk](Vec3d wi) {
+        const std::optional<double> d = disk.distance(wi);
+        return d ? *d * *d / -dot(wi, disk.normal) : 0;
+    });
+}
+
 }  // namespace
 
 std::vector<Factor> factors_of_side(const TrialContext& work, bool across) {
@@ -102,8 +100,10 @@ std::vector<Factor> factors_of_side(const TrialContext& work, bool across) {
     add(out, "Fresnel", [b = *b](Vec3d w) { return b.fresnel(w); });
     add(out, "cos theta_i", [](Vec3d w) { return std::fabs(w.z); });
     add(out, "1 - Fresnel", [b = *b](Vec3d w) { return 1 - b.fresnel(w); });
+    const auto nm = [b = *b](Vec3d w) { return std::fabs(b.half(w).z); };
     if (!across) {
         add(out, "4 (w_o.m)", [om](Vec3d w) { return 4 * om(w); });
+        add(out, "n.m", nm);
         return out;
     }
     add(out, "(w_o.m) / (w_i.m)",
@@ -112,6 +112,7 @@ std::vector<Factor> factors_of_side(const TrialContext& work, bool across) {
     add(out, "the Jacobian of refraction for that of reflection",
         [b = *b, om](Vec3d w) { return 4 * om(w) * b.refracted(w); });
     add(out, "w_i.m", [b = *b](Vec3d w) { return std::fabs(dot(w, b.half(w))); });
+    add(out, "n.m", nm);
     return out;
 }
 

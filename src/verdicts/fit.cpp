@@ -53,13 +53,14 @@ Pearson pearson(const Counts& counts) {
 
 std::vector<double> count(const TrialContext& work, const Density& d, const SampleBatch& b, double& nothing) {
     std::vector<double> bins(d.mass.bins.size());
+    const std::vector<Vec2d>& at = work.coordinates_of(b, d.map);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         work.subject.make_way(1);
         if (is_null_sample(b.draws[i], b.pdf[i])) {
             ++nothing;
             continue;
         }
-        ++bins[d.bin_of(d.map.coordinates(b.draws[i].wi))];
+        ++bins[d.bin_of(at[i])];
     }
     return bins;
 }

@@ -1,6 +1,7 @@
-// Factors of a surface under a smooth boundary, and of two ways to write shadowing: each a whole factor, that explains
-// the ratios with the constant 1 alone. m is the half vector. Where no index is told, those that renderers have by
-// default are tried: dielectrics of common indices, and Schlick's approximation from common reflectances.
+// Factors of a surface under a smooth boundary, of half vectors across one, and of two ways to write shadowing: each a
+// whole factor, that explains the ratios with the constant 1 alone. m is the half vector. Where no index is told, those
+// that renderers have by default are tried: dielectrics of common indices, and Schlick's approximation from common
+// reflectances.
 #include <algorithm>
 #include <cmath>
 
@@ -64,6 +65,16 @@ void add_interface(std::vector<Factor>& out, Vec3d wo, Interface f) {
     add_whole(out, "the pass of w_i through a coat, 1 - Fresnel at w_i", [=](Vec3d w) { return 1 - f(w.z); });
 }
 
+/// n.m of what is reflected and of what goes through a boundary of that index, eta = beyond over here (Walter et al.
+/// 2007, (13), (16)). Where the index is told, the usual factors have it.
+void add_half_vectors(std::vector<Factor>& out, Vec3d wo, double eta) {
+    add_whole(out, "n.m", [=](Vec3d w) {
+        const Vec3d sum = wo + w * (wo.z * w.z < 0 ? eta : 1);
+        const double size = length(sum);
+        return size > 1e-9 ? std::fabs(sum.z) / size : 1.0;
+    });
+}
+
 /// Walter et al. 2007, (34): G1 = 2 / (1 + root), hence Lambda = 1 / G1 - 1; Heitz 2014, (99): G2 = 1 / (1 + sum).
 void add_shadowing(std::vector<Factor>& out, Vec3d wo, double alpha) {
     const Ggx<double> ggx{alpha};
@@ -78,7 +89,11 @@ void add_shadowing(std::vector<Factor>& out, Vec3d wo, double alpha) {
 }  // namespace
 
 void add_whole_factors(std::vector<Factor>& out, const TrialContext& work) {
-    for (const Interface& f : interfaces_of(work)) add_interface(out, work.trial.wo, f);
+    for (const Interface& f : interfaces_of(work)) {
+        add_interface(out, work.trial.wo, f);
+        if (!work.whole() || work.traits.eta || f.eta == 0) continue;
+        for (double eta : {f.eta, 1 / f.eta}) add_half_vectors(out, work.trial.wo, eta);
+    }
     std::vector<double> alphas;  // round ones, and squares of round roughnesses
     for (int k = 1; k <= 20; ++k) alphas.push_back(0.05 * k), alphas.push_back(sqr(0.05 * k));
     for (const auto& [name, value] : work.trial.parameters)

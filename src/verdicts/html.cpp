@@ -10,6 +10,7 @@
 #include "verdicts/pictures.h"
 #include "verdicts/print.h"
 #include "verdicts/summary.h"
+#include "verdicts/told_last.h"
 
 namespace crescent::inline verdicts {
 
@@ -74,7 +75,7 @@ constexpr const char* head =
     "const draw=(k,colour)=>{const "
     "x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/"
     "w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"
-    "draw(0,i=>grey(seen[i]));draw(1,i=>grey(due[i]));draw(2,i=>tint(seen[i],due[i]))}"
+    "draw(0,i=>grey(seen[i]));if(due){draw(1,i=>grey(due[i]));draw(2,i=>tint(seen[i],due[i]))}}"
     "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>d.open=true))</script>";
 
 std::string names_of(const Judgement& j) {
@@ -112,6 +113,36 @@ std::string overview(const Judgement& j) {
     return out + "</table></div>";
 }
 
+/// Every case with its verdicts, its maps, what its draws imply and its weights.
+std::string cases_html(const Judgement& j) {
+    std::string out;
+    std::size_t map = 0, weight = 0;
+    for (std::size_t i = 0; i < j.verdicts.size();) {
+        const std::string arm = j.verdicts[i].arm, trial = j.verdicts[i].trial;
+        std::string rows, implied;
+        bool open = false;
+        for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
+            const Verdict& v = j.verdicts[i];
+            open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
+            rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state),
+                escape(told(v)), v.why_expected.empty() ? "" : expected_html(v));
+            implied += implied_html(v);
+        }
+        open = open || (out.empty() && !implied.empty());  // what it is asked for, once
+        out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
+            escape(arm), escape(trial), rows);
+        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial)
+            out += map_figures(j.maps[map++]);
+        out += implied + "<div class=row>";
+        while (weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].trial == trial) {
+            out += histogram(j.weights[weight]) + rose_figure(j.weights[weight]);
+            ++weight;
+        }
+        out += "</div></details>";
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string verdict_html(const Judgement& j, const JudgementSource& source) {
@@ -126,34 +157,12 @@ std::string verdict_html(const Judgement& j, const JudgementSource& source) {
             "seed{}.</p>\n",
             j.tests, j.alpha, j.screened, j.confirmed,
             j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "") +
-        "<p>" + escape(unseen_told(j)) + " " + escape(nothing_drawn_told(j)) + "</p>\n";
+        "<p>" + escape(unseen_told(j)) + " " + escape(nothing_drawn_told(j)) + " " + escape(not_looked_at_told(j)) +
+        "</p>\n";
     if (!source.version.empty())
         frame.footer_html = fmt::format("crescent {}, commit {}: <code>{}</code>", escape(source.version),
             escape(source.commit), escape(source.command));
-    std::string out;
-    std::size_t map = 0, weight = 0;
-    for (std::size_t i = 0; i < j.verdicts.size();) {
-        const std::string arm = j.verdicts[i].arm, trial = j.verdicts[i].trial;
-        std::string rows;
-        bool open = false;
-        for (; i < j.verdicts.size() && j.verdicts[i].arm == arm && j.verdicts[i].trial == trial; ++i) {
-            const Verdict& v = j.verdicts[i];
-            open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
-            rows += fmt::format("<tr><td>{}<td class={}>{}<td>{}{}", v.name, word(v.state), word(v.state),
-                escape(told(v)), v.why_expected.empty() ? "" : expected_html(v));
-        }
-        out += fmt::format("<details{}><summary><b>{}</b> {}</summary><table>{}</table>", open ? " open" : "",
-            escape(arm), escape(trial), rows);
-        while (map < j.maps.size() && j.maps[map].arm == arm && j.maps[map].trial == trial)
-            out += map_figures(j.maps[map++]);
-        out += "<div class=row>";
-        while (weight < j.weights.size() && j.weights[weight].arm == arm && j.weights[weight].trial == trial) {
-            out += histogram(j.weights[weight]) + rose_figure(j.weights[weight]);
-            ++weight;
-        }
-        out += "</div></details>";
-    }
-    return page_html(frame, {{"cases", "Case by case", out}});
+    return page_html(frame, {{"cases", "Case by case", cases_html(j)}});
 }
 
 }  // namespace crescent::inline verdicts

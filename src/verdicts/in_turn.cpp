@@ -58,7 +58,7 @@ bool affords(const Spending& now, std::uint64_t dearest) {
 /// What all w_o may be asked, but for what follows the last one.
 std::size_t questions_for(const TestSettings& settings, std::size_t count) {
     constexpr std::size_t enough = 333000;  // of the even share, where more w_o are asked for than the grid has
-    return std::max(settings.questions_in_all, count * enough) / 20 * 19;
+    return std::max(settings.questions_in_all, count * enough) / 40 * 37;
 }
 
 /// What one w_o may be asked, but for the least of what comes last, which is asked in any case.
@@ -108,8 +108,9 @@ std::vector<Outcome> judge_in_turn(
             const bool cut_short = outcomes[i].cut && outcomes[i].cut->state == State::inconclusive;
             if (cut_short) outcomes[i].cut = left_out(trials[i], settings);
             std::vector<Verdict>& verdicts = outcomes[i].verdicts;
-            const bool met =
-                !looks[i].verdicts.empty() && (verdicts.empty() || looks[i].verdicts[0].state == State::wrong);
+            const auto is_wrong = [](const std::vector<Verdict>& v) { return v[0].state == State::wrong; };
+            const bool met = !looks[i].verdicts.empty() &&
+                (verdicts.empty() || (is_wrong(looks[i].verdicts) && !is_wrong(verdicts)));
             if (met && verdicts.empty()) verdicts = std::move(looks[i].verdicts);
             else if (met) verdicts[0] = std::move(looks[i].verdicts[0]);
         }

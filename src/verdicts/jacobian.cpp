@@ -68,12 +68,37 @@ double scatter_about_one(const TrialContext& work, std::span<const WarpPoint> po
     return 3 * median_of(std::move(off));
 }
 
-/// p |J| that three of four points do not exceed, of those at which it is known to 3e-4; 1 where these are too few.
-double third_quartile(std::vector<double> pj) {
-    if (pj.size() < 100) return 1;
+/// p |J| that three of four points do not exceed; 1 where these are too few.
+double third_quartile(std::vector<double> pj, std::size_t fewest) {
+    if (pj.size() < fewest) return 1;
     const auto at = pj.begin() + static_cast<std::ptrdiff_t>(3 * pj.size() / 4);
     std::nth_element(pj.begin(), at, pj.end());
     return *at;
+}
+
+struct KnownPoint {
+    Vec2d u;
+    double pj;
+};
+
+/// Over all points at which p |J| is known to 3e-4, and over each sixteenth of the square: what single precision hides
+/// at one point its neighbours show together.
+void look_at_regions(std::span<const KnownPoint> known, WarpFinding& out) {
+    constexpr std::size_t side = 4, fewest = 24;
+    std::vector<double> all;
+    std::array<std::vector<double>, side * side> regions;
+    const auto part = [](double u) { return std::min(static_cast<std::size_t>(side * u), side - 1); };
+    for (const KnownPoint& at : known) {
+        all.push_back(at.pj);
+        regions[part(at.u.x) * side + part(at.u.y)].push_back(at.pj);
+    }
+    out.nowhere_above = third_quartile(std::move(all), 100);
+    for (std::size_t k = 0; k < regions.size(); ++k) {
+        const double quartile = third_quartile(std::move(regions[k]), fewest);
+        if (quartile >= out.region_below) continue;
+        out.region_below = quartile;
+        out.region = {static_cast<double>(k / side) / side, static_cast<double>(k % side) / side};
+    }
 }
 
 /// A number may choose at a few points alone: seen from the denser side glass lets little through. Every suspect is
@@ -143,7 +168,7 @@ WarpFinding studied(const TrialContext& work, int technique) {
     out.choosers = branches.choosers;
     std::size_t one = 0, next = 0;
     std::vector<Suspect> suspects;
-    std::vector<double> known;
+    std::vector<KnownPoint> known;
     for (std::size_t i = 0; i + stencil <= w.size(); i += stencil) {
         const Derivative& d = derivatives[i / stencil];
         if (!d.usable) count_stills(work, std::span(w).subspan(i, stencil), out);
@@ -156,10 +181,10 @@ WarpFinding studied(const TrialContext& work, int technique) {
         out.points.push_back({w[i].wi, d.j / share, d.error, u[i], pj});
         if (pj < 1 - allowed) suspects.push_back({u[i], w[i].pdf / share, pj, share, allowed});
         if (std::fabs(pj - 1) <= allowed) ++one;
-        if (allowed < 8e-4) known.push_back(pj);
+        if (allowed < 8e-4) known.push_back({{u[i].x, u[i].y}, pj});
     }
     if (!work.traits.has_pdf) return out;
-    out.nowhere_above = third_quartile(std::move(known));
+    look_at_regions(known, out);
     const double scatter = scatter_about_one(work, out.points);
     std::erase_if(suspects, [scatter](const Suspect& s) { return s.lacking() < scatter; });
     if (work.thrifty() && std::ssize(suspects) > most_suspects)

@@ -67,12 +67,25 @@ void limit_to_upper_half(const TrialContext& work, const VerdictKind& kind, Verd
     v.say = "f transmits, or does not return 0 under the surface; this is of the upper half only. " + v.say;
 }
 
+/// A test failed beyond chance, and questions ran out before fresh draws could confirm it.
+void leave_unconfirmed_open(const TrialContext& work, Verdict& v) {
+    if (v.state != State::right || !(work.unconfirmed() < 1)) return;
+    v.state = State::inconclusive;
+    v.evidence["p_unconfirmed"] = work.unconfirmed();
+    v.settle = "--full, or this w_o alone (--wo), with more questions.";
+    v.say = fmt::format("A test failed with p = {:.2g}, and too few questions were left to confirm it on fresh draws. ",
+                work.unconfirmed()) +
+        v.say;
+}
+
 /// One verdict with the time that it took.
 void judge_next(TrialContext& work, Outcome& out, const VerdictKind& kind, const ProgressMonitor& monitor) {
     monitor.check();
     const Stopwatch start;
+    work.begin_verdict();
     Verdict v = kind.judge(work);
     limit_to_upper_half(work, kind, v);
+    leave_unconfirmed_open(work, v);
     v.seconds = start.seconds();
     out.verdicts.push_back(std::move(v));
 }

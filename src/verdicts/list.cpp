@@ -14,23 +14,21 @@ namespace crescent::inline verdicts {
 namespace {
 
 /// A disk at 35 deg off the normal seen obliquely; a larger one that it stands before in part, first in the list so
-/// that distance decides and not order; one straight above facing down (its frame's axis is -z); a ball, and a
-/// rectangle that a part of it hides. Radiances, m.
+/// that distance decides and not order; one straight above facing down (its frame's axis is -z); and of every other
+/// kind of light its example. Radiances, m.
 TrialLight light_named(const std::string& name) {
     const TrialDisk oblique{20, 2.0 * tilt(35, 20), -1.0 * tilt(20, 60), 0.5};
     const TrialDisk behind{12, 3.2 * tilt(48, 35), -1.0 * tilt(60, 40), 0.9};
     const TrialDisk overhead{20, {0.1, -0.05, 2}, {0, 0, -1}, 0.6};
-    const TrialLamp ball{8, lights::Sphere{1.6 * tilt(30, 140), 0.45}};
-    const Vec3d faces = -1.0 * tilt(50, 130), edge_u = 0.9 * tilt(90, 220), edge_v = (4.0 / 3) * cross(faces, edge_u);
-    const TrialLamp rectangle{15, lights::Rectangle{2.4 * tilt(38, 135) - 0.5 * (edge_u + edge_v), edge_u, edge_v}};
-    const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
+    const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
     TrialLight light;
     light.fill = has("fill") ? 1 : 0;
     if (has("two disks")) light.disks = {behind, oblique};
     else if (has("overhead")) light.disks = {overhead};
     else if (has("disk")) light.disks = {oblique};
-    if (has("ball")) light.lamps.push_back(ball);
-    if (has("rectangle")) light.lamps.push_back(rectangle);
+    for_each_lamp([&]<class Kind>() {
+        if (has(Kind::name)) light.lamps.push_back({10, Kind::example()});
+    });
     return light;
 }
 
@@ -41,10 +39,14 @@ Setups setups_of(const ArmInfo& arm) {
     Setups all;
     for (const TrialSurface& on : arm.trials)
         all.push_back(trial_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
-    // What is judged under a disk alone aims at lights, and is judged under a rectangle too.
-    const bool aims = std::ranges::any_of(arm.trials, [](const TrialSurface& on) { return on.light == "disk"; });
-    for (const char* light : {"rectangle", "disk + rectangle"})
-        if (aims) all.push_back(trial_setup(LobeKind::none, true, light, 32));
+    // What is judged under a disk alone aims at lights, and is judged under every kind too.
+    const auto add = [&](std::string_view light) {
+        all.push_back(trial_setup(LobeKind::none, true, std::string(light), 32));
+    };
+    if (std::ranges::any_of(arm.trials, [](const TrialSurface& on) { return on.light == "disk"; })) {
+        for_each_lamp([&]<class Kind>() { add(Kind::name); });
+        add("disk + rectangle");
+    }
     if (!all.empty()) return all;
     all.push_back(trial_setup(LobeKind::none, true, "fill", 32));
     for (const LobeInfo& lobe : lobe_infos())

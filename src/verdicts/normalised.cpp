@@ -10,14 +10,24 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-/// More than chance allows; the share that draws nothing is itself an estimate.
-bool is_off(const TrialContext& work, int technique, double excess) {
+/// Standard error of the share that draws nothing, which is itself an estimate.
+double doubt_of_nothing(const TrialContext& work, int technique) {
     const Density& d = work.density(technique);
-    if (!(excess > 0) || !(d.nothing > 0)) return excess > 0;
+    if (!(d.nothing > 0)) return 0;
     const double n = static_cast<double>(work.first(technique).draws.size());
-    const double se =
-        work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7) : std::sqrt(d.nothing * (1 - d.nothing) / n);
-    return student_p(excess / se, 15) < work.settings.screen * work.settings.confirm;
+    return work.subject.draws_at_will() ? std::max(d.nothing_se, 1e-7) : std::sqrt(d.nothing * (1 - d.nothing) / n);
+}
+
+/// The chance of so much where the doubt is all that is the matter; 0 of any excess where there is none.
+double chance_of(const TrialContext& work, int technique, double excess) {
+    if (!(excess > 0)) return 1;
+    const double se = doubt_of_nothing(work, technique);
+    return se > 0 ? student_p(excess / se, 15) : 0;
+}
+
+/// More than chance allows.
+bool is_off(const TrialContext& work, int technique, double excess) {
+    return chance_of(work, technique, excess) < work.settings.screen * work.settings.confirm;
 }
 
 /// What the difference from one may be before p is called wrong.
@@ -39,7 +49,7 @@ const Integral& mass_of(const TrialContext& work, int technique) {
     return second ? *d.second : d.mass;
 }
 
-void note(const Density& d, const Integral& mass, const std::string& tag, Verdict& v) {
+void note(const Density& d, const Integral& mass, double doubt, const std::string& tag, Verdict& v) {
     if (d.tabulation_error > 0) v.evidence["table_known_to" + tag] = d.tabulation_error;
     v.evidence["integral" + tag] = mass.value;
     v.evidence["quadrature_error" + tag] = mass.error;
@@ -47,7 +57,8 @@ void note(const Density& d, const Integral& mass, const std::string& tag, Verdic
     v.evidence["audit" + tag] = mass.second;
     v.evidence["audit_se" + tag] = mass.second_se;
     if (d.second) v.evidence["second_quadrature" + tag] = &mass == &d.mass ? d.second->value : d.mass.value;
-    v.evidence["unseen" + tag] = granted(d, mass);
+    constexpr double z = 4;  // beyond which chance is no excuse
+    v.evidence["unseen" + tag] = granted(d, mass) + z * doubt;
     v.evidence["drawn_nothing" + tag] = d.nothing;
     v.evidence["drawn_nothing_se" + tag] = d.nothing_se;
     v.evidence["drawn_delta" + tag] = d.delta;
@@ -57,7 +68,7 @@ std::string told(const Density& d, const Integral& mass) {
     const std::string integral = fmt::format("p integrates to {:.6f} over the sphere", mass.value);
     if (!(d.nothing > 0)) return integral;
     const char* rest = d.delta == 0 ? "draw nothing"
-        : d.delta == d.nothing      ? "are of delta parts"
+        : d.delta == d.nothing      ? "are of delta parts by their q"
                                     : "draw nothing or a delta part";
     return integral +
         fmt::format(" and {:.6f} of the samples {}, together {:.6f}", d.nothing, rest, mass.value + d.nothing);
@@ -83,7 +94,20 @@ AlongTheWarp along_the_warp(const TrialContext& work, int technique) {
     return {mean, std::sqrt(std::max(squares / n - sqr(mean - 1), 0.0) / n)};
 }
 
-/// A sum that is not accused: one, or known too badly to say so.
+/// One, as far as the share that draws nothing is known.
+void tell_one(const TrialContext& work, int technique, const Density& d, const Integral& mass, Verdict& v) {
+    const double doubt = doubt_of_nothing(work, technique);
+    v.say = told(d, mass) + ": one, as a density must.";
+    if (!(doubt > granted_mass)) return;
+    v.say = told(d, mass) + fmt::format(", the share that draws nothing known to {:.2g}: one.", doubt);
+    constexpr double seldom = 10;  // times the level of an accusation
+    if (chance_of(work, technique, excess(d, mass)) >= seldom * work.settings.screen * work.settings.confirm) return;
+    v.state = State::inconclusive;
+    v.say = told(d, mass) + fmt::format(", where the share that draws nothing is only known to {:.2g}.", doubt);
+    v.settle = "--full, with sixteen times as many draws.";
+}
+
+/// A sum that passes: one, or known too badly to say so.
 void tell_sum(const TrialContext& work, int technique, const Density& d, const Integral& mass, Verdict& v) {
     if (mass.sampled && mass.error < 0.02) {
         v.say = told(d, mass) +
@@ -118,7 +142,7 @@ void tell_sum(const TrialContext& work, int technique, const Density& d, const I
             fmt::format(": one, as far as the table tells, which is known to {:.2g}.", d.tabulation_error);
         if (d.tabulation_error > 0.05) v.state = State::inconclusive, v.settle = "A finer table.";
     } else {
-        v.say = told(d, mass) + ": one, as a density must.";
+        tell_one(work, technique, d, mass, v);
     }
 }
 
@@ -128,7 +152,7 @@ Verdict judge(TrialContext& work) {
     for (int t = 0; t < work.subject.techniques(); ++t) {
         const Density& d = work.density(t);
         const Integral& mass = mass_of(work, t);
-        note(d, mass, work.suffix(t), v);
+        note(d, mass, doubt_of_nothing(work, t), work.suffix(t), v);
         ++work.test_counts.tests;
         if (const double sum = mass.value + d.nothing; !std::isfinite(sum) || is_off(work, t, excess(d, mass))) {
             v.state = State::wrong;
@@ -139,7 +163,8 @@ Verdict judge(TrialContext& work) {
             v.say = told(d, mass) +
                 (d.nothing < 1
                         ? fmt::format(", not to 1: weights are off by {:+.3g} % on average.", 100 * (1 / sum - 1))
-                        : ", not to 1: p is to be 0 where nothing is drawn.");
+                        : d.delta > 0 ? ", not to 1: delta parts say that they take every draw: p is to be 0."
+                                      : ", not to 1: p is to be 0 where nothing is drawn.");
             return v;
         }
         tell_sum(work, t, d, mass, v);

@@ -161,6 +161,8 @@ struct WarpFinding {
     std::size_t usable = 0, below = 0;  // points with a trusted |J|, and those with p |J| < 1
     double smallest = 1;                // p |J|
     double nowhere_above = 1;           // p |J| that three of four points with the best |J| do not exceed
+    double region_below = 1;            // the least of that over sixteenths of the square of the first two numbers
+    Vec2d region{};                     // the corner nearest to u = (0, 0) of that sixteenth
     Numbers at{};
     double one_to_one = 0;                   // share of usable points with p |J| = 1
     std::size_t steps_tried = 0, stuck = 0;  // moves of u by 2^-19 that ought to show, and those that do not

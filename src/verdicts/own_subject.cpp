@@ -3,6 +3,7 @@
 
 #include "verdicts/against.h"
 #include "verdicts/list.h"
+#include "verdicts/named_side.h"
 
 namespace crescent::inline verdicts {
 
@@ -104,7 +105,7 @@ std::vector<Trial> arm_against(const std::string& name, std::span<const Trial> a
         Trial b = t;
         b.arm = name;
         b.theory = {};
-        b.subject = std::make_shared<WithF>(arm_on(name, t), t.subject);
+        b.subject = std::make_shared<WithF>(arm_on(name, t), named_side(t.subject, "A"));  // f is A's
         out.push_back(std::move(b));
     }
     return out;

@@ -177,6 +177,16 @@ std::string told_of(const TrialContext& work, const Reciprocity& r) {
                                   : "f is said not to be reciprocal, which was not looked at";
 }
 
+/// Why the reciprocity of f was not looked at, or not across the surface, and what would make it so; "" where it was.
+std::string not_looked_at(const TrialContext& work, const Reciprocity& r) {
+    if (work.scatter().f()) return "reciprocity of f, which is a random estimate";
+    if (!work.traits.reciprocal) return "reciprocity of f, which is said not to be reciprocal (reciprocal=no)";
+    if (!work.whole() || r.phase || r.across > 0) return "";
+    return work.traits.eta
+        ? "reciprocity across the surface, since w_o below it is not answered for (wo=both)"
+        : "reciprocity across the surface, and whether f has its eta^2, since the index is not told (eta=)";
+}
+
 /// What f reflects of an even light, and what it lets through.
 std::string given_back(const TrialContext& work, const Reciprocity& r, const Integral& albedo) {
     const bool over = work.trial.wo.z > 0;
@@ -227,6 +237,7 @@ Verdict judge(TrialContext& work) {
     const Reciprocity r = reciprocity(work);
     v.evidence["reciprocity_pairs"] = r.tried;
     v.evidence["reciprocity_broken"] = r.broken;
+    if (const std::string left = not_looked_at(work, r); !left.empty()) v.evidence["not_looked_at"] = left;
     const Integral albedo = work.incoming(TrialContext::Where::everywhere, true);
     v.evidence["albedo"] = albedo.value;
     v.evidence["albedo_error"] = albedo.error;

@@ -53,9 +53,22 @@ std::string curve(const std::vector<double>& v, std::string_view name) {
     return out + "'/>";
 }
 
+/// Of densities, 1/sr.
+std::string implied_figure(const BinMap& m) {
+    const double top = std::max(m.full_scale, 1e-300);
+    return fmt::format(
+        "<p>The density that the draws imply, by bin, {}: degrees from the axis downwards, one row a ring whatever it "
+        "spans; degrees about it to the right. Full scale is {:.4g} 1/sr. There is no pdf(w) to hold it against.</p>"
+        "<div class='row wide'><figure class=map><canvas width={} height={}></canvas><svg width=320 "
+        "height=230>{}</svg><figcaption>implied density</figcaption></figure></div>"
+        "<script>paint({},{:.6g},[{:.4g}])</script>",
+        m.coordinates, top, m.sectors, m.rings, map_axes(m), m.sectors, top, fmt::join(m.observed, ","));
+}
+
 }  // namespace
 
 std::string map_figures(const BinMap& m) {
+    if (m.expected.empty()) return implied_figure(m);
     const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()),
         *std::max_element(m.expected.begin(), m.expected.end()));
     const std::size_t worst = worst_bin(m.observed, m.expected);
@@ -89,6 +102,23 @@ std::string rose_figure(const WeightPicture& w) {
     return out +
         "</svg><figcaption>Plane of incidence, degrees of w_i from n: p (blue) over f L cos (grey), each to its own "
         "largest value</figcaption></figure>";
+}
+
+std::string implied_html(const Verdict& v) {
+    const auto rings = v.evidence.find("implied_rings");
+    if (rings == v.evidence.end()) return "";
+    std::string out =
+        "<table class=matrix><tr><th>degrees from n<th>implied density, mean over the ring, 1/sr<th>standard error";
+    for (const auto& row : rings->at("rows"))
+        out += fmt::format("<tr><td>{:.0f} to {:.0f}<td>{:.4g}<td>{:.2g}", row[0].get<double>(), row[1].get<double>(),
+            row[2].get<double>(), row[3].get<double>());
+    return out +
+        fmt::format(
+            "</table><p>In the JSON these are <code>implied_rings</code>; every bin stands in "
+            "<code>implied_bins</code>{}.</p>",
+            v.evidence.contains("implied_density")
+                ? ", and the density by 1/|Jacobian|, direction by direction, in <code>implied_density</code>"
+                : "");
 }
 
 }  // namespace crescent::inline verdicts

@@ -11,8 +11,12 @@ namespace crescent::inline verdicts {
 /// The bin that is off by the most standard deviations.
 std::size_t worst_bin(const std::vector<double>& observed, const std::vector<double>& expected);
 
-/// Observed, expected and standardised difference, painted by the page's script; the worst bin has a frame.
+/// Observed, expected and standardised difference, painted by the page's script; the worst bin has a frame. Of an
+/// implied density one map.
 std::string map_figures(const BinMap& map);
+/// Nothing where there is no p.
 std::string rose_figure(const WeightPicture& weights);
+/// The table of the density that the draws imply, by rings about n; "" of any other verdict.
+std::string implied_html(const Verdict& verdict);
 
 }  // namespace crescent::inline verdicts

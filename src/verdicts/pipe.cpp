@@ -129,7 +129,7 @@ private:
         if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
         const bool nothing = !delta && d.pdf == 0;
         if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
-        if (delta) d.delta = d.pdf > 0 ? d.pdf : -1, d.pdf = 0;
+        if (delta) d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen, d.pdf = 0;
         if (weights() == 1) d.weight = a[4];
         if (weights() == 3) d.weights = {a[4], a[5], a[6]}, d.weight = luminance(d.weights);
         return d;
@@ -150,6 +150,10 @@ private:
         if (hello_.blocks) ask_block(operation, verb, count, 6, columns, in, answers);
         else if (count > 0)
             talk_.lines(count, expected, writer(verb, 6, in), [&](std::size_t i, std::string_view s) {
+                if (operation[0] == 'f' && s == "-") {
+                    std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
+                    return true;
+                }
                 for (std::size_t k = 0; k < columns; ++k)
                     if (!take_float(s, answers[i * columns + k])) return false;
                 return blank(s);

@@ -76,7 +76,7 @@ const std::array<Key, 13>& keys() {
         {"delta", "yes or no", [](S v, Greeting& g) { return (g.delta = v == "yes") || v == "no"; }},
         {"pdf", "yes or no", [](S v, Greeting& g) { return (g.traits.has_pdf = v == "yes") || v == "no"; }},
         {"f", "cos or nocos", [](S v, Greeting& g) { return (g.f_cos = v == "cos") || v == "nocos"; }},
-        {"eta", "a positive number, or three separated by commas",
+        {"eta", "a number over 0 and under 1e6, or three separated by commas",
             [](S v, Greeting& g) { return indices(v, g.traits.eta); }},
         {"transport", "radiance or importance",
             [](S v, Greeting& g) { return (g.traits.importance = v == "importance") || v == "radiance"; }},

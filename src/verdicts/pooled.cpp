@@ -38,12 +38,13 @@ std::vector<Contrasts> values_of(const Density& d, double draws) {
 
 }  // namespace
 
-Contrasts contrasts_of(const Density& d, const SampleBatch& b) {
+Contrasts contrasts_of(const TrialContext& work, const Density& d, const SampleBatch& b) {
     constexpr double allowed = 1e-4;  // relative: what normalised and identity grant p
     std::vector<double> seen(d.mass.bins.size());
     double n = 0, total = 0;
+    const std::vector<Vec2d>& at = work.coordinates_of(b, d.map);
     for (std::size_t i = 0; i < b.draws.size(); ++i)
-        if (!is_null_sample(b.draws[i], b.pdf[i])) ++seen[d.bin_of(d.map.coordinates(b.draws[i].wi))], ++n;
+        if (!is_null_sample(b.draws[i], b.pdf[i])) ++seen[d.bin_of(at[i])], ++n;
     for (double m : d.mass.bins) total += m;
     const std::vector<Contrasts> value = values_of(d, n);
     Contrasts out{};
@@ -77,7 +78,7 @@ std::optional<Contrasted> contrasted(const TrialContext& work) {
             d.mass.error > 1e-3)
             return {};
         out.densities.push_back(d);
-        out.z.push_back(contrasts_of(d, work.first(t)));
+        out.z.push_back(contrasts_of(work, d, work.first(t)));
     }
     return out;
 }
@@ -100,7 +101,7 @@ std::vector<Contrasts> fresh_contrasts(const Trial& trial, std::size_t index, co
     const TrialContext work(trial, fresh, test_counts, static_cast<std::uint32_t>(index));
     std::vector<Contrasts> out;
     for (std::size_t t = 0; t < of.densities.size(); ++t)
-        out.push_back(contrasts_of(of.densities[t], work.first(static_cast<int>(t))));
+        out.push_back(contrasts_of(work, of.densities[t], work.first(static_cast<int>(t))));
     return out;
 }
 

@@ -12,7 +12,7 @@ namespace crescent::inline verdicts {
 /// off: of log p, of the share of p nearer to the axis, and of cosine and sine of the azimuth about it.
 inline constexpr std::size_t contrast_count = 4;
 using Contrasts = std::array<double, contrast_count>;
-Contrasts contrasts_of(const Density& bins, const SampleBatch& draws);
+Contrasts contrasts_of(const TrialContext& work, const Density& bins, const SampleBatch& draws);
 
 /// Of one trial, what the pooled test starts from; densities by technique, for fresh draws to be held against.
 struct Contrasted {

@@ -37,18 +37,20 @@ std::vector<Search> starts_of(const TrialContext& work, int technique, std::span
     const SampleBatch& b = work.first(technique);
     std::vector<Search> all;
     std::vector<Numbers> instead;  // the same with the point's own choice
+    const std::size_t most = chooser < 0 ? starts : 3 * starts;
     for (std::size_t k = 0; k < points.size(); ++k) {
-        std::vector<std::pair<double, std::size_t>> near;
+        std::vector<std::pair<double, std::size_t>> near;  // the nearest, in order
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
+            const std::pair far{-dot(b.draws[i].wi, points[k].wi), i};
+            if (near.size() == most && !(far < near.back())) continue;
             const Numbers &u = b.u[i], &own = points[k].u;
             const bool elsewhere = std::max(std::fabs(u.x - own.x), std::fabs(u.y - own.y)) > 16 * apart;
             if (!(b.draws[i].pdf > 0) || (chooser < 0 && !elsewhere)) continue;
-            near.emplace_back(-dot(b.draws[i].wi, points[k].wi), i);
+            near.insert(std::upper_bound(near.begin(), near.end(), far), far);
+            if (near.size() > most) near.pop_back();
         }
-        const std::size_t count = std::min<std::size_t>(near.size(), chooser < 0 ? starts : 3 * starts);
-        std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
-        for (std::size_t i = 0; i < count; ++i) {
-            all.push_back({k, b.u[near[i].second]});
+        for (const auto& [far, i] : near) {
+            all.push_back({k, b.u[i]});
             instead.push_back(all.back().u);
             if (chooser >= 0) instead.back()[chooser] = points[k].u[chooser];
         }

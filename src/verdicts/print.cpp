@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "verdicts/summary.h"
+#include "verdicts/told_last.h"
 
 namespace crescent::inline verdicts {
 
@@ -88,8 +89,9 @@ std::string verdict_table(const Judgement& judgement, bool all) {
     if (details < summary.size()) out += summary.substr(details + 1);
     for (const Verdict& v : judgement.verdicts)
         if (all) out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.trial, v.name, word(v.state), told(v));
-    if (const std::string unseen = unseen_told(judgement); !unseen.empty()) out += "\n" + unseen + "\n";
-    if (const std::string nothing = nothing_drawn_told(judgement); !nothing.empty()) out += "\n" + nothing + "\n";
+    for (const std::string& last :
+        {implied_told(judgement), unseen_told(judgement), nothing_drawn_told(judgement), not_looked_at_told(judgement)})
+        if (!last.empty()) out += "\n" + last + "\n";
     const std::string asked =
         judgement.questions > 0 ? fmt::format("; {} questions were answered", judgement.questions) : "";
     out += fmt::format(
@@ -153,7 +155,7 @@ std::string verdict_junit(const Judgement& judgement) {
             : open                                 ? Case::skipped
                                                    : Case::passed;
         suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.trial), state,
-            fmt::format("{}: {}", word(v.state), first_sentence(v.say)),
+            fmt::format("{}: {}", word(v.state), sentences_of(v.say).front()),
             v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle), v.seconds});
     }
     for (const std::string& line : judgement.unmet)

@@ -21,7 +21,8 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
 std::string verdict_timing(const Judgement& judgement, const JudgementSource& source = {});
 std::string verdict_junit(const Judgement& judgement);
 /// The summary, a matrix of w_o and verdicts, then case by case: maps of observed, expected and standardised
-/// difference, weight histograms with their tail, and roses of p over f L cos.
+/// difference, weight histograms with their tail, and roses of p over f L cos; of a sampler without pdf(w) the map and
+/// the table of the density that its draws imply.
 std::string verdict_html(const Judgement& judgement, const JudgementSource& source = {});
 /// Throws OutputError where write_whole would.
 void can_write(const std::string& path);

@@ -59,6 +59,9 @@ struct Draw {
     Vec3d weights{};  // by channel, where there are three and weight is there
 };
 
+/// The probability of a delta part that says it was chosen with 0; valid tells of it.
+inline constexpr double delta_never_chosen = -std::numeric_limits<double>::infinity();
+
 /// How much of p's mass about a direction is not known, where p was tabulated.
 struct TabulationError {
     Vec3d at;
@@ -147,7 +150,7 @@ struct TrialDisk {
     std::optional<double> distance(Vec3d wi) const;
 };
 
-/// A light of another kind, a ball or a rectangle, as scenes have it; the surface point is at 0. m.
+/// A light of another kind, as scenes have it; the surface point is at 0. m.
 struct TrialLamp {
     double radiance = 0;
     LightKinds::Any form;

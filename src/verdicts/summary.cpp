@@ -60,11 +60,20 @@ void add(Finding& f, const Verdict& v) {
     if (!f.worst || badness(v) > badness(*f.worst)) f.worst = &v;
 }
 
+/// What a verdict says beyond what the worst of its finding says already.
+std::string told_beside(const Verdict& v, const std::set<std::string>& already) {
+    std::string out;
+    for (const std::string& sentence : sentences_of(told(v)))
+        if (!already.contains(sentence)) out += (out.empty() ? "" : " ") + sentence;
+    return out;
+}
+
 void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
+    const std::vector<std::string> of_worst = sentences_of(told(*f.worst));
+    const std::set<std::string> already(of_worst.begin(), of_worst.end());
     for (const Verdict* v : all) {
-        if (v == f.worst) continue;
-        const std::string say = told(*v);
-        if (say == told(*f.worst)) continue;
+        const std::string say = told_beside(*v, already);
+        if (say.empty()) continue;
         const auto same =
             std::find_if(f.sentences.begin(), f.sentences.end(), [&](const auto& s) { return s.first == say; });
         if (same != f.sentences.end()) same->second.push_back(v->trial);
@@ -89,10 +98,16 @@ std::string told(const Verdict& v) {
         (v.say_timed.empty() ? "" : " " + v.say_timed);
 }
 
-std::string first_sentence(const std::string& text) {
-    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1))
-        if (at + 2 < text.size() && text[at + 2] >= 'A' && text[at + 2] <= 'Z') return text.substr(0, at + 1);
-    return text;
+std::vector<std::string> sentences_of(const std::string& text) {
+    std::vector<std::string> out;
+    std::size_t from = 0;
+    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
+        if (at + 2 >= text.size() || text[at + 2] < 'A' || text[at + 2] > 'Z') continue;
+        out.push_back(text.substr(from, at + 1 - from));
+        from = at + 2;
+    }
+    out.push_back(text.substr(from));
+    return out;
 }
 
 std::vector<Finding> findings_of(const Judgement& j) {

@@ -19,7 +19,7 @@ struct Finding {
     const char* cases = "w_o";       // what is counted
     const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
     std::vector<std::pair<std::string, std::vector<std::string>>>
-        sentences;                       // each other than the worst's with its cases
+        sentences;                       // what the others say beyond the worst, each with its cases
     const Verdict* explained = nullptr;  // one of the arm that says what explains it, where the worst cannot
 };
 
@@ -37,8 +37,8 @@ std::string unseen_told(const Judgement& judgement);
 std::string nothing_drawn_told(const Judgement& judgement);
 /// The sentence of a verdict, with what it says of times.
 std::string told(const Verdict& verdict);
-/// The first sentence of a text.
-std::string first_sentence(const std::string& text);
+/// A text in sentences: each begins with a capital letter.
+std::vector<std::string> sentences_of(const std::string& text);
 /// All findings but the expected ones, a line each, then what was left out, then the details.
 std::string summary_of(const Judgement& judgement);
 

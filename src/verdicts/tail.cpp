@@ -44,7 +44,7 @@ WeightPicture picture(const TrialContext& work, const std::vector<double>& x, co
     std::vector<Vec3d> wi;
     const double azimuth = math::atan2(work.trial.wo.y, work.trial.wo.x) * 180 / pi;
     for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));
-    out.rose_p = work.any_pdf(wi);
+    if (work.traits.has_pdf) out.rose_p = work.any_pdf(wi);
     const std::vector<double> f = work.f(wi, true);
     for (std::size_t i = 0; i < wi.size(); ++i) out.rose_f.push_back(f[i] * wi[i].z * work.trial.light(wi[i]));
     return out;

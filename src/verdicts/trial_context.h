@@ -54,7 +54,9 @@ struct SampleBatch {
     mutable std::vector<double> f;  // f of every draw above the horizon, once asked for
     std::vector<std::pair<Vec2d, Draw>>
         dropped;  // draws that cannot be used, too few to matter; a neighbour stands in for each
-    mutable std::vector<Vec3d> f_channels;  // the same by channel, where there are three
+    mutable std::vector<Vec3d> f_channels;   // the same by channel, where there are three
+    mutable std::vector<Vec2d> coordinates;  // of the draws about the axis that was last asked for, {} of nothing drawn
+    mutable std::optional<Vec3d> axis;
     std::uint64_t nothing = 0;  // pdf 0, or under the horizon where pdf(w) is 0; draws of delta parts among them
     std::uint64_t deltas = 0;   // draws of delta parts
 };
@@ -147,6 +149,8 @@ public:
     /// f of every draw above the horizon, 0 elsewhere; asked once.
     const std::vector<double>& f_of_drawn(const SampleBatch& b) const;
     std::vector<double> pdf_of_drawn(int technique, std::span<const Draw> draws) const;
+    /// Of every draw, {} where nothing was drawn; computed once an axis.
+    const std::vector<Vec2d>& coordinates_of(const SampleBatch& b, const SphereMap& map) const;
     std::vector<double> pdf(int technique, std::span<const Vec3d> wi, bool exact = false) const;
     /// Sum over techniques.
     std::vector<double> any_pdf(std::span<const Vec3d> wi) const;
@@ -182,10 +186,17 @@ public:
         ++test_counts.tests;
         if (!(p_first < settings.screen)) return false;
         ++test_counts.screened;
-        if (!(p_of_round(1) < settings.confirm)) return false;
+        if (!(p_of_round(1) < settings.confirm)) {
+            note_unconfirmed(p_first);
+            return false;
+        }
         ++test_counts.confirmed;
         return true;
     }
+    /// The p of a test that failed by both stages' level at once, and had fewer draws to confirm it than it began with:
+    /// questions ran out. Of the verdict that is being made; 1 where there is none.
+    double unconfirmed() const { return unconfirmed_; }
+    void begin_verdict() { unconfirmed_ = 1; }
 
     mutable std::array<std::shared_ptr<const WarpFinding>, 2> warps;  // by technique; see study_warp
     mutable std::array<std::shared_ptr<const Reached>, 2> reached;    // by technique; see preimages_of
@@ -202,6 +213,9 @@ private:
     std::vector<Density> density_;
     /// Questions for the verdicts after the density and its confirmation.
     std::size_t for_later() const;
+    /// Questions that may still be asked at this w_o.
+    std::size_t left() const;
+    std::uint64_t confirming_draws() const;
     std::vector<Vec3d> pilot_directions_, support_boundary_;
     std::size_t drawn_pilots_ = 0;  // the first of the pilot directions
     std::optional<Vec3d> circle_;   // the axis of a rim that is a circle
@@ -210,6 +224,8 @@ private:
     std::vector<double> heights_;   // these, as 1 - cos
     double direction_resolution_ = 0;
     Scatter scatter_;
+    void note_unconfirmed(double p_first) const;
+    mutable double unconfirmed_ = 1;
     void count_nothing(SampleBatch& b) const;
     void settle_zeros(SampleBatch& b) const;
     void ask_again_at_zeros(std::span<const Vec3d> wi, std::span<const double> value, std::span<double> p) const;

@@ -178,11 +178,10 @@ SamplesPerBin TrialContext::samples_per_bin_of(int technique, const Density& d) 
     const SampleBatch& b = first(technique);
     out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
     out.total = static_cast<double>(b.draws.size());
+    const std::vector<Vec2d>& at = coordinates_of(b, d.map);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         subject.make_way(1);
-        if (is_null_sample(b.draws[i], b.pdf[i])) continue;
-        const Vec2d at = d.map.coordinates(b.draws[i].wi);
-        out.bins[d.bin_of(at)].push_back({at, 2 * pi * b.pdf[i]});
+        if (!is_null_sample(b.draws[i], b.pdf[i])) out.bins[d.bin_of(at[i])].push_back({at[i], 2 * pi * b.pdf[i]});
     }
     return out;
 }

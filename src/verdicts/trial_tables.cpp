@@ -63,9 +63,10 @@ void TrialContext::refine_table(int technique, Density& d) const {
     };
     std::vector<Ratio> ratio(d.tabulation_errors.size());
     const SampleBatch& b = first(technique);
+    const std::vector<Vec2d>& at = coordinates_of(b, d.map);
     for (std::size_t i = 0; i < b.draws.size(); ++i) {
         if (is_null_sample(b.draws[i], b.pdf[i])) continue;
-        Ratio& r = ratio[d.bin_of(d.map.coordinates(b.draws[i].wi))];
+        Ratio& r = ratio[d.bin_of(at[i])];
         const double v = b.pdf[i] / b.draws[i].pdf;
         ++r.n;
         r.sum += v;

@@ -186,7 +186,8 @@ const Unmet& TrialContext::unmet(bool even) const {
 }
 
 bool has_unmet_tail(const TrialContext& work, bool even) {
-    if (!work.traits.has_pdf) return false;  // which weights a direction would have is not known
+    // Which weights a direction would have is not known.
+    if (!work.traits.has_pdf || !work.subject.has_f()) return false;
     const Spread s = spread(work.first_weights(even));
     return mean_p(s, due_mean(work, even)) < work.settings.screen && work.unmet(even).heavy;
 }

@@ -26,16 +26,35 @@
 
 namespace crescent::user {
 
-/// Whether pdf takes directions; whether sample takes wo and random numbers; whether it gives a direction and a
-/// density.
+/// Parameters that are directions alone.
+template <class T> consteval bool are_directions() {
+    return []<std::size_t... i>(std::index_sequence<i...>) { return (Direction<At<T, i>> && ...); }(
+               std::make_index_sequence<count_of<T>>{});
+}
+/// Whether pdf takes directions and gives a number; whether f takes them and gives its channels; whether traits() is
+/// one; whether sample takes wo and random numbers; whether it gives a direction and a density.
 template <class S> consteval bool takes_directions() {
     if constexpr (!HasPdf<S>) return true;
     else {
         using T = typename OfPdf<S>::Parameters;
-        return []<std::size_t... i>(std::index_sequence<i...>) { return (Direction<At<T, i>> && ...); }(
-                   std::make_index_sequence<count_of<T>>{}) &&
-            count_of<T> == (without_wo<S>() ? 1 : 2);
+        return are_directions<T>() && count_of<T> == (without_wo<S>() ? 1 : 2);
     }
+}
+template <class S> consteval bool gives_pdf() {
+    if constexpr (!HasPdf<S>) return true;
+    else return Scalar<Bare<typename OfPdf<S>::Result>>;
+}
+template <class S> consteval bool f_fits() {
+    if constexpr (!HasF<S>) return true;
+    else {
+        using T = typename OfF<S>::Parameters;
+        return are_directions<T>() && (count_of<T> == 1 || count_of<T> == 2) && Channels<Bare<typename OfF<S>::Result>>;
+    }
+}
+template <class S> consteval bool traits_fit() {
+    return !HasTraits<S> || requires(const S s) {
+        { s.traits() } -> std::convertible_to<Traits>;
+    };
 }
 template <class S> consteval bool takes_numbers() {
     using T = SampleParameters<S>;
@@ -49,15 +68,28 @@ template <class S> consteval bool takes_numbers() {
     }
 }
 template <class S> consteval bool gives_draws() {
-    if constexpr (written_of<SampleParameters<S>>() > 0) return true;
+    using T = SampleParameters<S>;
+    constexpr std::size_t reads = read_of<T>();
+    if constexpr (written_of<T>() > 1) return Three<Value<At<T, reads>>> && Scalar<Value<At<T, reads + 1>>>;
     else
         return requires(const Result<S> d) { direction(d.wi); } &&
             (!HasPdf<S> || requires(const Result<S> d) { number_of(d.pdf); });
 }
+template <class S> consteval bool gives_weights() {
+    using T = SampleParameters<S>;
+    if constexpr (written_of<T>() > 2) return Channels<Value<At<T, read_of<T>() + 2>>>;
+    else if constexpr (written_of<T>() > 0) return true;
+    else if constexpr (requires(const Result<S> d) { d.weight; })
+        return requires(const Result<S> d) { colour(d.weight); };
+    else if constexpr (requires(const Result<S> d) { d.f; }) return requires(const Result<S> d) { colour(d.f); };
+    else return true;
+}
 template <class S> consteval bool judgeable() {
     if constexpr (!HasSample<S>) return false;
     else if constexpr (!takes_numbers<S>()) return false;
-    else return takes_directions<S>() && gives_draws<S>();
+    else
+        return takes_directions<S>() && gives_pdf<S>() && f_fits<S>() && traits_fit<S>() && gives_draws<S>() &&
+            gives_weights<S>();
 }
 template <class S>
 concept Judgeable = std::is_class_v<S> && judgeable<S>();
@@ -74,9 +106,16 @@ template <class S> consteval bool must_be_judgeable() {
         if constexpr (takes_numbers<S>()) {
             static_assert(takes_directions<S>(),
                 "pdf takes (wo, wi), directions in floats or doubles, or (wi) where sample takes no wo");
+            static_assert(gives_pdf<S>(), "pdf returns one number, 1/sr");
+            static_assert(f_fits<S>(),
+                "f takes (wo, wi), directions in floats or doubles, and returns one number, 1/sr, or three: {r, g, b}, "
+                "{x, y, z} or an array of three");
+            static_assert(traits_fit<S>(), "traits() is const and returns crescent::Traits");
             static_assert(gives_draws<S>(),
                 "sample returns something with .wi, a direction, and .pdf, a number in 1/sr (or a std::optional of "
                 "that), or writes wi and pdf through references");
+            static_assert(gives_weights<S>(),
+                "the .weight or .f of a draw is one number or three: {r, g, b}, {x, y, z} or an array of three");
         }
     }
     return judgeable<S>();

@@ -17,6 +17,8 @@ template <class S>
 concept HasPdf = requires { &S::pdf; };
 template <class S>
 concept HasF = requires { &S::f; };
+template <class S>
+concept HasTraits = requires { &S::traits; } || requires(S s) { s.traits(); };
 template <class S> using OfSample = Signature<decltype(&S::sample)>;
 template <class S> using OfPdf = Signature<decltype(&S::pdf)>;
 template <class S> using OfF = Signature<decltype(&S::f)>;
@@ -120,7 +122,7 @@ concept TellsDelta = requires(const D d) {
     { d.delta } -> std::convertible_to<double>;
 } || requires(const D d) { d.IsSpecular(); } || requires(const D d) { d.specular; };
 template <class D>
-concept TellsWeight = requires(const D d) { d.weight; } || requires(const D d) { colour(d.f); };
+concept TellsWeight = requires(const D d) { d.weight; } || requires(const D d) { d.f; };
 
 /// bool or void, with wi and pdf written through, and then a weight.
 template <class S, class... C> Draw written(S& s, Vec3d wo, const Numbers& u, std::type_identity<std::tuple<C...>>) {

@@ -110,32 +110,50 @@ template <Span C> struct Filled<C> : Stored<typename SpanOf<Bare<C>>::Value> {
     Bare<C> get() const { return Bare<C>(this->value.data(), count); }
 };
 
-template <class V> Vec3d direction(const V& v) {
-    if constexpr (requires {
-                      v.x;
-                      v.y;
-                      v.z;
-                  })
-        return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+/// How many numbers [0], [1] ... reach; 0: the type does not say.
+template <class V> consteval std::size_t length_of() {
+    if constexpr (std::is_array_v<V>) return std::extent_v<V>;
+    else if constexpr (requires { std::tuple_size<V>::value; }) return std::tuple_size_v<V>;
+    else if constexpr (SpanOf<V>::value) return static_cast<std::size_t>(SpanOf<V>::extent);
+    else return 0;
+}
+template <class V>
+concept Xyz = requires(const V v) {
+    static_cast<double>(v.x);
+    static_cast<double>(v.y);
+    static_cast<double>(v.z);
+};
+template <class V>
+concept Indexed = requires(const V v) { static_cast<double>(v[0]); };
+/// A direction that is given back: {x, y, z}, or at least three in a row.
+template <class V>
+concept Three = Xyz<V> || (Indexed<V> && (length_of<V>() == 0 || length_of<V>() >= 3));
+
+template <Three V> Vec3d direction(const V& v) {
+    if constexpr (Xyz<V>) return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
     else return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 template <class P>
 concept Scalar = requires(const P p) { static_cast<double>(p); } || requires(const P p) { static_cast<double>(p.v); };
-template <class P> double number_of(const P& p) {
+template <Scalar P> double number_of(const P& p) {
     if constexpr (requires { p.v; }) return static_cast<double>(p.v);
     else return static_cast<double>(p);
 }
-/// Three channels: an array, or a struct {r, g, b} or {x, y, z}.
-template <class P> concept Coloured =
-    !Scalar<P> && (requires(const P p) { p.r; p.g; p.b; } || requires(const P p) { direction(p); });
-template <class P> Vec3d colour(const P& p) {
+template <class P>
+concept Rgb3 = requires(const P p) {
+    static_cast<double>(p.r);
+    static_cast<double>(p.g);
+    static_cast<double>(p.b);
+};
+/// Three channels: an array of three, or a struct {r, g, b} or {x, y, z}.
+template <class P>
+concept Coloured = !Scalar<P> && (Rgb3<P> || Xyz<P> || (Three<P> && length_of<P>() <= 3));
+/// What f and a weight may be.
+template <class P>
+concept Channels = Scalar<P> || Coloured<P>;
+template <Channels P> Vec3d colour(const P& p) {
     if constexpr (Scalar<P>) return {number_of(p), number_of(p), number_of(p)};
-    else if constexpr (requires {
-                           p.r;
-                           p.g;
-                           p.b;
-                       })
-        return {static_cast<double>(p.r), static_cast<double>(p.g), static_cast<double>(p.b)};
+    else if constexpr (Rgb3<P>) return {static_cast<double>(p.r), static_cast<double>(p.g), static_cast<double>(p.b)};
     else return direction(p);
 }
 template <class D>

@@ -14,6 +14,9 @@ namespace crescent::inline verdicts {
 
 namespace {
 
+/// NaN has no sign that means anything.
+std::string number(double v) { return std::isnan(v) ? "nan" : fmt::format("{:.9g}", v); }
+
 std::string told(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
 
 /// What is wrong with one draw, "" if nothing.
@@ -23,15 +26,21 @@ std::string fault_of(const Draw& d, double pdf_there) {
     if (std::isinf(d.pdf)) return "pdf is infinite (a delta part is told apart: see docs/verdicts.md)";
     if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
     if (d.pdf == 0 && d.delta == 0) return "";
-    if (!(d.delta >= 0 && d.delta <= 1)) return fmt::format("a delta part is chosen with probability {:.9g}", d.delta);
+    if (!(d.delta >= 0 && d.delta <= 1))
+        return fmt::format("a delta part is chosen with probability {}, not in (0, 1]",
+            number(d.delta == delta_never_chosen ? 0 : d.delta));
     if (d.delta > 0 && !d.weight) return "a draw of a delta part comes without its weight";
     const double length2 = dot(d.wi, d.wi);
     if (!std::isfinite(length2)) return "the direction is infinite";
     if (std::fabs(std::sqrt(length2) - 1) > 1e-5)
         return fmt::format("the direction {} has length {:.9g}, not 1", told(d.wi), std::sqrt(length2));
-    if (!std::isfinite(pdf_there) || pdf_there < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(d.wi), pdf_there);
+    if (!std::isfinite(pdf_there) || pdf_there < 0)
+        return fmt::format("pdf(w) at {} is {}", told(d.wi), number(pdf_there));
     if (d.weight && !(std::isfinite(*d.weight) && is_finite(d.weights)))
         return fmt::format("the weight at {} is not finite", told(d.wi));
+    constexpr double rounding = 1e-6;  // of 1 - F in single precision
+    if (const double least = std::min({d.weight.value_or(0), d.weights.x, d.weights.y, d.weights.z}); least < -rounding)
+        return fmt::format("the weight at {} is {:.9g}, negative", told(d.wi), least);
     return "";
 }
 
@@ -56,7 +65,7 @@ std::string first_fault(const TrialContext& work, int technique, const SampleBat
         const Draw& d = b.draws[i];
         if (!(d.pdf > 0) || !work.counts(d.wi)) continue;
         if (!std::isfinite(f[i]) || f[i] < 0)
-            return fmt::format("{}f at {} is {:.9g}", at_place(work, b, i), told(d.wi), f[i]);
+            return fmt::format("{}f at {} is {}", at_place(work, b, i), told(d.wi), number(f[i]));
         if (!std::isfinite(f[i] * d.wi.z / d.pdf))
             return fmt::format("the weight f cos / p at {} is not finite", told(d.wi));
     }
@@ -101,12 +110,12 @@ std::string fault_all_over(const TrialContext& work, int technique) {
     std::vector<Vec3d> wi = all_over();
     const std::vector<double> p = work.pdf(technique, wi);
     for (std::size_t i = 0; i < wi.size(); ++i)
-        if (!std::isfinite(p[i]) || p[i] < 0) return fmt::format("pdf(w) at {} is {:.9g}", told(wi[i]), p[i]);
+        if (!std::isfinite(p[i]) || p[i] < 0) return fmt::format("pdf(w) at {} is {}", told(wi[i]), number(p[i]));
     if (!work.subject.has_f()) return "";
     std::erase_if(wi, [&](Vec3d w) { return !work.counts(w); });
     const std::vector<double> f = work.f(wi);
     for (std::size_t i = 0; i < wi.size(); ++i)
-        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {:.9g}", told(wi[i]), f[i]);
+        if (!std::isfinite(f[i]) || f[i] < 0) return fmt::format("f at {} is {}", told(wi[i]), number(f[i]));
     return "";
 }
 

@@ -31,12 +31,14 @@ struct Verdict {
     bool waived = false;       // the caller expects it, so that it does not count
 };
 
-/// Bins of one density test, for the maps of the HTML page.
+/// Bins of one density test, for the maps of the HTML page: draws and what is due, or, where nothing is claimed that
+/// could be due (`expected` is empty), the density that the draws imply.
 struct BinMap {
     std::string arm, trial, coordinates;
     int rings = 0, sectors = 0;
-    std::vector<double> observed, expected;  // ring-major
+    std::vector<double> observed, expected;  // ring-major; draws, or 1/sr
     std::vector<double> edges{};             // of the rings: 1 - cos of the angle to the axis
+    double full_scale = 0;                   // of a density, 1/sr
 };
 
 /// The largest weights, a histogram of all, and p against f L cos along a grid of directions.

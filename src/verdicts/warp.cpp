@@ -27,11 +27,18 @@ bool is_denser_than_p(const TrialContext& work, const WarpFinding& warp, const s
                 work.traits.numbers > 2 ? "; what chooses was held, and its share counts" : ""));
     }
     v.evidence["p_jacobian_third_quartile" + suffix] = warp.nowhere_above;
-    if (!(warp.nowhere_above < 1 - 1.5 * granted_mass)) return false;  // what normalised grants p, and half as much
+    v.evidence["p_jacobian_least_region" + suffix] = warp.region_below;
+    if (warp.nowhere_above < 1 - 1.5 * granted_mass)  // what normalised grants p, and half as much
+        return tell(v,
+            fmt::format("p |Jacobian of the warp| is {:.6g} or less at three of four points: the sampler is denser "
+                        "nearly everywhere than p says, and what is left over of p is never drawn.",
+                warp.nowhere_above));
+    constexpr double of_a_region = 8e-4;  // a few dozen points, each known to 3e-4
+    if (!(warp.region_below < 1 - of_a_region)) return false;
     return tell(v,
-        fmt::format("p |Jacobian of the warp| is {:.6g} or less at three of four points: the sampler is denser nearly "
-                    "everywhere than p says, and what is left over of p is never drawn.",
-            warp.nowhere_above));
+        fmt::format("p |Jacobian of the warp| is {:.6g} or less at three of four points with u1 from {:g} to {:g} and "
+                    "u2 from {:g} to {:g}: the sampler is denser there than p says.",
+            warp.region_below, warp.region.x, warp.region.x + 0.25, warp.region.y, warp.region.y + 0.25));
 }
 
 bool stands_still(const WarpFinding& warp, const std::string& suffix, Verdict& v) {

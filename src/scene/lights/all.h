@@ -12,13 +12,18 @@ namespace crescent::inline scene {
 
 using LightKinds = KindList<lights::Disk, lights::Sphere, lights::Rectangle>;
 
-/// Calls f.template operator()<Kind>() for the kind at an index other than the disk's.
-template <class F> void with_light_kind(std::size_t index, F&& f) {
-    const auto among = [&]<class Disk, class... Kind>(KindList<Disk, Kind...>) {
-        std::size_t k = 1;
-        ((k++ == index ? void(f.template operator()<Kind>()) : void()), ...);
-    };
+/// Calls f.template operator()<Kind>() for every kind other than the disk, in order.
+template <class F> void for_each_lamp(F&& f) {
+    const auto among = [&]<class Disk, class... Kind>(
+                           KindList<Disk, Kind...>) { (f.template operator()<Kind>(), ...); };
     among(LightKinds{});
+}
+/// The same for the kind at an index.
+template <class F> void with_light_kind(std::size_t index, F&& f) {
+    std::size_t k = 1;
+    for_each_lamp([&]<class Kind>() {
+        if (k++ == index) f.template operator()<Kind>();
+    });
 }
 
 }  // namespace crescent::inline scene

@@ -35,6 +35,8 @@ struct Rectangle {
         return {};
     }
 
+    static constexpr Rectangle example() { return {{-0.45, 1.04, 2.35}, {-0.7, -0.6, 0}, {-0.48, 0.56, -0.92}}; }
+
     shapes::Quad body() const { return {corner, edge_u, edge_v}; }
     Vec3d normal() const { return normalize(cross(edge_u, edge_v)); }
     bool shines_on(Vec3d x) const {

@@ -20,6 +20,9 @@ struct Sphere {
             parameter::length("radius", &Sphere::radius, "Radius.")};
     }
 
+    /// One to judge arms under, as every kind has one: the surface at 0, n = +z, m.
+    static constexpr Sphere example() { return {{-0.61, 0.51, 1.39}, 0.45}; }
+
     shapes::Sphere body() const { return {center, radius}; }
     bool shines_on(Vec3d x) const { return dot(center - x, center - x) > sqr(radius * (1 + 1e-6)); }
     /// The disk that x's tangents touch.
