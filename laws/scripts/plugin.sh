@@ -96,14 +96,15 @@ for folder in out program; do
     rose $folder
     [ "$mine" -gt $((built_in * 4 / 5)) ] || die "the rose in $folder: $mine colours, of the built-in $built_in"
 done
-sed 's/^int crescent_sampler_pdf/int unasked/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >unasked.c && cc_shared unasked
+sed 's/^int crescent_sampler_pdf/int unasked/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >unasked.c
+cc_shared unasked
 sed 's|^plugin = .*|plugin = "unasked.so"|' mine.toml >unasked.toml
 expect 0 "$CRESCENT" run unasked.toml --out unasked --quiet --only plates
 rose unasked
 [ "$mine" -lt $((built_in * 4 / 5)) ] || die "a rose without a density: $mine colours, with one $built_in"
 
-# A library that ends the process ends a child of crescent's: it is told what was called, at which arm. It is an error of
-# the sampler, and the outputs of before stand, with nothing half-written beside them.
+# A library that ends the process ends a child of crescent's: it is told what was called, at which arm. It is an error
+# of the sampler, and the outputs of before stand, with nothing half-written beside them.
 # broken NAME CODE HEADER: cosine whose samples begin with this.
 broken() {
     printf '#include <%s>\n' "$3" >"$1.c"

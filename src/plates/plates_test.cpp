@@ -267,17 +267,6 @@ TEST(Heat, PrintsThe98thPercentileOfAllPixelsShown) {
     EXPECT_TRUE(has(world.settings(plan), "p98 = " + plates::number(quantile(all, 0.98)) + " "));
 }
 
-TEST(Rose, StatesThePeaksOfTheDensities) {
-    World world(96, 54);
-    PlatePlan plan;
-    plan.kind = PlateKind::rose;
-    plan.runs = {{"cosine", 0, 0}, {"phong", 0, 0}};
-    std::vector<Setting> settings = world.settings(plan);
-    EXPECT_TRUE(has(settings, "peak 0.318 sr"));  // 1/pi
-    EXPECT_TRUE(has(settings, "peak 5.25 sr"));   // 33/(2 pi)
-    EXPECT_TRUE(has(settings, "= 16.5 × cosine"));
-}
-
 TEST(Font, ItsAbsenceNamesThePackage) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     auto without_fonts = [] {
