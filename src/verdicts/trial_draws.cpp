@@ -76,7 +76,8 @@ SampleBatch TrialContext::draw(int technique, int round) const {
 std::uint64_t TrialContext::confirming_draws() const {
     if (!subject.limited()) return 4 * settings.draws;
     // Each is asked three times. A part of what is kept for later may go into them: what is wrong is wrong first.
-    return std::max<std::uint64_t>(affordable(12 * settings.draws) / 3, std::min(settings.draws / 2, left() / 6));
+    return std::max<std::uint64_t>(
+        affordable(12 * settings.draws) / 3, std::min<std::uint64_t>(settings.draws / 2, left() / 6));
 }
 
 void TrialContext::note_unconfirmed(double p_first) const {
