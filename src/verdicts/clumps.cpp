@@ -111,14 +111,16 @@ void sort(std::vector<PlacedDraw>& placed, float PlacedDraw::* coordinate, const
     constexpr std::uint32_t digits = 1 << 11;
     std::vector<PlacedDraw> sorted(placed.size());
     for (int shift = 0; shift < 32; shift += 11) {
-        search.make_way(placed.size());
         const auto digit = [&](const PlacedDraw& s) {
             return std::bit_cast<std::uint32_t>(s.*coordinate) >> shift & (digits - 1);
         };
         std::array<std::uint32_t, digits> next{};
         for (const PlacedDraw& s : placed) ++next[digit(s)];
         std::exclusive_scan(next.begin(), next.end(), next.begin(), 0u);
-        for (const PlacedDraw& s : placed) sorted[next[digit(s)]++] = s;
+        for (const PlacedDraw& s : placed) {
+            search.make_way(1);
+            sorted[next[digit(s)]++] = s;
+        }
         placed.swap(sorted);
     }
 }

@@ -62,7 +62,7 @@ std::size_t questions_for(const TestSettings& settings, std::size_t count) {
 }
 
 /// What one w_o may be asked, but for the least of what comes last, which is asked in any case.
-std::size_t most_of_one(const TestSettings& settings) { return settings.questions / 50 * 49; }
+std::size_t most_of_one(const TestSettings& settings) { return settings.questions / 50 * 48; }
 
 /// What one w_o may be asked: what is left, less nine tenths of an even share for each of those still to come. What one
 /// does not need the next may have.

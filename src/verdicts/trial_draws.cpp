@@ -77,7 +77,7 @@ std::uint64_t TrialContext::confirming_draws() const {
     if (!subject.limited()) return 4 * settings.draws;
     // Each is asked three times. A part of what is kept for later may go into them: what is wrong is wrong first.
     return std::max<std::uint64_t>(
-        affordable(12 * settings.draws) / 3, std::min<std::uint64_t>(settings.draws / 2, left() / 6));
+        affordable(12 * settings.draws) / 3, std::min<std::uint64_t>(settings.draws / 2, left() / 9));
 }
 
 void TrialContext::note_unconfirmed(double p_first) const {
