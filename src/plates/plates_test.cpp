@@ -34,13 +34,6 @@ const std::vector<PlateKind> all_kinds = [] {
     return out;
 }();
 
-bool has(const std::vector<Setting>& settings, const std::string& words) {
-    for (const Setting& s : settings) {
-        if (s.text.find(words) != std::string::npos) return true;
-    }
-    return false;
-}
-
 void expect_on_sheet(const std::vector<Setting>& settings) {
     for (const Setting& s : settings) {
         EXPECT_GE(s.extents.x, 31) << s.text;

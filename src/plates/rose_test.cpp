@@ -9,12 +9,7 @@
 namespace crescent::plates {
 namespace {
 
-using plates::Setting;
 using plates::World;
-
-bool has(const std::vector<Setting>& settings, const std::string& words) {
-    return std::ranges::any_of(settings, [&](const Setting& s) { return s.text.find(words) != std::string::npos; });
-}
 
 TEST(Rose, StatesThePeaksOfTheDensities) {
     World world(96, 54);

@@ -1,13 +1,20 @@
 // An experiment with noise for films: what the tests of plates need, and nothing else.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "plates/sheet.h"
 
 namespace crescent::plates {
+
+/// Whether these words are on the sheet, in whatever place.
+inline bool has(const std::vector<Setting>& settings, const std::string& words) {
+    return std::ranges::any_of(settings, [&](const Setting& s) { return s.text.find(words) != std::string::npos; });
+}
 
 struct World {
     Experiment e;

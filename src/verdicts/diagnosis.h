@@ -37,6 +37,9 @@ std::vector<Factor> usual_factors(const TrialContext& work);
 void add_whole_factors(std::vector<Factor>& out, const TrialContext& work);
 /// Those of what is reflected alone (across: of what is refracted), where the index is told.
 std::vector<Factor> factors_of_side(const TrialContext& work, bool across);
+/// The microfacet's normal that leads from wo to wi, or its opposite: of a reflection, or of what goes through a
+/// boundary, eta = index beyond over here (Walter et al. 2007, (13), (16)). Unit; n where the two are opposite.
+Vec3d half_vector(Vec3d wo, Vec3d wi, double eta);
 /// "1/2", "(s+1)/(s+2)", "1/pi"; "" where it is no constant that one knows. known_to: relative.
 std::string name_of_constant(const TrialContext& work, double constant, double known_to = 1e-3);
 /// "4 (w_o.m) and a constant 0.5 = 1/2".

@@ -2,8 +2,7 @@
 // what comes through is counted as power: radiance scales by (n_o / n_i)^2 across the surface, importance not at all
 // (Veach 1997, section 5.2; Walter et al. 2007, section 5.2). Where it is not, an albedo over the whole sphere may
 // exceed 1 and be right (transmission.cpp), unless f is the same both ways across the surface: then no index scales it.
-// What a delta part sends straight on, towards -w_o, no index scales, and a
-// phase function has none.
+// What a delta part sends straight on, towards -w_o, no index scales, and a phase function has none.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

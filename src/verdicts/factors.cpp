@@ -41,11 +41,7 @@ struct Boundary {
     Vec3d wo;
     double eta;  // beyond over here
     bool across(Vec3d wi) const { return wo.z * wi.z < 0; }
-    Vec3d half(Vec3d wi) const {
-        const Vec3d sum = across(wi) ? wo + wi * eta : wo + wi;
-        const double size = length(sum);
-        return size > 1e-12 ? sum * (1 / size) : Vec3d{0, 0, 1};
-    }
+    Vec3d half(Vec3d wi) const { return half_vector(wo, wi, eta); }
     double fresnel(Vec3d wi) const {
         const double c = std::fabs(dot(wo, half(wi))), g2 = eta * eta - 1 + c * c;
         if (g2 <= 0) return 1;
@@ -91,6 +87,12 @@ void add_light(std::vector<Factor>& out, const TrialContext& work) {
 }
 
 }  // namespace
+
+Vec3d half_vector(Vec3d wo, Vec3d wi, double eta) {
+    const Vec3d sum = wo.z * wi.z < 0 ? wo + wi * eta : wo + wi;
+    const double size = length(sum);
+    return size > 1e-12 ? sum * (1 / size) : Vec3d{0, 0, 1};
+}
 
 std::vector<Factor> factors_of_side(const TrialContext& work, bool across) {
     std::vector<Factor> out = {{"a constant", [](Vec3d) { return 1.0; }}};

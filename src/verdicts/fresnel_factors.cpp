@@ -65,14 +65,10 @@ void add_interface(std::vector<Factor>& out, Vec3d wo, Interface f) {
     add_whole(out, "the pass of w_i through a coat, 1 - Fresnel at w_i", [=](Vec3d w) { return 1 - f(w.z); });
 }
 
-/// n.m of what is reflected and of what goes through a boundary of that index, eta = beyond over here (Walter et al.
-/// 2007, (13), (16)). Where the index is told, the usual factors have it.
+/// n.m of what is reflected and of what goes through a boundary of that index. Where the index is told, the usual
+/// factors have it.
 void add_half_vectors(std::vector<Factor>& out, Vec3d wo, double eta) {
-    add_whole(out, "n.m", [=](Vec3d w) {
-        const Vec3d sum = wo + w * (wo.z * w.z < 0 ? eta : 1);
-        const double size = length(sum);
-        return size > 1e-9 ? std::fabs(sum.z) / size : 1.0;
-    });
+    add_whole(out, "n.m", [=](Vec3d w) { return std::fabs(half_vector(wo, w, eta).z); });
 }
 
 /// Walter et al. 2007, (34): G1 = 2 / (1 + root), hence Lambda = 1 / G1 - 1; Heitz 2014, (99): G2 = 1 / (1 + sum).

@@ -72,7 +72,8 @@ void leave_unconfirmed_open(const TrialContext& work, Verdict& v) {
     if (v.state != State::right || !(work.unconfirmed() < 1)) return;
     v.state = State::inconclusive;
     v.evidence["p_unconfirmed"] = work.unconfirmed();
-    v.settle = "--full, or this w_o alone (--wo), with more questions.";
+    v.settle = work.settings.full ? "This w_o alone (--wo), with more questions."
+                                  : "--full, or this w_o alone (--wo), with more questions.";
     v.say = fmt::format("A test failed with p = {:.2g}, and too few questions were left to confirm it on fresh draws. ",
                 work.unconfirmed()) +
         v.say;

@@ -104,7 +104,7 @@ void tell_one(const TrialContext& work, int technique, const Density& d, const I
     if (chance_of(work, technique, excess(d, mass)) >= seldom * work.settings.screen * work.settings.confirm) return;
     v.state = State::inconclusive;
     v.say = told(d, mass) + fmt::format(", where the share that draws nothing is only known to {:.2g}.", doubt);
-    v.settle = "--full, with sixteen times as many draws.";
+    v.settle = work.settings.full ? "More draws (TestSettings::draws)." : "--full, with sixteen times as many draws.";
 }
 
 /// A sum that passes: one, or known too badly to say so.
