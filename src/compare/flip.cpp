@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "math/functions.h"
+#include "stats/quantiles.h"
 
 namespace crescent::inline comparing {
 
@@ -258,9 +259,8 @@ FlipExposures flip_exposures(const FlipImage& reference) {
     constexpr double t = 0.85;  // of the tone map's range; the luminance that is brought there
     const double a = aces[0] - t * aces[3], b = aces[1] - t * aces[4], c = aces[2] - t * aces[5];
     const double x = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
-    const std::size_t middle = (y.size() - 1) / 2;
-    std::nth_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(middle), y.end());
-    const double median = std::max(y[middle], 1e-7), largest = std::max(*std::max_element(y.begin(), y.end()), 1e-7);
+    const double median = std::max(order_statistic(y, (y.size() - 1) / 2), 1e-7),
+                 largest = std::max(*std::max_element(y.begin(), y.end()), 1e-7);
     FlipExposures out{math::log(x / largest) / std::numbers::ln2, math::log(x / median) / std::numbers::ln2, 2};
     out.count = std::max(2, static_cast<int>(std::ceil(out.stop - out.start)));
     return out;

@@ -14,6 +14,7 @@
 #include "meters/meters.h"
 #include "plates/words.h"
 #include "pages/numbers.h"
+#include "stats/quantiles.h"
 
 namespace crescent::inline comparing {
 

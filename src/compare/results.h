@@ -9,8 +9,8 @@
 
 #include "compare/renders.h"
 #include "compare/spectrum.h"
-#include "compare/statistics.h"
 #include "meters/metrics.h"
+#include "stats/hypotheses.h"
 
 namespace crescent::inline comparing {
 

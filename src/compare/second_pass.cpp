@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "compare/spectrum.h"
-#include "compare/statistics.h"
+#include "stats/hypotheses.h"
 #include "stats/tail.h"
 
 namespace crescent::inline comparing {

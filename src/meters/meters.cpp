@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "math/functions.h"
+#include "stats/quantiles.h"
 
 namespace crescent::inline meters {
 
@@ -137,17 +138,6 @@ double meter_value(const RunMeter& run, const std::string& meter) {
     else if (const RegionMeter* region = run.region(meter.substr(dot + 1))) for_each_meter(*region, look);
     ensure(found.has_value(), "a meter of the list, of a region that was measured");
     return *found;
-}
-
-double quantile(std::vector<double> values, double q) {
-    ensure(!values.empty(), "a quantile of something");
-    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return std::nan("");
-    std::sort(values.begin(), values.end());
-    const double at = q * static_cast<double>(values.size() - 1);
-    const std::size_t below = static_cast<std::size_t>(at);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    const double t = at - static_cast<double>(below);
-    return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
 }
 
 namespace {

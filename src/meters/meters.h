@@ -34,9 +34,6 @@ std::vector<MeterName> meter_names(const Experiment& experiment);
 /// The value of any meter of the list by its name. Throws Bug where there is none.
 double meter_value(const RunMeter& run, const std::string& meter);
 
-/// Quantile q of values by linear interpolation between order statistics (R type 7).
-double quantile(std::vector<double> values, double q);
-
 /// Spread over seeds of every meter of every run at the published seed.
 std::vector<BandMeter> bands(
     const Experiment& experiment, const std::vector<RunMeter>& runs, const Published* published);

@@ -69,12 +69,6 @@ TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
     EXPECT_EQ(tail_length(10000), 300u);
 }
 
-TEST(Quantiles, InterpolateBetweenOrderStatistics) {
-    EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
-    EXPECT_DOUBLE_EQ(quantile({5}, 0.95), 5);
-    EXPECT_TRUE(std::isnan(quantile({1, std::nan("")}, 0.5)));
-}
-
 /// A film of 4 x 2 pixels, one of them a miss, with known numbers in it.
 struct Known {
     Film film{4, 2, 10};

@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "meters/meters.h"
 #include "meters/run_index.h"
+#include "stats/quantiles.h"
 
 namespace crescent::inline meters {
 
@@ -36,12 +37,6 @@ QuantityOf subject_of(const std::string& word) {
     for (const QuantityWord& known : quantity_words())
         if (known.word == word) return known.subject;
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
-}
-
-/// NaN where any value is.
-double median(const std::vector<double>& values) {
-    const bool whole = std::none_of(values.begin(), values.end(), [](double x) { return std::isnan(x); });
-    return whole ? quantile(values, 0.5) : unmeasured;
 }
 
 bool holds(double left, const std::string& op, double right) {
@@ -114,7 +109,7 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& of, Assertion
     for (const std::uint32_t seed : over_seeds && !of.runs.seeds().empty() ? of.runs.seeds() : own)
         values.push_back(value_of(
             q, of.metrics, of.experiment, seed, of.plate_bytes, [&](const RunKey& key) { return of.runs.find(key); }));
-    const double value = median(values);
+    const double value = quantile(values, 0.5);
     out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
     if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
     return value;

@@ -7,6 +7,7 @@
 
 #include "meters/meters.h"
 #include "plates/sheet.h"
+#include "stats/quantiles.h"
 
 namespace crescent::plates {
 

@@ -3,22 +3,22 @@
 // experiment's.
 #include "studies/evidence.h"
 
-#include "base/parallel.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "arms/all.h"
+#include "base/parallel.h"
 #include "color/rgb.h"
 #include "estimator/estimator.h"
 #include "experiment/evidence_subject.h"
-#include "studies/furnace_sites.h"
-#include "math/distributions.h"
 #include "math/functions.h"
-#include "studies/evidence_measure.h"
 #include "meters/meters.h"
 #include "simd/random.h"
+#include "stats/distributions.h"
+#include "stats/quantiles.h"
+#include "studies/evidence_measure.h"
+#include "studies/furnace_sites.h"
 
 namespace crescent::inline studies {
 
@@ -133,7 +133,7 @@ FalseRejection false_rejection(
     lambert.rho_d = {1, 1, 1}, lambert.rho_s = 0, lambert.s = s;
     FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
     std::vector<int> rejected(runs);
-    const double bound = math::student_two_sided_quantile(static_cast<double>(n - 1), alpha);
+    const double bound = student_two_sided_quantile(static_cast<double>(n - 1), alpha);
     constexpr int share = 16;
     parallel_for(0, (runs + share - 1) / share, [&](int part) {
         const int first = part * share, count = std::min(share, runs - first);
@@ -148,7 +148,7 @@ FalseRejection false_rejection(
         }
     });
     for (int r : rejected) out.rejected += r;
-    const math::Interval rate = math::binomial_interval(runs, out.rejected, 0.025);
+    const ShareInterval rate = binomial_interval(runs, out.rejected, 0.025);
     out.low = rate.low;
     out.high = rate.high;
     return out;

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "simd/random.h"
+#include "stats/p_values.h"
 #include "verdicts/asked_once.h"
 #include "verdicts/delta.h"
 #include "verdicts/named_side.h"

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "stats/p_values.h"
 #include "verdicts/judge.h"
 #include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"

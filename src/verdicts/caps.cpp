@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "math/functions.h"
+#include "stats/quantiles.h"
 
 namespace crescent::inline verdicts {
 
@@ -91,9 +92,7 @@ void look_round(const TrialContext& work, int technique, std::vector<Cap>& caps)
     for (std::size_t i = 0; i < caps.size(); ++i) {
         std::array<double, around> steps{};
         for (std::size_t k = 0; k < around; ++k) steps[k] = p[2 * (i * around + k)] - p[2 * (i * around + k) + 1];
-        std::array<double, around> sorted = steps;
-        std::sort(sorted.begin(), sorted.end());
-        const double step = sorted[around / 2];
+        const double step = median_of({steps.begin(), steps.end()});
         const auto same = std::count_if(
             steps.begin(), steps.end(), [step](double s) { return std::fabs(s - step) <= 1e-4 * std::fabs(step); });
         if (step > 0 && same >= around - 3) kept.push_back({caps[i].axis, caps[i].a, step});  // other rims cross it

@@ -12,10 +12,10 @@
 #include <numeric>
 #include <tuple>
 
-#include "math/distributions.h"
 #include "math/functions.h"
 #include "simd/scalar.h"
-#include "verdicts/median.h"
+#include "stats/distributions.h"
+#include "stats/quantiles.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
@@ -55,7 +55,7 @@ public:
         const double m = static_cast<double>(inside.size()), worth = per_sr_ * static_cast<double>(highest);
         if (!(worth * 2 * pi * (r.a1 - r.a0) * (r.b1 - r.b0) < 0.5 * m)) return;
         const double room = solid_angle(r, rounding_), due = worth * room;
-        const double p = due < 0.5 * m ? math::poisson_tail(due, m) : 1;  // P(Beta(m, n + 1 - m) <= due / n), or more
+        const double p = due < 0.5 * m ? poisson_tail(due, m) : 1;  // P(Beta(m, n + 1 - m) <= due / n), or more
         if (p >= least_) return;
         least_ = p;
         found_ = {1, m, due, room, {}};

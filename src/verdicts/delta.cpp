@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "stats/p_values.h"
+
 namespace crescent::inline verdicts {
 
 namespace {

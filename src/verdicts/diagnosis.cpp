@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "verdicts/median.h"
+#include "stats/quantiles.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {

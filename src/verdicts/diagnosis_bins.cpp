@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "stats/p_values.h"
 #include "verdicts/diagnosis.h"
 #include "verdicts/ordered.h"
 #include "verdicts/pooled.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "stats/quantiles.h"
 #include "verdicts/diagnosis.h"
-#include "verdicts/median.h"
 
 namespace crescent::inline verdicts {
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
-#include "math/distributions.h"
 #include "simd/random.h"
+#include "stats/distributions.h"
 #include "verdicts/list.h"
 #include "verdicts/verdict_kind.h"
 
@@ -32,7 +32,7 @@ std::optional<Verdict> accusation(TrialContext& work) {
 
 std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of) {
     if (of == 0) return {0, 1};
-    const math::Interval p = math::binomial_interval(static_cast<double>(of), static_cast<double>(hits), 0.025);
+    const ShareInterval p = binomial_interval(static_cast<double>(of), static_cast<double>(hits), 0.025);
     return {p.low, p.high};
 }
 

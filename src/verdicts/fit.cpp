@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "math/distributions.h"
 #include "math/functions.h"
+#include "stats/distributions.h"
+#include "stats/p_values.h"
 
 namespace crescent::inline verdicts {
 
@@ -110,7 +111,7 @@ void set_apart(const Density& d, double n, Binned& counts, FitToDensity& out) {
     }
     if (out.outside_seen > 0)
         out.outside_p =
-            math::poisson_tail(out.outside_due + n * (1e-4 + d.mass.error + d.tabulation_error), out.outside_seen);
+            poisson_tail(out.outside_due + n * (1e-4 + d.mass.error + d.tabulation_error), out.outside_seen);
 }
 
 /// The mean of ln p, or of ln (p sin theta), over the draws: what crowds in texels that are finer than bins.
@@ -127,7 +128,7 @@ void hold_heights(const Density& d, const SampleBatch& b, FitToDensity& out) {
     }
     if (!(n > 0)) return;
     out.heights_off = (sum / n - due->mean) / std::sqrt(due->variance / n);
-    out.heights_p = math::normal_two_sided(out.heights_off);
+    out.heights_p = normal_two_sided(out.heights_off);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "verdicts/median.h"
+#include "stats/quantiles.h"
 #include "verdicts/ordered.h"
 #include "verdicts/suspects.h"
 
@@ -71,9 +71,8 @@ double scatter_about_one(const TrialContext& work, std::span<const WarpPoint> po
 /// p |J| that three of four points do not exceed; 1 where these are too few.
 double third_quartile(std::vector<double> pj, std::size_t fewest) {
     if (pj.size() < fewest) return 1;
-    const auto at = pj.begin() + static_cast<std::ptrdiff_t>(3 * pj.size() / 4);
-    std::nth_element(pj.begin(), at, pj.end());
-    return *at;
+    const std::size_t at = 3 * pj.size() / 4;
+    return order_statistic(std::move(pj), at);
 }
 
 struct KnownPoint {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "stats/p_values.h"
 #include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"
 

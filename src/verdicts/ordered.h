@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "stats/tail.h"
+#include "stats/moments.h"
 #include "verdicts/trial_context.h"
 
 namespace crescent::inline verdicts {
@@ -38,14 +39,6 @@ inline constexpr const char* weight_of_estimates =
     "A weight, f |cos| / p, with each draw: where pdf is a random estimate, f over it is biased and tells nothing of "
     "the draws.";
 
-struct Spread {
-    double n = 0, mean = 0, sd = 0, skew = 0, largest = 0;
-};
-/// Mean and variance of x.
-Spread spread(std::span<const double> x);
-/// Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations": t with the skewness taken
-/// out.
-double johnson_t(const Spread& s, double expected);
 /// What a reader is told of that: Johnson's t, or the plain one where it is far out, for which Johnson's correction is
 /// not made. None where the weights are alike to what p itself is granted: their spread is no measure of chance.
 std::optional<double> told_z(const Spread& s, const Integral& expected);

@@ -6,6 +6,7 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "simd/random.h"
+#include "stats/quantiles.h"
 #include "verdicts/delta.h"
 #include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"
@@ -134,9 +135,7 @@ std::string missing_across(const TrialContext& work, const Reciprocity& r) {
         return 10 * inside >= 9 * r.off.size();
     };
     if (r.off.size() < 16 || !work.traits.eta) return "";
-    std::vector<double> sorted = r.off;
-    std::nth_element(sorted.begin(), sorted.begin() + std::ssize(sorted) / 2, sorted.end());
-    const double middle = sorted[sorted.size() / 2], power = middle / (2 * math::log(work.traits.eta->x));
+    const double middle = median_of(r.off), power = middle / (2 * math::log(work.traits.eta->x));
     if (std::round(power) != 0 && std::fabs(power - std::round(power)) < 0.01 &&
         nine_of_ten([&](std::size_t i) { return r.off[i] - middle; }))
         return "eta^2";

@@ -8,6 +8,7 @@
 
 #include "math/functions.h"
 #include "simd/random.h"
+#include "stats/p_values.h"
 #include "verdicts/outcome.h"
 
 namespace crescent::inline verdicts {

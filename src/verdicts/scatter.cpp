@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "stats/quantiles.h"
 #include "verdicts/asked_once.h"
-#include "verdicts/median.h"
 #include "verdicts/mesh.h"
 #include "verdicts/trial_context.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/distributions.h"
 #include "math/functions.h"
 
 namespace crescent::inline verdicts {
@@ -172,16 +171,6 @@ Verdict TrialContext::verdict(std::string_view name, State state, std::string sa
     v.state = state;
     v.say = std::move(say);
     return v;
-}
-
-double chi_squared_p(double statistic, double degrees) {
-    if (!(degrees > 0)) return 1;
-    return math::chi_squared_tail(degrees, statistic);
-}
-double normal_p(double z) { return std::isfinite(z) ? math::normal_two_sided(z) : 0.0; }
-double student_p(double t, double degrees) {
-    if (!std::isfinite(t)) return 0;
-    return math::student_two_sided(degrees, t);
 }
 
 }  // namespace crescent::inline verdicts

@@ -262,9 +262,4 @@ private:
     bool all_alike_below(int technique) const;
 };
 
-/// p-values.
-double chi_squared_p(double statistic, double degrees);
-double normal_p(double z);  // two-sided
-double student_p(double t, double degrees);
-
 }  // namespace crescent::inline verdicts

@@ -4,36 +4,11 @@
 #include <cmath>
 
 #include "math/functions.h"
+#include "stats/p_values.h"
 #include "stats/tail.h"
 #include "verdicts/ordered.h"
 
 namespace crescent::inline verdicts {
-
-Spread spread(std::span<const double> x) {
-    Spread s;
-    s.n = static_cast<double>(x.size());
-    for (double v : x) {
-        s.mean += v / s.n;
-        s.largest = std::max(s.largest, v);
-    }
-    double m2 = 0, m3 = 0;
-    for (double v : x) {
-        const double d = v - s.mean;
-        m2 += d * d;
-        m3 += d * d * d;
-    }
-    s.sd = std::sqrt(m2 / std::max(s.n - 1, 1.0));
-    s.skew = s.sd > 0 ? m3 / s.n / (s.sd * s.sd * s.sd) : 0;
-    return s;
-}
-
-double johnson_t(const Spread& s, double expected) {
-    const double d = s.mean - expected;
-    if (!(s.sd > 1e-7 * std::fabs(expected)))
-        return std::fabs(d) <= 1e-5 * std::fabs(expected) ? 0 : 1e9;  // every sample alike
-    const double corrected = d + s.skew * s.sd / (6 * s.n) + s.skew / (3 * s.sd) * d * d;
-    return corrected * std::sqrt(s.n) / s.sd;
-}
 
 std::optional<double> told_z(const Spread& s, const Integral& expected) {
     constexpr double alike = 1e-4, far_out = 8;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "stats/p_values.h"
 #include "verdicts/ordered.h"
 #include "verdicts/pictures.h"
 

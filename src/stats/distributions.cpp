@@ -2,14 +2,14 @@
 // 26.5.8, the fractions by the method of Lentz), with what stands before them as a density in the form of C. Loader
 // 2000, "Fast and accurate computation of binomial probabilities": Stirling's error and the deviance keep every digit
 // where logarithms of gamma functions would cancel.
-#include "math/distributions.h"
+#include "stats/distributions.h"
 
 #include <cmath>
 #include <limits>
 
 #include "math/functions.h"
 
-namespace crescent::math {
+namespace crescent::inline stats {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr int most_terms = 1'000'000;
 /// ln Gamma(n + 1) - (n + 1/2) ln n + n - ln(2 pi)/2, n > 0.
 double stirling_error(double n) {
     double below = 0;
-    for (; n < 16; n += 1) below += (n + 0.5) * log1p(1 / n) - 1;
+    for (; n < 16; n += 1) below += (n + 0.5) * math::log1p(1 / n) - 1;
     const double z = 1 / (n * n);
     const double far = 1.0 / 1260 - z * (1.0 / 1680 - z * (1.0 / 1188 - z * (691.0 / 360360)));
     return below + (1.0 / 12 - z * (1.0 / 360 - z * far)) / n;
@@ -28,7 +28,7 @@ double stirling_error(double n) {
 /// x ln(x/m) + m - x, without cancellation near x = m.
 double deviance(double x, double m) {
     const double off = x - m, v = off / (x + m);
-    if (!(std::fabs(v) < 0.1)) return x * log(x / m) - off;
+    if (!(std::fabs(v) < 0.1)) return x * math::log(x / m) - off;
     double sum = off * v, term = 2 * x * v;
     for (int k = 3;; k += 2) {
         const double next = sum + (term *= v * v) / k;
@@ -38,13 +38,15 @@ double deviance(double x, double m) {
 }
 
 /// m^x e^-m / Gamma(x + 1).
-double poisson_density(double x, double m) { return exp(-stirling_error(x) - deviance(x, m)) / std::sqrt(two_pi * x); }
+double poisson_density(double x, double m) {
+    return math::exp(-stirling_error(x) - deviance(x, m)) / std::sqrt(two_pi * x);
+}
 
 /// Gamma(a + b + 1)/(Gamma(a + 1) Gamma(b + 1)) x^a y^b.
 double binomial_density(double a, double b, double x, double y) {
     const double n = a + b;
     const double error = stirling_error(n) - stirling_error(a) - stirling_error(b);
-    return exp(error - deviance(a, n * x) - deviance(b, n * y)) * std::sqrt(n / (two_pi * a * b));
+    return math::exp(error - deviance(a, n * x) - deviance(b, n * y)) * std::sqrt(n / (two_pi * a * b));
 }
 
 double away_from_0(double x) { return std::fabs(x) < tiny ? tiny : x; }
@@ -136,10 +138,10 @@ double student_two_sided_quantile(double degrees, double p) {
 
 double poisson_tail(double mean, double k) { return k > 0 ? gamma_p(k, mean) : 1; }
 
-Interval binomial_interval(double n, double k, double alpha) {
+ShareInterval binomial_interval(double n, double k, double alpha) {
     const double low = k > 0 ? passes([&](double p) { return beta_i(k, n - k + 1, p, 1 - p); }, alpha, 0, 1) : 0;
     const double high = k < n ? passes([&](double p) { return beta_i(k + 1, n - k, p, 1 - p); }, 1 - alpha, 0, 1) : 1;
     return {low, high};
 }
 
-}  // namespace crescent::math
+}  // namespace crescent::inline stats

@@ -1,17 +1,15 @@
 // Tests and corrections beside tables and published examples.
+#include "stats/hypotheses.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "compare/spectrum.h"
-#include "compare/statistics.h"
-#include "compare/made.h"
-
-namespace crescent::inline comparing {
+namespace crescent::inline stats {
 namespace {
 
-TEST(CompareStatistics, KnowStudentsT) {
+TEST(Hypotheses, KnowStudentsT) {
     EXPECT_NEAR(two_sided_p(2.228139, 10), 0.05, 1e-6);  // tables of Student's t
     EXPECT_NEAR(student_quantile(0.975, 4), 2.776445, 1e-6);
     const std::vector<double> values{1, 2, 3, 4};
@@ -20,7 +18,7 @@ TEST(CompareStatistics, KnowStudentsT) {
     EXPECT_NEAR(m.high - m.mean, 3.182446 * std::sqrt(5.0 / 3 / 4), 1e-6);
 }
 
-TEST(CompareStatistics, AgreeWithWelchsOwnExample) {
+TEST(Hypotheses, AgreeWithWelchsOwnExample) {
     const std::vector<double> a{
         27.5, 21.0, 19.0, 23.6, 17.0, 17.9, 16.9, 20.1, 21.9, 22.6, 23.1, 19.6, 19.0, 21.7, 21.4},
         b{27.1, 22.0, 20.8, 23.4, 23.4, 23.5, 25.8, 22.0, 24.8, 20.2, 21.9, 22.1, 22.9, 30.5, 24.4};
@@ -30,7 +28,7 @@ TEST(CompareStatistics, AgreeWithWelchsOwnExample) {
     EXPECT_NEAR(w.p, 0.0081, 3e-4);
 }
 
-TEST(CompareStatistics, DiscoverWhatBenjaminiAndHochbergDo) {
+TEST(Hypotheses, DiscoverWhatBenjaminiAndHochbergDo) {
     const std::vector<double> p{0.001, 0.008, 0.039, 0.041, 0.042, 0.06, 0.074, 0.205, std::nan("")};
     EXPECT_EQ(
         discoveries(p, 0.05, false), (std::vector<bool>{true, true, false, false, false, false, false, false, false}));
@@ -39,32 +37,11 @@ TEST(CompareStatistics, DiscoverWhatBenjaminiAndHochbergDo) {
     EXPECT_EQ(std::count(careful.begin(), careful.end(), true), 1);
 }
 
-TEST(CompareStatistics, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
+TEST(Hypotheses, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
     // Grubbs 1950, upper one-sided critical value at 0.001 for n = 10: 2.606 standard deviations.
     EXPECT_NEAR(std::sqrt(lone_share(10) * 9), 2.606, 2e-3);
     EXPECT_EQ(lone_share(2), 0);
 }
 
-TEST(CompareStatistics, ASpectrumTellsFilteredNoiseFromWhite) {
-    std::vector<double> white, filtered;
-    const auto noise = [](int x, int y) {
-        return made_pixel({MadeNoise::Kind::normal, 1, 0}, 9, static_cast<std::uint32_t>(y * 65 + x), 65) - 1;
-    };
-    const Box box{0, 0, 63, 63};
-    add_spectrum(white, box, noise);
-    add_spectrum(filtered, box,
-        [&](int x, int y) { return noise(x, y) + noise(x + 1, y) + noise(x, y + 1) + noise(x + 1, y + 1); });
-    EXPECT_EQ(noise_colour(white), NoiseColour::white);
-    EXPECT_EQ(noise_colour(filtered), NoiseColour::correlated);
-}
-
-TEST(CompareStatistics, ASpectrumHoldsThePowerOfAWave) {
-    std::vector<double> power;
-    add_spectrum(power, {0, 0, 31, 31}, [](int x, int) { return std::cos(2 * 3.141592653589793 * 5 * x / 32); });
-    for (std::size_t k = 0; k < power.size(); ++k)
-        if (k != 4) EXPECT_NEAR(power[k], 0, 1e-9) << k;
-    EXPECT_GT(power[4], 1);
-}
-
 }  // namespace
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline stats

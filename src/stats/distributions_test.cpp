@@ -1,17 +1,17 @@
 // Tails beside Boost.Math's, which come from other expansions.
-#include "math/distributions.h"
+#include "stats/distributions.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/students_t.hpp>
+#include <boost/stats/distributions/binomial.hpp>
+#include <boost/stats/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
-namespace crescent::math {
+namespace crescent::inline stats {
 namespace {
 
 constexpr double bound = 1e-12;
@@ -55,4 +55,4 @@ TEST(Distributions, QuantilesAndIntervalsAreThoseOfBoost) {
 }
 
 }  // namespace
-}  // namespace crescent::math
+}  // namespace crescent::inline stats

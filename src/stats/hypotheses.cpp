@@ -1,15 +1,15 @@
 // Welch 1947 with the degrees of Welch and Satterthwaite, Holm 1979, Benjamini & Hochberg 1995 and, for dependent
 // tests, Benjamini & Yekutieli 2001. What has no spread at all is p = 1 where the means agree and 0 where they do not.
-#include "compare/statistics.h"
+#include "stats/hypotheses.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "math/distributions.h"
+#include "stats/distributions.h"
 
-namespace crescent::inline comparing {
+namespace crescent::inline stats {
 
 namespace {
 
@@ -37,11 +37,11 @@ Welch judged(double difference, double se, double df) {
 
 double two_sided_p(double t, double df) {
     if (!(df > 0) || std::isnan(t)) return nan;
-    return math::student_two_sided(df, std::fabs(t));
+    return student_two_sided(df, std::fabs(t));
 }
 
 double student_quantile(double p, double df) {
-    return p >= 0.5 ? math::student_two_sided_quantile(df, 2 * (1 - p)) : -math::student_two_sided_quantile(df, 2 * p);
+    return p >= 0.5 ? student_two_sided_quantile(df, 2 * (1 - p)) : -student_two_sided_quantile(df, 2 * p);
 }
 
 MeanInterval mean_interval(std::span<const double> values, double confidence) {
@@ -108,4 +108,4 @@ std::vector<bool> holm(std::span<const double> p, double alpha) {
     return out;
 }
 
-}  // namespace crescent::inline comparing
+}  // namespace crescent::inline stats

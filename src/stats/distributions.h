@@ -2,7 +2,7 @@
 // every machine. Relative error below 1e-12 for counts and degrees up to 1e6 (distributions_test.cpp, beside Boost's).
 #pragma once
 
-namespace crescent::math {
+namespace crescent::inline stats {
 
 /// Regularised incomplete gamma functions, a > 0, x >= 0: P(a, x) and Q(a, x) = 1 - P(a, x), neither by subtraction
 /// where it is the small one.
@@ -21,10 +21,10 @@ double student_two_sided_quantile(double degrees, double p);
 /// P(N >= k), N Poisson of this mean.
 double poisson_tail(double mean, double k);
 
-struct Interval {
+struct ShareInterval {
     double low, high;
 };
 /// Clopper & Pearson 1934: what p can be when k of n came out, each end wrong with probability alpha.
-Interval binomial_interval(double n, double k, double alpha);
+ShareInterval binomial_interval(double n, double k, double alpha);
 
-}  // namespace crescent::math
+}  // namespace crescent::inline stats
