@@ -5,11 +5,11 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "against/against.h"
 #include "base/sanitized_test.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
-#include "verdicts/against.h"
-#include "verdicts/samples.h"
+#include "subjects/samples.h"
 
 namespace crescent {
 namespace {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "against/against.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
 #include "math/spherical.h"
-#include "verdicts/against.h"
 
 namespace crescent {
 namespace {

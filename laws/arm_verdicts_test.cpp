@@ -5,10 +5,10 @@
 
 #include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
+#include "subjects/list.h"
+#include "subjects/pipe.h"
 #include "verdicts/gtest.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
-#include "verdicts/pipe.h"
 #include "verdicts/print.h"
 
 namespace crescent {

@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "against/against.h"
 #include "base/parallel.h"
 #include "base/sanitized_test.h"
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
-#include "verdicts/against.h"
-#include "verdicts/asked_once.h"
-#include "verdicts/list.h"
+#include "subjects/asked_once.h"
+#include "subjects/list.h"
 #include "verdicts/print.h"
 #include "verdicts/user.h"
 

@@ -4,8 +4,8 @@
 
 #include "laws/judged.h"
 #include "laws/right/right.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 #include "verdicts/print.h"
 
 namespace crescent {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "judgements/summary.h"
 #include "laws/judged.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "math/spherical.h"
-#include "verdicts/summary.h"
 
 namespace crescent {
 namespace {

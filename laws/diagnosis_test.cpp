@@ -10,8 +10,8 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "simd/frame.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 
 namespace crescent {
 namespace {

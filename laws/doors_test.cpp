@@ -6,8 +6,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "judgements/summary.h"
 #include "verdicts/gtest.h"
-#include "verdicts/summary.h"
 
 namespace crescent {
 namespace {

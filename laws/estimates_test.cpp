@@ -6,8 +6,8 @@
 
 #include "laws/judged.h"
 #include "laws/right/renderers.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 
 namespace crescent {
 namespace {

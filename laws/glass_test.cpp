@@ -3,8 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "judgements/told_last.h"
 #include "verdicts/print.h"
-#include "verdicts/told_last.h"
 #include "verdicts/user.h"
 
 namespace crescent {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 
 namespace crescent {
 

@@ -9,8 +9,8 @@
 #include "base/sanitized_test.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
-#include "verdicts/list.h"
-#include "verdicts/pipe.h"
+#include "subjects/list.h"
+#include "subjects/pipe.h"
 #include "verdicts/print.h"
 
 namespace crescent {

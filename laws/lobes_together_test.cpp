@@ -7,7 +7,7 @@
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "cubature/mesh.h"
 #include "simd/scalar.h"
-#include "verdicts/mesh.h"
-#include "verdicts/subject.h"
+#include "subjects/subject.h"
 
 namespace crescent {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "laws/right/right.h"
 #include "math/functions.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 
 namespace crescent {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "laws/judged.h"
 #include "laws/right/right.h"
+#include "subjects/list.h"
+#include "subjects/pipe.h"
 #include "verdicts/error_rates.h"
-#include "verdicts/list.h"
-#include "verdicts/pipe.h"
 
 namespace crescent {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "laws/right/renderers.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 
 namespace crescent {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "laws/judged.h"
 #include "laws/right/renderers.h"
-#include "verdicts/list.h"
-#include "verdicts/pipe.h"
-#include "verdicts/pipe_greeting.h"
+#include "subjects/list.h"
+#include "subjects/pipe.h"
+#include "subjects/pipe_greeting.h"
 
 namespace crescent {
 namespace {

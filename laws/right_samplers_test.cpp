@@ -6,7 +6,7 @@
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
 #include "laws/right/renderers.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 namespace {

@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "simd/frame.h"
-#include "verdicts/print.h"
-#include "verdicts/samples.h"
-#include "verdicts/user.h"
-
 #include "laws/right/right.h"
+#include "simd/frame.h"
+#include "subjects/samples.h"
+#include "verdicts/print.h"
+#include "verdicts/user.h"
 
 namespace crescent {
 namespace {

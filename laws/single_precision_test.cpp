@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "judgements/summary.h"
 #include "laws/judged.h"
 #include "laws/right/law.h"
 #include "math/spherical.h"
-#include "verdicts/summary.h"
 
 namespace crescent {
 namespace {

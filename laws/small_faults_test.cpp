@@ -4,14 +4,17 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "against/against_variance.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"
 #include "simd/random.h"
-#include "verdicts/builtin.h"
+#include "stats/moments.h"
+#include "subjects/builtin.h"
+#include "subjects/list.h"
+#include "trials/trial_context.h"
+#include "trials/weights.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
-#include "verdicts/ordered.h"
 
 namespace crescent {
 namespace {

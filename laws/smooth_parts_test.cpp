@@ -4,14 +4,14 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "judgements/summary.h"
 #include "laws/judged.h"
 #include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "simd/frame.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
-#include "verdicts/summary.h"
 
 namespace crescent {
 namespace {

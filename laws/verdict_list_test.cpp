@@ -2,7 +2,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-#include "verdicts/list.h"
+#include "subjects/list.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent {

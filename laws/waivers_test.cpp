@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "judgements/waivers.h"
 #include "verdicts/print.h"
-#include "verdicts/waivers.h"
 
 namespace crescent {
 namespace {

@@ -17,8 +17,8 @@
 #include "plates/plates.h"
 #include "reference/reference.h"
 #include "report/report.h"
+#include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
 #include "verdicts/print.h"
 
 using namespace crescent;

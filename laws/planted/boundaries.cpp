@@ -7,7 +7,7 @@
 #include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "math/spherical.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 

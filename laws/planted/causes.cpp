@@ -3,9 +3,9 @@
 #include <map>
 #include <set>
 
+#include "diagnosis/diagnosis.h"
 #include "laws/planted/planted.h"
 #include "laws/right/right.h"
-#include "verdicts/diagnosis.h"
 #include "verdicts/error_rates.h"
 
 namespace crescent {

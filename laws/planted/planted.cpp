@@ -8,7 +8,7 @@
 #include "laws/planted/wrap.h"
 #include "math/functions.h"
 #include "math/spherical.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 

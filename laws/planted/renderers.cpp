@@ -8,7 +8,7 @@
 #include "laws/right/renderers.h"
 #include "math/functions.h"
 #include "simd/scalar.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "verdicts/builtin.h"
+#include "subjects/builtin.h"
 
 namespace crescent {
 

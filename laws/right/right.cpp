@@ -1,12 +1,12 @@
 // The parameters' seed mixes the number with the seed; the family is the number modulo how many there are. w_o is n in
 // one of eight, else from 0.5 to 80 degrees in three of four and from 80 to 89 in the rest, at any azimuth.
-#include "laws/right/renderers.h"
 
 #include <cmath>
 #include <fmt/format.h>
 
+#include "laws/right/renderers.h"
 #include "math/functions.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 

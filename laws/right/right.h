@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "verdicts/subject.h"
+#include "subjects/subject.h"
 
 namespace crescent {
 

@@ -1,5 +1,5 @@
-// A program is spoken to by verdicts/pipe.h, one question after another under a lock and with no limit to the whole; a
-// library is opened by verdicts/plugin.h. A wrapper around either puts the arm's name into what it throws.
+// A program is spoken to by subjects/pipe.h, one question after another under a lock and with no limit to the whole; a
+// library is opened by subjects/plugin.h. A wrapper around either puts the arm's name into what it throws.
 #include "run/outside.h"
 
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <mutex>
 
 #include "base/errors.h"
-#include "verdicts/pipe.h"
-#include "verdicts/plugin.h"
+#include "subjects/pipe.h"
+#include "subjects/plugin.h"
 
 namespace crescent::inline runs {
 

@@ -3,6 +3,8 @@
 // by any rule that looks at no draw inside, leave blocks of which each holds Beta(m, n + 1 - m) of what is drawn,
 // whatever the density is, m - 1 being the draws inside. The last cut of a block is at its highest p: what is left of
 // it holds at most its solid angle times that p, which is known with the draws already.
+#include "verdicts/clumps.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -16,7 +18,7 @@
 #include "simd/scalar.h"
 #include "stats/distributions.h"
 #include "stats/quantiles.h"
-#include "verdicts/ordered.h"
+#include "trials/trial_context.h"
 
 namespace crescent::inline verdicts {
 

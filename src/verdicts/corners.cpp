@@ -1,8 +1,11 @@
 // The corners of the cube of random numbers and a few lines through every two of its sides, where samplers divide by 0.
+#include "verdicts/corners.h"
+
 #include <algorithm>
 
 #include "math/functions.h"
-#include "verdicts/ordered.h"
+#include "trials/trial_context.h"
+#include "verdicts/valid.h"
 
 namespace crescent::inline verdicts {
 

@@ -7,9 +7,13 @@
 #include <optional>
 
 #include "math/functions.h"
-#include "verdicts/delta.h"
+#include "stats/bins.h"
+#include "trials/delta.h"
+#include "verdicts/clumps.h"
 #include "verdicts/fit.h"
+#include "verdicts/implied.h"
 #include "verdicts/verdict_kind.h"
+#include "verdicts/worst_bin.h"
 
 namespace crescent::inline verdicts {
 

@@ -1,5 +1,7 @@
 // efficiency: variance of X times the time of one sample, beside every other arm on the same surface, light and w_o.
 // Two arms whose intervals (two standard errors, in the logarithm) overlap are not ranked.
+#include "verdicts/efficiency.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -8,9 +10,13 @@
 
 #include "math/functions.h"
 #include "simd/random.h"
+#include "stats/moments.h"
+#include "subjects/faults.h"
+#include "subjects/numbers.h"
+#include "trials/trial_context.h"
+#include "trials/unmet.h"
+#include "trials/weights.h"
 #include "verdicts/judge.h"
-#include "verdicts/numbers.h"
-#include "verdicts/ordered.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {

@@ -3,12 +3,16 @@
 // (Veach 1997, section 5.2; Walter et al. 2007, section 5.2). Where it is not, an albedo over the whole sphere may
 // exceed 1 and be right (transmission.cpp), unless f is the same both ways across the surface: then no index scales it.
 // What a delta part sends straight on, towards -w_o, no index scales, and a phase function has none.
+#include "verdicts/energy.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "verdicts/delta.h"
-#include "verdicts/ordered.h"
+#include "trials/delta.h"
+#include "trials/phase.h"
+#include "trials/transmission.h"
+#include "trials/trial_context.h"
 
 namespace crescent::inline verdicts {
 

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "simd/random.h"
 #include "stats/distributions.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {

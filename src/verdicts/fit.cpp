@@ -8,6 +8,7 @@
 #include "math/functions.h"
 #include "stats/distributions.h"
 #include "stats/p_values.h"
+#include "verdicts/clumps.h"
 
 namespace crescent::inline verdicts {
 

@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "verdicts/ordered.h"
+#include "trials/trial_context.h"
+#include "verdicts/clumps.h"
 
 namespace crescent::inline verdicts {
 

@@ -18,7 +18,7 @@
 #include <map>
 #include <string>
 
-#include "verdicts/trial_context.h"
+#include "trials/settings.h"
 
 namespace crescent::inline verdicts {
 

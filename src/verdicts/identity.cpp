@@ -8,8 +8,12 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "verdicts/ordered.h"
+#include "trials/conditioning.h"
+#include "trials/trial_context.h"
+#include "verdicts/repeats.h"
 #include "verdicts/verdict_kind.h"
+#include "verdicts/warp.h"
+#include "verdicts/weights_in_the_mean.h"
 
 namespace crescent::inline verdicts {
 

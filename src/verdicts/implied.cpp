@@ -1,12 +1,15 @@
 // The density that a sampler without pdf(w) implies: 1/|J| of its warp, where it is a function of two numbers that
 // leads from one u to each direction; else the share of draws in bins of cos theta x phi over their solid angle. By
 // rings about n in any case. What is counted has its standard error, of a binomial law.
+#include "verdicts/implied.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "verdicts/ordered.h"
+#include "trials/trial_context.h"
+#include "warps/jacobian.h"
 
 namespace crescent::inline verdicts {
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <numeric>
 
+#include "subjects/faults.h"
 #include "verdicts/outcome.h"
 #include "verdicts/verdict_kind.h"
 

@@ -8,8 +8,11 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "verdicts/asked_once.h"
-#include "verdicts/diagnosis.h"
+#include "diagnosis/diagnosis.h"
+#include "subjects/asked_once.h"
+#include "subjects/faults.h"
+#include "trials/contrasts.h"
+#include "verdicts/efficiency.h"
 #include "verdicts/outcome.h"
 #include "verdicts/verdict_kind.h"
 
@@ -105,19 +108,6 @@ void judge_in_order(TrialContext& work, std::size_t index, Outcome& out, const P
 
 }  // namespace
 
-void settle(Judgement& j) {
-    bool wrong = !j.unmet.empty(), error = false, doubt = false;
-    j.as_expected = j.unmet.empty();
-    for (const Verdict& v : j.verdicts) {
-        if (v.waived) continue;
-        wrong = wrong || v.state == State::wrong;
-        error = error || v.state == State::error;
-        doubt = doubt || v.state == State::inconclusive;
-        j.as_expected = j.as_expected && v.expected;
-    }
-    j.state = wrong ? State::wrong : error ? State::error : doubt ? State::inconclusive : State::right;
-}
-
 namespace {
 
 using Compared = std::vector<std::vector<Verdict>>;  // by verdict, none of those that are of one trial; by trial
@@ -192,17 +182,6 @@ Outcome judge_one(const Trial& trial, std::size_t index, const TestSettings& set
         out.pictures = std::move(work.pictures);
     } catch (const SubjectFault& fault) { out.cut = cut_by(fault); }
     return out;
-}
-
-std::string_view word(State state) {
-    switch (state) {
-        case State::right: return "right";
-        case State::wrong: return "wrong";
-        case State::inconclusive: return "inconclusive";
-        case State::skipped: return "skipped";
-        case State::error: return "error";
-    }
-    return "";
 }
 
 std::uint64_t count_tests(std::span<const Trial> trials) {

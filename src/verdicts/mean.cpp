@@ -2,8 +2,12 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "verdicts/delta.h"
-#include "verdicts/ordered.h"
+#include "stats/moments.h"
+#include "trials/delta.h"
+#include "trials/trial_context.h"
+#include "trials/unmet.h"
+#include "trials/weights.h"
+#include "verdicts/mean_lights.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {

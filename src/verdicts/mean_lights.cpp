@@ -1,13 +1,17 @@
 // Where there is no pdf(w), weights and directions are held together by means alone: under a light L the mean of
 // weight times L(w_i) is int f L |cos|. Of an even light it is right whatever the directions are, as long as the
 // weights are; lights from several sides, broad and narrow, tell where draws go.
+#include "verdicts/mean_lights.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "verdicts/ordered.h"
+#include "stats/moments.h"
+#include "trials/trial_context.h"
+#include "trials/weights.h"
 
 namespace crescent::inline verdicts {
 

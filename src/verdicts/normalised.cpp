@@ -1,11 +1,14 @@
 // normalised: p integrates to one, or to one less the share of samples that draw nothing.
+#include "verdicts/normalised.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "stats/p_values.h"
-#include "verdicts/ordered.h"
+#include "trials/trial_context.h"
 #include "verdicts/verdict_kind.h"
+#include "warps/jacobian.h"
 
 namespace crescent::inline verdicts {
 

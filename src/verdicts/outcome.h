@@ -3,6 +3,9 @@
 
 #include <optional>
 
+#include "subjects/faults.h"
+#include "trials/contrasts.h"
+#include "verdicts/efficiency.h"
 #include "verdicts/judge.h"
 #include "verdicts/pooled.h"
 

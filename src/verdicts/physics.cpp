@@ -6,9 +6,16 @@
 #include "math/functions.h"
 #include "math/spherical.h"
 #include "simd/random.h"
+#include "stats/moments.h"
 #include "stats/quantiles.h"
-#include "verdicts/delta.h"
-#include "verdicts/ordered.h"
+#include "trials/conditioning.h"
+#include "trials/delta.h"
+#include "trials/phase.h"
+#include "trials/trial_context.h"
+#include "trials/unmet.h"
+#include "trials/weights.h"
+#include "verdicts/energy.h"
+#include "verdicts/snell.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {

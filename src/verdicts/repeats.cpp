@@ -1,5 +1,7 @@
 // Draws beside one another: the same u asked again, the same direction met twice, the same delta part with another
 // weight.
+#include "verdicts/repeats.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,9 +9,9 @@
 #include <cstdint>
 #include <fmt/format.h>
 
-#include "verdicts/delta.h"
-#include "verdicts/numbers.h"
-#include "verdicts/ordered.h"
+#include "subjects/numbers.h"
+#include "trials/delta.h"
+#include "trials/trial_context.h"
 
 namespace crescent::inline verdicts {
 

@@ -1,13 +1,15 @@
 // Where delta parts go: a smooth boundary mirrors, and refracts by the index that is told (Snell); a thin wall lets
 // straight through. Where nothing is mirrored, that the boundary lies flat is seen by turning w_o about n. Light goes
 // back the way that it came (Helmholtz), whatever the boundary is.
+#include "verdicts/snell.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "math/functions.h"
-#include "verdicts/delta.h"
-#include "verdicts/ordered.h"
+#include "trials/delta.h"
+#include "trials/trial_context.h"
 
 namespace crescent::inline verdicts {
 

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include "math/functions.h"
+#include "stats/moments.h"
 #include "stats/tail.h"
-#include "verdicts/delta.h"
-#include "verdicts/ordered.h"
+#include "trials/delta.h"
+#include "trials/trial_context.h"
+#include "trials/unmet.h"
+#include "trials/weights.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {

@@ -20,9 +20,10 @@
 
 #include <fmt/format.h>
 
+#include "subjects/faults.h"
+#include "subjects/list.h"
+#include "subjects/user_call.h"
 #include "verdicts/judge.h"
-#include "verdicts/list.h"
-#include "verdicts/user_call.h"
 
 namespace crescent::user {
 

@@ -1,4 +1,6 @@
 // valid: what comes back can be used at all.
+#include "verdicts/valid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -6,8 +8,9 @@
 
 #include "math/spherical.h"
 #include "simd/frame.h"
-#include "verdicts/numbers.h"
-#include "verdicts/ordered.h"
+#include "subjects/numbers.h"
+#include "trials/trial_context.h"
+#include "verdicts/corners.h"
 #include "verdicts/verdict_kind.h"
 
 namespace crescent::inline verdicts {

@@ -1,7 +1,8 @@
 // What each verdict of the list says of itself.
 #pragma once
 
-#include "verdicts/all.h"
+#include "judgements/all.h"
+#include "verdicts/efficiency.h"
 #include "verdicts/judge.h"
 
 namespace crescent::inline verdicts {

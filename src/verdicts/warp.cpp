@@ -1,10 +1,15 @@
 // p |Jacobian of the warp|, which is 1 where one u alone leads to a direction and less where none does: what
 // jacobian.cpp measures, held against p.
+#include "verdicts/warp.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "verdicts/numbers.h"
-#include "verdicts/ordered.h"
+#include "subjects/numbers.h"
+#include "trials/trial_context.h"
+#include "verdicts/normalised.h"
+#include "warps/jacobian.h"
+#include "warps/preimages.h"
 
 namespace crescent::inline verdicts {
 

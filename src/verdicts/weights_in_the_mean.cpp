@@ -3,11 +3,15 @@
 // two components of w_i is 0. Where p is an estimate too, one over it is no estimate of 1 / p, and where there is no
 // pdf(w) nothing is known of one draw: the mean weight of each channel is then held against int f |cos| of that
 // channel.
+#include "verdicts/weights_in_the_mean.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "verdicts/ordered.h"
+#include "stats/moments.h"
+#include "trials/trial_context.h"
+#include "trials/weights.h"
 
 namespace crescent::inline verdicts {
 

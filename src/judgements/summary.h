@@ -1,0 +1,47 @@
+// What a judgement comes to, one line a finding over all w_o, worst first; and its details, each sentence once with the
+// cases it is true of.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "judgements/verdict.h"
+
+namespace crescent::inline judgements {
+
+/// One verdict of one arm in one state other than right or skipped, over all its cases.
+struct Finding {
+    std::string arm, name;
+    State state = State::wrong;
+    bool expected = false;  // it is expected, and why stands in `worst`
+    std::size_t count = 0, of = 0;
+    const char* cases = "w_o";       // what is counted
+    const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
+    std::vector<std::pair<std::string, std::vector<std::string>>>
+        sentences;                       // what the others say beyond the worst, each with its cases
+    const Verdict* explained = nullptr;  // one of the arm that says what explains it, where the worst cannot
+};
+
+/// Wrong ones first, then errors, then what is inconclusive. What was left out for want of time is not among them, and
+/// of the errors of one arm the first alone, which counts for all. Points into `judgement`.
+std::vector<Finding> findings_of(const Judgement& judgement);
+/// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
+std::string told(const Finding& finding);
+/// "Left out: all but valid at 3 of 8 cases (w_o 0 deg, ...). Not looked at: ..."; "" where nothing was.
+std::string left_out_told(const Judgement& judgement);
+/// What those that are right could hide, over all cases: "p that is off from one by less than ..."; "" where nothing
+/// was integrated.
+std::string unseen_told(const Judgement& judgement);
+/// What share of the draws drew nothing where that is most, over 1 %; "" where it is nowhere.
+std::string nothing_drawn_told(const Judgement& judgement);
+/// The sentence of a verdict, with what it says of times.
+std::string told(const Verdict& verdict);
+/// A text in sentences: each begins with a capital letter.
+std::vector<std::string> sentences_of(const std::string& text);
+/// All findings but the expected ones, a line each, then what was left out, then the details.
+std::string summary_of(const Judgement& judgement);
+/// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
+std::string what_is_wrong(const Judgement& judgement);
+
+}  // namespace crescent::inline judgements

@@ -1,0 +1,74 @@
+// Verdicts and what goes with each: a sentence, and the numbers behind it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace crescent::inline judgements {
+
+/// error: the sampler could not be asked; it crashed, threw, spoke another language or fell silent.
+enum class State { right, wrong, inconclusive, skipped, error };
+std::string_view word(State state);
+
+struct Verdict {
+    std::string arm;
+    std::string trial;  // w_o and parameters
+    std::string name;   // one of verdict_names
+    State state = State::right;
+    std::string say;       // one sentence for the reader
+    std::string settle{};  // what would settle it, where it is inconclusive
+    nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
+    // What varies from run to run, kept apart so that equal calls give equal verdicts.
+    double seconds = 0;
+    std::string say_timed;
+    nlohmann::ordered_json timing = nlohmann::ordered_json::object();
+    bool expected = true;      // of a right sampler, or of this built-in arm here
+    std::string why_expected;  // said where a wrong one is expected
+    bool waived = false;       // the caller expects it, so that it does not count
+};
+
+/// Bins of one density test, for the maps of the HTML page: draws and what is due, or, where nothing is claimed that
+/// could be due (`expected` is empty), the density that the draws imply.
+struct BinMap {
+    std::string arm, trial, coordinates;
+    int rings = 0, sectors = 0;
+    std::vector<double> observed, expected;  // ring-major; draws, or 1/sr
+    std::vector<double> edges{};             // of the rings: 1 - cos of the angle to the axis
+    double full_scale = 0;                   // of a density, 1/sr
+};
+
+/// The largest weights, a histogram of all, and p against f L cos along a grid of directions.
+struct WeightPicture {
+    std::string arm, trial;
+    std::vector<double> log10_edges, counts;  // histogram of log10 X
+    double zeros = 0, k = 0, exceedances = 0;
+    double threshold = 0, sigma = 0;     // of the generalised Pareto law with that k; sigma from the median exceedance
+    std::vector<double> rose_p, rose_f;  // plane of incidence, from -90 to 90 deg of wi
+};
+
+/// What a call did not look at for want of time.
+struct LeftOut {
+    std::string arm, trial;
+    std::vector<std::string> verdicts;
+    std::string why;
+};
+
+struct Judgement {
+    std::vector<Verdict> verdicts;
+    std::vector<LeftOut> left_out;
+    std::vector<std::string> unmet;  // expectations of the caller that nothing meets, a sentence each
+    std::vector<BinMap> maps;
+    std::vector<WeightPicture> weights;
+    double alpha = 0;
+    std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
+    std::uint64_t questions = 0;                           // that a sampler from outside answered
+    State state = State::right;                            // of everything together
+    bool as_expected = true;                               // whether every verdict is the expected one
+};
+
+/// The state of the whole: everything that the caller does not expect, and expectations that nothing meets.
+void settle(Judgement& judgement);
+
+}  // namespace crescent::inline judgements

@@ -1,0 +1,216 @@
+// Rows of questions become lines or blocks and the answers rows of doubles, which are read the same way. Directions
+// under the horizon of a sampler of the hemisphere are not asked about. What `f` stands for is asked once, along the
+// normal.
+#include "subjects/pipe.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "base/text.h"
+#include "subjects/faults.h"
+#include "subjects/pipe_greeting.h"
+#include "subjects/pipe_talk.h"
+#include "subjects/pipe_text.h"
+
+namespace crescent::inline subjects {
+
+namespace {
+
+/// A multiple of 2^-24, which single precision holds.
+double for_float(double u) { return std::min(std::floor(u * 0x1p24) * 0x1p-24, 1 - 0x1p-24); }
+
+class PipeSubject : public JudgedSampler {
+public:
+    PipeSubject(const std::string& command, const PipeLimits& limits) : talk_(command, limits) {
+        try {
+            greet();
+        } catch (const SubjectFault&) {
+            const std::string& broken = talk_.broken();
+            const bool unknown =
+                broken.find("exit code 127") != std::string::npos || broken.find("exit code 126") != std::string::npos;
+            talk_.stop();
+            if (unknown && hello_.name.empty())
+                throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
+            throw;
+        } catch (...) {
+            talk_.stop();
+            throw;
+        }
+    }
+    ~PipeSubject() override { talk_.stop(); }
+    PipeSubject(const PipeSubject&) = delete;
+    PipeSubject& operator=(const PipeSubject&) = delete;
+
+    std::string name() const override { return hello_.name; }
+    Traits traits() const override { return hello_.traits; }
+    bool serial() const override { return true; }
+    bool has_f() const override { return has_f_; }
+    bool has_drawn_f() const override { return has_f_ || hello_.weight; }
+    Spending spending() const override { return talk_.spending(); }
+
+    void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        const std::size_t numbers = static_cast<std::size_t>(hello_.traits.numbers), given = 3 + numbers,
+                          got = 4 + weights();
+        const Vec3d o = asked(wo);
+        std::vector<double> in, answers(u.size() * got);
+        for (const Numbers& v : u) {
+            for (double x : {o.x, o.y, o.z}) in.push_back(x);
+            for (int k = 0; k < hello_.traits.numbers; ++k) in.push_back(hello_.protocol == 1 ? v[k] : for_float(v[k]));
+        }
+        std::vector<bool> delta(u.size());
+        if (hello_.blocks) ask_block("smpl", "sample", u.size(), given, got, in, answers);
+        else
+            talk_.lines(
+                u.size(), sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
+                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+                });
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = drawn(std::span(answers).subspan(i * got, got), delta[i]);
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        values("pdf_", "pdf", "one number", at, 1, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        if (hello_.traits.channels == 1) return values("f___", "f", "one number", at, 1, out);
+        std::vector<Vec3d> by_channel(out.size());
+        f_channels(at, by_channel);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        if (hello_.traits.channels == 1) return JudgedSampler::f_channels(at, out);
+        std::vector<double> answers(3 * out.size());
+        values("f___", "f", "three numbers, one a channel", at, 3, answers);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};
+    }
+
+private:
+    mutable Talk talk_;
+    Greeting hello_;
+    bool has_f_ = false;
+
+    std::size_t weights() const { return hello_.weight ? static_cast<std::size_t>(hello_.traits.channels) : 0; }
+    Vec3d asked(Vec3d wo) const { return hello_.traits.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : wo; }
+    std::string sample_expected() const {
+        std::string out =
+            hello_.weight ? fmt::format("{} numbers 'wix wiy wiz pdf", 4 + weights()) : "four numbers 'wix wiy wiz pdf";
+        if (hello_.weight) out += weights() == 1 ? " weight" : " weight weight weight";
+        return out + (hello_.delta ? "', or 'delta q' in place of pdf" : "'");
+    }
+    static Talk::Write writer(const char* verb, std::size_t columns, const std::vector<double>& in) {
+        return [verb, columns, &in](std::size_t i, std::string& line) {
+            line = verb;
+            for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
+        };
+    }
+    void ask_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
+        const std::vector<double>& in, std::span<double> out) const {
+        if (count == 0) return;
+        const Talk::Write write = writer(verb, given, in);
+        talk_.blocks({operation, count, given, got, in, out, [&](std::size_t i) {
+                          std::string line;
+                          write(i, line);
+                          return line;
+                      }});
+    }
+
+    bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {
+        for (std::size_t k = 0; k < to.size(); ++k) {
+            const std::size_t word = s.find_first_not_of(" \t");
+            if (k == 3 && hello_.delta && word != s.npos && s.substr(word).starts_with("delta ")) {
+                delta[i] = true;
+                s.remove_prefix(word + 6);
+            }
+            if (!take_float(s, to[k])) return false;
+        }
+        return blank(s);
+    }
+    /// Nothing drawn where pdf is 0, or where a draw lies under the horizon and only the hemisphere counts.
+    Draw drawn(std::span<const double> a, bool delta) const {
+        Draw d{{a[0], a[1], a[2]}, a[3]};
+        if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
+        const bool nothing = !delta && d.pdf == 0;
+        if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
+        if (delta) d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen, d.pdf = 0;
+        if (weights() == 1) d.weight = a[4];
+        if (weights() == 3) d.weights = {a[4], a[5], a[6]}, d.weight = luminance(d.weights);
+        return d;
+    }
+
+    /// pdf or f; under the horizon of a sampler of the hemisphere both are 0 and nothing is asked.
+    void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
+        std::size_t columns, std::span<double> out) const {
+        const auto counts = [&](const Pair& p) { return !hello_.hemisphere || p.wi.z > 0; };
+        std::vector<double> in;
+        for (const Pair& p : all) {
+            if (!counts(p)) continue;
+            const Vec3d o = asked(p.wo);
+            for (double v : {o.x, o.y, o.z, p.wi.x, p.wi.y, p.wi.z}) in.push_back(v);
+        }
+        const std::size_t count = in.size() / 6;
+        std::vector<double> answers(count * columns);
+        if (hello_.blocks) ask_block(operation, verb, count, 6, columns, in, answers);
+        else if (count > 0)
+            talk_.lines(count, expected, writer(verb, 6, in), [&](std::size_t i, std::string_view s) {
+                if (operation[0] == 'f' && s == "-") {
+                    std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
+                    return true;
+                }
+                for (std::size_t k = 0; k < columns; ++k)
+                    if (!take_float(s, answers[i * columns + k])) return false;
+                return blank(s);
+            });
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const bool there = counts(all[i]);
+            const double cos = std::fabs(all[i].wi.z),
+                         by = operation[0] == 'f' && hello_.f_cos ? (cos > 0 ? 1 / cos : 0) : 1;
+            for (std::size_t k = 0; k < columns; ++k)
+                out[i * columns + k] = there ? answers[next * columns + k] * by : 0;
+            next += there;
+        }
+    }
+
+    void greet() {
+        std::string fault;
+        talk_.lines(
+            1, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
+            [](std::size_t, std::string& line) { line = "hello 2"; },
+            [&](std::size_t, std::string_view s) {
+                Greeting hello;
+                fault = read_greeting(s, hello);
+                if (fault.empty()) hello_ = hello;
+                if (!fault.empty()) talk_.fault("hello 2", 0, fault, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'");
+                return true;
+            });
+        talk_.greeted();
+        if (hello_.traits.wo != Traits::Asked::none) probe_f();
+    }
+    /// Whether there is a BRDF: `-`, or NaN in a block, is none.
+    void probe_f() {
+        const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
+        const std::vector<double> normal = {0, 0, 1, 0, 0, 1};
+        std::vector<double> answer(columns);
+        if (hello_.blocks) {
+            ask_block("f___", "f", 1, 6, columns, normal, answer);
+            has_f_ = !std::isnan(answer[0]);
+            return;
+        }
+        talk_.lines(1,
+            columns == 1 ? "one number, or '-' where there is no BRDF"
+                         : "three numbers, one a channel, or '-' where there is no BRDF",
+            writer("f", 6, normal), [&](std::size_t, std::string_view s) {
+                has_f_ = s != "-";
+                for (std::size_t k = 0; has_f_ && k < columns; ++k)
+                    if (!take_float(s, answer[k])) return false;
+                return !has_f_ || blank(s);
+            });
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const JudgedSampler> start_pipe(const std::string& command, const PipeLimits& limits) {
+    return std::make_shared<PipeSubject>(command, limits);
+}
+
+}  // namespace crescent::inline subjects

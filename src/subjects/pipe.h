@@ -1,0 +1,26 @@
+// A sampler in another process, over its stdin and stdout. It is greeted with `hello 2` and says what it is; one that
+// answers `hello 1 NAME` is spoken to in protocol 1, which is protocol 2 without keys. Text lines, or blocks of doubles
+// where it asks for them; docs/verdicts.md has the grammar. Local frame, n = +z; end of input ends it.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+
+#include "subjects/faults.h"
+#include "subjects/subject.h"
+
+namespace crescent::inline subjects {
+
+/// What a program behind a pipe may take.
+struct PipeLimits {
+    double hello_seconds = 60;   // until the first answer: a sky of millions of texels is read first
+    double quiet_seconds = 10;   // without a byte while an answer is due
+    double total_seconds = 120;  // for everything; beyond it the program is too slow to judge
+    std::size_t longest_line = 4096;
+    const std::atomic<bool>* stop = nullptr;  // when set, the program is ended and Interrupted thrown
+};
+
+/// Starts `command` with /bin/sh -c. Throws SubjectFault that says at which request, what came and what was expected.
+std::shared_ptr<const JudgedSampler> start_pipe(const std::string& command, const PipeLimits& limits = {});
+
+}  // namespace crescent::inline subjects

@@ -1,0 +1,196 @@
+// One loop over poll() writes requests and reads answers, whichever side is ready: neither can wait for the other for
+// ever. Time is looked at every 50 ms at least. A program that broke off once is not asked again.
+#include "subjects/pipe_talk.h"
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/errors.h"
+#include "base/progress_monitor.h"
+#include "subjects/faults.h"
+#include "subjects/pipe_text.h"
+
+namespace crescent::inline subjects {
+
+static_assert(std::endian::native == std::endian::little, "blocks are little-endian, and are copied as they are");
+
+void Talk::fault(const std::string& request, std::size_t i, const std::string& what, std::string_view expected) {
+    broken_ = fmt::format("request {} ({}): expected {}, {}", requests_ + i + 1, shown(request), expected, what);
+    throw SubjectFault(broken_);
+}
+
+/// "" while it runs.
+std::string Talk::how_it_ended(int milliseconds) const {
+    const std::optional<int> status = child_.status(milliseconds);
+    if (!status) return "";
+    if (WIFSIGNALED(*status)) return fmt::format("the program was killed by signal {}", WTERMSIG(*status));
+    const int code = WEXITSTATUS(*status);
+    return fmt::format("the program ended with exit code {}", code) +
+        (code > 128 && code < 160 ? fmt::format(" (signal {})", code - 128) : "");
+}
+
+std::string Talk::why_closed() const {
+    const std::string how = how_it_ended(200);
+    return how.empty() ? "the program closed its output" : how;
+}
+
+/// Why nothing comes: a program that went on in the background and ended itself, or one that keeps its answers.
+std::string Talk::why_silent() const {
+    const std::string how = how_it_ended(0);
+    if (!how.empty()) return ": " + how + ", and what it left running holds its output open and says nothing";
+    return pending().empty() ? " (does it flush every answer?)" : "; half an answer stands there: " + shown(pending());
+}
+
+std::string Talk::end_of_output() const {
+    return fmt::format(
+        "but {}{}", why_closed(), pending().empty() ? "" : " in the middle of an answer: " + shown(pending()));
+}
+
+/// False at the end of the program's output.
+bool Talk::fill() {
+    incoming_.erase(0, read_from_);
+    read_from_ = 0;
+    char buffer[1 << 16];
+    const ssize_t n = ::read(child_.output(), buffer, sizeof buffer);
+    if (n < 0) return errno == EAGAIN || errno == EINTR;
+    incoming_.append(buffer, static_cast<std::size_t>(n));
+    return n > 0;
+}
+
+void Talk::send(Exchange& x, short events_in) {
+    const ssize_t n = child_.write(std::string_view(x.outgoing).substr(x.sent));
+    if (n > 0) x.sent += static_cast<std::size_t>(n);
+    else if (n < 0 && errno == EPIPE && (events_in & POLLIN) == 0)
+        fault(x, x.answered, "but it closed its input: " + why_closed());
+}
+
+void Talk::mind_the_time(Exchange& x, Clock::time_point last) {
+    if (limits_.stop && limits_.stop->load()) {
+        broken_ = "interrupted";
+        throw Interrupted{};
+    }
+    if (seconds_since(began_) > limits_.total_seconds) {
+        broken_ = fmt::format("the program is too slow to judge: {:g} s are spent and it gives {:.2g} answers a second",
+            limits_.total_seconds, static_cast<double>(requests_ + x.answered) / seconds_since(began_));
+        slow_ = true;
+        throw SubjectTooSlow(broken_);
+    }
+    const double quiet = seconds_since(last);
+    if (quiet > (greeted_ ? limits_.quiet_seconds : limits_.hello_seconds))
+        fault(x, x.answered, fmt::format("got nothing for {:.0f} s{}", quiet, why_silent()));
+}
+
+/// Writes all requests and reads all answers, whichever side is ready.
+void Talk::run(Exchange& x) {
+    if (slow_) throw SubjectTooSlow(broken_);
+    if (!broken_.empty()) throw SubjectGone("the program was given up: " + broken_);
+    Clock::time_point last = Clock::now();
+    while (x.answered < x.count) {
+        constexpr std::size_t ahead = 1 << 16;  // bytes of requests kept ready
+        if (x.outgoing.size() - x.sent < ahead / 2) {
+            x.outgoing.erase(0, x.sent);
+            x.sent = 0;
+            while (x.written < x.count && x.outgoing.size() < ahead) x.produce();
+        }
+        const bool more = x.sent < x.outgoing.size();
+        pollfd ends[2] = {{child_.output(), POLLIN, 0}, {child_.input(), static_cast<short>(more ? POLLOUT : 0), 0}};
+        const int ready = poll(ends, more ? 2 : 1, 50);
+        if (ready > 0 && more && (ends[1].revents & (POLLOUT | POLLERR)) != 0) send(x, ends[0].revents);
+        if (ready > 0 && (ends[0].revents & (POLLIN | POLLHUP)) != 0) {
+            if (!fill()) fault(x, x.answered, end_of_output());
+            last = Clock::now();
+            x.take();
+        }
+        mind_the_time(x, last);
+    }
+}
+
+void Talk::lines(std::size_t count, std::string_view expected, const Write& write, const Read& read) {
+    std::string line;
+    Exchange x{count, expected, [&](std::size_t i) { return write(i, line), line; }, {}, {}};
+    x.produce = [&] {
+        write(x.written++, line);
+        x.outgoing += line;
+        x.outgoing += '\n';
+    };
+    x.take = [&] { take_lines(x, read); };
+    run(x);
+    if (pending().find('\n') != std::string_view::npos)
+        fault(x, count - 1,
+            "got more lines than were asked for: " + shown(pending().substr(0, pending().find('\n'))) + only_answers);
+    requests_ += count;
+}
+
+void Talk::take_lines(Exchange& x, const Read& read) {
+    for (;;) {
+        const std::size_t end = incoming_.find('\n', read_from_);
+        if (end == std::string::npos) {
+            if (pending().size() > limits_.longest_line)
+                fault(x, std::min(x.answered, x.count - 1),
+                    fmt::format("got a line of more than {} bytes: {}", limits_.longest_line, shown(pending())));
+            return;
+        }
+        std::string_view text(incoming_.data() + read_from_, end - read_from_);
+        if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+        if (x.answered >= x.written)
+            fault(x, std::min(x.answered, x.count - 1), "unexpected extra line: " + shown(text) + only_answers);
+        if (x.answered >= x.count) return;
+        if (!read(x.answered, text)) fault(x, x.answered, "got " + shown(text) + only_answers);
+        ++x.answered;
+        read_from_ = end + 1;
+    }
+}
+
+void Talk::blocks(const Rows& rows) {
+    constexpr std::size_t most_rows = 1 << 15;  // 65536 are allowed; smaller ones let both sides work at once
+    std::deque<std::size_t> due;
+    const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
+    Exchange x{rows.count, expected, rows.told, {}, {}};
+    x.produce = [&] {
+        const std::size_t n = std::min(rows.count - x.written, most_rows);
+        const auto head = static_cast<std::uint32_t>(n);
+        x.outgoing.append(rows.operation, 4);
+        x.outgoing.append(reinterpret_cast<const char*>(&head), sizeof head);
+        x.outgoing.append(
+            reinterpret_cast<const char*>(rows.in.data() + x.written * rows.given), n * rows.given * sizeof(double));
+        due.push_back(n);
+        x.written += n;
+    };
+    x.take = [&] { take_blocks(x, rows, due); };
+    run(x);
+    if (!pending().empty())
+        fault(x, rows.count - 1,
+            fmt::format("got {} bytes more than were asked for: {}", pending().size(), shown(pending())));
+    requests_ += rows.count;
+}
+
+void Talk::take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& due) {
+    const auto number = [&](std::size_t at) {
+        std::uint32_t n = 0;
+        std::memcpy(&n, incoming_.data() + read_from_ + at, sizeof n);
+        return n;
+    };
+    while (pending().size() >= sizeof(std::uint32_t)) {
+        if (due.empty()) fault(x, std::min(x.answered, x.count - 1), "unexpected extra answer: " + shown(pending()));
+        const std::size_t n = number(0);
+        if (n == 0) {  // an error: its length and its text
+            if (pending().size() < 8 || pending().size() < 8 + std::min<std::size_t>(number(4), 4096)) return;
+            fault(x, x.answered, "got an error: " + shown(pending().substr(8, std::min<std::size_t>(number(4), 4096))));
+        }
+        if (n != due.front()) fault(x, x.answered, fmt::format("got a block of {} rows for one of {}", n, due.front()));
+        const std::size_t bytes = n * rows.got * sizeof(double);
+        if (pending().size() < sizeof(std::uint32_t) + bytes) return;
+        std::memcpy(
+            rows.out.data() + x.answered * rows.got, incoming_.data() + read_from_ + sizeof(std::uint32_t), bytes);
+        read_from_ += sizeof(std::uint32_t) + bytes;
+        x.answered += n;
+        due.pop_front();
+    }
+}
+
+}  // namespace crescent::inline subjects

@@ -1,0 +1,16 @@
+// What lies under the surface.
+#pragma once
+
+#include <vector>
+
+#include "trials/trial_context.h"
+
+namespace crescent::inline trials {
+
+/// What light from direction b, under the surface, gives to all directions above: int f(a, b) cos a da. See
+/// transmission.cpp.
+Integral from_below(const TrialContext& work, Vec3d b);
+/// Up to three directions under the surface that the sampler draws, the one of the highest pdf first.
+std::vector<Vec3d> drawn_below(const TrialContext& work);
+
+}  // namespace crescent::inline trials
