@@ -33,7 +33,7 @@ TEST(VerdictList, TheManualTellsItInItsOrderWithItsQuestions) {
     std::vector<std::string> rows;
     bool in_table = false;
     for (std::string line; std::getline(manual, line);) {
-        if (line == "| verdict | question | how |") in_table = true;
+        if (line.starts_with("| verdict | question |")) in_table = true;
         else if (in_table && !line.starts_with('|')) break;
         else if (in_table && !line.starts_with("|---")) rows.push_back(line);
     }
