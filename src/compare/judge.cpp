@@ -36,29 +36,24 @@ ArmResult measure_arm(const ComparePlan& plan, const Readings& all, std::size_t 
     return out;
 }
 
-double value_of(const std::string& text, const CompareResult& result, std::string& why) {
-    const auto side = parse_quantity(text, why, compare_words());
-    if (side->number) return *side->number;
+double value_of(const ParsedQuantity& side, const CompareResult& result, std::string& why) {
+    if (side.number) return *side.number;
     for (const ArmResult& arm : result.arms) {
-        if (arm.name != side->subject) continue;
-        const MeterValue& value = arm.region(side->region).meter(side->word);
+        if (arm.name != side.subject) continue;
+        const MeterValue& value = arm.region(side.region).meter(side.word);
         if (value.value) return *value.value;
-        why = fmt::format("{} has no value: {}", text, value.why);
+        why = fmt::format("{} has no value: {}", to_string(side), value.why);
     }
     return std::nan("");
 }
 
 AssertionResult asserted(const AssertionPlan& plan, CompareResult& result) {
     AssertionResult out;
-    out.name = plan.name, out.op = plan.op, out.text = fmt::format("{} {} {}", plan.left, plan.op, plan.right);
+    out.name = plan.name, out.op = plan.check.op, out.text = to_string(plan.check);
     std::string why;
-    const double a = out.measured = value_of(plan.left, result, why), b = out.bound = value_of(plan.right, result, why);
+    out.measured = value_of(plan.check.left, result, why), out.bound = value_of(plan.check.right, result, why);
     if (!why.empty()) result.warnings.push_back(out.name + ": " + why);
-    out.pass = plan.op == "<" ? a < b
-        : plan.op == "<="     ? a <= b
-        : plan.op == ">"      ? a > b
-        : plan.op == ">="     ? a >= b
-                              : a == b;
+    out.pass = holds(out.measured, out.op, out.bound);
     return out;
 }
 

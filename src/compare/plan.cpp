@@ -88,7 +88,7 @@ void from_folder(Node& root, const std::string& file) {
             for (Member& member : named->members) from_folder(at(member.value, key), folder);
 }
 
-void check_names(ParseContext& context, const ComparePlan& plan) {
+void check_names(ParseContext& context, ComparePlan& plan) {
     std::vector<std::string> regions{whole_frame}, arms;
     for (const Region& r : plan.regions) regions.push_back(r.name);
     for (const MaskPlan& m : plan.masks) {
@@ -100,22 +100,23 @@ void check_names(ParseContext& context, const ComparePlan& plan) {
         if (r.name == whole_frame)
             context.report("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
     for (const RenderArm& a : plan.arms) arms.push_back(a.name);
-    for (const AssertionPlan& a : plan.assertions) {
+    for (AssertionPlan& a : plan.assertions) {
         std::string why;
-        const auto check = parse_comparison(a.left, why, compare_words());
+        const auto check = parse_comparison(a.text, why, compare_words());
         if (!check) {
             context.report(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
             continue;
         }
-        for (const ParsedQuantity* q : {&check->left, &check->right}) {
+        a.check = *check;
+        for (const ParsedQuantity* q : {&a.check.left, &a.check.right}) {
             if (q->number) continue;
             if (!std::count(arms.begin(), arms.end(), q->subject))
                 context.report(a.name, a.at,
-                    fmt::format("{}: no arm '{}': expected one of {}{}", a.left, q->subject, listed(arms, ", "),
+                    fmt::format("{}: no arm '{}': expected one of {}{}", a.text, q->subject, listed(arms, ", "),
                         hint(q->subject, arms)));
             if (!std::count(regions.begin(), regions.end(), q->region))
                 context.report(a.name, a.at,
-                    fmt::format("{}: no region '{}': expected one of {}{}", a.left, q->region, listed(regions, ", "),
+                    fmt::format("{}: no region '{}': expected one of {}{}", a.text, q->region, listed(regions, ", "),
                         hint(q->region, regions)));
         }
     }
@@ -131,11 +132,6 @@ ComparePlan read_plan(Node root, ParseContext& context, const std::vector<Compar
     read_tree(context, compare_schema(), root, &plan);
     if (context.diagnostics.empty()) check_names(context, plan);
     throw_if_any(std::move(context.diagnostics));
-    for (AssertionPlan& a : plan.assertions) {
-        std::string why;
-        const auto check = parse_comparison(a.left, why, compare_words());
-        a.left = to_string(check->left), a.op = check->op, a.right = to_string(check->right);
-    }
     return plan;
 }
 

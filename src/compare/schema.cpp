@@ -46,7 +46,7 @@ Section assertions() {
     return {"assertions", Multiplicity::titled, optional, "Claims that must hold, for a build server.",
         in<&ComparePlan::assertions>,
         {{"check", Type::check, none, "", required, "", "Two quantities, e.g. \"rmse.H(a) < rmse.H(b)\".",
-            to<&AssertionPlan::left>}},
+            to<&AssertionPlan::text>}},
         {}};
 }
 

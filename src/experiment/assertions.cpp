@@ -12,7 +12,7 @@ bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
 
 void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path) {
     std::string why;
-    std::optional<Comparison> check = parse_comparison(plan.left, why);
+    std::optional<Comparison> check = parse_comparison(plan.text, why);
     if (check && is_number(*check)) check.reset(), why = "expected a quantity on one side at least, found two numbers";
     if (check)
         if (why = resolve_quantity(check->left, context.e); why.empty())
@@ -20,9 +20,7 @@ void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path
     if (why.empty() && plan.median && (check->left.word == "tail" || check->right.word == "tail"))
         why = "expected over = \"seed\": tails are measured at the experiment's seed alone";
     if (!why.empty()) return context.report(path, fmt::format("{}: {}", path, why));
-    plan.left = to_string(check->left);
-    plan.op = check->op;
-    plan.right = to_string(check->right);
+    plan.check = *std::move(check);
 }
 
 }  // namespace

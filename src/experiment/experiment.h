@@ -13,6 +13,7 @@
 #include "color/theme.h"
 #include "base/errors.h"
 #include "base/vec.h"
+#include "experiment/comparison.h"
 #include "experiment/plate_kinds.h"
 #include "experiment/published.h"
 #include "scene/scene_data.h"
@@ -87,9 +88,8 @@ struct PlatePlan {
 /// A comparison that must hold. Quantities are looked up by name (see meters/quantity.h).
 struct AssertionPlan {
     std::string name;
-    std::string left;     // a quantity, e.g. "rmse.H(phong, n=64, s=32)"
-    std::string op;       // "<", "<=", ">", ">=", "=="
-    std::string right;    // a quantity or a number
+    std::string text;     // as the file has it, e.g. "rmse.H(phong) < rmse.H(cosine)"
+    Comparison check;     // the same, parsed; every n is said
     bool median = false;  // over seeds, else at the published seed
     SourceLocation at;
 };

@@ -72,15 +72,15 @@ TEST(WhatIfs, OfTheExponentMoveEverySurfaceAndEveryRunThatNamesNone) {
     EXPECT_EQ(e.s(), 64);
     for (const Shape& shape : e.shapes) EXPECT_EQ(shape.material.s, 64) << shape.name;
     EXPECT_EQ(e.plates[0].runs[0].s, 0);
-    EXPECT_EQ(e.assertions.back().left, "fireflies(phong, n=64)");
+    EXPECT_EQ(to_string(e.assertions.back().check.left), "fireflies(phong, n=64)");
 }
 
 TEST(WhatIfs, OfNMoveEveryRunThatNamesNone) {
     const Experiment e = gallery({"n=256"});
     EXPECT_THAT(e.find_arm("uniform")->n, ElementsAre(256u));
-    EXPECT_EQ(e.assertions.back().left, "fireflies(phong, n=256)");
+    EXPECT_EQ(to_string(e.assertions.back().check.left), "fireflies(phong, n=256)");
     const Experiment ladder = gallery({"phong.n=[2,8]"});
-    EXPECT_EQ(ladder.assertions.back().left, "fireflies(phong, n=8)");
+    EXPECT_EQ(to_string(ladder.assertions.back().check.left), "fireflies(phong, n=8)");
     for (const PlatePlan& plate : ladder.plates) {
         if (plate.name == "ladder-phong") { EXPECT_EQ(plate.runs.size(), 2u); }
     }

@@ -129,9 +129,7 @@ std::size_t change_each(const Section& section, void* object, const Experiment& 
     for (const Key& key : section.keys) {
         if (!has_kind(key, own) || !key.slot.load(object, value)) continue;
         ++met;
-        if (key.type == Type::check)
-            value.text = static_cast<AssertionPlan*>(object)->left;  // the slot stores one side
-        std::vector<std::pair<const Key*, Value>> lost;              // another kind has other parameters
+        std::vector<std::pair<const Key*, Value>> lost;  // another kind has other parameters
         for (const Key& other : section.keys)
             if (&key == kinds && !other.kinds.empty() && has_kind(other, own))
                 if (Value kept; other.slot.load(object, kept)) lost.emplace_back(&other, kept);

@@ -205,17 +205,6 @@ std::optional<Comparison> parse_comparison(
     return Parser(text, why, words).comparison();
 }
 
-std::string to_string(const ParsedQuantity& q) {
-    if (q.number) return fmt::format("{}", *q.number);
-    std::string text = q.word;
-    if (!q.region.empty()) text += "." + q.region;
-    if (q.subject.empty()) return text;
-    text += "(" + q.subject;
-    if (q.n > 0) text += fmt::format(", n={}", q.n);
-    if (q.s > 0) text += fmt::format(", s={}", q.s);
-    return text + ")";
-}
-
 std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     if (q.number) return "";
     if (!q.region.empty())

@@ -4,11 +4,12 @@
 // e.g. "rmse.H(phong, n=64, s=32) < rmse.H(cosine, n=64, s=32)", "bad(phong) == 0".
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "experiment/comparison.h"
 
 namespace crescent::inline experiment {
 
@@ -30,27 +31,12 @@ const std::vector<QuantityWord>& quantity_words();
 /// "rmse.REGION(ARM, n=N, s=S)".
 std::string form_of(const QuantityWord& word);
 
-/// One side of a check. n = 0: not said; s = 0: the experiment's own.
-struct ParsedQuantity {
-    std::string word, region, subject;
-    std::uint64_t n = 0;
-    double s = 0;
-    std::optional<double> number;  // a plain number; the rest is empty then
-};
-struct Comparison {
-    ParsedQuantity left, right;
-    std::string op;
-};
-
 /// Reads one side, or a whole check over a list of words; where the text is wrong, nothing, and `why` says what was
 /// expected.
 std::optional<ParsedQuantity> parse_quantity(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
 std::optional<Comparison> parse_comparison(
     std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
-/// The quantity in full, as parse_quantity reads it.
-std::string to_string(const ParsedQuantity& quantity);
-
 /// Fills in n where a run is meant and none is named: the experiment's, or for bad and largest the arm's highest rung,
 /// which holds all others. Returns what is wrong with the names, "" where all of them will be measured.
 std::string resolve_quantity(ParsedQuantity& quantity, const Experiment& experiment);

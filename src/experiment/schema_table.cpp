@@ -202,13 +202,16 @@ Section plates() {
         {runs}};
 }
 
-/// Read as one text into `left`; in three parts once it is parsed.
-constexpr Slot comparison = {to<&AssertionPlan::left>.store, [](const void* object, Value& value) {
-                                 const auto& plan = *static_cast<const AssertionPlan*>(object);
-                                 value.text = plan.op.empty() ? plan.left
-                                                              : fmt::format("{} {} {}", plan.left, plan.op, plan.right);
-                                 return true;
-                             }};
+/// A text until it is parsed. Another text is another check.
+constexpr Slot comparison = {[](void* object, const Value& value) {
+                                 auto& plan = *static_cast<AssertionPlan*>(object);
+                                 plan.text = value.text, plan.check = {};
+                             },
+    [](const void* object, Value& value) {
+        const auto& plan = *static_cast<const AssertionPlan*>(object);
+        value.text = plan.check.op.empty() ? plan.text : to_string(plan.check);
+        return true;
+    }};
 
 Section assertions() {
     return {"assertions", Multiplicity::titled, optional,

@@ -1,4 +1,4 @@
-// Both sides of a check are parsed from their text, once, and looked up in what was measured. What was not measured is
+// Both sides of a check are looked up in what was measured. What was not measured is
 // NaN, and no comparison with NaN holds. An RMSE that the reference's own error is a large part of is no evidence.
 #include "meters/quantity.h"
 
@@ -39,15 +39,6 @@ QuantityOf subject_of(const std::string& word) {
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
 }
 
-bool holds(double left, const std::string& op, double right) {
-    if (std::isnan(left) || std::isnan(right)) return false;
-    if (op == "<") return left < right;
-    if (op == "<=") return left <= right;
-    if (op == ">") return left > right;
-    if (op == ">=") return left >= right;
-    return op == "==" && left == right;
-}
-
 /// find(key): the run of that key, for who is of one.
 template <class Find> double value_of(const ParsedQuantity& q, const Metrics& metrics, const Experiment& experiment,
     std::uint32_t seed, const PlateBytes& plate_bytes, const Find& find) {
@@ -83,13 +74,6 @@ bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, c
             (quadrature ? r.quadrature_error : r.rms_standard_error.value_or(0)) > most_error_share * value)
             return false;
     return true;
-}
-
-ParsedQuantity parsed(const std::string& text) {
-    std::string why;
-    const auto q = parse_quantity(text, why);
-    ensure(q.has_value(), "an assertion was checked when its experiment was read");
-    return *q;
 }
 
 /// What the checks of an experiment are held against.
@@ -135,13 +119,13 @@ std::vector<AssertionResult> judge(
     std::vector<AssertionResult> results;
     for (const AssertionPlan& plan : experiment.assertions) {
         AssertionResult r;
-        r.name = plan.name, r.op = plan.op;
-        const ParsedQuantity left = parsed(plan.left), right = parsed(plan.right);
+        const auto& [left, right, op] = plan.check;
+        r.name = plan.name, r.op = op;
         r.measured = side(left, plan.median, measurements, r);
         r.bound = side(right, plan.median, measurements, r);
-        r.cannot_fail = cannot_fail(left, plan.op, right);
+        r.cannot_fail = cannot_fail(left, op, right);
         r.pass = r.skipped.empty() && r.reference_good && holds(r.measured, r.op, r.bound);
-        r.text = plan.left + " " + plan.op + " " + plan.right + (plan.median ? " (medians over seeds)" : "");
+        r.text = to_string(plan.check) + (plan.median ? " (medians over seeds)" : "");
         if (!r.reference_good)
             r.text += " (the reference is not good enough: its own error is of the size of the RMSE)";
         results.push_back(std::move(r));

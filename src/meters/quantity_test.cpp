@@ -21,7 +21,7 @@ Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
         std::string why;
         const auto c = parse_comparison(text, why);
         EXPECT_TRUE(c) << why;
-        e.assertions.push_back({text, to_string(c->left), c->op, to_string(c->right), median, {}});
+        e.assertions.push_back({text, text, *c, median, {}});
     }
     return e;
 }
