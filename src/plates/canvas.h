@@ -11,7 +11,7 @@
 #include "plates/plates.h"
 #include "color/theme.h"
 
-typedef struct _cairo cairo_t;
+typedef struct _cairo cairo_t;  // NOLINT(bugprone-reserved-identifier): Cairo's own name
 
 namespace crescent::plates {
 
