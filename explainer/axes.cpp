@@ -1,5 +1,5 @@
-// A value's place is its share of the scale, in logarithms where the scale is logarithmic. Round values are 1, 2 or 5
-// times a power of ten apart; powers of ten above 100 and below 0.01 are set as 10^k. Lengths in units of the sheet.
+// Round values are 1, 2 or 5 times a power of ten apart; powers of ten above 100 and below 0.01 are set as 10^k.
+// Lengths in units of the sheet.
 #include "axes.h"
 
 #include <fmt/format.h>
@@ -19,15 +19,10 @@ Tick tick(double v, int digits) { return {v, Words(number(v, digits, axis_source
 
 }  // namespace
 
-double Scale::part(double v) const {
-    if (!log) return (v - lo) / (hi - lo);
-    return v > 0 ? math::log(v / lo) / math::log(hi / lo) : 0;
-}
-
-std::vector<Tick> decades(const Scale& scale, int step) {
+std::vector<Tick> decades(const Axis& axis, int step) {
     std::vector<Tick> out;
-    const int first = static_cast<int>(std::ceil(math::log10(scale.lo) - 1e-9));
-    const int last = static_cast<int>(std::floor(math::log10(scale.hi) + 1e-9));
+    const int first = static_cast<int>(std::ceil(math::log10(axis.low) - 1e-9));
+    const int last = static_cast<int>(std::floor(math::log10(axis.high) + 1e-9));
     for (int k = first; k <= last; ++k) {
         const double v = math::pow(10.0, k);
         if ((k - first) % step != 0) out.push_back({v, {}});
@@ -39,14 +34,11 @@ std::vector<Tick> decades(const Scale& scale, int step) {
     return out;
 }
 
-std::vector<Tick> round_values(const Scale& scale, int most) {
-    const double least = (scale.hi - scale.lo) / most, power = math::pow(10, std::floor(math::log10(least)));
-    double step = 10 * power;
-    for (const double lead : {5.0, 2.0, 1.0})
-        if (lead * power >= least * (1 - 1e-9)) step = lead * power;
+std::vector<Tick> round_values(const Axis& axis, int most) {
+    const double step = round_up((axis.high - axis.low) / most);
     std::vector<Tick> out;
-    const int first = static_cast<int>(std::ceil(scale.lo / step - 1e-9));
-    for (int k = first; k * step <= scale.hi * (1 + 1e-9); ++k) out.push_back(tick(k * step, 3));
+    const int first = static_cast<int>(std::ceil(axis.low / step - 1e-9));
+    for (int k = first; k * step <= axis.high * (1 + 1e-9); ++k) out.push_back(tick(k * step, 3));
     return out;
 }
 

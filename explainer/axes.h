@@ -7,31 +7,24 @@
 
 namespace crescent::film {
 
-struct Scale {
-    double lo = 0, hi = 1;
-    bool log = false;
-    /// 0 at lo, 1 at hi.
-    double part(double v) const;
-};
-
 /// A mark on an axis and what stands beside it; no words: a mark alone.
 struct Tick {
     double at = 0;
     Words words;
 };
-/// Powers of ten in the scale, every `step`-th of them.
-std::vector<Tick> decades(const Scale& scale, int step = 1);
+/// Powers of ten on the axis, every `step`-th of them.
+std::vector<Tick> decades(const Axis& scale, int step = 1);
 /// Round values, at most `most` of them.
-std::vector<Tick> round_values(const Scale& scale, int most);
+std::vector<Tick> round_values(const Axis& scale, int most);
 /// Those very values.
 std::vector<Tick> values(const std::vector<double>& at, int digits);
 
 struct Axes {
     Rect box;
-    Scale across, up;
+    Axis across, up;
 
-    double x(double v) const { return box.x + box.w * across.part(v); }
-    double y(double v) const { return box.bottom() - box.h * up.part(v); }
+    double x(double v) const { return box.x + box.w * across.share(v); }
+    double y(double v) const { return box.bottom() - box.h * up.share(v); }
     Point at(double vx, double vy) const { return {x(vx), y(vy)}; }
 
     /// The two axes with their ticks, labels left and below, and what each is: over the upright one, under the other.

@@ -82,14 +82,10 @@ void LogPlot::axes(
         f.line({p.x, p.y}, {p.x, p.y + 8}, muted, 2, alpha);
         f.text({p.x - 60, p.y + 12, 120, 36}, Words(count(n, "axis")), below, alpha);
     }
-    for (double power = math::pow(10.0, std::floor(math::log10(y0))); power <= y1 * 1.001; power *= 10) {
-        for (const double lead : {1.0, 2.0, 5.0}) {
-            const double v = lead * power;
-            if (v < y0 * 0.999 || v > y1 * 1.001) continue;
-            const Point p = at(x0, v);
-            f.line({p.x, p.y}, {plot.right(), p.y}, rule, 1, alpha);
-            f.text({p.x - 130, p.y - 18, 116, 36}, Words(number(v, 3, "axis")), beside, alpha);
-        }
+    for (const double v : log_ticks(y0, y1)) {
+        const Point p = at(x0, v);
+        f.line({p.x, p.y}, {plot.right(), p.y}, rule, 1, alpha);
+        f.text({p.x - 130, p.y - 18, 116, 36}, Words(number(v, 3, "axis")), beside, alpha);
     }
     f.text({plot.x + 10, plot.bottom() + 48, plot.w - 10, 40}, x_name, with(small_text, Align::right), alpha);
     f.text({plot.x - 120, plot.y - 56, plot.w, 42}, y_name, with(label_text, Weight::semibold), alpha);

@@ -63,7 +63,7 @@ private:
         std::vector<Point> line;
         for (std::size_t k = 0; k < tail_.bins.size(); ++k) {
             const double expected = tail_.expected(k);
-            if (k == 0 || expected < histogram_.up.lo) continue;
+            if (k == 0 || expected < histogram_.up.low) continue;
             line.push_back(histogram_.at(std::sqrt(tail_.edge(k) * tail_.edge(k + 1)), expected));
         }
         const double fitted = f.ease(law, law + 0.8);

@@ -1,6 +1,5 @@
-// Linear axes tick at 1, 2 or 5 times a power of ten, log axes at one, two or four places in a decade, by how many
-// decades they hold. Lines and bands are cut off by an inner <svg>; names are pushed down, then up, until they are 13
-// pixels apart.
+// Each mark is one SVG element, placed by the axes' shares of the frame. Lines and bands are cut off by an inner <svg>;
+// names at the ends of lines are kept 13 pixels apart.
 #include "pages/charts.h"
 
 #include <algorithm>
@@ -26,63 +25,7 @@ std::string tick_text(double x, bool log) {
     return fmt::format("{:g}", x);
 }
 
-/// The round step (1, 2 or 5 times a power of ten) that cuts `length` into four to ten parts.
-double round_step(double length) {
-    const double power = math::pow(10.0, std::floor(math::log10(length / 4)));
-    for (const double step : {5.0, 2.0, 1.0})
-        if (length / (step * power) >= 4) return step * power;
-    return power;
-}
-
 }  // namespace
-
-double Axis::share(double x) const {
-    if (log) return math::log(x / low) / math::log(high / low);
-    return (x - low) / (high - low);
-}
-
-Axis linear_axis(std::string label, const std::vector<double>& values) {
-    Axis axis;
-    axis.label = std::move(label);
-    std::vector<double> finite;
-    for (const double v : values)
-        if (std::isfinite(v)) finite.push_back(v);
-    if (finite.empty()) finite = {0, 1};
-    double low = *std::min_element(finite.begin(), finite.end()),
-           high = *std::max_element(finite.begin(), finite.end());
-    if (high <= low) high = low + std::max(1e-12, std::fabs(low));
-    const double step = round_step(high - low);
-    axis.low = step * std::floor(low / step + 1e-9);
-    axis.high = step * std::ceil(high / step - 1e-9);
-    const int count = static_cast<int>(std::lround((axis.high - axis.low) / step));
-    for (int i = 0; i <= count; ++i) {
-        const double tick = axis.low + i * step;
-        axis.ticks.push_back(std::fabs(tick) < 1e-9 * step ? 0 : tick);
-    }
-    return axis;
-}
-
-Axis log_axis(std::string label, const std::vector<double>& values) {
-    Axis axis;
-    axis.label = std::move(label);
-    axis.log = true;
-    std::vector<double> positive;
-    for (const double v : values)
-        if (std::isfinite(v) && v > 0) positive.push_back(v);
-    if (positive.empty()) positive = {1, 10};
-    axis.low = *std::min_element(positive.begin(), positive.end()) / 1.25;
-    axis.high = *std::max_element(positive.begin(), positive.end()) * 1.25;
-    const double decades = math::log10(axis.high / axis.low);
-    const std::vector<double> parts = decades > 4 ? std::vector<double>{1}
-        : decades > 1.5                           ? std::vector<double>{1, 3}
-                                                  : std::vector<double>{1, 2, 3, 5};
-    for (int power = static_cast<int>(std::floor(math::log10(axis.low))); math::pow(10.0, power) <= axis.high; ++power)
-        for (const double part : parts) {
-            const double tick = part * math::pow(10.0, power);
-            if (tick >= axis.low && tick <= axis.high) axis.ticks.push_back(tick);
-        }
-    return axis;
-}
 
 Chart::Chart(int w, int h, Axis x, Axis y, std::string title)
     : width_(w), height_(h), x_(std::move(x)), y_(std::move(y)), title_(std::move(title)) {}
@@ -90,10 +33,6 @@ Chart::Chart(int w, int h, Axis x, Axis y, std::string title)
 double Chart::px(double x) const { return left_margin + x_.share(x) * (width_ - left_margin - right_margin); }
 double Chart::py(double y) const {
     return height_ - bottom_margin - y_.share(y) * (height_ - top_margin - bottom_margin);
-}
-
-bool Chart::drawable(double x, double y) const {
-    return std::isfinite(x) && std::isfinite(y) && (!x_.log || x > 0) && (!y_.log || y > 0);
 }
 
 void Chart::line(const std::vector<Point>& points, std::string_view css) {
@@ -150,18 +89,14 @@ void Chart::name(Point at, std::string_view text, std::string_view css) {
 }
 
 std::string Chart::names() const {
-    constexpr double apart = 13;
-    std::vector<Name> all = names_;
-    std::sort(all.begin(), all.end(), [](const Name& a, const Name& b) { return a.y < b.y; });
-    for (std::size_t i = 1; i < all.size(); ++i) all[i].y = std::max(all[i].y, all[i - 1].y + apart);
-    double limit = height_ - bottom_margin + 4;
+    constexpr double line = 13;
+    std::vector<double> y;
+    for (const Name& name : names_) y.push_back(name.y);
+    y = moved_apart(y, line, 0, height_ - bottom_margin + 4);
     std::string out;
-    for (auto it = all.rbegin(); it != all.rend(); ++it) {
-        it->y = std::min(it->y, limit);
-        limit = it->y - apart;
-        out += fmt::format(
-            "<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", it->css, it->x, it->y, it->text);
-    }
+    for (std::size_t i = 0; i < names_.size(); ++i)
+        out += fmt::format("<text class=\"name {}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", names_[i].css, names_[i].x,
+            y[i], names_[i].text);
     return out;
 }
 

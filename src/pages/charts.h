@@ -1,4 +1,4 @@
-// Charts as inline SVG: axes (linear or log), lines, dots, bands, bars. Sizes in CSS pixels of an unscaled chart; the
+// Charts as inline SVG: lines, dots, bands and bars between two axes. Sizes in CSS pixels of an unscaled chart; the
 // chart scales with the page. Colours are classes of the page's style sheet (c0, c1, ...), so that they follow light
 // and dark. Points that are not finite, or not positive on a log axis, are not drawn.
 #pragma once
@@ -7,28 +7,14 @@
 #include <string_view>
 #include <vector>
 
+#include "pages/axis.h"
+
 namespace crescent::inline pages {
 
 /// In data coordinates.
 struct Point {
     double x = 0, y = 0;
 };
-
-/// What an axis spans, and where its ticks are.
-struct Axis {
-    double low = 0, high = 1;  // data at the two ends
-    bool log = false;
-    std::string label;  // MathML does not go into SVG: plain text
-    std::vector<double> ticks;
-
-    /// Where x lies on the axis: 0 at low, 1 at high.
-    double share(double x) const;
-};
-
-/// An axis that holds all values, with round ticks; log axes need positive values (others are passed over). Values that
-/// are all alike still get an axis of some length.
-Axis linear_axis(std::string label, const std::vector<double>& values);
-Axis log_axis(std::string label, const std::vector<double>& values);
 
 /// A chart as inline SVG, drawn in the order of the calls. `css`: classes of the report's style sheet. Points that a
 /// log axis cannot hold, and NaN, are left out.
@@ -56,7 +42,7 @@ public:
 private:
     double px(double x) const;
     double py(double y) const;
-    bool drawable(double x, double y) const;
+    bool drawable(double x, double y) const { return x_.can_hold(x) && y_.can_hold(y); }
     std::string axes() const;
     std::string framed() const;
     std::string names() const;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "color/turbo.h"
+#include "pages/axis.h"
 #include "plates/sheet.h"
 
 namespace crescent::plates {
@@ -24,7 +25,7 @@ void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended) {
         c.text({x0 + w + 11, y - 12, 80, 24}, text, how);
     };
     tick(top, (open_ended ? "≥ " : "") + number(top, 3));
-    double step = round_step(top, std::clamp(h / 36, 1, 5));
+    double step = round_up(top / std::clamp(h / 24, 1, 7));
     for (int k = 0; k * step < top; ++k) {
         if (h * (1 - k * step / top) >= 24) tick(k * step, number(k * step, 3));
     }

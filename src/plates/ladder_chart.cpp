@@ -1,6 +1,5 @@
-// Logarithmic axes around all that is drawable, 0.15 in ln N and a factor of 1.4 wider on each side; lines at 1, 2 and
-// 5 times powers of ten, at powers alone over more than two decades. Names stand at the ends of curves, pushed down,
-// then up. Lengths in pixels.
+// Logarithmic axes around all that can be drawn, a factor of 1.16 wider in N and of 1.4 in the value on each side.
+// Names stand at the ends of curves, pushed apart. Lengths in pixels.
 #include "plates/ladder_chart.h"
 
 #include <fmt/format.h>
@@ -9,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "math/functions.h"
+#include "pages/axis.h"
 #include "plates/words.h"
 
 namespace crescent::plates {
@@ -18,25 +17,19 @@ namespace {
 
 struct Axes {
     Rect plot;
-    double x0 = 0, x1 = 1, y0 = 0, y1 = 1;  // natural logarithms
-    double x(double n) const { return plot.x + plot.w * (math::log(n) - x0) / (x1 - x0); }
-    double y(double v) const { return plot.bottom() - plot.h * (math::log(v) - y0) / (y1 - y0); }
+    Axis across, up;
+    double x(double n) const { return plot.x + plot.w * across.share(n); }
+    double y(double v) const { return plot.bottom() - plot.h * up.share(v); }
 };
 
-bool drawable(double v) { return std::isfinite(v) && v > 0; }
-
-Axes scale(const std::vector<LadderCurve>& curves, const Rect& plot) {
-    double n0 = 1e300, n1 = 0, v0 = 1e300, v1 = 0;
-    const auto hold = [&](double v) {
-        if (drawable(v)) v0 = std::min(v0, v), v1 = std::max(v1, v);
-    };
+Axes axes_of(const std::vector<LadderCurve>& curves, const Rect& plot) {
+    std::vector<double> rungs, values;
     for (const LadderCurve& l : curves) {
-        for (std::size_t i = 0; i < l.n.size(); ++i)
-            n0 = std::min(n0, l.n[i]), n1 = std::max(n1, l.n[i]), hold(l.value[i]);
-        for (const auto& [low, high] : l.interval) hold(low), hold(high);
+        rungs.insert(rungs.end(), l.n.begin(), l.n.end());
+        values.insert(values.end(), l.value.begin(), l.value.end());
+        for (const auto& [low, high] : l.interval) values.insert(values.end(), {low, high});
     }
-    if (v1 <= 0) v0 = v1 = 1;
-    return {plot, math::log(n0) - 0.15, math::log(n1) + 0.15, math::log(v0 / 1.4), math::log(v1 * 1.4)};
+    return {plot, log_axis("N", rungs, 1.16), log_axis("", values, 1.4)};
 }
 
 std::string rung_text(double n) { return n == std::floor(n) ? count(static_cast<std::uint64_t>(n)) : number(n, 3); }
@@ -52,15 +45,10 @@ void draw_axes(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves)
         c.text({x - 40, a.plot.bottom() + 6, 80, 20}, rung_text(n), with(with_px(small_text, 16), Align::centre));
         last = x;
     }
-    int decades = static_cast<int>(std::ceil((a.y1 - a.y0) / math::log(10.0)));
-    for (int p = static_cast<int>(std::floor(a.y0 / math::log(10.0))); p <= std::ceil(a.y1 / math::log(10.0)); ++p) {
-        for (int m : {1, 2, 5}) {
-            double v = m * math::pow(10.0, p);
-            if ((m != 1 && decades > 2) || math::log(v) < a.y0 || math::log(v) > a.y1) continue;
-            c.line(a.plot.x, a.y(v), a.plot.right(), a.y(v), rule, 1);
-            c.text({a.plot.x - 66, a.y(v) - 11, 58, 22}, number(v, 3),
-                with(with(with_px(small_text, 16), Align::right), Vertical::middle));
-        }
+    for (const double v : a.up.ticks) {
+        c.line(a.plot.x, a.y(v), a.plot.right(), a.y(v), rule, 1);
+        c.text({a.plot.x - 66, a.y(v) - 11, 58, 22}, number(v, 3),
+            with(with(with_px(small_text, 16), Align::right), Vertical::middle));
     }
     c.line(a.plot.x, a.plot.bottom(), a.plot.right(), a.plot.bottom(), muted, 1.5);
 }
@@ -72,21 +60,11 @@ std::string slope_text(const LadderCurve& l) {
     return l.heavy ? l.name + ": heavy tail" : fmt::format("{}: N<sup> {}</sup>", l.name, signed_number(l.slope));
 }
 
-// Where the names stand: at the ends of their lines, pushed apart to `pitch` and kept beside the plot.
+// Where the names stand: at the ends of their lines, `pitch` apart and beside the plot.
 std::vector<double> name_places(const Axes& a, const std::vector<LadderCurve>& curves, double pitch) {
-    std::vector<std::pair<double, std::size_t>> ends;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        double v = curves[i].value.back();
-        ends.push_back({drawable(v) ? a.y(v) : a.plot.y, i});
-    }
-    std::sort(ends.begin(), ends.end());
-    double floor = a.plot.y - 30;
-    for (auto& e : ends) e.first = floor = std::max(e.first, floor + pitch);
-    double ceiling = a.plot.bottom() + 12 + pitch / 2;
-    for (auto e = ends.rbegin(); e != ends.rend(); ++e) e->first = ceiling = std::min(e->first, ceiling - pitch);
-    std::vector<double> y(curves.size());
-    for (const auto& [place, i] : ends) y[i] = place;
-    return y;
+    std::vector<double> ends;
+    for (const LadderCurve& l : curves) ends.push_back(a.up.can_hold(l.value.back()) ? a.y(l.value.back()) : a.plot.y);
+    return moved_apart(ends, pitch, a.plot.y - 30 + pitch, a.plot.bottom() + 12 - pitch / 2);
 }
 
 // Each name with its slope, and under it the slope's interval where there is room for two lines.
@@ -108,7 +86,7 @@ void draw_names(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves
 }
 
 void draw_interval(Canvas& c, const Axes& a, double n, const std::pair<double, double>& ends, const Colour& ink) {
-    if (!drawable(ends.first) || !drawable(ends.second)) return;
+    if (!a.up.can_hold(ends.first) || !a.up.can_hold(ends.second)) return;
     const double x = a.x(n), low = a.y(ends.first), high = a.y(ends.second);
     c.line(x, low, x, high, ink, 1.5);
     for (const double y : {low, high}) c.line(x - 4, y, x + 4, y, ink, 1.5);
@@ -132,13 +110,13 @@ std::vector<LadderCurve> ladder_curves(const Sheet& sheet, const std::string& re
 
 void draw_ladder_chart(Canvas& c, const Rect& slot, const std::string& title, const std::vector<LadderCurve>& curves) {
     if (curves.empty()) return;
-    const Axes a = scale(curves, {slot.x + 70, slot.y + 34, slot.w - 70 - 188, slot.h - 34 - 28});
+    const Axes a = axes_of(curves, {slot.x + 70, slot.y + 34, slot.w - 70 - 188, slot.h - 34 - 28});
     c.text({slot.x, slot.y, slot.w - 188, 26}, title, with(body_text, Weight::semibold));
     draw_axes(c, a, curves);
     for (const LadderCurve& l : curves) {
         std::vector<Canvas::Point> path;
         for (std::size_t k = 0; k < l.n.size(); ++k) {
-            if (drawable(l.value[k])) path.push_back({a.x(l.n[k]), a.y(l.value[k])});
+            if (a.up.can_hold(l.value[k])) path.push_back({a.x(l.n[k]), a.y(l.value[k])});
             if (k < l.interval.size()) draw_interval(c, a, l.n[k], l.interval[k], l.ink);
         }
         c.polyline(path, l.ink, 2.5);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "math/functions.h"
+#include "pages/axis.h"
 #include "plates/sheet.h"
 
 namespace crescent::plates {
@@ -32,15 +33,6 @@ std::string angle_name(int deg, int tilt_deg, bool roomy) {
     if (deg == tilt_deg) return "R, " + text;
     if (deg == -tilt_deg) return "ω<sub>o</sub>, " + text;
     return text;
-}
-
-// The smallest round step that reaches the peak in at most `rings` rings.
-double ring_step(double peak, int rings) {
-    double least = peak / rings, power = math::pow(10, std::floor(math::log10(least)));
-    for (double lead : {1.0, 2.0, 2.5, 3.0, 4.0, 5.0}) {
-        if (lead * power >= least * (1 - 1e-9)) return lead * power;
-    }
-    return 10 * power;
 }
 
 void draw_rays(Canvas& c, const Frame& f, double tilt) {
@@ -105,7 +97,8 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     double w = plot.slot.w - plot.legend_w;
     double radius = std::min(w / 2 - 40, plot.slot.h - 30 - 28);
     if (radius < 20) return;
-    double step = ring_step(plot.peak, std::max(1, static_cast<int>(radius / 44)));  // a label needs 44 px
+    double step =
+        round_up(plot.peak / std::max(1, static_cast<int>(radius / 44)), {1, 2, 2.5, 3, 4, 5});  // a label needs 44 px
     int rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
     Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
     draw_circles(canvas, f, step, rings);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiment/arm_facts.h"
+#include "pages/axis.h"
 #include "plates/facts.h"
 
 namespace crescent::plates {
@@ -48,7 +49,7 @@ void dashed(Sheet& sheet, const Rect& r) {
 
 /// Numbers under the picture and beside it, and faint lines through it.
 void rulers(Sheet& sheet, const Rect& picture, const View& v) {
-    const double step = std::max(1.0, round_step(std::max(v.width, v.height), 10));
+    const double step = std::max(1.0, round_up(std::max(v.width, v.height) / 10.0));
     const Colour grid{1, 1, 1, 0.16};
     const Text under = with(with_px(small_text, 14), Align::centre),
                beside = with(with_px(small_text, 14), Align::right);

@@ -154,10 +154,4 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
     }
 }
 
-double round_step(double top, int about) {
-    double rough = top / about, power = math::pow(10, std::floor(math::log10(rough)));
-    double lead = rough / power;
-    return (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10) * power;
-}
-
 }  // namespace crescent::plates

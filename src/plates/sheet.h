@@ -61,8 +61,6 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
 
 /// A vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels stand to its right.
 void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);
-/// Round steps that cut 0..top into about `about` parts.
-double round_step(double top, int about);
 
 // The painters of the list, experiment/plate_kinds.h; several kinds may share one.
 #define CRESCENT_PAINTER(name, painter, ...) void draw_##painter(Sheet& sheet);
