@@ -2,8 +2,12 @@
 // larger commands are in grammar_*.cpp.
 #include "arguments.h"
 
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
 #include <memory>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
@@ -22,6 +26,35 @@ std::string seconds(const std::string& text) {
     return end != text.c_str() && *end == 0 && value >= 0 && value <= 1e9 ? "" : "expected seconds, 0 to 1e9";
 }
 
+CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
+    const std::string range = fmt::format("{} to {}", low, high);
+    const auto wrong = [=](std::string& text) {
+        std::int64_t value = 0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool good = error == std::errc{} && stop == text.data() + text.size() && value >= low && value <= high;
+        return good ? std::string() : fmt::format("expected a whole number from {}, not '{}'", range, printable(text));
+    };
+    return {wrong, range, ""};
+}
+
+CLI::Validator number(double low, double high) {
+    const std::string range = fmt::format("{} to {}", low, high);
+    const auto wrong = [=](std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool good = end != text.c_str() && *end == 0 && value >= low && value <= high;
+        return good ? std::string() : fmt::format("expected a number from {}, not '{}'", range, printable(text));
+    };
+    return {wrong, range, ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    const auto wrong = [=](std::string& text) {
+        return std::ranges::find(words, text) != words.end() ? std::string() : expected_one_of(words, text);
+    };
+    return {wrong, "", ""};
+}
+
 namespace {
 
 constexpr const char* footer = R"(Exit codes: 0 all holds; 1 an assertion fails (check: wrong); 2 wrong command
@@ -37,7 +70,7 @@ void add_list(CLI::App& app, Work& work) {
     std::shared_ptr<ListFlags> f;
     CLI::App* c = command(app, work, "list", "What an experiment can name.", list, f);
     c->add_option(
-         "WHAT", f->what, "arms, shapes, lights, brdfs, plates, meters, verdicts, isas or devices; without it, all")
+         "TOPIC", f->what, "arms, shapes, lights, brdfs, plates, meters, verdicts, isas or devices; without it, all")
         ->type_name("");
 }
 
@@ -54,14 +87,28 @@ void add_version(CLI::App& app, Work& work) {
     app.add_flag_callback("--version", [] { throw CLI::CallForVersion("", 0); }, "Version, commit and compiler.");
 }
 
-/// Commands where none was chosen, else the flags of the chosen one.
-std::vector<std::string> words(const CLI::App& command) {
+/// Commands where none was chosen, and the flags of what was chosen.
+std::vector<std::string> words(const CLI::App& command, bool flags = true) {
     std::vector<std::string> out;
     for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
         out.push_back(sub->get_name());
+    if (!flags) return out;
     for (const CLI::Option* option : command.get_options())
         for (const std::string& name : option->get_lnames()) out.push_back("--" + name);
     return out;
+}
+
+/// What is wrong with a word that a command does not take.
+std::string unexpected(const CLI::App& command, const std::string& word) {
+    const std::string shown = "'" + printable(word) + "'";
+    const std::string close = did_you_mean(word.substr(0, word.find('=')), words(command));
+    if (word.starts_with('-')) return "no flag " + shown + close;
+    if (!command.get_subcommands([](const CLI::App*) { return true; }).empty())
+        return fmt::format("no command {}: expected one of {}{}", shown, fmt::join(words(command, false), ", "), close);
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_positional())
+            return fmt::format("takes one {}, and {} is a second one", option->get_name(true), shown);
+    return fmt::format("takes flags alone, and {} is none{}", shown, close);
 }
 
 /// The parser's complaint in two lines, with the nearest valid word where a word is unknown.
@@ -72,11 +119,7 @@ std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
     std::string text = name + ": " + error.what();
     const std::vector<std::string> extra = app.remaining(true);
     if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extra.empty()) {
-        const std::string near = nearest(extra.front().substr(0, extra.front().find('=')), words(command));
-        const bool second = command.get_name() == "list" && !extra.front().starts_with('-');
-        text = second
-            ? name + ": takes one topic, and '" + extra.front() + "' is a second one"
-            : name + ": no '" + extra.front() + "' here" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+        text = name + ": " + unexpected(command, extra.front());
     }
     return text + "\n`" + name + " --help` says what it takes\n";
 }

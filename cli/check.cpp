@@ -31,12 +31,10 @@ Settings settings_of(const CheckFlags& flags) {
     for (const std::string& word : flags.settings) {
         const std::size_t equals = word.find('=');
         const std::string key = word.substr(0, equals);
-        if (equals == std::string::npos || !ranges.count(key)) {
-            const std::string near = nearest(key, {"s", "alpha", "rho_d", "rho_s"});
+        if (equals == std::string::npos || !ranges.count(key))
             throw InputError({"--set " + word, 0, 0},
                 "expected s=, alpha=, rho_d= or rho_s= and a number" +
-                    (near.empty() || near == key ? "" : "; did you mean '" + near + "'?"));
-        }
+                    did_you_mean(key, {"s", "alpha", "rho_d", "rho_s"}));
         const double v = number_in(word.substr(equals + 1), "--set " + word);
         const auto [low, high] = ranges.at(key);
         if (!(v >= low && v <= high))

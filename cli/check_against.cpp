@@ -30,9 +30,9 @@ namespace {
 std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, const ProgressMonitor& monitor) {
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end()) return arm_against(flags.against, a);
-    const std::string near = nearest(flags.against, names);
+    const std::string near = did_you_mean(flags.against, names);
     if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a word, no command
-        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm; did you mean '" + near + "'?");
+        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm" + near);
     for (const char* end : {".csv", ".npy"})
         if (flags.against.ends_with(end) && flags.against.find(' ') == std::string::npos)
             throw InputError({"--against " + flags.against, 0, 0},

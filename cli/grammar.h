@@ -1,9 +1,11 @@
 // What the files of the command line's grammar share: a command is added to the parser together with what performs it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -25,6 +27,10 @@ template <class Flags> CLI::App* command(CLI::App& app, Work& work, const char* 
 /// What is wrong with the text of a flag, "" where nothing: it is empty; it is no number of seconds from 0 to 1e9.
 std::string told(const std::string& text);
 std::string seconds(const std::string& text);
+/// What a flag takes: a whole number, a number, one of some words. Another is told with what was expected.
+CLI::Validator whole_number(std::int64_t low, std::int64_t high);
+CLI::Validator number(double low, double high);
+CLI::Validator one_of(const std::vector<std::string>& words);
 
 // Each adds one command; `work` receives what performs it once the parser met it.
 void add_run(CLI::App& app, Work& work);

@@ -84,7 +84,7 @@ void limits(CLI::App& c, CheckFlags& f, CLI::Option* exec) {
     c.add_option("--patience", f.patience, "s that --exec may take in all; default 120, with --full 3600")
         ->type_name("SECONDS")
         ->needs(exec)
-        ->check(CLI::Range(0.01, 1e6));
+        ->check(number(0.01, 1e6));
     c.add_flag("--accept-few", f.accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
 }
 
@@ -102,14 +102,16 @@ void add_check(CLI::App& app, Work& work) {
                     ->allow_extra_args(false);
     auto* quick = c->add_flag("--quick", f->quick, "seconds an arm (the default)");
     c->add_flag("--full", f->full, "minutes: more directions, more draws")->excludes(quick);
-    c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")->type_name("P");
-    c->add_option("--seed", f->seed, "default 1")->type_name("N");
+    c->add_option("--alpha", f->alpha, "family-wise error of the whole call; default 1e-3")
+        ->type_name("P")
+        ->check(number(0, 1));
+    c->add_option("--seed", f->seed, "default 1")->type_name("N")->check(whole_number(0, 4294967295));
     auto* planted = c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which")
                         ->excludes(arm)
                         ->excludes(set);
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure the bench itself on so many seeds")
                       ->type_name("SEEDS")
-                      ->check(CLI::Range(1, 100000))
+                      ->check(whole_number(1, 100000))
                       ->excludes(arm)
                       ->excludes(set)
                       ->excludes(planted);
@@ -119,7 +121,7 @@ void add_check(CLI::App& app, Work& work) {
         c->add_option("--right", f->right,
              "judge so many right samplers at random parameters; with --error-rates in quick and in full mode")
             ->type_name("N")
-            ->check(CLI::Range(1, 1000000));
+            ->check(whole_number(1, 1000000));
     for (auto* other : {arm, set, planted}) right->excludes(other);
     c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
     for (auto* other : {arm, set, planted, rates, right}) exec->excludes(other), samples->excludes(other);

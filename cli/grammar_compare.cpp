@@ -47,7 +47,7 @@ void add_compare(CLI::App& app, Work& work) {
     auto* schema = c->add_flag("--schema", f->schema, "every key of FILE");
     c->add_flag("--json", f->json, "with --schema: as a JSON Schema")->needs(schema);
     auto* rates = c->add_option("--error-rates", f->error_rates, "measure compare itself on so many made-up calls");
-    rates->type_name("CALLS")->check(CLI::Range(1, 100000));
+    rates->type_name("CALLS")->check(whole_number(1, 100000));
     c->add_option("--seed", f->seed, "of their noise; default 1")->type_name("SEED")->needs(rates);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }

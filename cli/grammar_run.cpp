@@ -63,7 +63,7 @@ void add_run(CLI::App& app, Work& work) {
         ->allow_extra_args(false);
     c->add_option("--seeds", f->seeds, "how many seeds the bands are made of (--set seeds=K)")
         ->type_name("K")
-        ->check(CLI::Range(1, 4096));
+        ->check(whole_number(1, 4096));
     auto* preview = c->add_flag("--preview", f->preview, "DIR/preview.png alone: where regions and crops lie");
     c->add_option("--seed-range", f->seed_range, "seeds A to B of the series alone, from 1")
         ->type_name("A:B")
@@ -75,17 +75,17 @@ void add_run(CLI::App& app, Work& work) {
         ->excludes(preview);
     c->add_option("--threads", f->threads, "default: as many as this process may use")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(whole_number(1, 4096));
     c->add_option("--isa", f->isa, all_isas() + "; default: the best here")->type_name("NAME");
     c->add_option("--instrument", f->instrument, "what computes the films: cpu, gl")
         ->type_name("NAME")
-        ->check(CLI::IsMember({"cpu", "gl"}));
+        ->check(one_of({"cpu", "gl"}));
     c->add_option("--gl-context", f->gl_context, "with gl: egl (default), osmesa")
         ->type_name("NAME")
-        ->check(CLI::IsMember({"egl", "osmesa"}));
+        ->check(one_of({"egl", "osmesa"}));
     c->add_option("--gl-device", f->gl_device, "with gl: which of `list devices`")
         ->type_name("N")
-        ->check(CLI::Range(0, 1023));
+        ->check(whole_number(0, 1023));
     c->add_option("--keep-after", f->keep_after, "longer work is kept as it goes; default 10")
         ->type_name("SECONDS")
         ->check(seconds);
@@ -101,11 +101,11 @@ void add_film(CLI::App& app, Work& work) {
     c->add_option("--out", o.out, "where the outputs go; default: out/film")->type_name("DIR")->check(told);
     c->add_option("--size", f->size, "1080p (default), 720p, 360p")
         ->type_name("P")
-        ->check(CLI::IsMember({"1080p", "720p", "360p"}));
+        ->check(one_of({"1080p", "720p", "360p"}));
     auto* still =
         c->add_option("--still", o.still, "the frame at this time alone, a PNG")->type_name("MM:SS")->check(moment);
     auto* stills = c->add_flag("--stills", o.stills, "a PNG of every shot, no film")->excludes(still);
-    c->add_option("--shot", o.shot, "this shot alone")->type_name("K")->check(CLI::Range(1, 99));
+    c->add_option("--shot", o.shot, "this shot alone")->type_name("K")->check(whole_number(1, 99));
     auto* from = c->add_option("--from", o.from, "from this time on")->type_name("MM:SS")->check(moment);
     auto* to = c->add_option("--to", o.to, "up to this time")->type_name("MM:SS")->check(moment);
     for (auto* part : {from, to}) part->excludes(still)->excludes(stills);
@@ -116,10 +116,10 @@ void add_film(CLI::App& app, Work& work) {
         ->take_all()
         ->expected(1)
         ->allow_extra_args(false);
-    c->add_option("--seeds", f->seeds, "how many seeds (--set seeds=K)")->type_name("K")->check(CLI::Range(1, 4096));
+    c->add_option("--seeds", f->seeds, "how many seeds (--set seeds=K)")->type_name("K")->check(whole_number(1, 4096));
     c->add_option("--threads", o.threads, "default: as many as this process may use")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(whole_number(1, 4096));
     c->add_option("--isa", o.isa, all_isas() + "; default: the best here")->type_name("NAME");
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
 }

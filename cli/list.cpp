@@ -100,14 +100,8 @@ std::string lines(const std::vector<Word>& words, const char* indent) {
 
 [[noreturn]] void unknown(const std::string& what) {
     std::vector<std::string> names;
-    std::string all;
-    for (const Topic& topic : topics()) {
-        names.push_back(topic.name);
-        all += (all.empty() ? "" : ", ") + topic.name;
-    }
-    const std::string near = nearest(what, names);
-    throw InputError({"crescent list", 0, 0},
-        "expected one of " + all + ", not '" + what + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    for (const Topic& topic : topics()) names.push_back(topic.name);
+    throw InputError({"crescent list", 0, 0}, expected_one_of(names, what));
 }
 
 }  // namespace

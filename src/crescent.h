@@ -24,6 +24,7 @@
 #include "base/contents.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/hint.h"
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/pipe.h"

@@ -50,7 +50,7 @@ expect 2 "$CRESCENT" run "$tiny" --set n=none --set shapes.ball.radius=-1 --out 
 expect 2 "$CRESCENT" run absent.toml
 expect 2 "$CRESCENT" list platez
 expect 2 "$CRESCENT" list arms shapes
-grep -q 'takes one topic' said || die "list does not say that it takes one topic: $(cat said)"
+grep -q 'takes one TOPIC' said || die "list does not say that it takes one topic: $(cat said)"
 printf 'title = "a"\nimage = 3\n[camera]\neye = [0, 0\n' >broken.toml
 expect 2 "$CRESCENT" run broken.toml
 grep -q '^broken.toml:[0-9]*:[0-9]*: ' said || die "no file:line:column: $(cat said)"

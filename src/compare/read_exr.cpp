@@ -14,6 +14,7 @@
 #include <map>
 
 #include "base/errors.h"
+#include "base/hint.h"
 #include "compare/exr_extra.h"
 #include "compare/render.h"
 
@@ -96,10 +97,8 @@ const Layer& chosen(const std::string& path, const std::vector<Layer>& layers, c
         if (layer.name == wanted || layer.alone == wanted) return layer;
     std::vector<std::string> names;
     for (const Layer& layer : layers) names.push_back(layer.name);
-    const std::string near = nearest(wanted, names);
     throw InputError({path, 0, 0},
-        fmt::format("no layer '{}': expected one of {}{}", wanted, names_of(layers),
-            near.empty() ? "" : "; did you mean '" + near + "'?"));
+        fmt::format("no layer '{}': expected one of {}{}", wanted, names_of(layers), did_you_mean(wanted, names)));
 }
 
 /// Planes of the display window, read bottom-up out of the part's data window.

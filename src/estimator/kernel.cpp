@@ -4,6 +4,7 @@
 
 #include "arms/all.h"
 #include "base/errors.h"
+#include "base/hint.h"
 #include "estimator/isas.h"
 
 namespace crescent::inline estimator {
@@ -78,9 +79,7 @@ const KernelTable& kernels_for(const std::string& isa) {
         throw InputError({"--isa", 0, 0},
             "this machine has no " + wanted + "; it has " + std::string(tables.back().isa) + " at best");
     }
-    const std::string near = nearest(wanted, names);
-    const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
-    throw InputError({"--isa", 0, 0}, "expected one of " + all_isas() + ", not '" + wanted + "'" + hint);
+    throw InputError({"--isa", 0, 0}, expected_one_of(names, wanted));
 }
 
 int arm_index(std::string_view sampler) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/hint.h"
 #include "experiment/parse_context.h"
 #include "math/functions.h"
 
@@ -183,8 +184,7 @@ bool is_beyond(std::string_view word) {
 }  // namespace
 
 std::string hint(std::string_view word, const std::vector<std::string>& valid) {
-    const std::string near = word.size() > 64 ? "" : nearest(word, valid);
-    if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
+    if (const std::string near = did_you_mean(word, valid); !near.empty()) return near;
     return is_beyond(word) ? "; README.md says what a scene can be" : "";
 }
 

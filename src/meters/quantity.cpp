@@ -1,5 +1,5 @@
-// Both sides of a check are looked up in what was measured. What was not measured is
-// NaN, and no comparison with NaN holds. An RMSE that the reference's own error is a large part of is no evidence.
+// Both sides of a check are looked up in what was measured. What was not measured is NaN, and no comparison with NaN
+// holds. An RMSE that the reference's own error is a large part of is no evidence.
 #include "meters/quantity.h"
 
 #include <algorithm>

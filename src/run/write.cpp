@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/hint.h"
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -95,12 +96,10 @@ OutputParts output_parts(const std::string& words) {
         const std::size_t end = std::min(words.find(',', begin), words.size());
         const std::string word = words.substr(begin, end - begin);
         const auto found = std::ranges::find(names, word);
-        if (found == names.end()) {
-            const std::string near = nearest(word, names);
+        if (found == names.end())
             throw InputError({"--only " + words, 0, 0},
                 fmt::format("expected metrics, films, plates or report, several with commas between, not '{}'{}", word,
-                    near.empty() ? "" : "; did you mean '" + near + "'?"));
-        }
+                    did_you_mean(word, names)));
         *all[found - names.begin()].second = true;
         begin = end + 1;
     }
