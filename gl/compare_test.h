@@ -30,11 +30,11 @@ struct Difference {
 
 inline void compare(const Scene& scene, const ShapeMap& shapes, const Film& cpu, const Film& gl, Difference& out) {
     const int width = scene.image().width;
-    out.bad_cpu += cpu.bad, out.bad_gl += gl.bad;
+    out.bad_cpu += cpu.invalid, out.bad_gl += gl.invalid;
     for (std::size_t at = 0; at < cpu.size(); ++at) {
         if (shapes.shape[at] < 0) continue;
         ++out.pixels;
-        if (cpu.hits[at] != gl.hits[at] || cpu.horizon[at] != gl.horizon[at]) {
+        if (cpu.light_hits[at] != gl.light_hits[at] || cpu.horizon[at] != gl.horizon[at]) {
             ++out.changed;
             continue;
         }

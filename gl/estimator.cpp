@@ -136,7 +136,7 @@ void Estimator::estimate(const Scene& scene, const TileBox& box, const std::stri
         pass.advance_to(film.n);
         for (std::size_t g = 0; g < here.groups().size(); ++g) {
             resolve_film(scene, here.groups()[g], pass.moments()[g], film);
-            for (const std::uint32_t bad : pass.moments()[g].bad) film.bad += bad;
+            for (const std::uint32_t bad : pass.moments()[g].bad) film.invalid += bad;
         }
     }
 }

@@ -115,11 +115,11 @@ TEST(Films, EveryPlaneIsTheCpus) {
     const Film a = estimate_films(scene, "cosine", {64}, 5, "", monitor)[0],
                b = gl.films(scene, "cosine", {64}, 5, monitor)[0];
     for (std::size_t at = 0; at < a.size(); ++at) {
-        if (a.hits[at] != b.hits[at]) continue;
-        for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::y2, &Film::largest})
+        if (a.light_hits[at] != b.light_hits[at]) continue;
+        for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::second_moment, &Film::largest})
             EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 3e-6 * static_cast<double>((a.*plane)[at])) << at;
         // A variance is a difference: what is left of X^2 after the mean's square.
-        EXPECT_NEAR(b.var[at], a.var[at], 3e-6 * static_cast<double>(a.y2[at]) / 63) << at;
+        EXPECT_NEAR(b.var[at], a.var[at], 3e-6 * static_cast<double>(a.second_moment[at]) / 63) << at;
         EXPECT_EQ(b.horizon[at], a.horizon[at]);
     }
 }
@@ -159,7 +159,7 @@ TEST(Films, ARungIsAPrefixWhateverTheOtherRungs) {
     const std::vector<Film> many = gl.films(scene, "mixture", {1, 3, 16, 37, 64}, 9, monitor);
     for (const Film& film : many) {
         const Film alone = gl.films(scene, "mixture", {film.n}, 9, monitor)[0];
-        EXPECT_EQ(alone.hits, film.hits) << film.n;
+        EXPECT_EQ(alone.light_hits, film.light_hits) << film.n;
         EXPECT_EQ(alone.largest, film.largest) << film.n;
         for (std::size_t at = 0; at < film.size(); ++at)
             EXPECT_NEAR(alone.y[at], film.y[at], 1e-6 * static_cast<double>(film.y[at])) << film.n;
@@ -200,7 +200,7 @@ TEST(Films, MoreLightsThanADrawCanWriteAreAllCounted) {
     ProgressMonitor monitor;
     const Film a = estimate_films(scene, "light-area", {32}, 2, "", monitor)[0],
                b = gl.films(scene, "light-area", {32}, 2, monitor)[0];
-    EXPECT_EQ(a.hits, b.hits);
+    EXPECT_EQ(a.light_hits, b.light_hits);
     for (std::size_t at = 0; at < a.size(); ++at)
         for (const auto plane : {&Film::r, &Film::g, &Film::b})
             EXPECT_NEAR((b.*plane)[at], (a.*plane)[at], 5e-6 * static_cast<double>((a.*plane)[at])) << at;
@@ -245,9 +245,9 @@ TEST(Films, APlantedNaNIsCountedInEverySample) {
     const Scene scene(experiment);
     ProgressMonitor monitor;
     Estimator gl(test::context());
-    const std::uint64_t cpu = estimate_films(scene, "phong", {8}, 1, "", monitor)[0].bad;
+    const std::uint64_t cpu = estimate_films(scene, "phong", {8}, 1, "", monitor)[0].invalid;
     EXPECT_GT(cpu, 100u);
-    EXPECT_EQ(gl.films(scene, "phong", {8}, 1, monitor)[0].bad, cpu);
+    EXPECT_EQ(gl.films(scene, "phong", {8}, 1, monitor)[0].invalid, cpu);
 }
 
 TEST(Films, StopWhenAsked) {

@@ -68,7 +68,7 @@ CRESCENT_EXPORT(tile)(int arm, double n, int x0, int y0, int x1, int y1)->const 
     for (int j = y0; j < y1; ++j)
         for (int i = x0; i < x1; ++i)
             tail.push_back(b.shapes.shape[static_cast<std::size_t>(j) * b.width() + std::size_t(i)]);
-    tail.push_back(static_cast<std::int32_t>(film.bad));
+    tail.push_back(static_cast<std::int32_t>(film.invalid));
     const auto* bytes = reinterpret_cast<const std::byte*>(tail.data());
     out.insert(out.end(), bytes, bytes + tail.size() * sizeof tail[0]);
     return out.data();
@@ -111,9 +111,9 @@ CRESCENT_EXPORT(film_room)(int index)->void {
             (slot(index).film.*plane).assign(bench().pixels(), 0);
         });
     };
-    for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::y2, &Film::var, &Film::largest})
+    for (const auto plane : {&Film::r, &Film::g, &Film::b, &Film::y, &Film::second_moment, &Film::var, &Film::largest})
         need(plane);
-    for (const auto plane : {&Film::horizon, &Film::hits}) need(plane);
+    for (const auto plane : {&Film::horizon, &Film::light_hits}) need(plane);
     parts.emplace_back([=] {
         slot(index).film.width = bench().experiment.image.width,
         slot(index).film.height = bench().experiment.image.height;
@@ -132,7 +132,7 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     const auto samples = static_cast<std::uint64_t>(n);
     const bool whole = std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
     if (!whole) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
-    s.film.n = samples, s.film.directions = directions_per_sample(plan.sampler), s.film.bad = 0;
+    s.film.n = samples, s.film.directions = directions_per_sample(plan.sampler), s.film.invalid = 0;
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }
 
@@ -154,7 +154,7 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
         }
     std::int32_t bad = 0;
     std::memcpy(&bad, rest, 4);
-    film.bad += static_cast<std::uint64_t>(bad);
+    film.invalid += static_cast<std::uint64_t>(bad);
 }
 
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {

@@ -38,7 +38,7 @@ struct Measuring {
         for (int j = part.y0; j < part.y1; ++j)
             for (int i = part.x0; i < part.x1; ++i, ++from) {
                 y[seed][at(i, j)] = double(found.y[from]);
-                hits += found.hits[from];
+                hits += found.light_hits[from];
             }
     }
     void tell() const {

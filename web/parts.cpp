@@ -93,7 +93,7 @@ Film film_over(const TileBox& box, const std::string& sampler, std::uint64_t n, 
         for (std::uint32_t& pixel : sites.pixel) pixel = within(pixel, box);
         resolve_film(bench().scene, sites, moments, film);
         sites.pixel = of_image;
-        film.bad += bad_of(moments, sites.count);
+        film.invalid += bad_of(moments, sites.count);
     }
     return film;
 }

@@ -24,7 +24,7 @@ TEST(Measures, TheOpenedPixelsSamplesAverageToTheFilm) {
         EXPECT_EQ(arm->film, double(film.y[at(film, *story.pixel)]));
         EXPECT_NEAR(arm->mean.back(), arm->film, 2e-6 * arm->film);
         EXPECT_EQ(arm->giant().x, film.largest[at(film, *story.pixel)]);
-        EXPECT_EQ(arm->met, film.hits[at(film, *story.pixel)]);
+        EXPECT_EQ(arm->met, film.light_hits[at(film, *story.pixel)]);
         EXPECT_EQ(arm->under, film.horizon[at(film, *story.pixel)]);
     }
 }

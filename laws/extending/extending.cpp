@@ -76,7 +76,7 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
     }
     std::printf("%s on %s: mean off by %.3g of %.4g, standard error %.2g, reference %.2g\n", sampler.c_str(),
         brdf.c_str(), off, all, std::sqrt(variance), error);
-    return film.bad == 0 && all > 0 && std::fabs(off) < 5 * std::sqrt(variance) + error;
+    return film.invalid == 0 && all > 0 && std::fabs(off) < 5 * std::sqrt(variance) + error;
 }
 
 bool is_judged_as_expected(const std::string& sampler, const Grid& wo = {}) {

@@ -20,11 +20,11 @@ template <class T> nb::object plane(const std::vector<T>& values, int width, int
 
 nb::dict planes_of(const Film& f, nb::handle owner) {
     nb::dict out;
-    const std::pair<const char*, const std::vector<float>*> all[] = {
-        {"r", &f.r}, {"g", &f.g}, {"b", &f.b}, {"y", &f.y}, {"y2", &f.y2}, {"var", &f.var}, {"largest", &f.largest}};
+    const std::pair<const char*, const std::vector<float>*> all[] = {{"r", &f.r}, {"g", &f.g}, {"b", &f.b}, {"y", &f.y},
+        {"y2", &f.second_moment}, {"var", &f.var}, {"largest", &f.largest}};
     for (const auto& [name, values] : all) out[name] = plane(*values, f.width, f.height, owner);
     out["horizon"] = plane(f.horizon, f.width, f.height, owner);
-    out["hits"] = plane(f.hits, f.width, f.height, owner);
+    out["hits"] = plane(f.light_hits, f.width, f.height, owner);
     return out;
 }
 

@@ -41,11 +41,11 @@ public:
         film_.g[at] = static_cast<float>(mean[1]);
         film_.b[at] = static_cast<float>(mean[2]);
         film_.y[at] = static_cast<float>(y);
-        film_.y2[at] = static_cast<float>(over_n(m_.spread[i]) + y * y);
+        film_.second_moment[at] = static_cast<float>(over_n(m_.spread[i]) + y * y);
         film_.var[at] = film_.n > 1 ? static_cast<float>(m_.spread[i] / (n_ * (n_ - 1))) : 0.0f;
         film_.largest[at] = m_.largest[i];
         film_.horizon[at] = m_.horizon[i];
-        film_.hits[at] = m_.hits[i];
+        film_.light_hits[at] = m_.hits[i];
     }
 
 private:
@@ -130,7 +130,7 @@ std::vector<Film> estimate_films(const TiledScene& view, const ArmInUse& arm, co
         return samples;
     });
     for (std::size_t r = 0; r < n.size(); ++r)
-        films[r].bad = std::accumulate(bad[r].begin(), bad[r].end(), std::uint64_t{0});
+        films[r].invalid = std::accumulate(bad[r].begin(), bad[r].end(), std::uint64_t{0});
     return films;
 }
 

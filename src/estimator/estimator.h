@@ -19,7 +19,7 @@ namespace crescent::inline estimator {
 std::vector<Film> estimate_films(const TiledScene& view, const ArmInUse& arm, const std::vector<std::uint64_t>& n,
     std::uint32_t seed, const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint = nullptr);
 
-/// Sums over film.n samples -> the pixels of these sites; film.bad is the caller's to count.
+/// Sums over film.n samples -> the pixels of these sites; film.invalid is the caller's to count.
 void resolve_film(const Scene& scene, const ShadingPoints& sites, const Moments& moments, Film& film);
 
 /// Which shape each pixel sees.

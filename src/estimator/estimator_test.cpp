@@ -94,7 +94,7 @@ TEST(BadSamples, MinusZeroIsNone) {
         "disks.left.radiance=[-0.0,-0.0,-0.0]"}));
     ProgressMonitor monitor;
     for (const std::string& arm : all_arms())
-        EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", monitor)[0].bad, 0u) << arm;
+        EXPECT_EQ(estimate_films(scene, arm, {4}, 1, "", monitor)[0].invalid, 0u) << arm;
 }
 
 TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
@@ -106,9 +106,9 @@ TEST(Shares, OfDirectionsAreNeverAboveOneForAnyArm) {
         EXPECT_EQ(film.directions, arm.starts_with("mis-") ? 2u : 1u) << arm;
         for (std::size_t at = 0; at < film.size(); ++at) {
             ASSERT_LE(film.horizon[at], film.n * film.directions) << arm;
-            ASSERT_LE(film.hits[at], film.n * film.directions) << arm;
-            ASSERT_LE(film.horizon[at] + film.hits[at], film.n * film.directions) << arm;
-            above_n += film.hits[at] > film.n;
+            ASSERT_LE(film.light_hits[at], film.n * film.directions) << arm;
+            ASSERT_LE(film.horizon[at] + film.light_hits[at], film.n * film.directions) << arm;
+            above_n += film.light_hits[at] > film.n;
         }
     }
     EXPECT_GT(above_n, 0u);  // a pair of directions may meet a light twice

@@ -26,9 +26,9 @@ struct Channel {
 
 std::vector<Channel> channels_of(const Film& f) {
     return {{"R", Imf::FLOAT, f.r.data()}, {"G", Imf::FLOAT, f.g.data()}, {"B", Imf::FLOAT, f.b.data()},
-        {"luminance.Y", Imf::FLOAT, f.y.data()}, {"second_moment.Y", Imf::FLOAT, f.y2.data()},
+        {"luminance.Y", Imf::FLOAT, f.y.data()}, {"second_moment.Y", Imf::FLOAT, f.second_moment.data()},
         {"variance.Y", Imf::FLOAT, f.var.data()}, {"largest.Y", Imf::FLOAT, f.largest.data()},
-        {"horizon.Y", Imf::UINT, f.horizon.data()}, {"hits.Y", Imf::UINT, f.hits.data()}};
+        {"horizon.Y", Imf::UINT, f.horizon.data()}, {"hits.Y", Imf::UINT, f.light_hits.data()}};
 }
 
 std::vector<Channel> channels_of(const ReferenceFilm& f) {

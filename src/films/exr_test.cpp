@@ -37,13 +37,13 @@ std::vector<T> channel(const std::string& path, int part, const std::string& nam
 Film counting_film() {
     Film film(width, height, 16);
     float next = 0.125f;
-    for (auto* plane : {&film.r, &film.g, &film.b, &film.y, &film.y2, &film.var, &film.largest})
+    for (auto* plane : {&film.r, &film.g, &film.b, &film.y, &film.second_moment, &film.var, &film.largest})
         for (float& v : *plane) v = next += 1.03f;
     std::uint32_t count = 7;
-    for (auto* plane : {&film.horizon, &film.hits})
+    for (auto* plane : {&film.horizon, &film.light_hits})
         for (std::uint32_t& v : *plane) v = count += 1000003;
     film.r[0] = std::numeric_limits<float>::denorm_min(), film.g[1] = std::numeric_limits<float>::max();
-    film.y[2] = std::numeric_limits<float>::quiet_NaN(), film.y2[3] = std::numeric_limits<float>::infinity(),
+    film.y[2] = std::numeric_limits<float>::quiet_NaN(), film.second_moment[3] = std::numeric_limits<float>::infinity(),
     film.b[4] = -0.0f;
     return film;
 }
@@ -73,11 +73,11 @@ TEST_F(Exr, AFilmReadBackIsTheFilm) {
     write_exr(path, {{"n16", &film}, {"n64", &second}},
         {{"crescent.experiment", "0123456789abcdef"}, {"crescent.seed", "7"}});
     const std::pair<const char*, const std::vector<float>*> floats[] = {{"R", &film.r}, {"G", &film.g}, {"B", &film.b},
-        {"luminance.Y", &film.y}, {"second_moment.Y", &film.y2}, {"variance.Y", &film.var},
+        {"luminance.Y", &film.y}, {"second_moment.Y", &film.second_moment}, {"variance.Y", &film.var},
         {"largest.Y", &film.largest}};
     for (const auto& [name, plane] : floats) expect_plane(*plane, channel<float>(path, 0, name, Imf::FLOAT), name);
     expect_plane(film.horizon, channel<std::uint32_t>(path, 0, "horizon.Y", Imf::UINT), "horizon.Y");
-    expect_plane(film.hits, channel<std::uint32_t>(path, 0, "hits.Y", Imf::UINT), "hits.Y");
+    expect_plane(film.light_hits, channel<std::uint32_t>(path, 0, "hits.Y", Imf::UINT), "hits.Y");
     expect_plane(second.r, channel<float>(path, 1, "R", Imf::FLOAT), "second part");
 }
 

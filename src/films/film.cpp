@@ -1,5 +1,5 @@
-// The hash is XXH3-64 over the bytes of the planes r, g, b, y, y2, var, largest, horizon, hits, of a reference r, g, b,
-// y, error; sizes, n and bad samples are not in it.
+// The hash is XXH3-64 over the bytes of the planes r, g, b, y, second_moment, var, largest, horizon, light_hits, of a
+// reference r, g, b, y, error; sizes, n and bad samples are not in it.
 #include "films/film.h"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ template <class Byte, class... V> std::vector<std::span<Byte>> bytes_of(V&... pl
     return {std::span<Byte>(reinterpret_cast<Byte*>(planes.data()), sizeof(planes[0]) * planes.size())...};
 }
 template <class Byte, class F> std::vector<std::span<Byte>> film_bytes(F& f) {
-    return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.y2, f.var, f.largest, f.horizon, f.hits);
+    return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.second_moment, f.var, f.largest, f.horizon, f.light_hits);
 }
 template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f) {
     return bytes_of<Byte>(f.r, f.g, f.b, f.y, f.error);
@@ -36,8 +36,8 @@ std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
 std::string to_string(const RunKey& key) { return fmt::format("{} n={} s={}", key.arm, key.n, key.s); }
 
 Film::Film(int w, int h, std::uint64_t samples) : width(w), height(h), n(samples) {
-    for (auto* plane : {&r, &g, &b, &y, &y2, &var, &largest}) plane->assign(area(w, h), 0.0f);
-    for (auto* plane : {&horizon, &hits}) plane->assign(area(w, h), 0u);
+    for (auto* plane : {&r, &g, &b, &y, &second_moment, &var, &largest}) plane->assign(area(w, h), 0.0f);
+    for (auto* plane : {&horizon, &light_hits}) plane->assign(area(w, h), 0u);
 }
 
 ReferenceFilm::ReferenceFilm(int w, int h, double exponent) : width(w), height(h), s(exponent) {

@@ -23,16 +23,16 @@ std::string to_string(const RunKey& key);
 /// Sample statistics of one arm after n samples, per pixel: row by row from the bottom-left, index i + j * width.
 struct Film {
     int width = 0, height = 0;
-    std::uint64_t n = 0;                 // samples per pixel
-    std::uint64_t directions = 1;        // drawn a sample; an arm of two techniques draws two
-    std::vector<float> r, g, b;          // mean radiance, W/(sr m^2)
-    std::vector<float> y;                // mean luminance X
-    std::vector<float> y2;               // mean of X^2
-    std::vector<float> var;              // variance of the mean of X: 1/(n(n-1)) sum (X - mean)^2; 0 where n = 1
-    std::vector<float> largest;          // largest single X
-    std::vector<std::uint32_t> horizon;  // directions at or under the horizon, of n * directions
-    std::vector<std::uint32_t> hits;     // directions that met a light, of n * directions
-    std::uint64_t bad = 0;               // NaN, infinite or negative samples in the whole film
+    std::uint64_t n = 0;                    // samples per pixel
+    std::uint64_t directions = 1;           // drawn a sample; an arm of two techniques draws two
+    std::vector<float> r, g, b;             // mean radiance, W/(sr m^2)
+    std::vector<float> y;                   // mean luminance X
+    std::vector<float> second_moment;       // mean of X^2
+    std::vector<float> var;                 // variance of the mean of X: 1/(n(n-1)) sum (X - mean)^2; 0 where n = 1
+    std::vector<float> largest;             // largest single X
+    std::vector<std::uint32_t> horizon;     // directions at or under the horizon, of n * directions
+    std::vector<std::uint32_t> light_hits;  // directions that met a light, of n * directions
+    std::uint64_t invalid = 0;              // NaN, infinite or negative samples in the whole film
 
     /// Every plane as bytes, 4 a pixel.
     std::vector<std::span<std::byte>> planes();

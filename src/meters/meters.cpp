@@ -52,7 +52,7 @@ RunMeter measure(const Experiment& experiment, const RunKey& key, const Film& fi
     const ShapeMap& shapes) {
     RunMeter run;
     run.key = key;
-    FilmFacts facts{0, film.n, film.directions, film.bad, experiment.firefly_k};
+    FilmFacts facts{0, film.n, film.directions, film.invalid, experiment.firefly_k};
     for (const Region& region : experiment.regions) {
         RegionMeter m;
         m.region = region.name;

@@ -36,7 +36,7 @@ void expect_mean(const Scene& scene, const ReferenceFilm& reference, const std::
         stated += static_cast<double>(reference.error[at]) + film_error * static_cast<double>(reference.y[at]);
     }
     EXPECT_LE(std::fabs(difference), 5 * std::sqrt(variance) + stated) << arm << ", " << what;
-    EXPECT_EQ(film.bad, 0u) << arm << ", " << what;
+    EXPECT_EQ(film.invalid, 0u) << arm << ", " << what;
 }
 
 void expect_means(const Experiment& e, const std::vector<std::string>& arms, std::uint64_t n, const std::string& what) {

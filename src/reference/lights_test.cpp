@@ -98,7 +98,7 @@ void expect_the_reference(const Experiment& e, const std::vector<const char*>& a
     const ReferenceFilm reference = quadrature_reference(scene, {e.s()}, monitor)[0];
     for (const char* arm : arms) {
         const Film film = estimate_films(scene, arm, {n}, 17, "", monitor)[0];
-        EXPECT_EQ(film.bad, 0u) << arm;
+        EXPECT_EQ(film.invalid, 0u) << arm;
         double difference = 0, variance = 0, all = 0, stated = 0;
         for (std::size_t at = 0; at < film.size(); ++at) {
             difference += static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
