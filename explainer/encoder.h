@@ -10,7 +10,7 @@
 
 namespace crescent::film {
 
-/// Where everything lies that goes into the film; "" where there is none.
+/// The files that go into the film, and those to be written; "" where there is none.
 struct Ingredients {
     int width = 0, height = 0;
     std::string captions, chapters, poster, voice;  // .srt, ffmetadata, .png, .wav

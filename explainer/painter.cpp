@@ -1,5 +1,6 @@
 // Draws the shot and its heading, then the ground over both, so that they fade in and out in 0.3 s, then the caption
-// over that. Nothing is drawn where the shot and its answers to the time are those of the canvas.
+// over that. A frame that shows the same as the one before it, because all that the shot asked of the time has the same
+// answer, is not drawn again.
 #include "painter.h"
 
 #include "style.h"

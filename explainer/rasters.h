@@ -16,7 +16,7 @@ struct Raster {
     std::uint64_t hash = 0;            // XXH3-64 of the bytes
 };
 
-/// What stands on a canvas, whose sides are even.
+/// The picture on a canvas, whose width and height must be even.
 std::shared_ptr<const Raster> raster_of(const Canvas& canvas);
 
 /// Draws frames first .. last - 1 on all cores and hands them over one by one in their order. A frame that is like the

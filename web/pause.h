@@ -1,5 +1,5 @@
-// What cannot be written in parts is paused: wasm-opt's pass asyncify lets a call leave the module from wherever it is,
-// and come back there. A pause changes nothing of what is computed.
+// Work that cannot be cut into parts pauses in the middle: wasm-opt's pass asyncify lets a call leave the module from
+// wherever it is, and come back there. A pause changes nothing of what is computed.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace crescent::web {
 
-/// `sampler`, which is asked in blocks of at most a part's work (parts.h), with a pause before a block for which no
-/// room is left in the part.
+/// `sampler`, asked in blocks of at most one part's work (parts.h); it pauses before a block that does not fit into
+/// what is left of the part.
 std::shared_ptr<const JudgedSampler> paused(std::shared_ptr<const JudgedSampler> sampler);
 
-/// Before work of so much cost (parts.h) within a call: pauses where the part has no room left for it.
+/// To be called before work of this cost (parts.h): pauses where it does not fit into what is left of the part.
 void make_room(std::uint64_t cost);
 
 }  // namespace crescent::web

@@ -35,7 +35,7 @@ class Hand {
   }
 }
 
-/** What has no worker: jobs in parts, one after another, each in an instance that no other job touches meanwhile. */
+/** A queue that has no worker: jobs in parts, one after another, each in an instance that no other job touches meanwhile. */
 class Lane {
   readonly answering: Answering;
   queue: Waiting[] = [];
@@ -45,7 +45,7 @@ class Lane {
   get busy(): boolean { return this.current !== undefined || this.queue.length > 0; }
   drop(): void { this.queue = []; this.current = undefined; }
 
-  /** One part of a job; the work that it was, in samples. */
+  /** Does one part of a job. Returns how much work it was, in samples. */
   part(): number {
     const fresh = this.current === undefined, waiting = (this.current ??= this.queue.shift()!);
     try {
@@ -109,7 +109,7 @@ export class Pool {
   /** Workers at work; 0: slices of the page's own thread. */
   get workers(): number { return this.hands.length; }
 
-  /** What was asked is never answered, but for what lasts. */
+  /** Drops every question that was asked, but for lasting ones. */
   cancel(): void {
     ++this.era;
     this.queue = this.queue.filter((waiting) => waiting.lasting);
@@ -120,7 +120,7 @@ export class Pool {
   get size(): number { return this.hands.reduce((sum, hand) => sum + hand.size, 0); }
   get most(): number { return Math.max(this.alone?.lasting.answering.most ?? 0, this.alone?.passing.answering.most ?? 0); }
 
-  /** Every instance opens this; what was asked before is never answered. */
+  /** Every instance opens this experiment; questions that were asked before are dropped. */
   open(opening: Opening): void {
     this.cancel();
     this.opened = opening;
@@ -132,7 +132,7 @@ export class Pool {
     hand.give({ job: { kind: "open", opening }, lasting: true, done: () => {}, failed: () => {} });
   }
 
-  /** `lasting`: a question that stands whatever is opened meanwhile, and goes before all others. */
+  /** `lasting`: the question is answered whatever is opened meanwhile, and before all others. */
   async ask(job: Job, lasting = false): Promise<Answer> {
     const era = this.era;
     if (!this.settled) await this.ready;
@@ -146,8 +146,8 @@ export class Pool {
     });
   }
 
-  /** Boxes of a size that one job should have; a pixel costs so many samples. A job has at most `most` of them, or in a worker
-      twenty times as many: a new setting waits for those that are under way. */
+  /** The picture cut into boxes, one a job. `cost`: samples a pixel. A job has at most `most` samples, or in a worker twenty
+      times as many, because a new setting has to wait for the jobs that are under way. */
   tiles(width: number, height: number, cost: number, most: number): Box[] {
     const pixels = Math.max(1, Math.floor((this.alone ? most : 20 * most) / cost));
     const across = Math.min(side, pixels), up = Math.max(1, Math.min(side, Math.floor(pixels / across)));
@@ -166,7 +166,7 @@ export class Pool {
     }
     for (let hand = this.next(); hand && this.queue.length > 0; hand = this.next()) hand.give(this.nextFor(hand));
   }
-  /** The next job that this one is best at: a box that it keeps, else one that nobody does, else what others are behind with. */
+  /** The next job for a worker: a box whose points it holds already, else one that no worker holds, else one of another worker. */
   private nextFor(hand: Hand): Waiting {
     const good = (waiting: Waiting): boolean => [hand, undefined].includes(this.kept.get(boxOf(waiting)));
     const [waiting] = this.queue.splice(Math.max(0, this.queue.findIndex(good)), 1);

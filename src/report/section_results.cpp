@@ -43,7 +43,7 @@ std::string frame_footnote(const Page& page, std::uint64_t n) {
         "\n";
 }
 
-/// The other arms about the normal, beside the better one.
+/// One sentence for each other arm whose density is about the normal: how it compares with the best of them.
 std::string broad_arms_sentence(const Page& page, const ArmPair& pair, const std::string& region) {
     std::string out;
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {

@@ -47,7 +47,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor);
 
-/// Where the outputs of a plan come from.
+/// What made the outputs of a plan: its experiment, seeds, version, instrument and command.
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
 
 }  // namespace crescent::inline runs
