@@ -1,5 +1,6 @@
 // Text for terminals against escapes written out by hand, and 20 000 random texts that must come out without control
-// characters; shell words against sh, which reads them back; nearest() of base/errors.h on near and far words.
+// characters; shell words against sh, which reads them back; nearest() of base/errors.h and base/hint.h on near and far
+// words.
 #include "base/text.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <random>
 
 #include "base/errors.h"
+#include "base/hint.h"
 
 namespace crescent::inline base {
 namespace {
@@ -61,6 +63,13 @@ TEST(Hints, NameAWordThatIsAFewLettersAwayAndNoOther) {
     EXPECT_EQ(nearest("rsme", {"rmse", "var"}), "rmse");
     EXPECT_EQ(nearest("sphere", {"theme", "title"}), "");
     EXPECT_EQ(nearest("s", {"n", "title"}), "");
+}
+
+TEST(Hints, SayWhatWasExpectedAndWhatIsNear) {
+    EXPECT_EQ(expected_one_of({"egl", "osmesa"}, "elg"), "expected one of egl, osmesa, not 'elg'; did you mean 'egl'?");
+    EXPECT_EQ(expected_one_of({"cpu", "gl"}, "a\x1b"), "expected one of cpu, gl, not 'a\\x1b'");
+    EXPECT_EQ(did_you_mean("egl", {"egl"}), "") << "it is that word";
+    EXPECT_EQ(did_you_mean(std::string(65, 'e'), {std::string(64, 'e')}), "") << "a word of any length is no word";
 }
 
 }  // namespace

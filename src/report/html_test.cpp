@@ -263,9 +263,9 @@ TEST(ReportHtml, SaysOfEveryFigureWhichCommandMakesIt) {
 }
 
 TEST(Charts, AxesHoldTheirValuesAndTicksLieOnThem) {
-    for (const Axis& axis :
-        {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}), log_axis("x", {4, 256}),
-            log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
+    for (const Axis& axis : {linear_axis("x", {0.013, 0.97}), linear_axis("x", {5, 5}), linear_axis("x", {-3, 4}),
+             log_axis("x", {4, 256}), log_axis("x", {1e-6, 1e6}), log_axis("x", {2, 2}), log_axis("x", {7}),
+             log_axis("x", {5.2, 9}), log_axis("x", {-1, 0}), linear_axis("x", {})}) {
         ASSERT_LT(axis.low, axis.high);
         ASSERT_FALSE(axis.ticks.empty());
         for (const double tick : axis.ticks) {
