@@ -16,7 +16,7 @@ void header(Canvas& c, bool instrument, const std::string& label) {
 
 void finish(Canvas& c, const std::string& caption, const std::string& note) {
     c.text(caption_band, caption, with_lines(body_text, 2));
-    c.text(footer_band, note, small_text);
+    c.text(footer_band, note, with_px(small_text, 17));
 }
 
 Picture finished(Canvas& c, const std::string& caption, const std::string& note) {

@@ -12,6 +12,7 @@
 #include "compare/sides.h"
 #include "color/turbo.h"
 #include "meters/meters.h"
+#include "plates/sheet.h"
 #include "plates/words.h"
 #include "pages/numbers.h"
 #include "stats/quantiles.h"
@@ -54,7 +55,7 @@ void draw(Canvas& c, const Readings& all, const Rect& band, const std::vector<Co
         const double sx = r.w / all.width, sy = r.h / all.height;
         const Rect cut{
             r.x + crop.x0 * sx, r.y + (all.height - 1 - crop.y1) * sy, crop.width() * sx, crop.height() * sy};
-        if (crop.width() < all.width || crop.height() < all.height) c.outline(cut.inset(-1), photograph_accent, 1.5);
+        if (crop.width() < all.width || crop.height() < all.height) outline_over(c, cut.inset(-1), photograph_accent);
         slot.y += r.h + 16;
         framed(c, columns[i].close, slot);
     }

@@ -68,8 +68,7 @@ void outline_regions(Sheet& sheet, const Rect& picture, const Box& box) {
         bool same = b.width() == box.width() && b.height() == box.height();
         if (!within(b, box) || same) continue;
         Rect r = on_picture(picture, box, b).inset(-1.5);
-        sheet.canvas.outline(r, {0, 0, 0, 0.6}, 5);
-        sheet.canvas.outline(r, bright, 2);
+        outline_over(sheet.canvas, r, bright);
         name_tag(sheet, picture, r, region.name, bright);
     }
 }

@@ -69,8 +69,7 @@ void rulers(Sheet& sheet, const Rect& picture, const View& v) {
 
 void outline(Sheet& sheet, const Rect& r, const Marked& m) {
     if (m.crop) return dashed(sheet, r);
-    sheet.canvas.outline(r, {0, 0, 0, 0.6}, 5);
-    sheet.canvas.outline(r, m.colour, 2.5);
+    outline_over(sheet.canvas, r, m.colour);
 }
 
 /// A crop by the number that it has on the picture.

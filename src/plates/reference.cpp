@@ -12,8 +12,7 @@ namespace {
 
 void outline_region(Sheet& sheet, const Rect& picture, const View& v, const Region& region, const Colour& c) {
     Rect r = on_picture(picture, whole(v), inside(region.box, v)).inset(-1.5);
-    sheet.canvas.outline(r, {0, 0, 0, 0.6}, 5);
-    sheet.canvas.outline(r, c, 2.5);
+    outline_over(sheet.canvas, r, c);
     name_tag(sheet, picture, r, region.name, c);
 }
 

@@ -95,12 +95,14 @@ void finish(Sheet& sheet) {
         foot.w -= w + gap;
     }
     std::string notes = joined(sheet.notes, "  ·  ");
-    if (sheet.canvas.measure(notes, small_text).w <= foot.w) {
-        sheet.canvas.text(foot, notes, small_text);
-    } else {
-        Text two = with(with_lines(with_px(small_text, 13), 2), Vertical::bottom);
-        sheet.canvas.text({foot.x, foot.y - 12, foot.w, 35}, notes, two);
+    for (const double px : {17.0, small_text.px}) {  // the larger where it fits: footers are read across a room
+        const Text how = with_px(small_text, px);
+        if (sheet.canvas.measure(notes, how).w > foot.w) continue;
+        sheet.canvas.text(foot, notes, how);
+        return;
     }
+    Text two = with(with_lines(with_px(small_text, 13), 2), Vertical::bottom);
+    sheet.canvas.text({foot.x, foot.y - 12, foot.w, 35}, notes, two);
 }
 
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot) {
@@ -128,6 +130,13 @@ Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& s
 Colour arm_colour(const std::string& arm, const Experiment& e) {
     auto at = std::find_if(e.arms.begin(), e.arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
     return series[std::size_t(at - e.arms.begin()) % series_count];
+}
+
+void outline_over(Canvas& canvas, const Rect& r, const Colour& ink) {
+    Colour halo = ground;
+    halo.a = 0.75;
+    canvas.outline(r, halo, 5);
+    canvas.outline(r, ink, 2);
 }
 
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box) {

@@ -52,6 +52,9 @@ Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot);
 /// The same colour for an arm on every plate.
 Colour arm_colour(const std::string& arm, const Experiment& e);
 
+/// A frame over a picture, on a halo of the sheet's ground, so that it is seen on a picture of any brightness.
+void outline_over(Canvas& canvas, const Rect& r, const Colour& ink);
+
 /// Where image box `box` lies in the picture of `shown`.
 Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
 

@@ -82,7 +82,7 @@ void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l
     Box all = whole(v);
     if (l.frames) {
         Rect r = paint_framed(sheet, photograph_block(v, all, l.frame, exposure), slot);
-        if (l.crops) sheet.canvas.outline(on_picture(r, all, *crop).inset(-1), photograph_accent, 1.5);
+        if (l.crops) outline_over(sheet.canvas, on_picture(r, all, *crop).inset(-1), photograph_accent);
         slot.y += l.frame_h + between;
     }
     if (l.crops) {
