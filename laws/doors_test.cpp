@@ -1,7 +1,9 @@
 // Users' own structs: what they may look like, what is said where they cannot be judged, and what happens when
 // they throw.
 #include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -90,6 +92,34 @@ struct NoPdf {
     Drawn sample(V3, V2 u) const { return cosine(u); }
 };
 
+/// As renderers hand their classes around: behind a base class, with functions for members, or with overloads that a
+/// wrapper has to choose from.
+struct Base {
+    virtual ~Base() = default;
+    virtual Drawn sample(const V3& wo, const V2& u) const = 0;
+    virtual float pdf(const V3& wo, const V3& wi) const = 0;
+};
+struct Derived final : Base {
+    Drawn sample(const V3&, const V2& u) const override { return cosine(u); }
+    float pdf(const V3&, const V3& wi) const override { return Own{}.pdf({}, wi); }
+};
+struct OfFunctions {
+    std::function<Drawn(V3, V2)> sample = [](V3, V2 u) { return cosine(u); };
+    float (*pdf)(V3, V3) = [](V3, V3 wi) { return Own{}.pdf({}, wi); };
+};
+struct Overloaded : Own {
+    using Own::pdf;
+    float pdf(V3 wi) const { return Own::pdf({}, wi); }
+};
+struct Hidden : Own {
+private:
+    float f(V3, V3) const { return 1; }
+};
+
+static_assert(user::Judgeable<std::unique_ptr<Base>> && user::Judgeable<const Derived*> && user::all_const<Base>());
+static_assert(user::Judgeable<OfFunctions> && !user::all_const<OfFunctions>(), "a std::function may hold what changes");
+static_assert(
+    !user::Judgeable<Overloaded> && !user::Judgeable<Hidden>, "a pdf or f that cannot be called is not left out");
 static_assert(user::Judgeable<Own> && user::numbers<Own>() == 2);
 static_assert(user::Judgeable<Three> && user::numbers<Three>() == 3);
 static_assert(user::numbers<ChooserFirst>() == 3 && user::shares<ChooserFirst>()[1].first == 2);
@@ -115,6 +145,23 @@ TEST(Doors, StructsOfOnesOwnAndOptionalDrawsAreTaken) {
     EXPECT_THAT(Sky{}, IsARightSamplerBy(few()));
     EXPECT_THAT(Coat{}, IsARightSamplerBy(few()));
     EXPECT_EQ(judge_sampler("no pdf", NoPdf{}, few()).state, State::inconclusive) << "nothing holds its draws";
+}
+
+TEST(Doors, PointersFunctionsAndLambdasAreTaken) {
+    const std::unique_ptr<Base> held = std::make_unique<Derived>();
+    EXPECT_THAT(held, IsARightSamplerBy(few()));
+    EXPECT_THAT(held.get(), IsARightSamplerBy(few()));
+    EXPECT_EQ(judge_sampler("shared", std::make_shared<Own>(), few()).state, State::right);
+    EXPECT_THAT(OfFunctions{}, IsARightSamplerBy(few()));
+    int draws = 0;
+    const Overloaded own;
+    const auto sample = [&](V3 wo, V2 u) mutable { return ++draws, own.sample(wo, u); };
+    EXPECT_THAT(sampler_of(sample, [&](V3 wo, V3 wi) { return own.pdf(wo, wi); }), IsARightSamplerBy(few()));
+    EXPECT_GT(draws, 0);
+    const auto doubled = [&](V3 wo, V3 wi) { return 2 * own.pdf(wo, wi); };
+    const auto f = [](V3, V3 wi) { return wi.z > 0 ? 0.3f : 0.0f; };
+    EXPECT_EQ(judge_sampler("doubled", sampler_of(sample, doubled, f), few()).state, State::wrong);
+    EXPECT_FALSE(UserSubject("told", sampler_of(sample, doubled, f, {.reciprocal = false})).traits().reciprocal);
 }
 
 TEST(Doors, WhatASamplerThrowsIsAnErrorAtItsPlaceAndTheRestIsJudged) {

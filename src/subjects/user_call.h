@@ -12,11 +12,28 @@
 namespace crescent::user {
 
 template <class S>
-concept HasSample = requires { &S::sample; };
+concept HasSample = requires { &S::sample; } && HasSignature<decltype(&S::sample)>;
 template <class S>
-concept HasPdf = requires { &S::pdf; };
+concept HasPdf = requires { &S::pdf; } && HasSignature<decltype(&S::pdf)>;
 template <class S>
-concept HasF = requires { &S::f; };
+concept HasF = requires { &S::f; } && HasSignature<decltype(&S::f)>;
+
+/// A class that inherits a name from both of its bases cannot say which it means: so a name shows that S has it, though
+/// it be overloaded, private or a template, which would else pass for a sampler without.
+struct Names {
+    int sample, pdf, f;
+};
+template <class S> struct Named : S, Names {};
+template <class S>
+concept Derivable = std::is_class_v<S> && !std::is_final_v<S>;
+template <class S> consteval bool names_pdf() {
+    if constexpr (Derivable<S>) return !requires { &Named<S>::pdf; };
+    else return HasPdf<S>;
+}
+template <class S> consteval bool names_f() {
+    if constexpr (Derivable<S>) return !requires { &Named<S>::f; };
+    else return HasF<S>;
+}
 template <class S>
 concept HasTraits = requires { &S::traits; } || requires(S s) { s.traits(); };
 template <class S> using OfSample = Signature<decltype(&S::sample)>;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <functional>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -28,6 +29,36 @@ template <class R, class S, class... A> struct Signature<R (S::*)(A...) noexcept
 template <class R, class S, class... A> struct Signature<R (S::*)(A...) const noexcept> : Told<R, true, A...> {};
 template <class R, class... A> struct Signature<R (*)(A...)> : Told<R, true, A...> {};
 template <class R, class... A> struct Signature<R (*)(A...) noexcept> : Told<R, true, A...> {};
+/// Data members that can be called: lambdas, function pointers; a std::function, which may hold what is not const.
+template <class C>
+concept Called = std::is_class_v<C> && requires { &C::operator(); };
+template <class S, Called C> struct Signature<C S::*> : Signature<decltype(&C::operator())> {};
+template <class S, class R, class... A> struct Signature<R (*S::*)(A...)> : Told<R, true, A...> {};
+template <class S, class R, class... A> struct Signature<std::function<R(A...)> S::*> : Told<R, false, A...> {};
+template <class M>
+concept HasSignature = requires { typename Signature<M>::Parameters; };
+
+/// The sampler itself, of one that is handed over behind a pointer: T*, unique_ptr, shared_ptr.
+template <class S>
+concept Pointing = std::is_pointer_v<S> || requires(const S s) {
+    typename S::element_type;
+    s.get();
+    *s;
+};
+template <class S> struct Sampler {
+    using Type = S;
+    static S& of(S& s) { return s; }
+};
+template <Pointing S> struct Sampler<S> {
+    using Type = std::remove_reference_t<decltype(*std::declval<S&>())>;
+    static Type& of(S& s) { return *s; }
+};
+/// What can be copied of a sampler that is looked at: itself, or a pointer to it.
+template <class S> auto handed(const S& s) {
+    if constexpr (Pointing<S>) return &*s;
+    else return s;
+}
+template <class S> using SamplerOf = std::remove_const_t<typename Sampler<S>::Type>;
 
 /// Turns into whichever number a struct of the sampler's own is built from.
 struct Anything {

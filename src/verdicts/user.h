@@ -85,21 +85,33 @@ template <class S> consteval bool gives_weights() {
     else if constexpr (requires(const Result<S> d) { d.f; }) return requires(const Result<S> d) { colour(d.f); };
     else return true;
 }
+/// Whether pdf and f, where the class names them, can be called at all.
+template <class S> consteval bool pdf_is_plain() { return HasPdf<S> || !names_pdf<S>(); }
+template <class S> consteval bool f_is_plain() { return HasF<S> || !names_f<S>(); }
 template <class S> consteval bool judgeable() {
-    if constexpr (!HasSample<S>) return false;
+    if constexpr (!HasSample<S> || !pdf_is_plain<S>() || !f_is_plain<S>()) return false;
     else if constexpr (!takes_numbers<S>()) return false;
     else
         return takes_directions<S>() && gives_pdf<S>() && f_fits<S>() && traits_fit<S>() && gives_draws<S>() &&
             gives_weights<S>();
 }
 template <class S>
-concept Judgeable = std::is_class_v<S> && judgeable<S>();
+concept Judgeable = std::is_class_v<SamplerOf<S>> && judgeable<SamplerOf<S>>();
 
 /// What a struct lacks to be judged, said in a sentence when it does not compile.
 template <class S> consteval bool must_be_judgeable() {
     static_assert(HasSample<S>,
-        "a sampler has sample(wo, u), one member of that name that is no template: give it a wrapper with one");
+        "a sampler has sample(wo, u), one public member of that name that is no template and not overloaded; else hand "
+        "over crescent::sampler_of(sample, pdf, f), three lambdas that call yours");
     if constexpr (HasSample<S>) {
+        static_assert(pdf_is_plain<S>(),
+            "pdf is private, overloaded or a template: hand over crescent::sampler_of(sample, pdf, f), three lambdas "
+            "that "
+            "call yours");
+        static_assert(f_is_plain<S>(),
+            "f is private, overloaded or a template: hand over crescent::sampler_of(sample, pdf, f), three lambdas "
+            "that "
+            "call yours");
         static_assert(takes_numbers<S>(),
             "sample takes wo and then one to eight random numbers, sample(wo, u), sample(wo, uc, u) or sample(u): "
             "directions and u are arrays, spans, const T* or structs of floats or doubles that braces fill; wi and pdf "
@@ -165,18 +177,20 @@ template <class S> Traits traits_of(const S& s) {
 namespace crescent::inline verdicts {
 
 /// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
-template <class S> class UserSubject : public CalledSampler {
+template <class Given> class UserSubject : public CalledSampler {
+    using S = user::SamplerOf<Given>;
+
 public:
-    /// `name` is what messages call it.
-    UserSubject(std::string name, S sampler) : name_(std::move(name)), sampler_(std::move(sampler)) {}
+    /// `name` is what messages call it; `sampler` may be a pointer to one.
+    UserSubject(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
     std::string name() const override { return name_; }
-    Traits traits() const override { return user::traits_of(sampler_); }
+    Traits traits() const override { return user::traits_of(sampler()); }
     bool serial() const override { return !user::all_const<S>(); }
     void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         count(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = called(
-                "sample(wo, u)", wo, [&] { return told(u[i]); }, [&] { return user::sample(sampler_, wo, u[i]); });
+                "sample(wo, u)", wo, [&] { return told(u[i]); }, [&] { return user::sample(sampler(), wo, u[i]); });
             if (!user::HasPdf<S> && out[i].pdf > 0) out[i].pdf = 1;
         }
     }
@@ -186,7 +200,7 @@ public:
             for (std::size_t i = 0; i < at.size(); ++i)
                 out[i] = called(
                     "pdf(wo, wi)", at[i].wo, [&] { return told(at[i].wi); },
-                    [&] { return user::pdf(sampler_, at[i]); });
+                    [&] { return user::pdf(sampler(), at[i]); });
         } else
             for (double& p : out) p = 1;
     }
@@ -197,7 +211,7 @@ public:
         if constexpr (user::HasF<S>)
             for (std::size_t i = 0; i < at.size(); ++i)
                 out[i] = called(
-                    "f(wo, wi)", at[i].wo, [&] { return told(at[i].wi); }, [&] { return user::f(sampler_, at[i]); });
+                    "f(wo, wi)", at[i].wo, [&] { return told(at[i].wi); }, [&] { return user::f(sampler(), at[i]); });
     }
     void f(std::span<const Pair> at, std::span<double> out) const override {
         std::vector<Vec3d> by_channel(out.size());
@@ -208,7 +222,8 @@ public:
 
 private:
     std::string name_;
-    mutable S sampler_;  // called by one thread where a member is not const
+    mutable Given given_;  // called by one thread where a member is not const
+    decltype(auto) sampler() const { return user::Sampler<Given>::of(given_); }
 
     static std::string told(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
     static std::string told(const Numbers& u) {
@@ -229,17 +244,44 @@ private:
     }
 };
 
-/// Judges a sampler over a grid of w_o under an even light. TestSettings::thorough() looks harder, and takes minutes.
-/// Where `monitor` says stop, Interrupted is thrown.
+/// Judges a sampler, or what a pointer points to, over a grid of w_o under an even light. TestSettings::thorough()
+/// looks harder, and takes minutes. Where `monitor` says stop, Interrupted is thrown.
 template <class S> Judgement judge_sampler(std::string name, S sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
-    if constexpr (user::must_be_judgeable<S>()) {
+    if constexpr (user::must_be_judgeable<user::SamplerOf<S>>()) {
         const auto subject = std::make_shared<UserSubject<S>>(std::move(name), std::move(sampler));
         ProgressMonitor alone;
         return judge(trials_of_subject(subject, settings.full, settings.wo), settings, monitor ? *monitor : alone);
     } else {
         return {};
     }
+}
+
+/// A sampler of functions: lambdas, std::functions or pointers to functions in place of the members sample, pdf and f.
+/// For classes whose own members are overloaded, templates or of other names:
+///
+///   judge_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
+///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
+template <class Sample, class Pdf> struct SampleAndPdf {
+    Sample sample;
+    Pdf pdf;
+    Traits known{};
+    Traits traits() const { return known; }
+};
+template <class Sample, class Pdf, class F> struct SamplePdfAndF {
+    Sample sample;
+    Pdf pdf;
+    F f;
+    Traits known{};
+    Traits traits() const { return known; }
+};
+template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits known = {}) {
+    return {std::move(sample), std::move(pdf), known};
+}
+template <class Sample, class Pdf, class F>
+    requires(!std::is_same_v<F, Traits>)
+SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits known = {}) {
+    return {std::move(sample), std::move(pdf), std::move(f), known};
 }
 
 }  // namespace crescent::inline verdicts
