@@ -12,7 +12,7 @@ Judgement complaint(const SubjectFault& fault, const CheckFlags& flags, const st
     for (std::string_view name : verdict_names) {
         Verdict v;
         v.arm = printable(command, 60);
-        v.trial = "start";
+        v.trial = before_any_trial;
         v.name = name;
         v.state = j.state;
         v.say = name == verdict_names[0] ? "The sampler never came to be judged: " + std::string(fault.what()) + "."

@@ -150,6 +150,7 @@ std::vector<Finding> findings_of(const Judgement& j) {
 }
 
 std::string told(const Finding& f) {
+    if (f.state == State::error && f.worst->trial == before_any_trial) return "error. " + told(*f.worst);
     if (f.state == State::error)
         return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
             f.worst->trial, told(*f.worst));

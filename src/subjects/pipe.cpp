@@ -171,15 +171,14 @@ private:
     }
 
     void greet() {
-        std::string fault;
         talk_.lines(
             1, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'",
             [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 Greeting hello;
-                fault = read_greeting(s, hello);
-                if (fault.empty()) hello_ = hello;
-                if (!fault.empty()) talk_.fault("hello 2", 0, fault, "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'");
+                if (const GreetingFault fault = read_greeting(s, hello); fault)
+                    talk_.fault("hello 2", 0, fault.got, fault.expected);
+                hello_ = hello;
                 return true;
             });
         talk_.greeted();

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "base/errors.h"
 #include "base/text.h"
 #include "subjects/pipe_text.h"
 
@@ -51,9 +52,9 @@ struct Key {
     std::function<bool(std::string_view, Greeting&)> read;
 };
 
-const std::array<Key, 13>& keys() {
+const std::array<Key, 14>& keys() {
     using S = std::string_view;
-    static const std::array<Key, 13> all = {{
+    static const std::array<Key, 14> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Greeting& g) { return whole_number(v, 1, Numbers::most, g.traits.numbers); }},
         {"domain", "hemisphere or sphere",
@@ -87,62 +88,64 @@ const std::array<Key, 13>& keys() {
                 g.traits.bits = v == "f32" ? 24 : 53;
                 return v == "f32" || v == "f64";
             }},
+        {"block", "f64", [](S v, Greeting& g) { return (g.blocks = v == "f64"); }},
     }};
     return all;
 }
 
-std::string known_keys() {
-    std::string out;
-    for (const Key& k : keys()) out += std::string(k.name) + ", ";
-    return out + "block";
+GreetingFault unknown(std::string_view name) {
+    std::vector<std::string> known;
+    for (const Key& k : keys()) known.emplace_back(k.name);
+    const std::string near = nearest(std::string(name), known);
+    return {"KEY=VALUE with a known key",
+        fmt::format("got the unknown key {}{}; the known ones are {}", shown(name),
+            near.empty() ? "" : ", did you mean '" + near + "'?", fmt::join(known, ", "))};
 }
 
-std::string read_key(std::string_view word, Greeting& out) {
+GreetingFault read_key(std::string_view word, Greeting& out) {
     const std::size_t equals = word.find('=');
     const std::string_view name = word.substr(0, equals), value = equals == word.npos ? "" : word.substr(equals + 1);
-    if (equals == word.npos) return fmt::format("got the word {} after the keys; expected KEY=VALUE", shown(word));
-    if (name == "block") {
-        out.blocks = value == "f64";
-        return out.blocks ? "" : fmt::format("got block={}; expected block=f64", shown(value));
-    }
+    if (equals == word.npos) return {"KEY=VALUE", fmt::format("got the word {} after the keys", shown(word))};
     for (const Key& k : keys()) {
         if (name != k.name) continue;
-        return k.read(value, out) ? "" : fmt::format("got {}={}; expected {}", k.name, shown(value), k.values);
+        if (k.read(value, out)) return {};
+        return {fmt::format("{} for {}", k.values, k.name), "got " + shown(value)};
     }
-    return fmt::format("got the unknown key {}; the known ones are {}", shown(name), known_keys());
+    return unknown(name);
 }
 
 }  // namespace
 
-std::string read_greeting(std::string_view answer, Greeting& out) {
+GreetingFault read_greeting(std::string_view answer, Greeting& out) {
+    const std::string form = "'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME'";
     const bool one = answer.starts_with("hello 1 "), two = answer.starts_with("hello 2 ");
-    if ((!one && !two) || blank(answer.substr(8))) return "got " + shown(answer) + only_answers;
+    if ((!one && !two) || blank(answer.substr(8))) return {form, "got " + shown(answer) + only_answers};
     out.protocol = one ? 1 : 2;
     std::string_view rest = answer.substr(8), name = rest;
     const std::size_t key = two ? rest.find('=') : rest.npos;
     if (key != rest.npos) {
         const std::size_t before = rest.find_last_of(" \t", key);
-        if (before == rest.npos || blank(rest.substr(0, before)))
-            return fmt::format("got no name before the keys: {}", shown(answer));
+        if (before == rest.npos || blank(rest.substr(0, before))) return {form, "got no name in " + shown(answer)};
         name = rest.substr(0, before);
         rest = rest.substr(before);
         std::set<std::string_view> seen;
         while (!blank(rest)) {
             rest.remove_prefix(rest.find_first_not_of(" \t"));
             const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-            const std::string fault = read_key(rest.substr(0, end), out);
-            if (!fault.empty()) return fault;
+            if (const GreetingFault fault = read_key(rest.substr(0, end), out); fault) return fault;
             const std::string_view name_of_key = rest.substr(0, rest.find('='));
-            if (!seen.insert(name_of_key).second) return fmt::format("got the key {} twice", shown(name_of_key));
+            if (!seen.insert(name_of_key).second)
+                return {"each key once", fmt::format("got the key {} twice", shown(name_of_key))};
             rest.remove_prefix(end);
         }
     }
     name.remove_prefix(name.find_first_not_of(" \t"));
     while (name.ends_with(' ') || name.ends_with('\t')) name.remove_suffix(1);
     out.name = printable(name, 60);
-    if (out.delta && !out.weight) return "got delta=yes without weight=yes: a draw of a delta part needs its weight";
+    if (out.delta && !out.weight)
+        return {"weight=yes beside delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
     out.traits.delta = out.delta;
-    return "";
+    return {};
 }
 
 }  // namespace crescent::inline subjects

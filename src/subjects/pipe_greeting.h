@@ -17,7 +17,12 @@ struct Greeting {
     bool weight = false, delta = false, blocks = false;
 };
 
-/// "" where the answer could be read; else what was got in place of it.
-std::string read_greeting(std::string_view answer, Greeting& out);
+/// What was expected of a greeting, and what came in place of it; both empty where it could be read.
+struct GreetingFault {
+    std::string expected, got;
+    explicit operator bool() const { return !got.empty(); }
+};
+/// Reads the first line that a program answers.
+GreetingFault read_greeting(std::string_view answer, Greeting& out);
 
 }  // namespace crescent::inline subjects

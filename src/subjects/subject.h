@@ -193,8 +193,9 @@ struct Trial {
     std::string text() const;  // "w_o 60 deg, s=32, Lambert + Phong, fill"
 };
 
-/// The text of a case whose sampler takes no w_o.
+/// The text of a case whose sampler takes no w_o, and of one that never came to be judged.
 inline constexpr std::string_view without_wo = "no w_o";
+inline constexpr std::string_view before_any_trial = "start";
 
 /// The direction theta from n, phi from x, in degrees.
 Vec3d tilt(double theta_deg, double azimuth_deg = 0);

@@ -14,6 +14,8 @@
 //
 //   crescent::Judgement j = crescent::judge_sampler("mine", MySampler{});
 //
+// A pointer to one is judged as what it points to; sampler_of(sample, pdf, f) makes one of lambdas.
+//
 // Members that are const are called from many threads at once, others by one. What a sampler throws is an error, not a
 // fault of it; a std::optional that is empty, and false where wi and pdf are written through, is nothing drawn.
 #pragma once
