@@ -59,8 +59,8 @@ grep -q "not 2.25 times that" printed || die "that eta^2 is missing is not said:
 expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/sky.py 512 1024"
 sed 's/(j + np.clip(along/(j + 1 + np.clip(along/' "$pipes/sky.py" >next_texel.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 next_texel.py 256 512"
-expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x colour=3'
-grep -q "unknown key 'colour'; the known ones are u, domain, wo" printed ||
+expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 2 x weights=yes'
+grep -q "expected one of u, domain, wo,.* got the unknown key 'weights'; did you mean 'weight'?" printed ||
     die "an unknown key is not named: $(cat printed)"
 expect 3 "$CRESCENT" check --quiet --exec 'read hello; echo hello 1 x; exit 3'
 grep -q "exit code 3" printed || die "it does not say how the program ended: $(cat printed)"

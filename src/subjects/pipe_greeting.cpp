@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "base/errors.h"
+#include "base/hint.h"
 #include "base/text.h"
 #include "subjects/pipe_text.h"
 
@@ -96,10 +96,8 @@ const std::array<Key, 14>& keys() {
 GreetingFault unknown(std::string_view name) {
     std::vector<std::string> known;
     for (const Key& k : keys()) known.emplace_back(k.name);
-    const std::string near = nearest(std::string(name), known);
-    return {"KEY=VALUE with a known key",
-        fmt::format("got the unknown key {}{}; the known ones are {}", shown(name),
-            near.empty() ? "" : ", did you mean '" + near + "'?", fmt::join(known, ", "))};
+    return {fmt::format("one of {} before the '='", fmt::join(known, ", ")),
+        fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, known))};
 }
 
 GreetingFault read_key(std::string_view word, Greeting& out) {
