@@ -8,6 +8,7 @@
 // Without a pdf(w) the bins are about n, and X is the weight that comes with a draw.
 #pragma once
 
+#include "base/progress_monitor.h"
 #include "subjects/list.h"
 #include "verdicts/judge.h"
 

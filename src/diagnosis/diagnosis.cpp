@@ -80,7 +80,7 @@ double may_differ(double all, double error) { return std::min(close, 0.02 * all)
 
 std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique) {
     const std::vector<WarpPoint>& points = study_warp(work, technique).points;
-    std::vector<double>& claimed = work.claimed[static_cast<std::size_t>(technique)];
+    std::vector<double>& claimed = work.kept.claimed[static_cast<std::size_t>(technique)];
     if (claimed.size() != points.size()) {
         std::vector<Vec3d> wi;
         for (const WarpPoint& p : points) wi.push_back(p.wi);

@@ -33,7 +33,7 @@ struct Ray {
 };
 
 /// Ever longer steps along each ray until p jumps.
-void march(const TrialContext& work, int technique, std::vector<Ray>& all) {
+void march(const Draws& work, int technique, std::vector<Ray>& all) {
     constexpr double first = 1e-5, longer = 1.5, last = 1.5;
     std::vector<Vec3d> where;
     for (double t = first; t < last; t *= longer) {
@@ -53,7 +53,7 @@ void march(const TrialContext& work, int technique, std::vector<Ray>& all) {
     std::erase_if(all, [](const Ray& r) { return !r.jumped; });
 }
 
-void close_in(const TrialContext& work, int technique, std::vector<Ray>& all) {
+void close_in(const Draws& work, int technique, std::vector<Ray>& all) {
     std::vector<Vec3d> where(all.size());
     for (int k = 0; k < bisections; ++k) {
         for (std::size_t i = 0; i < all.size(); ++i) where[i] = all[i].at(0.5 * (all[i].t0 + all[i].t1));
@@ -79,7 +79,7 @@ std::optional<Cap> through(const Ray& x, const Ray& y, const Ray& z) {
 }
 
 /// Sets the step of those that have the same all round; takes out the others.
-void look_round(const TrialContext& work, int technique, std::vector<Cap>& caps) {
+void look_round(const Draws& work, int technique, std::vector<Cap>& caps) {
     std::vector<Vec3d> where;
     for (const Cap& c : caps) {
         const SphereMap map(c.axis);
@@ -124,7 +124,7 @@ bool same(const Cap& x, const Cap& y) {
 }
 
 /// Caps about these draws that are not known yet.
-std::vector<Cap> caps_about(const TrialContext& work, int technique, std::span<const Vec3d> draws) {
+std::vector<Cap> caps_about(const Draws& work, int technique, std::span<const Vec3d> draws) {
     const std::vector<double> p = work.pdf(technique, draws, true);
     std::vector<Ray> all;
     for (std::size_t i = 0; i < draws.size(); ++i) {
@@ -171,7 +171,7 @@ void share_out(const Density& d, std::span<const Cap> caps, Integral& out) {
 
 }  // namespace
 
-std::vector<Cap> find_caps(const TrialContext& work, int technique) {
+std::vector<Cap> find_caps(const Draws& work, int technique) {
     constexpr std::size_t most = 4096, waves = 24;
     const SampleBatch& b = work.first(technique);
     std::vector<Cap> caps;
@@ -192,7 +192,7 @@ std::vector<Cap> find_caps(const TrialContext& work, int technique) {
 }
 
 std::optional<Integral> integrate_caps(
-    const TrialContext& work, int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) {
+    const Draws& work, int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) {
     const std::vector<Cap> caps = find_caps(work, technique);
     if (caps.size() < many) return {};
     const auto left = [&](std::span<const Vec2d> at, std::span<double> out) {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "trials/trial_context.h"
+#include "trials/densities.h"
 
 namespace crescent::inline trials {
 
@@ -17,11 +17,11 @@ struct Cap {
 };
 
 /// Caps that draws of a technique lie in; every one was looked at all round.
-std::vector<Cap> find_caps(const TrialContext& work, int technique);
+std::vector<Cap> find_caps(const Draws& work, int technique);
 
 /// The integral over the bins of d: of the caps in closed form, of what they leave of p by cubature over `cells`. None
 /// where fewer than eight caps are found.
 std::optional<Integral> integrate_caps(
-    const TrialContext& work, int technique, const Density& d, std::vector<Rect> cells, const Effort& effort);
+    const Draws& work, int technique, const Density& d, std::vector<Rect> cells, const Effort& effort);
 
 }  // namespace crescent::inline trials

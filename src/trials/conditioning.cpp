@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "trials/trial_context.h"
-
 namespace crescent::inline trials {
 
 namespace {
@@ -33,7 +31,7 @@ double largest_change(std::span<const double> values, double from) {
 
 }  // namespace
 
-double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, double p) {
+double pdf_conditioning(const Draws& work, int technique, Vec3d wi, double p) {
     const std::vector<Pair> at = nudged(work.trial.wo, wi, work.direction_resolution());
     std::vector<double> values(at.size());
     work.subject.pdf(technique, at, values);
@@ -43,7 +41,7 @@ double pdf_conditioning(const TrialContext& work, int technique, Vec3d wi, doubl
     return rim ? std::numeric_limits<double>::infinity() : 2 * most;
 }
 
-double f_conditioning(const TrialContext& work, Vec3d wo, Vec3d wi, double f, int channel) {
+double f_conditioning(const Draws& work, Vec3d wo, Vec3d wi, double f, int channel) {
     const std::vector<Pair> at = nudged(wo, wi, std::max(work.direction_resolution(), 0x1p-24));
     std::vector<double> values(at.size());
     if (work.traits.channels == 3) {

@@ -32,7 +32,7 @@ std::vector<Contrasts> values_of(const Density& d, double draws) {
 
 }  // namespace
 
-Contrasts contrasts_of(const TrialContext& work, const Density& d, const SampleBatch& b) {
+Contrasts contrasts_of(const Densities& work, const Density& d, const SampleBatch& b) {
     constexpr double allowed = 1e-4;  // relative: what normalised and identity grant p
     std::vector<double> seen(d.mass.bins.size());
     double n = 0, total = 0;
@@ -63,7 +63,7 @@ Contrasts contrasts_of(const TrialContext& work, const Density& d, const SampleB
     return out;
 }
 
-std::optional<Contrasted> contrasted(const TrialContext& work) {
+std::optional<Contrasted> contrasted(const Densities& work) {
     if (!work.traits.has_pdf || !work.subject.draws_at_will() || work.scatter().pdf()) return {};
     Contrasted out;
     for (int t = 0; t < work.subject.techniques(); ++t) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "trials/trial_context.h"
+#include "trials/densities.h"
 
 namespace crescent::inline trials {
 
@@ -14,7 +14,7 @@ namespace crescent::inline trials {
 /// off: of log p, of the share of p nearer to the axis, and of cosine and sine of the azimuth about it.
 inline constexpr std::size_t contrast_count = 4;
 using Contrasts = std::array<double, contrast_count>;
-Contrasts contrasts_of(const TrialContext& work, const Density& bins, const SampleBatch& draws);
+Contrasts contrasts_of(const Densities& work, const Density& bins, const SampleBatch& draws);
 
 /// Of one trial, what the pooled test starts from; densities by technique, for fresh draws to be held against.
 struct Contrasted {
@@ -22,6 +22,6 @@ struct Contrasted {
     std::vector<Contrasts> z;  // of the screening draws
 };
 /// None where p is not known well enough, or no draws can be asked for.
-std::optional<Contrasted> contrasted(const TrialContext& work);
+std::optional<Contrasted> contrasted(const Densities& work);
 
 }  // namespace crescent::inline trials

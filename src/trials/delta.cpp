@@ -17,7 +17,7 @@ constexpr std::size_t most_parts = 16;
 bool close(double a, double b) { return std::fabs(a - b) <= 1e-4 * std::max(std::fabs(a), std::fabs(b)); }
 bool close(Vec3d a, Vec3d b) { return close(a.x, b.x) && close(a.y, b.y) && close(a.z, b.z); }
 
-Vec3d weight_of(const TrialContext& work, const Draw& d) {
+Vec3d weight_of(const Questions& work, const Draw& d) {
     const double w = d.weight.value_or(0);
     return work.traits.channels == 3 ? d.weights : Vec3d{w, w, w};
 }
@@ -40,7 +40,7 @@ Vec3d DeltaParts::energy(int side) const {
 namespace {
 
 /// The parts by direction and q, and by weight too where that is asked for.
-DeltaParts parts_of(const TrialContext& work, const SampleBatch& b, bool by_weight) {
+DeltaParts parts_of(const Questions& work, const SampleBatch& b, bool by_weight) {
     DeltaParts out;
     out.of = b.draws.size();
     for (const Draw& d : b.draws) {
@@ -74,7 +74,7 @@ bool all_come_by_q(const DeltaParts& deltas) {
 
 /// One direction and one q with several weights are several parts where each comes as often as q says: along the
 /// normal three indices refract three channels, chosen alike, to one direction.
-DeltaParts delta_parts(const TrialContext& work, const SampleBatch& b) {
+DeltaParts delta_parts(const Questions& work, const SampleBatch& b) {
     DeltaParts out = parts_of(work, b, false);
     const bool uneven =
         std::any_of(out.parts.begin(), out.parts.end(), [](const DeltaPart& p) { return p.otherwise > 0; });
@@ -122,15 +122,15 @@ nlohmann::ordered_json evidence_of(const DeltaParts& deltas) {
     return out;
 }
 
-double delta_light(const TrialContext& work, bool even) {
+double delta_light(const Draws& work, bool even) {
     double sum = 0;
     for (const DeltaPart& p : delta_parts(work, work.first(0)).parts)
         if (work.counts(p.wi)) sum += p.q * luminance(p.weight) * (even ? 1 : work.light(p.wi));
     return sum;
 }
 
-Integral due_mean(const TrialContext& work, bool even) {
-    Integral out = work.incoming(TrialContext::Where::reached, even);
+Integral due_mean(const Integrals& work, bool even) {
+    Integral out = work.incoming(Integrals::Where::reached, even);
     out.value += delta_light(work, even);
     return out;
 }

@@ -2,7 +2,11 @@
 // which its part was chosen and with the weight f |cos| / q.
 #pragma once
 
-#include "trials/trial_context.h"
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "trials/integrals.h"
 
 namespace crescent::inline trials {
 
@@ -23,15 +27,15 @@ struct DeltaParts {
 };
 
 /// What the draws of one batch say of the delta parts.
-DeltaParts delta_parts(const TrialContext& work, const SampleBatch& b);
+DeltaParts delta_parts(const Questions& work, const SampleBatch& b);
 /// p-value of the shares with which the parts were drawn, against their q.
 double delta_share_p(const DeltaParts& parts, const SampleBatch& b);
 /// "Delta parts: 0.25 of the draws towards (0, 0, 1), each of weight 1"; "" where there are none.
 std::string told(const DeltaParts& parts);
 nlohmann::ordered_json evidence_of(const DeltaParts& parts);
 /// What delta parts add to the mean of f L cos / p: sum of q w L, luminance.
-double delta_light(const TrialContext& work, bool even);
+double delta_light(const Draws& work, bool even);
 /// What the mean of f L cos / p ought to be: the integral where p is not 0, and the delta parts.
-Integral due_mean(const TrialContext& work, bool even);
+Integral due_mean(const Integrals& work, bool even);
 
 }  // namespace crescent::inline trials

@@ -5,7 +5,7 @@
 #include "cubature/mesh.h"
 #include "math/functions.h"
 #include "trials/caps.h"
-#include "trials/trial_context.h"
+#include "trials/densities.h"
 
 namespace crescent::inline trials {
 
@@ -25,7 +25,7 @@ void sort_edges(std::vector<double>& rings) {
 namespace {
 
 /// A sky whose texels are summed: its mass is known to that, its bins to what the cubature says of them.
-bool measure_by_texels(const TrialContext& work, int t, Density& d) {
+bool measure_by_texels(const Questions& work, int t, Density& d) {
     if (work.traits.wo != Traits::Asked::none || !(d.mass.error > work.enough())) return false;
     const std::size_t most = work.subject.limited() && !work.settings.full ? work.affordable(200000) : 10000000;
     const auto p = [&](std::span<const Vec3d> at, std::span<double> out) {
@@ -43,7 +43,7 @@ bool measure_by_texels(const TrialContext& work, int t, Density& d) {
 
 }  // namespace
 
-void TrialContext::measure_density() {
+void Densities::measure_density() {
     find_pilot_directions();
     if (!traits.has_pdf) {  // bins alone
         density_.push_back(bins_about({0, 0, 1}, true));
@@ -55,12 +55,12 @@ void TrialContext::measure_density() {
 }
 
 /// Where the draws of a technique go.
-struct TrialContext::Lobe {
+struct Densities::Lobe {
     Vec3d mean{}, peak{0, 0, 1};  // mean: of a sharp one; peak: where p is highest
     bool sharp = false;           // they crowd about the mean
 };
 
-TrialContext::Lobe TrialContext::lobe_of(const SampleBatch& b) {
+Densities::Lobe Densities::lobe_of(const SampleBatch& b) {
     Lobe out;
     Vec3d sum{};
     double highest = 0, count = 0;
@@ -79,9 +79,9 @@ TrialContext::Lobe TrialContext::lobe_of(const SampleBatch& b) {
     return out;
 }
 
-Density TrialContext::density_of(int t) {
+Density Densities::density_of(int t) {
     const Lobe lobe = lobe_of(first(t));
-    if (scatter_.pdf()) return density_of_estimates(t, lobe.sharp ? lobe.mean : normal);
+    if (scatter().pdf()) return density_of_estimates(t, lobe.sharp ? lobe.mean : normal);
     if (std::optional<Density> table = table_density(t)) return std::move(*table);
     const Vec3d axis = banded_.value_or(normal);
     Density d = lobe.sharp ? density_about(t, lobe.mean, false, settings.evaluations)
@@ -100,14 +100,14 @@ Density TrialContext::density_of(int t) {
     return d;
 }
 
-std::optional<Integral> TrialContext::mass_by_caps(int t, const Density& bins) const {
+std::optional<Integral> Densities::mass_by_caps(int t, const Density& bins) const {
     const std::size_t evaluations = affordable(settings.evaluations, for_later());
     return integrate_caps(*this, t, bins, refined_at_pilots(cells_of(bins), bins.map, pilot_directions_),
         {tolerance(), evaluations, 5e-5});
 }
 
 /// Where the mass is far from known: many rims. Returns whether caps alone make it known.
-bool TrialContext::measure_by_caps(int t, Density& d) const {
+bool Densities::measure_by_caps(int t, Density& d) const {
     if (!(d.mass.error > 10 * enough()) || pole_) return false;
     std::optional<Integral> mass = mass_by_caps(t, d);
     if (!mass || !(mass->error < d.mass.error)) return false;
@@ -117,7 +117,7 @@ bool TrialContext::measure_by_caps(int t, Density& d) const {
 
 /// Until the mass is known well enough: about the axis of a circular rim, about the normal or the peak, and with more
 /// evaluations. What is known best stays.
-void TrialContext::measure_about_others(int t, const Lobe& lobe, Density& d) const {
+void Densities::measure_about_others(int t, const Lobe& lobe, Density& d) const {
     const auto keep_better = [&d](Density other) {
         if (other.mass.error < d.mass.error) d = std::move(other);
     };
@@ -134,7 +134,7 @@ void TrialContext::measure_about_others(int t, const Lobe& lobe, Density& d) con
 }
 
 /// In the same cells for as long as questions are left. A program answered for most of them, which cost nothing now.
-void TrialContext::measure_further(int t, Density& d) const {
+void Densities::measure_further(int t, Density& d) const {
     const std::size_t known = thrifty() ? d.mass.evaluations : 0;
     const Batch ask = batch_of(t, d.map);
     const auto while_affordable = [&](std::span<const Vec2d> at, std::span<double> out) {
@@ -152,7 +152,7 @@ void TrialContext::measure_further(int t, Density& d) const {
 
 /// p that is a random estimate, by points at random; a second time about other coordinates where it does not come to
 /// one.
-Density TrialContext::density_of_estimates(int t, Vec3d axis) {
+Density Densities::density_of_estimates(int t, Vec3d axis) {
     const auto about = [&](Vec3d to) {
         return density_about(t, to, to.z == 1, (thrifty() ? 2 : 4) * settings.evaluations);
     };
@@ -164,7 +164,7 @@ Density TrialContext::density_of_estimates(int t, Vec3d axis) {
 }
 
 /// 2 pi p over coordinates about an axis.
-Batch TrialContext::batch_of(int technique, const SphereMap& map) const {
+Batch Densities::batch_of(int technique, const SphereMap& map) const {
     return [this, technique, map](std::span<const Vec2d> at, std::span<double> out) {
         std::vector<Vec3d> wi;
         for (Vec2d v : at) wi.push_back(map.direction(v));
@@ -173,7 +173,7 @@ Batch TrialContext::batch_of(int technique, const SphereMap& map) const {
     };
 }
 
-SamplesPerBin TrialContext::samples_per_bin_of(int technique, const Density& d) const {
+SamplesPerBin Densities::samples_per_bin_of(int technique, const Density& d) const {
     SamplesPerBin out;
     const SampleBatch& b = first(technique);
     out.bins.resize((d.rings.size() - 1) * static_cast<std::size_t>(d.sectors));
@@ -196,7 +196,7 @@ std::size_t Density::bin_of(Vec2d at) const {
 
 /// An edge at the nearest and the farthest rim, and one farther out, since a rim is known at a few places: what lies
 /// beyond expects nothing.
-void TrialContext::add_edges_of_support(Density& d) const {
+void Densities::add_edges_of_support(Density& d) const {
     if (support_boundary_.empty()) return;
     double least = 2, most = 0;
     for (Vec3d w : support_boundary_) {
@@ -206,7 +206,7 @@ void TrialContext::add_edges_of_support(Density& d) const {
     }
     // Rounding takes draws beyond a rim at which p has a pole, where many of them fall.
     if (pole_ && circle_ && length(d.map.frame.n - *circle_) < 1e-12) {
-        const double rounding = 8 * std::max(direction_resolution_, 0x1p-24) * std::sqrt(2 * *pole_);
+        const double rounding = 8 * std::max(direction_resolution(), 0x1p-24) * std::sqrt(2 * *pole_);
         std::erase_if(d.rings, [&](double edge) { return std::fabs(edge - *pole_) < rounding; });
         least = most = *pole_ + rounding;
     }
@@ -218,7 +218,7 @@ void TrialContext::add_edges_of_support(Density& d) const {
 }
 
 /// Rings and sectors about an axis, narrow where draws crowd and where samplers go wrong.
-Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
+Density Densities::bins_about(Vec3d axis, bool about_n) const {
     Density d;
     d.map = SphereMap(axis);
     d.about_n = about_n;
@@ -255,7 +255,7 @@ Density TrialContext::bins_about(Vec3d axis, bool about_n) const {
     return d;
 }
 
-std::vector<Rect> TrialContext::cells_of(const Density& d) const {
+std::vector<Rect> Densities::cells_of(const Density& d) const {
     std::vector<Rect> cells;
     const int rings = static_cast<int>(d.rings.size()) - 1;
     for (int i = 0; i < rings; ++i)
@@ -265,8 +265,7 @@ std::vector<Rect> TrialContext::cells_of(const Density& d) const {
     return cells;
 }
 
-Density TrialContext::density_about(
-    int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
+Density Densities::density_about(int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
     const std::size_t evaluations = affordable(wanted, for_later());
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
@@ -278,7 +277,7 @@ Density TrialContext::density_about(
     }
     const SamplesPerBin samples = samples_per_bin_of(technique, d);
     d.mass = integral_of(refined_at_pilots(cells_of(d), d.map, pilot_directions_), rings * d.sectors,
-        batch_of(technique, d.map), {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter_.pdf(),
+        batch_of(technique, d.map), {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter().pdf(),
         &samples);
     grant_tabulation_error(technique, d);
     return d;

@@ -4,15 +4,20 @@
 #include <functional>
 
 #include "math/functions.h"
-#include "trials/trial_context.h"
+#include "trials/integrals.h"
 
 namespace crescent::inline trials {
 
-const Integral& TrialContext::incoming(Where where, bool even) const {
+void Integrals::redraw(std::uint32_t seed) {
+    unmet_ = {};
+    Draws::redraw(seed);
+}
+
+const Integral& Integrals::incoming(Where where, bool even) const {
     even = even && (!trial.light.even() || trial.light.fill != 1);  // the light may be even already
     auto& kept = incoming_[2 * static_cast<std::size_t>(where) + (even ? 1 : 0)];
     if (!kept)
-        kept = where == Where::reached && (scatter_.pdf() || incoming(Where::lost, even).value == 0)
+        kept = where == Where::reached && (scatter().pdf() || incoming(Where::lost, even).value == 0)
             ? incoming(Where::everywhere, even)
             : integrate_incoming(where, even);
     return *kept;
@@ -20,7 +25,7 @@ const Integral& TrialContext::incoming(Where where, bool even) const {
 
 namespace {
 
-using OfLight = TrialContext::OfLight;
+using OfLight = Integrals::OfLight;
 constexpr std::size_t for_confirmation = 90000;  // questions: 30,000 fresh draws with p and f at each
 
 /// Another light stands before that one, which lies at y or where wi meets it.
@@ -63,15 +68,15 @@ Sheet sheet_of(const TrialLamp& lamp) {
 }
 
 /// Adds int f L cos over what a light shows, above the fill that it hides; of_light: f cos where it counts.
-template <class Light> void add_light(Integral& total, const TrialContext& work, const Light& own,
-    const OfLight& of_light, double tolerance, std::size_t evaluations) {
+template <class Light> void add_light(Integral& total, const Draws& work, const Light& own, const OfLight& of_light,
+    double tolerance, std::size_t evaluations) {
     const TrialLight& light = work.trial.light;
     const Sheet sheet = sheet_of(own);
     std::vector<Rect> cells;
     for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 8; ++k) cells.push_back({i / 4.0, (i + 1) / 4.0, k / 8.0, (k + 1) / 8.0, 0});
     const double strength = sheet.area * (own.radiance - light.fill);
-    const Integral of_own = work.integral_of(
+    const Integral of_own = integral_of(
         cells, 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Vec3d> wi;
@@ -93,14 +98,14 @@ template <class Light> void add_light(Integral& total, const TrialContext& work,
 
 }  // namespace
 
-Integral TrialContext::albedo_of(int channel) const { return integrate_incoming(Where::everywhere, true, channel); }
+Integral Integrals::albedo_of(int channel) const { return integrate_incoming(Where::everywhere, true, channel); }
 
-Integral TrialContext::integrate_incoming(Where where, bool even, int channel) const {
+Integral Integrals::integrate_incoming(Where where, bool even, int channel) const {
     return integrate_light(
         [&](std::span<const Vec3d> wi, std::span<double> out) {
             const std::vector<double> value = channel < 0 ? f(wi, true) : f_of_channel(wi, channel);
             std::vector<double> p = where == Where::everywhere ? std::vector<double>(wi.size(), 1.0) : any_pdf(wi);
-            if (scatter_.pdf()) ask_again_at_zeros(wi, value, p);
+            if (scatter().pdf()) ask_again_at_zeros(wi, value, p);
             for (std::size_t i = 0; i < out.size(); ++i) {
                 const bool counts = where == Where::everywhere || (p[i] > 0) == (where == Where::reached);
                 out[i] = counts && this->counts(wi[i]) ? value[i] * std::fabs(wi[i].z) : 0.0;
@@ -109,7 +114,7 @@ Integral TrialContext::integrate_incoming(Where where, bool even, int channel) c
         even);
 }
 
-Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const {
+Integral Integrals::integrate_light(const OfLight& of_light, bool even) const {
     const TrialLight& light = trial.light;
     const double fill = even ? 1 : light.fill;
     Integral total;
@@ -126,7 +131,7 @@ Integral TrialContext::integrate_light(const OfLight& of_light, bool even) const
                 of_light(wi, out);
                 for (double& v : out) v *= 2 * pi * fill;
             },
-            {tolerance(), affordable(2 * settings.evaluations, for_confirmation) / 2}, scatter_.any());
+            {tolerance(), affordable(2 * settings.evaluations, for_confirmation) / 2}, scatter().any());
     }
     const auto add = [&](const auto& own) {
         add_light(total, *this, own, of_light, tolerance(), affordable(settings.evaluations / 2, for_confirmation) / 2);

@@ -6,7 +6,6 @@
 
 #include "simd/frame.h"
 #include "simd/random.h"
-#include "trials/trial_context.h"
 
 namespace crescent::inline trials {
 
@@ -33,7 +32,7 @@ std::vector<Pair> pairs_and_turned(bool both) {
 
 }  // namespace
 
-bool is_phase_function(const TrialContext& work) {
+bool is_phase_function(const Draws& work) {
     if (work.traits.eta || !work.subject.has_f() || !work.whole() || work.scatter().f()) return false;
     const std::vector<Pair> pairs = pairs_and_turned(work.traits.wo == Traits::Asked::both);
     std::vector<double> p(pairs.size());

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "simd/scalar.h"
-#include "trials/trial_context.h"
+#include "trials/densities.h"
 
 namespace crescent::inline trials {
 
 /// p grows as one over the root of the distance to the rim at this height: ten times over from 1e-4 of it to 1e-6.
-bool TrialContext::has_pole_at(const SphereMap& map, double height) const {
+bool Pilots::has_pole_at(const SphereMap& map, double height) const {
     constexpr double near = 1e-6, far = 1e-4, turn = 0.37;
     const std::vector<Vec3d> at = {
         map.direction({height * (1 - near), turn}), map.direction({height * (1 - far), turn})};
@@ -19,7 +19,7 @@ bool TrialContext::has_pole_at(const SphereMap& map, double height) const {
 
 /// Of cells about a circle along which p grows as one over the root of the distance: a = h (1 - s^2), with which 2 h s
 /// ds takes the root away; beyond h, a itself.
-Integral TrialContext::mass_inside_pole(
+Integral Densities::mass_inside_pole(
     int technique, const Density& d, std::vector<Rect> cells, const Effort& effort) const {
     const double h = *pole_;
     const auto there = [h](double a) { return a < h ? h * (1 - std::sqrt(1 - a / h)) : a; };

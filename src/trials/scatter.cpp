@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "stats/quantiles.h"
 #include "subjects/asked_once.h"
-#include "trials/trial_context.h"
+#include "trials/draws.h"
 
 namespace crescent::inline trials {
 
@@ -53,7 +53,7 @@ std::vector<Vec3d> beside(std::span<const Vec3d> at, double step) {
 }
 
 /// Where the sampler draws, and all over the upper half.
-std::vector<Vec3d> directions_of(const TrialContext& work) {
+std::vector<Vec3d> directions_of(const Draws& work) {
     std::vector<Vec3d> out;
     for (const Draw& d : work.first(0).draws)
         if (out.size() < 48 && d.pdf > 0 && is_finite(d.wi)) out.push_back(normalize(d.wi));
@@ -63,7 +63,7 @@ std::vector<Vec3d> directions_of(const TrialContext& work) {
 
 }  // namespace
 
-Scatter look_for_scatter(const TrialContext& work) {
+Scatter look_for_scatter(const Draws& work) {
     Scatter out;
     if (!work.subject.draws_at_will()) return out;  // a file has one answer for each direction
     const std::vector<Vec3d> at = directions_of(work), near = beside(at, fine), far = beside(at, coarse);
@@ -98,7 +98,7 @@ std::string told(const Scatter& s) {
 }
 
 /// A draw under the horizon is not nothing because its pdf(w) came out as 0 once, where others there have one.
-void TrialContext::settle_zeros(SampleBatch& b) const {
+void Draws::settle_zeros(SampleBatch& b) const {
     const auto zero = [&](std::size_t i) { return b.draws[i].pdf > 0 && b.draws[i].wi.z <= 0 && b.pdf[i] == 0; };
     bool below = false;
     for (std::size_t i = 0; i < b.draws.size() && !below; ++i)
@@ -108,7 +108,7 @@ void TrialContext::settle_zeros(SampleBatch& b) const {
 }
 
 /// Sixteen more answers beside each direction at which f is not 0 and p came out as 0.
-void TrialContext::ask_again_at_zeros(
+void Questions::ask_again_at_zeros(
     std::span<const Vec3d> wi, std::span<const double> value, std::span<double> p) const {
     constexpr int rounds = 16;
     for (int round = 1; round <= rounds; ++round) {
@@ -122,19 +122,13 @@ void TrialContext::ask_again_at_zeros(
     }
 }
 
-std::vector<double> TrialContext::mean_pdf(std::span<const Vec3d> wi, int answers) const {
+std::vector<double> Questions::mean_pdf(std::span<const Vec3d> wi, int answers) const {
     std::vector<double> sum(wi.size());
     for (int k = 0; k < answers; ++k) {
         const std::vector<double> p = any_pdf(beside(wi, (k + 1) * fine));
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += p[i] / answers;
     }
     return sum;
-}
-
-Integral TrialContext::integral_of(std::vector<Rect> cells, int bins, const Batch& g, const Effort& effort,
-    bool estimates, const SamplesPerBin* samples) const {
-    return estimates ? integrate_by_points(std::move(cells), bins, g, effort.most_evaluations, true)
-                     : integrate(std::move(cells), bins, g, effort, samples);
 }
 
 }  // namespace crescent::inline trials

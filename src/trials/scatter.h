@@ -10,7 +10,7 @@
 
 namespace crescent::inline trials {
 
-class TrialContext;
+class Draws;
 
 struct Scatter {
     double of_pdf = 0, of_f = 0;  // median relative difference of two answers; 0: no estimate
@@ -21,7 +21,7 @@ struct Scatter {
 };
 
 /// Asks for f and pdf twice where the sampler draws and all over the upper half, and beside these directions.
-Scatter look_for_scatter(const TrialContext& work);
+Scatter look_for_scatter(const Draws& work);
 
 /// "pdf(w) and f(w) are random estimates (...)"; "" where they are none.
 std::string told(const Scatter& scatter);

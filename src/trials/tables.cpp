@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "cubature/mesh.h"
-#include "trials/trial_context.h"
+#include "trials/densities.h"
 
 namespace crescent::inline trials {
 
 /// A density that jumps along heights and azimuths about an axis: the normal, or for a sky any axis of the frame. Its
 /// cells are summed, or sampled where a program would be asked too often. Where it jumps at heights alone, they become
 /// edges of rings.
-std::optional<Density> TrialContext::table_density(int t) {
+std::optional<Density> Densities::table_density(int t) {
     constexpr std::size_t most_heights = 64;
     banded_.reset();
     std::vector<Vec3d> axes = {{0, 0, 1}};
@@ -32,7 +32,8 @@ std::optional<Density> TrialContext::table_density(int t) {
         std::optional<Integral> mass;
         if (mesh->cells() <= most)
             mass = integrate_mesh(*mesh, d.rings, d.sectors, g,
-                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, direction_resolution_, crowd, &seen);
+                {2.5e-6, affordable(6 * settings.evaluations, for_later()), 5e-5}, direction_resolution(), crowd,
+                &seen);
         else
             mass = integrate_by_points(crowd(cells_of(d)), static_cast<int>((d.rings.size() - 1)) * d.sectors, g,
                 affordable(4 * settings.evaluations, for_later()));
@@ -45,7 +46,7 @@ std::optional<Density> TrialContext::table_density(int t) {
     return {};
 }
 
-void TrialContext::grant_tabulation_error(int technique, Density& d) const {
+void Densities::grant_tabulation_error(int technique, Density& d) const {
     for (const TabulationError& part : subject.tabulation_errors()) {
         d.tabulation_errors.resize(d.mass.bins.size());
         d.tabulation_errors[d.bin_of(d.map.coordinates(part.at))] += part.mass;
@@ -57,7 +58,7 @@ void TrialContext::grant_tabulation_error(int technique, Density& d) const {
 /// Draws know their p where the table only nearly does: over those in a bin, table / p comes to the table's integral /
 /// p's. The bin is set right by that, as far as its doubt reaches, and is then known to the spread of table / p: twice
 /// the standard error of its mean, and a tenth for draws that do not follow p.
-void TrialContext::refine_table(int technique, Density& d) const {
+void Densities::refine_table(int technique, Density& d) const {
     struct Ratio {
         double n = 0, sum = 0, squares = 0;
     };

@@ -12,14 +12,13 @@
 
 #include "math/functions.h"
 #include "math/spherical.h"
-#include "trials/trial_context.h"
 
 namespace crescent::inline trials {
 
 namespace {
 
 /// All over the lower half, straight through, and where a smooth surface of common indices would refract to.
-std::vector<Vec3d> directions_below(const TrialContext& work) {
+std::vector<Vec3d> directions_below(const Questions& work) {
     std::vector<Vec3d> out;
     for (double z : {-0.02, -0.1, -0.25, -0.4, -0.6, -0.8, -0.95, -1.0})
         for (int k = 0; k < 8; ++k) out.push_back(math::spherical(z, 2 * pi * (k + 0.37) / 8));
@@ -33,7 +32,7 @@ std::vector<Vec3d> directions_below(const TrialContext& work) {
 
 }  // namespace
 
-void TrialContext::look_below() {
+void Draws::look_below() {
     std::vector<Vec3d> drawn;
     for (const SampleBatch& b : first_)
         for (std::size_t i = 0; i < b.draws.size(); ++i) {
@@ -62,14 +61,14 @@ void TrialContext::look_below() {
         below_.reached || !drawn.empty() || std::any_of(p.begin(), p.end(), [](double v) { return v > 0; });
 }
 
-Integral from_below(const TrialContext& work, Vec3d b) {
+Integral from_below(const Draws& work, Vec3d b) {
     const SphereMap map(Vec3d{0, 0, 1}), about(work.trial.wo);
     std::vector<Vec3d> pilot_directions;  // f(., b) is high about the w_o for which b was drawn
     for (int i = 0; i < 256; ++i) {
         const double turns = 0.618033988749895 * i;
         pilot_directions.push_back(about.direction({0.5 * math::pow(10.0, -6.0 * i / 256), turns - std::floor(turns)}));
     }
-    return work.integral_of(
+    return integral_of(
         refined_at_pilots(graded_cells(1), map, pilot_directions), 1,
         [&](std::span<const Vec2d> at, std::span<double> out) {
             std::vector<Pair> pairs;
@@ -80,7 +79,7 @@ Integral from_below(const TrialContext& work, Vec3d b) {
         {work.tolerance(), work.affordable(work.settings.evaluations / 2)}, work.scatter().f());
 }
 
-std::vector<Vec3d> drawn_below(const TrialContext& work) {
+std::vector<Vec3d> drawn_below(const Draws& work) {
     const SampleBatch& b = work.first(0);
     std::vector<Vec3d> out;
     double highest = 0;

@@ -17,7 +17,6 @@
 #include "math/functions.h"
 #include "stats/moments.h"
 #include "trials/delta.h"
-#include "trials/trial_context.h"
 #include "trials/weights.h"
 
 namespace crescent::inline trials {
@@ -34,7 +33,7 @@ struct Part {
     double p = 0;
 };
 
-std::vector<Part> parts_of(const TrialContext& work, int technique, std::span<const Vec3d> wi, bool even) {
+std::vector<Part> parts_of(const Integrals& work, int technique, std::span<const Vec3d> wi, bool even) {
     const std::vector<double> f = work.f(wi, true), p = work.pdf(technique, wi, true);
     std::vector<Pair> at;
     for (Vec3d w : wi) at.push_back({work.trial.wo, w});
@@ -51,7 +50,7 @@ std::vector<Part> parts_of(const TrialContext& work, int technique, std::span<co
 }
 
 /// Too few questions are left for cubatures, which follow the rim of the region: points at large tell what they can.
-bool is_short(const TrialContext& work, bool even) {
+bool is_short(const Integrals& work, bool even) {
     constexpr std::size_t enough = 160000;
     return (even || work.trial.light.even()) && work.affordable(enough) < enough;
 }
@@ -59,7 +58,7 @@ bool is_short(const TrialContext& work, bool even) {
 constexpr std::size_t few_points = 6000;
 
 /// int of_light over the fill, by points.
-Integral by_points(const TrialContext& work, const TrialContext::OfLight& of_light, bool even) {
+Integral by_points(const Integrals& work, const Integrals::OfLight& of_light, bool even) {
     const SphereMap map(Vec3d{0, 0, 1});
     const double fill = even ? 1 : work.trial.light.fill;
     return integrate_by_points(
@@ -74,7 +73,7 @@ Integral by_points(const TrialContext& work, const TrialContext::OfLight& of_lig
 }
 
 /// int p over the whole sphere where X > W.
-double chance_of(const TrialContext& work, int technique, double threshold, bool even) {
+double chance_of(const Integrals& work, int technique, double threshold, bool even) {
     if (is_short(work, even)) {
         const double fill = even ? 1 : work.trial.light.fill;
         const auto p_above = [&](std::span<const Vec3d> wi, std::span<double> out) {
@@ -90,9 +89,8 @@ double chance_of(const TrialContext& work, int technique, double threshold, bool
         const std::vector<Part> parts = parts_of(work, technique, wi, even);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = parts[i].weight > threshold ? 2 * pi * parts[i].p : 0;
     };
-    return work
-        .integral_of(refined_at_pilots(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
-            {1e-7, work.affordable(work.settings.evaluations)}, work.scatter().any())
+    return integral_of(refined_at_pilots(graded_cells(work.whole() ? 2 : 1), map, work.pilot_directions()), 1, g,
+        {1e-7, work.affordable(work.settings.evaluations)}, work.scatter().any())
         .value;
 }
 
@@ -107,7 +105,7 @@ namespace {
 
 /// Where p is an estimate, its mean of eight answers tells where weights would be larger than any that was drawn; in an
 /// even light alone.
-Unmet unmet_of_estimates(const TrialContext& work, std::span<const double> x, bool even) {
+Unmet unmet_of_estimates(const Integrals& work, std::span<const double> x, bool even) {
     constexpr std::size_t points = 6000;
     constexpr int answers = 8;
     const Spread s = spread(x);
@@ -145,7 +143,7 @@ Unmet unmet_of_estimates(const TrialContext& work, std::span<const double> x, bo
 
 }  // namespace
 
-Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool even) {
+Unmet look_for_unmet(const Integrals& work, std::span<const double> x, bool even) {
     if (work.scatter().pdf()) return unmet_of_estimates(work, x, even);
     const Spread s = spread(x);
     const Integral expected = due_mean(work, even);
@@ -182,14 +180,14 @@ Unmet look_for_unmet(const TrialContext& work, std::span<const double> x, bool e
     return out;
 }
 
-const Unmet& TrialContext::unmet(bool even) const {
+const Unmet& Integrals::unmet(bool even) const {
     even = even && (!trial.light.even() || trial.light.fill != 1);
     auto& kept = unmet_[even ? 1 : 0];
     if (!kept) kept = look_for_unmet(*this, first_weights(even), even);
     return *kept;
 }
 
-bool has_unmet_tail(const TrialContext& work, bool even) {
+bool has_unmet_tail(const Integrals& work, bool even) {
     // Which weights a direction would have is not known.
     if (!work.traits.has_pdf || !work.subject.has_f()) return false;
     const Spread s = spread(work.first_weights(even));

@@ -15,7 +15,7 @@ inline constexpr const char* no_weights =
     "There is neither a pdf nor a weight with the draws, hence nothing to weigh them by.";
 
 /// The pdf with a draw may be a random estimate too: the mean of one over it is not one over the mean.
-inline bool weighs_by_estimates(const TrialContext& work) {
+inline bool weighs_by_estimates(const Draws& work) {
     const auto& draws = work.first(0).draws;
     return work.scatter().pdf() &&
         std::none_of(draws.begin(), draws.end(), [](const Draw& d) { return d.weight.has_value(); });

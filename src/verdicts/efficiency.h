@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress_monitor.h"
 #include "trials/trial_context.h"
 
 namespace crescent::inline verdicts {

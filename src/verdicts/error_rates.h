@@ -2,6 +2,7 @@
 // planted fault.
 #pragma once
 
+#include "base/progress_monitor.h"
 #include "verdicts/judge.h"
 
 namespace crescent::inline verdicts {

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "base/progress_monitor.h"
 #include "judgements/summary.h"
 #include "judgements/verdict.h"
 #include "subjects/faults.h"

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "base/progress_monitor.h"
 #include "subjects/faults.h"
 #include "trials/contrasts.h"
 #include "verdicts/efficiency.h"

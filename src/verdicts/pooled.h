@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "base/progress_monitor.h"
 #include "trials/trial_context.h"
 
 namespace crescent::inline verdicts {

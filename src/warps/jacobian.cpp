@@ -223,7 +223,7 @@ std::vector<std::optional<WarpPoint>> jacobians_at(
 }
 
 const WarpFinding& study_warp(const TrialContext& work, int technique) {
-    auto& kept = work.warps[static_cast<std::size_t>(technique)];
+    auto& kept = work.kept.warps[static_cast<std::size_t>(technique)];
     if (!kept) kept = std::make_shared<const WarpFinding>(studied(work, technique));
     return *kept;
 }

@@ -223,7 +223,7 @@ Reached looked_at(const TrialContext& work, int technique) {
 }  // namespace
 
 const Reached& preimages_of(const TrialContext& work, int technique) {
-    auto& kept = work.reached[static_cast<std::size_t>(technique)];
+    auto& kept = work.kept.reached[static_cast<std::size_t>(technique)];
     if (!kept) kept = std::make_shared<const Reached>(looked_at(work, technique));
     return *kept;
 }
