@@ -126,7 +126,12 @@ std::optional<Diagnosis> explain_one_side(const TrialContext& work, std::span<co
             Diagnosis d{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
                 factor_text(work, factor.name, f.constant), {}};
             if (across) name_eta(work, d);
-            if (d.name == "a constant" && name_of_constant(work, d.constant).empty()) continue;
+            if (d.name == "a constant" && name_of_constant(work, d.constant).empty()) {
+                if (work.traits.eta || !across) continue;
+                const double index = math::exp(0.5 * std::fabs(math::log(d.constant)));
+                d.means +=
+                    fmt::format(", which is eta^2 or 1/eta^2 where the index, that was not told, is {:.4g},", index);
+            }
             d.name += across ? " across the surface" : " on this side of the surface";
             d.means += across ? " across the surface" : " on this side of the surface";
             d.g = [across, wo, g = factor.g, c = f.constant](
@@ -174,12 +179,23 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
         if (factor.name == "a constant") break;
     }
     if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close) return {};
-    return best || !work.whole() ? best : explain_by_sides(work, ratios);
+    if (!best && work.whole()) best = explain_by_sides(work, ratios);
+    if (best) return best;
+    for (const Factor& factor : fitted_factors(work, ratios)) {
+        const Fitted f = fit(work, factor, ratios);
+        if (!f.fits || !(f.all > 0)) continue;
+        if (factor.whole && std::fabs(math::log(f.constant)) > may_differ(f.all, 0)) continue;
+        return Diagnosis{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
+            factor_text(work, factor.name, f.constant) + factor.details, factor.g};
+    }
+    return {};
 }
 
-std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
+namespace {
+
+/// Where one u alone leads to each direction.
+std::optional<Diagnosis> diagnose_by_warp(const TrialContext& work, int technique) {
     const WarpFinding& warp = study_warp(work, technique);
-    if (warp.points.size() < least) return diagnose_by_bins(work, technique);
     const std::vector<Ratio> known = usable(drawn_over_claimed(work, technique));
     const bool enough_known = 10 * known.size() >= 9 * warp.points.size();
     if (enough_known)
@@ -187,9 +203,17 @@ std::optional<Diagnosis> diagnose_density(const TrialContext& work, int techniqu
             found->means = "what is drawn is pdf(w) times " + found->means;
             return found;
         }
-    if (std::optional<Diagnosis> found =
-            mostly_one(known) && enough_known ? std::nullopt : turned(work, technique, warp.points))
-        return found;
+    if (mostly_one(known) && enough_known) return {};
+    return turned(work, technique, warp.points, drawn_over_claimed(work, technique));
+}
+
+}  // namespace
+
+std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
+    const WarpFinding& warp = study_warp(work, technique);
+    if (warp.points.size() >= least)
+        if (std::optional<Diagnosis> found = diagnose_by_warp(work, technique)) return found;
+    if (std::optional<Diagnosis> found = diagnose_several_lobes(work, technique)) return found;
     return diagnose_by_bins(work, technique);
 }
 

@@ -20,7 +20,8 @@ struct Ratio {
 struct Factor {
     std::string name;  // "cos theta_i"
     std::function<double(Vec3d wi)> g;
-    bool whole = false;  // it explains the ratios with the constant 1 alone
+    bool whole = false;     // it explains the ratios with the constant 1 alone
+    std::string details{};  // ", of roughness 0.15"
 };
 
 struct Diagnosis {
@@ -35,6 +36,8 @@ struct Diagnosis {
 std::vector<Factor> usual_factors(const TrialContext& work);
 /// Fresnel where it does not belong, a coat's passes, G2 for G1 G1: whole factors, see fresnel_factors.cpp.
 void add_whole_factors(std::vector<Factor>& out, const TrialContext& work);
+/// Factors with a parameter that is read off the ratios; see fitted_factors.cpp.
+std::vector<Factor> fitted_factors(const TrialContext& work, std::span<const Ratio> ratios);
 /// Those of what is reflected alone (across: of what is refracted), where the index is told.
 std::vector<Factor> factors_of_side(const TrialContext& work, bool across);
 /// The microfacet's normal that leads from wo to wi, or its opposite: of a reflection, or of what goes through a
@@ -55,8 +58,10 @@ std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique);
 std::string spread_told(const TrialContext& work, Verdict& v);
 /// Nothing differs that could be explained: half of all ratios are one.
 bool mostly_one(std::span<const Ratio> ratios);
-/// What is drawn is pdf(w) of another w_o, another w_i or both, at nine of ten points of the warp.
-std::optional<Diagnosis> turned(const TrialContext& work, int technique, std::span<const WarpPoint> points);
+/// What is drawn is pdf(w) of another w_o, another w_i or both, at nine of ten points of the warp; as_it_is: drawn over
+/// claimed at these.
+std::optional<Diagnosis> turned(
+    const TrialContext& work, int technique, std::span<const WarpPoint> points, std::span<const Ratio> as_it_is);
 /// What is drawn against pdf(w), by the warp's Jacobian, or by bins where there is none: a factor, or another frame.
 std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique);
 std::optional<Diagnosis> diagnose_by_bins(const TrialContext& work, int technique);
@@ -70,6 +75,11 @@ std::optional<Diagnosis> scaled_channels(const TrialContext& work, const SampleB
 bool channels_differ(const TrialContext& work, const SampleBatch& b, std::size_t most);
 /// Two lobes of a mixture are drawn with other probabilities than pdf(w) has; see diagnosis_lobes.cpp.
 std::optional<Diagnosis> diagnose_lobes(const TrialContext& work, int technique);
+/// What explains it of lobes that one number chooses among, by what each of them draws; see diagnosis_within.cpp.
+std::optional<Diagnosis> diagnose_several_lobes(const TrialContext& work, int technique);
+struct LobeDraws;
+/// Of these lobes, what they are chosen with; see diagnosis_shares.cpp.
+std::optional<Diagnosis> diagnose_shares(const TrialContext& work, int technique, const LobeDraws& of);
 /// What comes with the draws against what is asked: pdf, weight, f.
 std::optional<Diagnosis> diagnose_identity(const TrialContext& work, int technique);
 /// Says of the first verdict that is wrong what explains it, or that nothing usual does; the later ones refer to it.
