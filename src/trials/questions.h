@@ -26,6 +26,8 @@ public:
     /// So many of the wanted questions as a limited sampler may still be asked here, `keep` of them left for later;
     /// 2000 at least.
     std::size_t affordable(std::size_t wanted, std::size_t keep = 0) const;
+    /// Questions that may still be asked at this w_o.
+    std::size_t left() const;
     /// A limited sampler is asked no more than its answers are worth: integrals are known to a fifth of what the tests
     /// grant.
     bool thrifty() const { return subject.limited() && !settings.full; }
@@ -50,8 +52,6 @@ public:
 
 protected:
     std::uint32_t index_;
-    /// Questions that may still be asked at this w_o.
-    std::size_t left() const;
     /// Questions for the verdicts after the density and its confirmation.
     std::size_t for_later() const;
     /// Sixteen more answers beside each direction at which f, `value`, is not 0 and p came out as 0.

@@ -128,7 +128,7 @@ std::optional<Diagnosis> other_shares(const TrialContext& work, int technique, c
 std::optional<Diagnosis> used_again(const TrialContext& work, int technique, const LobeDraws& of) {
     const Density& d = work.density(technique);
     const std::size_t n = of.lobes.size();
-    if (of.chooser > 1 || n > 4 || std::fabs(d.mass.value + d.nothing - 1) > 1e-3) return {};
+    if (of.chooser > 1 || n > 4) return {};
     std::optional<Shares> best;
     Counted most;
     for (unsigned which = 1; which < (1u << n); ++which) {

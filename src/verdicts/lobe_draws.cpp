@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "simd/scalar.h"
 
@@ -12,7 +13,8 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr std::size_t points_of_a_lobe = 160, fewest = 32, starts = 3;
+constexpr std::size_t most_of_a_lobe = 128, fewest = 32, starts = 3;
+constexpr std::size_t for_ends = 8000, of_a_point = 11, of_a_way = 40;  // questions
 constexpr int newton_steps = 12;
 constexpr double grain_of_u = 0x1p-24, margin = 0x1p-7 + 0x1p-12;  // differences fit inside
 constexpr double exact = 1e-3, next_to_nothing = 5e-4;             // relative to p
@@ -20,6 +22,10 @@ constexpr double exact = 1e-3, next_to_nothing = 5e-4;             // relative t
 /// How far u may go within a lobe.
 struct Room {
     double low[2] = {margin, margin}, high[2] = {1 - margin, 1 - margin};
+    Numbers nearest(Numbers u) const {
+        for (int k = 0; k < 2; ++k) u[k] = std::round(std::clamp(u[k], low[k], high[k]) / grain_of_u) * grain_of_u;
+        return u;
+    }
 };
 
 Room room_of(const LobeDraws& of, std::size_t lobe) {
@@ -52,7 +58,7 @@ std::vector<std::vector<std::size_t>> draws_by_lobe(const LobeDraws& of, const S
 
 /// A way from one lobe to a direction that another drew.
 struct Search {
-    std::size_t of, lobe;
+    std::size_t of, lobe, place;
     Numbers u;
     bool arrived = false;
 };
@@ -78,17 +84,10 @@ void step(const TrialContext& work, int technique, const LobeDraws& of, std::vec
         if (s.arrived || !(det > 1e-12 * xx * yy)) continue;
         const double dx = (yy * dot(x, r) - xy * dot(y, r)) / det, dy = (xx * dot(y, r) - xy * dot(x, r)) / det;
         const double shorter = 0.1 / std::max({0.1, std::fabs(dx), std::fabs(dy)});
-        const Room room = room_of(of, s.lobe);
-        const auto moved = [&](int k, double by) {
-            double to = s.u[k] + shorter * by;
-            if (of.chooser != k && (to < 0 || to >= 1)) to -= std::floor(to);  // an azimuth goes round
-            return std::round(std::clamp(to, room.low[k], room.high[k]) / grain_of_u) * grain_of_u;
-        };
-        s.u = [&] {
-            Numbers v = s.u;
-            v.x = moved(0, dx), v.y = moved(1, dy);
-            return v;
-        }();
+        s.u.x += shorter * dx, s.u.y += shorter * dy;
+        for (int k = 0; k < 2; ++k)  // an azimuth goes round
+            if (of.chooser != k && (s.u[k] < 0 || s.u[k] >= 1)) s.u[k] -= std::floor(s.u[k]);
+        s.u = room_of(of, s.lobe).nearest(s.u);
     }
 }
 
@@ -115,14 +114,14 @@ Nearest nearest_of(const SampleBatch& b, std::span<const std::size_t> among, Vec
 }
 
 /// Points of each lobe, well inside of it, whose Jacobian is known.
-void add_points(
-    const TrialContext& work, int technique, LobeDraws& out, std::span<const std::vector<std::size_t>> draws) {
+void add_points(const TrialContext& work, int technique, std::size_t most, LobeDraws& out,
+    std::span<const std::vector<std::size_t>> draws) {
     const SampleBatch& b = work.first(technique);
     for (std::size_t lobe = 0; lobe < out.lobes.size(); ++lobe) {
         const Room room = room_of(out, lobe);
         std::vector<Numbers> u;
         for (std::size_t i : draws[lobe])
-            if (is_inside(room, b.u[i]) && u.size() < points_of_a_lobe) u.push_back(b.u[i]);
+            if (is_inside(room, b.u[i]) && u.size() < most) u.push_back(b.u[i]);
         for (const std::optional<WarpPoint>& p : jacobians_at(work, technique, u)) {
             if (!p || !(p->error < exact) || !(p->jacobian > 0)) continue;
             out.at.push_back({*p, lobe, 0, p->error, std::vector<double>(out.lobes.size())});
@@ -131,15 +130,12 @@ void add_points(
     }
 }
 
+/// All that arrive within a few steps.
 std::vector<Search> arrivals(const TrialContext& work, int technique, const LobeDraws& of, std::vector<Search> all) {
     std::vector<Search> out;
     for (int k = 0; k < newton_steps && !all.empty(); ++k) {
         step(work, technique, of, all);
-        for (const Search& s : all) {
-            const bool again =
-                std::any_of(out.begin(), out.end(), [&](const Search& o) { return o.of == s.of && o.lobe == s.lobe; });
-            if (s.arrived && !again) out.push_back(s);
-        }
+        std::copy_if(all.begin(), all.end(), std::back_inserter(out), [](const Search& s) { return s.arrived; });
         std::erase_if(all, [](const Search& s) { return s.arrived; });
     }
     return out;
@@ -148,50 +144,57 @@ std::vector<Search> arrivals(const TrialContext& work, int technique, const Lobe
 /// What the other lobes draw at every point; those where that is not known are left out.
 void add_others(
     const TrialContext& work, int technique, LobeDraws& out, std::span<const std::vector<std::size_t>> draws) {
+    struct Open {
+        std::size_t of, lobe;
+        std::vector<std::size_t> from;  // draws
+        bool settled = false;
+    };
     const SampleBatch& b = work.first(technique);
-    std::vector<Search> all;
-    std::vector<std::vector<char>> open(out.at.size(), std::vector<char>(out.lobes.size()));
+    std::vector<Open> open;
     for (std::size_t k = 0; k < out.at.size(); ++k)
         for (std::size_t lobe = 0; lobe < out.lobes.size(); ++lobe) {
             if (lobe == out.at[k].own) continue;
             const Nearest near = nearest_of(b, draws[lobe], out.at[k].point.wi);
             const double p = std::min(out.at[k].pdf, out.at[k].drawn[out.at[k].own]);
-            open[k][lobe] = near.density > next_to_nothing * p;
-            if (!open[k][lobe]) continue;
-            for (std::size_t i : near.draws) {
-                const Room room = room_of(out, lobe);
-                Numbers u = b.u[i];
-                for (int n = 0; n < 2; ++n)
-                    u[n] = std::round(std::clamp(u[n], room.low[n], room.high[n]) / grain_of_u) * grain_of_u;
-                all.push_back({k, lobe, u});
-            }
+            if (near.density > next_to_nothing * p) open.push_back({k, lobe, near.draws});
         }
-    const std::vector<Search> found = arrivals(work, technique, out, std::move(all));
-    std::vector<Numbers> u;
-    for (const Search& s : found) u.push_back(s.u);
-    const std::vector<std::optional<WarpPoint>> jacobian = jacobians_at(work, technique, u);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (!jacobian[i] || !(jacobian[i]->error < exact)) continue;
-        LobeDraws::At& at = out.at[found[i].of];
-        at.drawn[found[i].lobe] = share_of(out, found[i].lobe) / jacobian[i]->jacobian;
-        at.error = std::max(at.error, jacobian[i]->error);
-        open[found[i].of][found[i].lobe] = 0;
+    for (std::size_t start = 0; start < starts; ++start) {
+        std::vector<Search> all;
+        for (std::size_t k = 0; k < open.size(); ++k)
+            if (const Open& o = open[k]; !o.settled && start < o.from.size())
+                all.push_back({o.of, o.lobe, k, room_of(out, o.lobe).nearest(b.u[o.from[start]])});
+        const std::vector<Search> found = arrivals(work, technique, out, std::move(all));
+        std::vector<Numbers> u;
+        for (const Search& s : found) u.push_back(s.u);
+        const std::vector<std::optional<WarpPoint>> jacobian = jacobians_at(work, technique, u);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            if (!jacobian[i] || !(jacobian[i]->error < exact)) continue;
+            LobeDraws::At& at = out.at[found[i].of];
+            at.drawn[found[i].lobe] = share_of(out, found[i].lobe) / jacobian[i]->jacobian;
+            at.error = std::max(at.error, jacobian[i]->error);
+            open[found[i].place].settled = true;
+        }
     }
+    std::vector<char> unknown(out.at.size());
+    for (const Open& o : open) unknown[o.of] = unknown[o.of] || !o.settled;
     std::vector<LobeDraws::At> known;
     for (std::size_t k = 0; k < out.at.size(); ++k)
-        if (std::none_of(open[k].begin(), open[k].end(), [](char o) { return o; })) known.push_back(out.at[k]);
+        if (!unknown[k]) known.push_back(std::move(out.at[k]));
     out.at = std::move(known);
 }
 
 }  // namespace
 
 std::optional<LobeDraws> lobe_draws_of(const TrialContext& work, int technique) {
-    constexpr std::size_t questions = 100000;
-    if (work.affordable(questions) < questions) return {};
+    // Nothing is asked after a diagnosis: what is left may go into it.
+    const auto left = [&] { return work.subject.limited() ? work.left() : std::size_t{1} << 20; };
+    if (left() < 2 * for_ends) return {};
     std::optional<LobeDraws> out = lobes_of(work, technique);
     if (!out) return {};
+    const std::size_t n = out->lobes.size(), each = n * (of_a_point + of_a_way * (n - 1));
+    const std::size_t most = std::min(most_of_a_lobe, left() / each);
     const std::vector<std::vector<std::size_t>> draws = draws_by_lobe(*out, work.first(technique));
-    add_points(work, technique, *out, draws);
+    add_points(work, technique, most, *out, draws);
     std::vector<Vec3d> wi;
     for (const LobeDraws::At& at : out->at) wi.push_back(at.point.wi);
     const std::vector<double> p = work.pdf(technique, wi);
