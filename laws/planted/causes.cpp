@@ -85,7 +85,8 @@ std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uin
         const Trial trial = right_trial(i, seed);
         TrialContext work(trial, settings, test_counts, static_cast<std::uint32_t>(i));
         work.measure_density();
-        for (const std::optional<Diagnosis>& what : {diagnose_density(work, 0), diagnose_identity(work, 0)}) {
+        for (const std::optional<Diagnosis>& what :
+            {diagnose_density(work, 0), diagnose_identity(work, 0), diagnose_lobes(work, 0)}) {
             if (!what) continue;
             ++found;
             told += fmt::format("{} {} [{}]: {}\n", i, trial.arm, trial.text(), what->means);

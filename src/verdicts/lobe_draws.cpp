@@ -47,12 +47,8 @@ double share_of(const LobeDraws& of, std::size_t lobe) { return of.chooser > 1 ?
 /// The draws of each lobe by their place in the batch.
 std::vector<std::vector<std::size_t>> draws_by_lobe(const LobeDraws& of, const SampleBatch& b) {
     std::vector<std::vector<std::size_t>> out(of.lobes.size());
-    for (std::size_t i = 0; i < b.u.size(); ++i) {
-        if (!(b.draws[i].pdf > 0)) continue;
-        std::size_t k = 0;
-        while (k + 1 < of.lobes.size() && b.u[i][of.chooser] >= of.lobes[k].to) ++k;
-        out[k].push_back(i);
-    }
+    for (std::size_t i = 0; i < b.u.size(); ++i)
+        if (b.draws[i].pdf > 0) out[lobe_at(of, b.u[i])].push_back(i);
     return out;
 }
 

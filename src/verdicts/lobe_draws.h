@@ -35,6 +35,8 @@ struct LobeDraws {
 
 /// The lobes that one number chooses among, two to six; none where no number does, or their ends move with the others.
 std::optional<LobeDraws> lobes_of(const TrialContext& work, int technique);
+/// The lobe that these numbers choose, by its place.
+std::size_t lobe_at(const LobeDraws& of, const Numbers& u);
 /// The same with what is drawn at directions of each; directions where that is not known are left out. None where few
 /// are left, or questions are short.
 std::optional<LobeDraws> lobe_draws_of(const TrialContext& work, int technique);

@@ -21,11 +21,21 @@ std::vector<Draw> drawn(const TrialContext& work, int technique, std::span<const
     return out;
 }
 
+/// A move of the number, and what is drawn at either end of it; nothing drawn is a place of its own.
 struct Step {
     std::size_t of;
     double from, to;
-    Vec3d a, b;
+    Draw a, b;
+    bool jumps() const {
+        const bool at_a = a.pdf > 0, at_b = b.pdf > 0;
+        return at_a != at_b || (at_a && length(b.wi - a.wi) > jump);
+    }
 };
+
+double move(const Draw& a, const Draw& b) {
+    if ((a.pdf > 0) != (b.pdf > 0)) return 4;  // more than any
+    return a.pdf > 0 ? length(b.wi - a.wi) : 0;
+}
 
 /// Halves each step towards the side that moves more, and drops those that are smooth.
 void close_in(const TrialContext& work, int technique, int which, std::span<const Numbers> at, std::vector<Step>& all) {
@@ -33,31 +43,32 @@ void close_in(const TrialContext& work, int technique, int which, std::span<cons
         std::vector<Numbers> u;
         for (const Step& s : all) u.push_back(at[s.of]), u.back()[which] = 0.5 * (s.from + s.to);
         const std::vector<Draw> middle = drawn(work, technique, u);
-        std::vector<Step> kept;
         for (std::size_t i = 0; i < all.size(); ++i) {
-            Step s = all[i];
-            if (!(middle[i].pdf > 0)) continue;
-            const Vec3d m = middle[i].wi;
-            if (length(m - s.a) > length(s.b - m)) s.to = u[i][which], s.b = m;
-            else s.from = u[i][which], s.a = m;
-            if (length(s.b - s.a) > jump) kept.push_back(s);
+            Step& s = all[i];
+            if (move(s.a, middle[i]) > move(middle[i], s.b)) s.to = u[i][which], s.b = middle[i];
+            else s.from = u[i][which], s.a = middle[i];
         }
-        all = std::move(kept);
+        std::erase_if(all, [](const Step& s) { return !s.jumps(); });
     }
 }
 
-/// The ends within (0, 1) that most settings have in common; none where other jumps are as many.
-std::optional<std::vector<double>> common_ends(std::vector<double> all, std::size_t tried) {
-    std::sort(all.begin(), all.end());
+/// The ends within (0, 1) that many settings have in common; none where other jumps are as many. Where nothing is drawn
+/// from on may move with the other numbers, as a horizon does.
+std::optional<std::vector<double>> common_ends(std::vector<Step> all, std::size_t tried) {
+    std::sort(all.begin(), all.end(), [](const Step& a, const Step& b) { return a.from < b.from; });
+    const auto is_of_two = [](const Step& s) { return s.a.pdf > 0 && s.b.pdf > 0; };
     std::vector<double> out;
-    std::size_t in_common = 0;
-    for (std::size_t i = 0, next = 0; i < all.size(); i = next) {
-        while (next < all.size() && all[next] - all[i] < one_end) ++next;
-        if (3 * (next - i) < tried) continue;
-        in_common += next - i;
-        out.push_back(all[(i + next) / 2]);
+    std::ptrdiff_t in_common = 0;
+    for (auto next = all.begin(); next != all.end();) {
+        const auto first = next;
+        while (next != all.end() && next->from - first->from < one_end) ++next;
+        if (3 * (next - first) < static_cast<std::ptrdiff_t>(tried)) continue;
+        in_common += std::count_if(first, next, is_of_two);
+        const Step& middle = first[(next - first) / 2];
+        out.push_back(0.5 * (middle.from + middle.to));
     }
-    if (out.empty() || out.size() + 1 > most_lobes || 10 * in_common < 9 * all.size()) return {};
+    if (out.empty() || out.size() + 1 > most_lobes) return {};
+    if (10 * in_common < 9 * std::count_if(all.begin(), all.end(), is_of_two)) return {};
     return out;
 }
 
@@ -86,13 +97,10 @@ std::vector<LobeDraws::Lobe> chosen_by(
             u[k][which] = std::clamp(static_cast<double>(k) / (nodes - 1), rim, 1 - rim);
         const std::vector<Draw> w = drawn(work, technique, u);
         for (std::size_t k = 0; k + 1 < nodes; ++k)
-            if (w[k].pdf > 0 && w[k + 1].pdf > 0 && length(w[k + 1].wi - w[k].wi) > jump)
-                steps.push_back({i, u[k][which], u[k + 1][which], w[k].wi, w[k + 1].wi});
+            if (const Step s{i, u[k][which], u[k + 1][which], w[k], w[k + 1]}; s.jumps()) steps.push_back(s);
     }
     close_in(work, technique, which, at, steps);
-    std::vector<double> all;
-    for (const Step& s : steps) all.push_back(0.5 * (s.from + s.to));
-    const auto ends = common_ends(std::move(all), at.size());
+    const auto ends = common_ends(std::move(steps), at.size());
     if (!ends) return {};
     std::vector<LobeDraws::Lobe> out;
     double from = 0;
@@ -102,7 +110,38 @@ std::vector<LobeDraws::Lobe> chosen_by(
     return out;
 }
 
+void count_nothing(const SampleBatch& b, LobeDraws& of) {
+    std::vector<double> all(of.lobes.size()), nothing(of.lobes.size());
+    for (std::size_t i = 0; i < b.u.size(); ++i) {
+        const std::size_t k = lobe_at(of, b.u[i]);
+        ++all[k];
+        nothing[k] += is_null_sample(b.draws[i], b.pdf[i]);
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) of.lobes[k].nothing = all[k] > 0 ? nothing[k] / all[k] : 1;
+}
+
+/// An interval of which nothing is drawn is the end of the lobe before it, beyond a horizon, or no lobe.
+void leave_out_nothing(LobeDraws& of) {
+    std::vector<LobeDraws::Lobe> kept;
+    for (const LobeDraws::Lobe& lobe : of.lobes) {
+        if (lobe.nothing < 1) {
+            kept.push_back(lobe);
+        } else if (of.chooser < 2 && !kept.empty()) {
+            LobeDraws::Lobe& before = kept.back();
+            before.nothing = 1 - (1 - before.nothing) * before.share() / (lobe.to - before.from);
+            before.to = lobe.to;
+        }
+    }
+    of.lobes = std::move(kept);
+}
+
 }  // namespace
+
+std::size_t lobe_at(const LobeDraws& of, const Numbers& u) {
+    std::size_t k = 0;
+    while (k + 1 < of.lobes.size() && u[of.chooser] >= of.lobes[k].to) ++k;
+    return k;
+}
 
 std::optional<LobeDraws> lobes_of(const TrialContext& work, int technique) {
     if (!work.subject.draws_at_will() || work.traits.own_random || work.scatter().any()) return {};
@@ -121,14 +160,9 @@ std::optional<LobeDraws> lobes_of(const TrialContext& work, int technique) {
         out.lobes = std::move(lobes);
     }
     if (out.lobes.empty()) return {};
-    std::vector<double> all(out.lobes.size()), nothing(out.lobes.size());
-    for (std::size_t i = 0; i < b.u.size(); ++i) {
-        std::size_t k = 0;
-        while (k + 1 < out.lobes.size() && b.u[i][out.chooser] >= out.lobes[k].to) ++k;
-        ++all[k];
-        nothing[k] += is_null_sample(b.draws[i], b.pdf[i]);
-    }
-    for (std::size_t k = 0; k < all.size(); ++k) out.lobes[k].nothing = nothing[k] / std::max(all[k], 1.0);
+    count_nothing(b, out);
+    leave_out_nothing(out);
+    if (out.lobes.size() < 2) return {};
     return out;
 }
 
