@@ -8,11 +8,10 @@
 namespace crescent {
 namespace {
 
-TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
+void expect_four_of_five_named(const std::vector<PlantedFault>& faults) {
     ProgressMonitor monitor;
     std::size_t with = 0, named = 0;
     std::string told;
-    const std::vector<PlantedFault> faults = held_out_faults();
     EXPECT_GE(faults.size(), 20u);
     for (std::size_t k = 0; k < faults.size(); k += test::every) {
         const PlantedFault& fault = faults[k];
@@ -28,6 +27,12 @@ TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) {
         if (e.cause.empty()) EXPECT_EQ(e.said, "none") << e.fault;
     }
     EXPECT_GE(10 * named, 8 * with) << told;
+}
+
+TEST(HeldOutFaults, AreCaughtAndFourOfFiveCausesAreNamed) { expect_four_of_five_named(held_out_faults()); }
+
+TEST(HeldOutFaults, OfSeveralLobesAndOfLightsAreCaughtAndFourOfFiveCausesAreNamed) {
+    expect_four_of_five_named(held_out_lobe_faults());
 }
 
 }  // namespace

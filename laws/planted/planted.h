@@ -26,6 +26,8 @@ std::vector<PlantedFault> renderer_faults();
 std::vector<PlantedFault> boundary_faults();
 /// Faults of other families, kept apart: by them it is measured how often a cause is named rightly.
 std::vector<PlantedFault> held_out_faults();
+/// Those of several lobes, of lights and of shadowing, apart: what they lacked a name for was mended.
+std::vector<PlantedFault> held_out_lobe_faults();
 std::string cause_of(const std::string& fault);
 
 /// What was said of a planted fault over its w_o.
