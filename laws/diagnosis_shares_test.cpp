@@ -109,8 +109,9 @@ TEST(Diagnosis, TellsNoRatioBeyondAMillion) {
     EXPECT_EQ(said.say.find("e+"), std::string::npos) << said.say;
 }
 
-/// Two phase functions, the second drawn with a number that is not stretched again: its first part is never drawn.
-TEST(Diagnosis, OfALobeThatIsDrawnInPartNamesNoShare) {
+/// Two phase functions, the second drawn with a number that is not stretched again: its first part is never drawn, and
+/// that is no share.
+TEST(Diagnosis, OfANumberThatIsUsedAgainNamesThatAndNoShare) {
     Recipe r{"two phase functions", "", {}, {}, {}};
     r.traits.wo = Traits::Asked::none;
     const auto density = [](double g, double c) {
@@ -125,7 +126,8 @@ TEST(Diagnosis, OfALobeThatIsDrawnInPartNamesNoShare) {
     };
     const Judgement j = judged(r);
     EXPECT_EQ(j.state, State::wrong);
-    EXPECT_EQ(first_said(j).diagnosis, "none") << first_said(j).say;
+    EXPECT_EQ(first_said(j).diagnosis, "the number that chooses, used again without stretching") << first_said(j).say;
+    EXPECT_NE(first_said(j).say.find("(from 0.7 to 1)"), std::string::npos) << first_said(j).say;
 }
 
 /// The first finding says what explains it, where only another of its verdicts knows.

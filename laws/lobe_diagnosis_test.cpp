@@ -77,7 +77,7 @@ TEST(Lobes, ThatAreRightHaveNothingToldOfThem) {
     EXPECT_EQ(of->lobes.size(), 3u);
     EXPECT_NEAR(of->lobes[1].from, 0.4, 1e-6);
     EXPECT_NEAR(of->lobes[1].to, 0.7, 1e-6);
-    EXPECT_GT(of->at.size(), 200u);
+    EXPECT_GT(of->at.size(), 100u);
     for (const LobeDraws::At& at : of->at) EXPECT_NEAR(at.together() / at.pdf, 1, 2e-3) << at.point.wi.z;
     const std::optional<Diagnosis> found = diagnose_several_lobes(work, 0);
     EXPECT_FALSE(found) << found->means;

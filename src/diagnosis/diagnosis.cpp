@@ -78,26 +78,7 @@ bool mostly_one(std::span<const Ratio> ratios) {
 
 double may_differ(double all, double error) { return std::min(close, 0.02 * all) + std::min(2 * error, 0.1 * all); }
 
-std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique) {
-    const std::vector<WarpPoint>& points = study_warp(work, technique).points;
-    std::vector<double>& claimed = work.kept.claimed[static_cast<std::size_t>(technique)];
-    if (claimed.size() != points.size()) {
-        std::vector<Vec3d> wi;
-        for (const WarpPoint& p : points) wi.push_back(p.wi);
-        claimed = work.pdf(technique, wi);
-    }
-    std::vector<Ratio> ratios;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        ratios.push_back({points[i].wi, 1 / (claimed[i] * points[i].jacobian), points[i].error});
-    return ratios;
-}
-
 namespace {
-
-std::vector<Ratio> usable(std::vector<Ratio> all) {
-    std::erase_if(all, [](const Ratio& r) { return !(r.value > 0) || !std::isfinite(r.value) || r.error > 0.05; });
-    return all;
-}
 
 /// "eta^2" where a constant across the surface is a power of it.
 void name_eta(const TrialContext& work, Diagnosis& d) {
@@ -189,32 +170,6 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
             factor_text(work, factor.name, f.constant) + factor.details, factor.g};
     }
     return {};
-}
-
-namespace {
-
-/// Where one u alone leads to each direction.
-std::optional<Diagnosis> diagnose_by_warp(const TrialContext& work, int technique) {
-    const WarpFinding& warp = study_warp(work, technique);
-    const std::vector<Ratio> known = usable(drawn_over_claimed(work, technique));
-    const bool enough_known = 10 * known.size() >= 9 * warp.points.size();
-    if (enough_known)
-        if (std::optional<Diagnosis> found = explain(work, known); found && comes_to_one(work, technique, *found)) {
-            found->means = "what is drawn is pdf(w) times " + found->means;
-            return found;
-        }
-    if (mostly_one(known) && enough_known) return {};
-    return turned(work, technique, warp.points, drawn_over_claimed(work, technique));
-}
-
-}  // namespace
-
-std::optional<Diagnosis> diagnose_density(const TrialContext& work, int technique) {
-    const WarpFinding& warp = study_warp(work, technique);
-    if (warp.points.size() >= least)
-        if (std::optional<Diagnosis> found = diagnose_by_warp(work, technique)) return found;
-    if (std::optional<Diagnosis> found = diagnose_several_lobes(work, technique)) return found;
-    return diagnose_by_bins(work, technique);
 }
 
 namespace {

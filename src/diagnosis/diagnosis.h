@@ -54,6 +54,8 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
 double may_differ(double all, double error);
 /// What is drawn, 1 / |J|, over pdf(w) at points of the warp; less than that where several u reach one direction.
 std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique);
+/// Those that are known to a twentieth.
+std::vector<Ratio> usable(std::vector<Ratio> all);
 /// ": what is drawn is pdf(w) times 0.924 on average, 0.873 to 0.975 at nine of ten directions"; "" where they agree.
 std::string spread_told(const TrialContext& work, Verdict& v);
 /// Nothing differs that could be explained: half of all ratios are one.

@@ -127,8 +127,15 @@ std::vector<Factor> usual_factors(const TrialContext& work) {
     add(out, "cos theta_i / cos theta_o", [=](Vec3d w) { return std::fabs(w.z) / cos_o; });
     add_microfacets(out, work);
     add_light(out, work);
-    if (const std::optional<Boundary> b = boundary_of(work))
-        add(out, "Fresnel", [b = *b](Vec3d w) { return b.across(w) ? 1 - b.fresnel(w) : b.fresnel(w); });
+    const std::optional<Boundary> b = boundary_of(work);
+    if (!b) return out;
+    add(out, "Fresnel", [b = *b](Vec3d w) { return b.across(w) ? 1 - b.fresnel(w) : b.fresnel(w); });
+    out.push_back({"the chooser's 1 - Fresnel for Fresnel",
+        [b = *b](Vec3d w) {
+            const double f = b.fresnel(w), mirrored = f > 0 ? (1 - f) / f : 0;
+            return !b.across(w) ? mirrored : mirrored > 0 ? 1 / mirrored : 0;
+        },
+        true});
     return out;
 }
 

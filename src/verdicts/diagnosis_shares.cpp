@@ -16,7 +16,7 @@ namespace crescent::inline verdicts {
 namespace {
 
 using Shares = std::vector<double>;  // x, by lobe
-constexpr double exact = 2e-3, enough = 0.9;
+constexpr double exact = 2e-3, enough = 0.9, telling = 0.05;
 constexpr std::size_t fewest = 32, fewest_of_a_lobe = 8;
 
 /// sum x a over p, less one.
@@ -45,7 +45,7 @@ double furthest(const Shares& x) {
 
 struct Counted {
     std::size_t inside = 0, above = 0;  // directions at which sum x a is p, or more than p
-    std::vector<std::size_t> of_lobe;   // inside, by the lobe that drew them
+    std::vector<std::size_t> of_lobe;   // inside, and a lobe has a part of p that tells
     double left = 0, all = 0;
 };
 Counted count(const LobeDraws& of, const Shares& x) {
@@ -54,8 +54,10 @@ Counted count(const LobeDraws& of, const Shares& x) {
     const Shares as_it_is(x.size(), 1.0);
     for (const LobeDraws::At& at : of.at) {
         const double o = off(x, at), may = std::min(exact, 0.1 * furthest(x)) + 2 * at.error;
-        if (std::fabs(o) <= may) ++out.inside, ++out.of_lobe[at.own];
-        else if (o > 0) ++out.above;
+        if (std::fabs(o) <= may) {
+            ++out.inside;
+            for (std::size_t l = 0; l < x.size(); ++l) out.of_lobe[l] += x[l] * at.drawn[l] > telling * at.pdf;
+        } else if (o > 0) ++out.above;
         out.left += std::fabs(o), out.all += std::fabs(off(as_it_is, at));
     }
     return out;

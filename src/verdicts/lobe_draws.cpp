@@ -13,7 +13,7 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr std::size_t most_of_a_lobe = 128, fewest = 32, starts = 3;
+constexpr std::size_t most_of_a_lobe = 192, fewest = 32, starts = 3;
 constexpr std::size_t for_ends = 8000, of_a_point = 11, of_a_way = 40;  // questions
 constexpr int newton_steps = 12;
 constexpr double grain_of_u = 0x1p-24, margin = 0x1p-7 + 0x1p-12;  // differences fit inside
@@ -137,6 +137,15 @@ std::vector<Search> arrivals(const TrialContext& work, int technique, const Lobe
     return out;
 }
 
+/// A direction is so far from the nearest draw of a lobe, beside how far that is from its own next, that it lies beyond
+/// the lobe's edge.
+bool is_beyond(const SampleBatch& b, std::span<const std::size_t> lobe, std::size_t nearest, Vec3d wi) {
+    constexpr double by_far = 5;
+    const Nearest near = nearest_of(b, lobe, b.draws[nearest].wi);  // itself, and two beside it
+    const double apart = length(b.draws[near.draws.back()].wi - b.draws[nearest].wi);
+    return near.draws.size() == starts && length(wi - b.draws[nearest].wi) > by_far * apart;
+}
+
 /// What the other lobes draw at every point; those where that is not known are left out.
 void add_others(
     const TrialContext& work, int technique, LobeDraws& out, std::span<const std::vector<std::size_t>> draws) {
@@ -172,7 +181,8 @@ void add_others(
         }
     }
     std::vector<char> unknown(out.at.size());
-    for (const Open& o : open) unknown[o.of] = unknown[o.of] || !o.settled;
+    for (const Open& o : open)
+        unknown[o.of] = unknown[o.of] || !(o.settled || is_beyond(b, draws[o.lobe], o.from[0], out.at[o.of].point.wi));
     std::vector<LobeDraws::At> known;
     for (std::size_t k = 0; k < out.at.size(); ++k)
         if (!unknown[k]) known.push_back(std::move(out.at[k]));
