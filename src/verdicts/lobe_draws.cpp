@@ -87,19 +87,19 @@ void step(const TrialContext& work, int technique, const LobeDraws& of, std::vec
     }
 }
 
-/// The share of the draws of a lobe that may fall into 1 sr about a direction: by its third nearest.
+/// The nearest draws of a lobe, and the share of all draws that the lobe may have in 1 sr there, by the last of them.
 struct Nearest {
     std::vector<std::size_t> draws;
     double density = 0;
 };
 
-Nearest nearest_of(const SampleBatch& b, std::span<const std::size_t> among, Vec3d wi) {
+Nearest nearest_of(const SampleBatch& b, std::span<const std::size_t> among, Vec3d wi, std::size_t count) {
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t i : among) {
         const std::pair far{-dot(b.draws[i].wi, wi), i};
-        if (near.size() == starts && !(far < near.back())) continue;
+        if (near.size() == count && !(far < near.back())) continue;
         near.insert(std::upper_bound(near.begin(), near.end(), far), far);
-        if (near.size() > starts) near.pop_back();
+        if (near.size() > count) near.pop_back();
     }
     Nearest out;
     for (const auto& [far, i] : near) out.draws.push_back(i);
@@ -137,13 +137,14 @@ std::vector<Search> arrivals(const TrialContext& work, int technique, const Lobe
     return out;
 }
 
-/// A direction is so far from the nearest draw of a lobe, beside how far that is from its own next, that it lies beyond
-/// the lobe's edge.
+/// A direction is so far from the nearest draw of a lobe, beside how near to that others are, that it lies beyond the
+/// lobe's edge.
 bool is_beyond(const SampleBatch& b, std::span<const std::size_t> lobe, std::size_t nearest, Vec3d wi) {
-    constexpr double by_far = 5;
-    const Nearest near = nearest_of(b, lobe, b.draws[nearest].wi);  // itself, and two beside it
+    constexpr double by_far = 3;
+    constexpr std::size_t about = 8;  // draws, itself among them: so many are not near one another by chance
+    const Nearest near = nearest_of(b, lobe, b.draws[nearest].wi, about);
     const double apart = length(b.draws[near.draws.back()].wi - b.draws[nearest].wi);
-    return near.draws.size() == starts && length(wi - b.draws[nearest].wi) > by_far * apart;
+    return near.draws.size() == about && length(wi - b.draws[nearest].wi) > by_far * apart;
 }
 
 /// What the other lobes draw at every point; those where that is not known are left out.
@@ -159,7 +160,7 @@ void add_others(
     for (std::size_t k = 0; k < out.at.size(); ++k)
         for (std::size_t lobe = 0; lobe < out.lobes.size(); ++lobe) {
             if (lobe == out.at[k].own) continue;
-            const Nearest near = nearest_of(b, draws[lobe], out.at[k].point.wi);
+            const Nearest near = nearest_of(b, draws[lobe], out.at[k].point.wi, starts);
             const double p = std::min(out.at[k].pdf, out.at[k].drawn[out.at[k].own]);
             if (near.density > next_to_nothing * p) open.push_back({k, lobe, near.draws});
         }
