@@ -7,8 +7,8 @@
 #include "laws/right/right.h"
 #include "math/functions.h"
 #include "math/spherical.h"
-#include "verdicts/diagnosis.h"
-#include "verdicts/lobe_draws.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/lobe_draws.h"
 
 namespace crescent {
 namespace {

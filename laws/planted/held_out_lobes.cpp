@@ -11,7 +11,7 @@
 #include "math/spherical.h"
 #include "simd/frame.h"
 #include "simd/scalar.h"
-#include "verdicts/list.h"
+#include "subjects/list.h"
 
 namespace crescent {
 

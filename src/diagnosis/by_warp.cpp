@@ -2,14 +2,14 @@
 // a number chooses among them, by bins else.
 #include <cmath>
 
-#include "verdicts/diagnosis.h"
-#include "verdicts/ordered.h"
+#include "diagnosis/diagnosis.h"
+#include "warps/jacobian.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 std::vector<Ratio> drawn_over_claimed(const TrialContext& work, int technique) {
     const std::vector<WarpPoint>& points = study_warp(work, technique).points;
-    std::vector<double>& claimed = work.claimed[static_cast<std::size_t>(technique)];
+    std::vector<double>& claimed = work.kept.claimed[static_cast<std::size_t>(technique)];
     if (claimed.size() != points.size()) {
         std::vector<Vec3d> wi;
         for (const WarpPoint& p : points) wi.push_back(p.wi);
@@ -54,4 +54,4 @@ std::optional<Diagnosis> diagnose_density(const TrialContext& work, int techniqu
     return diagnose_by_bins(work, technique);
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis

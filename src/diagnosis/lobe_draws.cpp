@@ -1,7 +1,7 @@
 // What each lobe draws at a direction: share / |Jacobian| at the u by which that lobe leads there, found by Newton's
 // method from the draws of that lobe that fell nearest. Where none is found, and draws of the lobe fell so near that it
 // may well lead there, nothing is known of that direction.
-#include "verdicts/lobe_draws.h"
+#include "diagnosis/lobe_draws.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "simd/scalar.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 namespace {
 
@@ -212,4 +212,4 @@ std::optional<LobeDraws> lobe_draws_of(const TrialContext& work, int technique) 
     return out;
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis

@@ -6,11 +6,11 @@
 
 #include "math/functions.h"
 #include "simd/scalar.h"
-#include "verdicts/diagnosis.h"
-#include "verdicts/least_squares.h"
-#include "verdicts/median.h"
+#include "diagnosis/diagnosis.h"
+#include "stats/least_squares.h"
+#include "stats/quantiles.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::vector<Factor> fitted_factors(const TrialContext& work, std::span<const Rat
     return out;
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis

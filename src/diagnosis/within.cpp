@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "simd/scalar.h"
-#include "verdicts/diagnosis.h"
-#include "verdicts/lobe_draws.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/lobe_draws.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::optional<Diagnosis> diagnose_several_lobes(const TrialContext& work, int te
     return {};
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis

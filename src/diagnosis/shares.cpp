@@ -7,11 +7,11 @@
 #include <fmt/ranges.h>
 
 #include "simd/scalar.h"
-#include "verdicts/diagnosis.h"
-#include "verdicts/least_squares.h"
-#include "verdicts/lobe_draws.h"
+#include "diagnosis/diagnosis.h"
+#include "stats/least_squares.h"
+#include "diagnosis/lobe_draws.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 namespace {
 
@@ -162,4 +162,4 @@ std::optional<Diagnosis> diagnose_shares(const TrialContext& work, int technique
     return used_again(work, technique, of);
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis

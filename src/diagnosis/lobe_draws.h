@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "verdicts/ordered.h"
+#include "warps/jacobian.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 struct LobeDraws {
     /// What leads to one lobe, of the number that chooses.
@@ -41,4 +41,4 @@ std::size_t lobe_at(const LobeDraws& of, const Numbers& u);
 /// are left, or questions are short.
 std::optional<LobeDraws> lobe_draws_of(const TrialContext& work, int technique);
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis

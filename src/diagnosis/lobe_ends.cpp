@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "simd/scalar.h"
-#include "verdicts/lobe_draws.h"
+#include "diagnosis/lobe_draws.h"
 
-namespace crescent::inline verdicts {
+namespace crescent::inline diagnosis {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::optional<LobeDraws> lobes_of(const TrialContext& work, int technique) {
     return out;
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent::inline diagnosis
