@@ -51,7 +51,7 @@ State normalised(const Recipe& of) {
 
 TEST(Reach, AWindowOfManyCellsIsOneByItsWarp) { EXPECT_EQ(normalised(window()), State::right); }
 
-TEST(Reach, WhatPHasBesideTheWindowIsNotPassedByTheWarp) { EXPECT_NE(normalised(window(0.06)), State::right); }
+TEST(Reach, WhatPHasBesideTheWindowIsNotPassedByTheWarp) { EXPECT_NE(normalised(window(0.012)), State::right); }
 
 }  // namespace
 }  // namespace crescent
