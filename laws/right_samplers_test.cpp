@@ -1,11 +1,16 @@
 // Right samplers at random parameters are never accused. `crescent check --right N` judges as many as one likes,
 // docs/error-rates.md has what came of it; here a few of every family.
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "base/sanitized_test.h"
+#include "laws/judged.h"
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
 #include "laws/right/renderers.h"
+#include "math/functions.h"
+#include "math/spherical.h"
 #include "subjects/list.h"
 
 namespace crescent {
@@ -100,6 +105,22 @@ TEST(RightSamplers, OfSharpLobesInSinglePrecisionAreLeftAlone) {
         const Judgement j = judge(trials_of_subject(subject_of(lobe(s)), false), TestSettings::quick(), monitor);
         EXPECT_EQ(j.state, State::right) << s << ": " << what_is_wrong(j);
     }
+}
+
+/// Half vectors of a measured table are at theta = u^2 pi / 2: at its axis p is as large as numbers go, and the
+/// cubature that comes upon it knows no integral.
+TEST(RightSamplers, WithAPoleThatNoQuadratureIntegratesAreLeftAlone) {
+    const auto density = [](double theta) {
+        return 1 / std::max(2 * pi * pi * std::sqrt(2 * theta / pi) * math::sin(theta), 1e-300);
+    };
+    Recipe r{"theta = u^2 pi / 2", "", {}, {}, {}};
+    r.sample = [density](Vec3d, const Numbers& u) {
+        const double theta = 0.5 * pi * u[0] * u[0];
+        return Draw{math::spherical(math::cos(theta), 2 * pi * u[1]), density(theta)};
+    };
+    r.pdf = [density](Vec3d, Vec3d w) { return w.z > 0 ? density(math::acos(std::min(w.z, 1.0))) : 0.0; };
+    const Judgement j = judged_at(subject_of(r), 0, of_draws(32768));
+    EXPECT_NE(j.state, State::wrong) << what_is_wrong(j);
 }
 
 /// What explains a fault is named for four of five planted faults that have such a cause, and never where nothing is

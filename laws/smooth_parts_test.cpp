@@ -46,6 +46,23 @@ TEST(SmoothParts, AreRefractedByTheIndexThatIsTold) {
     EXPECT_EQ(v.evidence.value("diagnosis", ""), "1 / eta");
 }
 
+/// Each way leads back, and no energy is made: the boundary that refracts tells where it mirrors to. Not so where all
+/// of the light is mirrored.
+TEST(SmoothParts, AreMirroredByTheBoundaryThatRefracts) {
+    for (double theta : {10.0, 30.0, 85.0, 150.0, 175.0}) {
+        Recipe r = smooth_glass(1.5);
+        r.sample = [sample = r.sample](Vec3d o, const Numbers& u) {
+            Draw d = sample(o, u);
+            if (d.wi.z * o.z > 0) d.wi = {o.x, -o.y, o.z};
+            return d;
+        };
+        const Judgement turned = judged(r, theta);
+        const Verdict& v = named(turned, "physics");
+        EXPECT_EQ(v.state, State::wrong) << theta << v.say;
+        EXPECT_NE(v.say.find("mirrors w_o to"), std::string::npos) << theta << v.say;
+    }
+}
+
 /// Smooth glass of three indices, one for a channel: a third of what is not reflected is of each, and weighs in its
 /// channel alone, by `scale`. Along the normal the three go one way.
 Recipe dispersive_glass(double scale) {

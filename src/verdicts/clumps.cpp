@@ -210,6 +210,7 @@ double least_step(const TrialContext& work, int technique, const SampleBatch& b,
 }
 
 Clump densest_clump(const TrialContext& work, int technique, const Density& d, const SampleBatch& b) {
+    if (d.mass.error > 0.5 * d.mass.value) return {};  // what p lets be due is not known, as beside a pole
     std::vector<PlacedDraw> placed;
     placed.reserve(b.draws.size());
     const std::vector<Vec2d>& at = work.coordinates_of(b, d.map);

@@ -74,7 +74,9 @@ std::string mismatch(const FitToDensity& f, const std::function<bool(const OfFit
     return say;
 }
 
-/// Where one step of u takes a direction through half a bin or more, draws show no more of p than the steps of u.
+constexpr double steps_of_a_bin = 8;  // that it takes for draws to show p and not the stairs that they come on
+
+/// Where one step of u takes a direction through an eighth of a bin or more, draws show the steps of u beside p.
 struct Grain {
     double step = 0, bin = 0;  // radians; step 0: bins are wide enough
     std::size_t ring = 0;
@@ -95,7 +97,7 @@ Grain grain_of_u(const TrialContext& work, int technique, const Density& d, cons
                  sin = std::sqrt(std::max(to * (2 - to), 0.0)),
                  least = std::min(wide, 2 * pi * sin / static_cast<double>(d.sectors));
     constexpr double seam = pi / 180;  // of a number that chooses: no rounding moves a direction so far
-    if (!(step > 0.5 * least) || !(least > 0) || step > seam) return {};
+    if (!(steps_of_a_bin * step > least) || !(least > 0) || step > seam) return {};
     return {step, least, ring, work.traits.own_random, false};
 }
 
@@ -105,7 +107,7 @@ std::string told(const Grain& g) {
         g.own ? "Directions that come again lie apart there by"
               : "u comes in steps of 2^-24, of which one moves the direction there by",
         g.step * 180 / pi, g.bin * 180 / pi,
-        g.off_beyond ? "bins of eight steps show it too"
+        g.off_beyond ? "bins of 32 steps show it too"
             : g.own  ? "it may be such steps alone that the draws show, not p"
                      : "it may be the steps of u alone that the draws show, not p");
 }
@@ -140,19 +142,23 @@ std::string twice_off(const TrialContext& work, int t, const Density& d, const F
     });
 }
 
-/// Bins that are narrower than steps of u are joined to eight steps: where draws follow p over these, `f` is of these.
+/// Bins that are narrower than eight steps of u are joined to eight: where draws follow p over these, `f` is of these.
+/// A stair that lies across an edge is half a step too much for the bin on one side: it is off by as much in bins of
+/// four times the width, a quarter of the share, and a p that is wrong all along by the same share as before.
 bool follow_in_wider_bins(const TrialContext& work, int t, Grain& grain, FitToDensity& f, Verdict& v) {
     if (!(grain.step > 0)) return false;
-    constexpr double steps = 8;
-    const Density wide = joined(work.density(t), steps * grain.step, grain.ring);
-    FitToDensity coarse = fit_to_density(work, t, wide, work.first(t));
-    if (coarse.joint.pools < 2) return false;
-    grain.off_beyond = !twice_off(work, t, wide, coarse).empty();
-    if (grain.off_beyond) return false;
-    f = std::move(coarse);
-    note(work, t, f, v);
-    v.evidence["joined_to_deg" + work.suffix(t)] = steps * grain.step * 180 / pi;
-    return true;
+    for (const double steps : {steps_of_a_bin, 4 * steps_of_a_bin}) {
+        const Density wide = joined(work.density(t), steps * grain.step, grain.ring);
+        FitToDensity coarse = fit_to_density(work, t, wide, work.first(t));
+        if (coarse.joint.pools < 2) return false;
+        grain.off_beyond = !twice_off(work, t, wide, coarse).empty();
+        if (grain.off_beyond) continue;
+        f = std::move(coarse);
+        note(work, t, f, v);
+        v.evidence["joined_to_deg" + work.suffix(t)] = steps * grain.step * 180 / pi;
+        return true;
+    }
+    return false;
 }
 
 /// The draws of a technique do not follow p, on the first seed and on a fresh one; says so. `f` may become that of

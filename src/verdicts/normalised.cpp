@@ -70,13 +70,14 @@ void note(const Density& d, const Integral& mass, double doubt, const std::strin
 }
 
 std::string told(const Density& d, const Integral& mass) {
-    const std::string integral = fmt::format("p integrates to {:.6f} over the sphere", mass.value);
+    const auto number = [](double m) { return m < 1e6 ? fmt::format("{:.6f}", m) : fmt::format("{:.4g}", m); };
+    const std::string integral = "p integrates to " + number(mass.value) + " over the sphere";
     if (!(d.nothing > 0)) return integral;
     const char* rest = d.delta == 0 ? "draw nothing"
         : d.delta == d.nothing      ? "are of delta parts by their q"
                                     : "draw nothing or a delta part";
     return integral +
-        fmt::format(" and {:.6f} of the samples {}, together {:.6f}", d.nothing, rest, mass.value + d.nothing);
+        fmt::format(" and {:.6f} of the samples {}, together {}", d.nothing, rest, number(mass.value + d.nothing));
 }
 
 /// p |J| over points of u: where one u leads to each direction its mean is the integral of p over what is drawn.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
+#include <vector>
 
 #include "math/functions.h"
 #include "trials/delta.h"
@@ -65,22 +67,41 @@ bool turns_with_wo(const TrialContext& work, Vec3d wi) {
         there.begin(), there.end(), [due = turned(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, due); });
 }
 
+/// A boundary that lies askew refracts by its own normal: one that refracts as a flat one does mirrors as it, too.
+bool mirrors_elsewhere(Vec3d wo, Vec3d wi, const std::vector<Vec3d>& across, Vec3d eta, Verdict& v) {
+    const auto flat = [&](Vec3d w) { return !near(w, -wo) && is_refracted(wo, w, eta, false); };
+    const auto through = std::ranges::find_if(across, flat);
+    if (through == across.end()) return false;
+    v.state = State::wrong;
+    v.evidence["delta_part"] = {wi.x, wi.y, wi.z};
+    v.say = fmt::format(
+        "A delta part is reflected to ({:.5g}, {:.5g}, {:.5g}), but the boundary that refracts another to ({:.5g}, "
+        "{:.5g}, {:.5g}) mirrors w_o to ({:.5g}, {:.5g}, {:.5g}).",
+        wi.x, wi.y, wi.z, through->x, through->y, through->z, -wo.x, -wo.y, wo.z);
+    return true;
+}
+
 }  // namespace
 
 bool refracts_elsewhere(const TrialContext& work, Verdict& v) {
     if (!work.traits.eta) return false;
     const Vec3d wo = work.trial.wo, eta = *work.traits.eta;
     std::vector<Vec3d> across;
+    std::optional<Vec3d> askew;  // reflected, but not to the mirror direction of a flat boundary
     bool mirrored = false;
     for (const DeltaPart& p : delta_parts(work, work.first(0)).parts) {
         const bool through = p.wi.z * wo.z < 0;
-        if (!through && !near(p.wi, {-wo.x, -wo.y, wo.z})) return false;  // the boundary lies askew
+        if (!through && !near(p.wi, {-wo.x, -wo.y, wo.z})) {
+            if (!near(p.wi, wo)) askew = p.wi;
+            continue;
+        }
         mirrored = mirrored || !through;
         const auto known = [&](Vec3d w) { return near(w, p.wi); };
         if (through && std::none_of(across.begin(), across.end(), known)) across.push_back(p.wi);
     }
     const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
     if (across.size() > indices) return false;
+    if (askew) return mirrors_elsewhere(wo, *askew, across, eta, v);
     for (Vec3d wi : across) {
         if (near(wi, -wo) || is_refracted(wo, wi, eta, false)) continue;
         if (!mirrored && !turns_with_wo(work, wi)) continue;
