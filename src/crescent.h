@@ -67,6 +67,7 @@
 #include "scene/scene.h"
 #include "scene/shadow.h"
 #include "simd/random.h"
+#include "stats/quantiles.h"
 #include "stats/tail.h"
 #include "studies/evidence.h"
 #include "studies/monte_carlo_reference.h"
