@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "judgements/all.h"
 #include "judgements/summary.h"
 #include "verdicts/gtest.h"
 

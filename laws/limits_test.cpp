@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "base/sanitized_test.h"
+#include "judgements/all.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "subjects/list.h"

@@ -10,6 +10,7 @@
 #include "laws/right/right.h"
 #include "subjects/list.h"
 #include "subjects/pipe.h"
+#include "verdicts/efficiency.h"
 #include "verdicts/error_rates.h"
 
 namespace crescent {

@@ -129,7 +129,8 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_EQ(
         read_greeting("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64",
-            g),
+            g)
+            .got,
         "");
     EXPECT_EQ(g.name, "my glass");
     EXPECT_EQ(g.traits.numbers, 3);
@@ -144,10 +145,13 @@ TEST(Greetings, SayWhatAProgramIs) {
 TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     const auto fault = [](const char* answer) {
         Greeting g;
-        return read_greeting(answer, g);
+        const GreetingFault fault = read_greeting(answer, g);
+        return fault ? "expected " + fault.expected + ", " + fault.got : "";
     };
-    EXPECT_NE(fault("hello 2 x colour=3").find("the known ones are u, domain, wo, channels"), std::string::npos);
-    EXPECT_NE(fault("hello 2 x u=9").find("expected a whole number from 1 to 8"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x colour=3").find("expected one of u, domain, wo, channels"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x colour=3").find("got the unknown key 'colour'"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x weights=yes").find("did you mean 'weight'?"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x u=9").find("expected a whole number from 1 to 8 for u, got '9'"), std::string::npos);
     EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
     EXPECT_NE(fault("hello 2 x u=3 wo=both u=2").find("got the key 'u' twice"), std::string::npos);
     EXPECT_NE(fault("hello 2 u=3").find("no name"), std::string::npos);

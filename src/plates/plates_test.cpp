@@ -13,6 +13,7 @@
 #include "meters/meters.h"
 #include "plates/sheet.h"
 #include "plates/test_world.h"
+#include "stats/quantiles.h"
 
 namespace crescent::plates {
 namespace {

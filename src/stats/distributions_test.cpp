@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/stats/distributions/binomial.hpp>
-#include <boost/stats/distributions/students_t.hpp>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
@@ -48,7 +48,7 @@ TEST(Distributions, QuantilesAndIntervalsAreThoseOfBoost) {
     using Binomial = boost::math::binomial_distribution<double>;
     for (double n : {1.0, 16.0, 128.0, 4000.0})
         for (double k : {0.0, 1.0, std::floor(n / 3), n}) {
-            const Interval at = binomial_interval(n, k, 0.025);
+            const ShareInterval at = binomial_interval(n, k, 0.025);
             near(at.low + 1, Binomial::find_lower_bound_on_p(n, k, 0.025) + 1, "low", n, k);
             near(at.high, k < n ? Binomial::find_upper_bound_on_p(n, k, 0.025) : 1.0, "high", n, k);
         }
