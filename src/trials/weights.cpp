@@ -76,8 +76,10 @@ bool mean_is_testable(const Spread& s, const std::optional<Tail>& tail, const Ex
 double mean_p(const Spread& s, const Integral& expected) {
     constexpr double allowed =
         1e-4;  // relative: what normalised and identity allow p itself, float rounding of a sharp lobe included
-    // An integral that ran out of questions is known to its error as an estimate, not as a bound: as in `normalised`.
-    const double doubt = (expected.settled ? 1 : 2) * expected.error + allowed * std::fabs(expected.value);
+    // A cubature that ran out of questions is known to its error as an estimate, not as a bound: as in `normalised`.
+    // Points at random have three standard errors.
+    const bool bounded = expected.settled || expected.sampled;
+    const double doubt = (bounded ? 1 : 2) * expected.error + allowed * std::fabs(expected.value);
     const double off = std::max(std::fabs(s.mean - expected.value) - doubt, 0.0);
     if (!(s.sd > 1e-7 * std::fabs(expected.value))) return off > 0 ? 0 : 1;  // every sample alike: no chance is in it
     if (std::fabs(s.skew) / std::sqrt(s.n) > 0.1)

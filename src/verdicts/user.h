@@ -259,17 +259,14 @@ template <class S> Judgement judge_sampler(std::string name, S sampler,
     }
 }
 
-/// A sampler of functions: lambdas, std::functions or pointers to functions in place of the members sample, pdf and f.
-/// For classes whose own members are overloaded, templates or of other names:
-///
-///   judge_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
-///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
+/// A sampler of functions: lambdas, std::functions or pointers to functions in place of members.
 template <class Sample, class Pdf> struct SampleAndPdf {
     Sample sample;
     Pdf pdf;
     Traits known{};
     Traits traits() const { return known; }
 };
+/// The same with f.
 template <class Sample, class Pdf, class F> struct SamplePdfAndF {
     Sample sample;
     Pdf pdf;
@@ -277,9 +274,14 @@ template <class Sample, class Pdf, class F> struct SamplePdfAndF {
     Traits known{};
     Traits traits() const { return known; }
 };
+/// For classes whose own members are overloaded, templates or of other names; what they take and give is as of members:
+///
+///   judge_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
+///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
 template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits known = {}) {
     return {std::move(sample), std::move(pdf), known};
 }
+/// With f(wo, wi) as the third.
 template <class Sample, class Pdf, class F>
     requires(!std::is_same_v<F, Traits>)
 SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits known = {}) {
