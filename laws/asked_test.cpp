@@ -115,6 +115,37 @@ TEST(Programs, AreAskedNoMoreWhereNothingIsSettled) {
     EXPECT_LE(seen.most, promised);
 }
 
+/// Two cones side by side, p of one of them doubled: what does not come to one is integrated twice, and both
+/// quadratures cut along both rims.
+struct TwoCones {
+    struct Drawn {
+        Vec3d wi;
+        double pdf;
+    };
+    static constexpr double a[] = {0.07, 0.05};  // 1 - cos of half their angles
+    Vec3d axis(int k) const { return normalize(k == 0 ? Vec3d{0, 0.3, 1} : Vec3d{0.8, 0, 0.4}); }
+    Drawn sample(Vec3d u) const {
+        const int k = u.z < 0.5 ? 0 : 1;
+        const Vec3d wi = SphereMap(axis(k)).direction({u.x * a[k], u.y});
+        return {wi, pdf(wi)};
+    }
+    double pdf(Vec3d wi) const {
+        double p = 0;
+        for (int k : {0, 1})
+            if (1 - dot(wi, axis(k)) <= a[k]) p += (k == 0 ? 0.5 : 1.0) / (2 * pi * a[k]);
+        return p;
+    }
+};
+
+TEST(Programs, AreAskedNoMoreWhereASecondQuadratureCutsAlongRims) {
+    const auto cones = std::make_shared<UserSubject<TwoCones>>("two cones", TwoCones{});
+    const Seen seen = judged({trial_of_subject(cones, 0, 0)});
+    EXPECT_GT(seen.most, 100000u);
+    EXPECT_LE(seen.most, promised);
+    for (const Verdict& v : seen.judgement.verdicts)
+        if (v.name == "normalised") EXPECT_EQ(v.state, State::wrong) << v.say;
+}
+
 /// All w_o of the grid in one call: four million questions, the greatest share of which none needs.
 TEST(Programs, AreAskedFourMillionTimesInAll) {
     const auto program = std::make_shared<Counted>(subject_of(recipe_of(RoughGlass{0.3, 1.5})));

@@ -39,8 +39,10 @@ private:
     Density density_of(int technique);
     std::optional<Density> table_density(int technique);
     Density density_of_estimates(int technique, Vec3d axis);
-    Density density_about(
-        int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 4e-4) const;
+    Density density_about(int technique, Vec3d axis, bool about_n, std::size_t evaluations, double edge_mass = 4e-4,
+        std::optional<std::size_t> known = {})
+        const;  // known: answers that cost nothing; throws where questions run out
+    Integral second_mass(int technique, Vec3d axis, bool about_n) const;
     std::optional<Integral> mass_by_caps(int technique, const Density& bins) const;
     bool measure_by_caps(int technique, Density& d) const;
     void measure_about_others(int technique, const Lobe& lobe, Density& d) const;
@@ -49,6 +51,7 @@ private:
     Density bins_about(Vec3d axis, bool about_n) const;
     void add_edges_of_support(Density& d) const;
     std::vector<Rect> cells_of(const Density& d) const;
+    Batch while_affordable(Batch ask) const;
     Batch batch_of(int technique, const SphereMap& map) const;
     SamplesPerBin samples_per_bin_of(int technique, const Density& d) const;
     void grant_tabulation_error(int technique, Density& d) const;

@@ -20,10 +20,6 @@ void sort_edges(std::vector<double>& rings) {
     rings.erase(std::unique(rings.begin(), rings.end(), [](double x, double y) { return y - x < 1e-12; }), rings.end());
 }
 
-}  // namespace
-
-namespace {
-
 /// A sky whose texels are summed: its mass is known to that, its bins to what the cubature says of them.
 bool measure_by_texels(const Questions& work, int t, Density& d) {
     if (work.traits.wo != Traits::Asked::none || !(d.mass.error > work.enough())) return false;
@@ -94,10 +90,24 @@ Density Densities::density_of(int t) {
     const bool summed = texels || (banded_ && d.mass.error < 1e-6 && d.mass.second_se < 1e-6);
     if (!summed && std::fabs(d.mass.value + d.nothing - 1) > 5e-5 + 2 * d.nothing_se) {
         const Vec3d other = d.about_n ? normalize(lobe.peak) : normal;
-        d.second = capped ? mass_by_caps(t, bins_about(other, !d.about_n))
-                          : density_about(t, other, !d.about_n, 6 * settings.evaluations, 2e-5).mass;
+        d.second = capped ? mass_by_caps(t, bins_about(other, !d.about_n)) : second_mass(t, other, !d.about_n);
     }
     return d;
+}
+
+/// In other coordinates. Cutting far along many rims asks more than a cubature is told to: a limited sampler is asked
+/// for that once the rims were cut as everywhere, and while questions are left; what it answered before costs nothing
+/// then.
+Integral Densities::second_mass(int t, Vec3d axis, bool about_n) const {
+    const std::size_t wanted = 6 * settings.evaluations;
+    constexpr double far = 2e-5;
+    if (!subject.limited()) return density_about(t, axis, about_n, wanted, far).mass;
+    Integral out = density_about(t, axis, about_n, wanted).mass;
+    try {
+        Integral better = density_about(t, axis, about_n, wanted, far, out.evaluations).mass;
+        if (better.error < out.error) out = std::move(better);
+    } catch (const OutOfQuestions&) {}
+    return out;
 }
 
 std::optional<Integral> Densities::mass_by_caps(int t, const Density& bins) const {
@@ -133,18 +143,20 @@ void Densities::measure_about_others(int t, const Lobe& lobe, Density& d) const 
         keep_better(density_about(t, d.map.frame.n, d.about_n, 6 * settings.evaluations, 2e-5));
 }
 
-/// In the same cells for as long as questions are left. A program answered for most of them, which cost nothing now.
-void Densities::measure_further(int t, Density& d) const {
-    const std::size_t known = thrifty() ? d.mass.evaluations : 0;
-    const Batch ask = batch_of(t, d.map);
-    const auto while_affordable = [&](std::span<const Vec2d> at, std::span<double> out) {
+Batch Densities::while_affordable(Batch ask) const {
+    return [this, ask = std::move(ask)](std::span<const Vec2d> at, std::span<double> out) {
         if (affordable(at.size() + 2000, for_later()) < at.size() + 2000) throw OutOfQuestions{};
         ask(at, out);
     };
+}
+
+/// In the same cells for as long as questions are left. A program answered for most of them, which cost nothing now.
+void Densities::measure_further(int t, Density& d) const {
+    const std::size_t known = thrifty() ? d.mass.evaluations : 0;
     const SamplesPerBin seen = samples_per_bin_of(t, d);
     try {
         Integral mass = integrate(refined_at_pilots(cells_of(d), d.map, pilot_directions_),
-            static_cast<int>(d.mass.bins.size()), while_affordable,
+            static_cast<int>(d.mass.bins.size()), while_affordable(batch_of(t, d.map)),
             {tolerance(), affordable(6 * settings.evaluations, for_later()) + known, thrifty() ? 4e-4 : 1e-4}, &seen);
         if (mass.error < d.mass.error) d.mass = std::move(mass);
     } catch (const OutOfQuestions&) {}  // what is known so far stays
@@ -265,8 +277,9 @@ std::vector<Rect> Densities::cells_of(const Density& d) const {
     return cells;
 }
 
-Density Densities::density_about(int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass) const {
-    const std::size_t evaluations = affordable(wanted, for_later());
+Density Densities::density_about(int technique, Vec3d axis, bool about_n, std::size_t wanted, double edge_mass,
+    std::optional<std::size_t> known) const {
+    const std::size_t evaluations = affordable(wanted, for_later()) + known.value_or(0);
     Density d = bins_about(axis, about_n);
     const int rings = static_cast<int>(d.rings.size()) - 1;
     if (pole_ && circle_ && length(axis - *circle_) < 1e-12) {
@@ -277,8 +290,8 @@ Density Densities::density_about(int technique, Vec3d axis, bool about_n, std::s
     }
     const SamplesPerBin samples = samples_per_bin_of(technique, d);
     d.mass = integral_of(refined_at_pilots(cells_of(d), d.map, pilot_directions_), rings * d.sectors,
-        batch_of(technique, d.map), {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter().pdf(),
-        &samples);
+        known ? while_affordable(batch_of(technique, d.map)) : batch_of(technique, d.map),
+        {std::max(edge_mass / 20, tolerance()), evaluations, edge_mass}, scatter().pdf(), &samples);
     grant_tabulation_error(technique, d);
     return d;
 }
