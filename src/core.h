@@ -27,6 +27,8 @@
 #include "run/version.h"
 #include "scene/scene.h"
 #include "simd/random.h"
+#include "stats/p_values.h"
+#include "stats/quantiles.h"
 #include "stats/tail.h"
 #include "studies/furnace.h"
 #include "studies/region_tail.h"
