@@ -3,6 +3,8 @@
 #include "warps/suspects.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace crescent::inline warps {
 
@@ -31,34 +33,58 @@ Quadrants quadrants(std::span<const Draw> w, double direction_resolution, double
     return out;
 }
 
+constexpr std::size_t moves = 12;
+constexpr double longest = 3001 * 0x1p-24;
+
+/// What twelve draws in a row, each a move of u on, say of the rounding of a warp: the median of their third
+/// differences, and the most that one of them goes where most stay where they are.
+struct Row {
+    double rough = 0, stair = 0;
+    bool still = false;  // none of the moves leads on
+};
+Row row_of(std::span<const Draw, moves> at) {
+    std::array<double, moves - 3> rough{}, moved{};
+    for (std::size_t k = 0; k < rough.size(); ++k) {
+        if (at[k].pdf > 0 && at[k + 1].pdf > 0) moved[k] = length(at[k + 1].wi - at[k].wi);
+        if (at[k].pdf > 0 && at[k + 1].pdf > 0 && at[k + 2].pdf > 0 && at[k + 3].pdf > 0)
+            rough[k] = length(at[k + 3].wi - at[k].wi + (at[k + 1].wi - at[k + 2].wi) * 3.0);
+    }
+    std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
+    std::ranges::sort(moved);
+    Row out;
+    out.rough = rough[rough.size() / 2];
+    out.still = !(moved.back() > 0);
+    if (!(moved[moved.size() / 2] > 0)) out.stair = moved.back();
+    return out;
+}
+
 /// How finely the warp is computed at each suspect. A difference of two nearly equal numbers within the sampler may
 /// cost most of its digits, of which the direction's own resolution knows nothing. By third differences over moves of
 /// u, which leave rounding alone where the warp is smooth, however curved; by their median, since a seam that the moves
 /// cross spoils three of nine. Small moves stay within the cell of a table; where floats make stairs of a warp only
 /// wide ones leave a stair, of several lengths, since stairs as long as the move look smooth. Where most moves stay on
-/// their stair, its height is what the warp is known to.
+/// their stair, its height is what the warp is known to; where all of the longest do, moves four times as long are
+/// tried.
 void find_grains(const TrialContext& work, int technique, std::vector<Suspect>& suspects) {
-    constexpr std::size_t moves = 12;
-    for (const double by : {tiny_step, 1267 * 0x1p-24, 2048 * 0x1p-24, 3001 * 0x1p-24}) {
+    std::vector<bool> still(2 * suspects.size(), true);
+    for (const double by : {tiny_step, 1267 * 0x1p-24, 2048 * 0x1p-24, longest, 4 * longest}) {
         std::vector<Numbers> u;
-        for (const Suspect& s : suspects)
-            for (int axis = 0; axis < 2; ++axis)
-                for (std::size_t k = 0; k < moves; ++k) u.push_back(s.u), u.back()[axis] += static_cast<double>(k) * by;
+        std::vector<std::size_t> lines;
+        for (std::size_t line = 0; line < still.size(); ++line) {
+            if (by > longest && !still[line]) continue;
+            lines.push_back(line);
+            const Numbers& from = suspects[line / 2].u;
+            const double on = by > longest && from[static_cast<int>(line % 2)] > 0.5 ? -by : by;
+            for (std::size_t k = 0; k < moves; ++k)
+                u.push_back(from), u.back()[static_cast<int>(line % 2)] += static_cast<double>(k) * on;
+        }
         std::vector<Draw> w(u.size());
         work.subject.sample(technique, work.trial.wo, u, w);
-        for (std::size_t line = 0; line < 2 * suspects.size(); ++line) {
-            Suspect& s = suspects[line / 2];
-            std::array<double, moves - 3> rough{}, moved{};
-            for (std::size_t k = 0; k < rough.size(); ++k) {
-                const Draw* at = &w[line * moves + k];
-                if (at[0].pdf > 0 && at[1].pdf > 0) moved[k] = length(at[1].wi - at[0].wi);
-                if (at[0].pdf > 0 && at[1].pdf > 0 && at[2].pdf > 0 && at[3].pdf > 0)
-                    rough[k] = length(at[3].wi - at[0].wi + (at[1].wi - at[2].wi) * 3.0);
-            }
-            std::ranges::nth_element(rough, rough.begin() + rough.size() / 2);
-            std::ranges::sort(moved);
-            const double stair = moved[moved.size() / 2] > 0 ? 0 : moved.back();
-            s.resolution = std::max({s.resolution, work.direction_resolution(), 0.5 * rough[rough.size() / 2], stair});
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            Suspect& s = suspects[lines[i] / 2];
+            const Row row = row_of(std::span<const Draw, moves>(&w[i * moves], moves));
+            still[lines[i]] = row.still;
+            s.resolution = std::max({s.resolution, work.direction_resolution(), 0.5 * row.rough, row.stair});
         }
     }
 }
