@@ -12,6 +12,7 @@
 
 #include "base/formula.h"
 #include "estimator/estimator.h"
+#include "judgements/all.h"
 #include "meters/meters.h"
 #include "meters/quantity.h"
 #include "plates/plates.h"

@@ -1,8 +1,8 @@
 // Faults of samplers of several lobes, of lights and of shadowing. Their causes were written down, with thirty-four
-// others over the pipe, before a diagnosis was asked for them, and not by the author of the diagnosis. Of these here two
-// had their cause named then (the cosine twice in a mixture of two, the chooser left out), and s+2 for s+1 in one lobe
-// was told as the chooser's probability; what the others lacked was mended after that, so that they measure nothing that
-// has not been looked at.
+// others over the pipe, before a diagnosis was asked for them, and not by the author of the diagnosis. Of these here
+// two had their cause named then (the cosine twice in a mixture of two, the chooser left out), and s+2 for s+1 in one
+// lobe was told as the chooser's probability; what the others lacked was mended after that, so that they measure
+// nothing that has not been looked at.
 #include <algorithm>
 #include <cmath>
 
