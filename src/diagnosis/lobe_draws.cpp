@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "simd/scalar.h"
+#include "warps/newton.h"
 
 namespace crescent::inline diagnosis {
 
@@ -59,28 +60,17 @@ struct Search {
     bool arrived = false;
 };
 
-/// One step of Newton's method for all that have not arrived: the two derivatives by one-sided differences.
+/// One step of Newton's method for all that have not arrived.
 void step(const TrialContext& work, int technique, const LobeDraws& of, std::vector<Search>& all) {
-    constexpr double h = 0x1p-12;
-    std::vector<Numbers> u;
-    for (const Search& s : all) {
-        u.insert(u.end(), 3, s.u);
-        u[u.size() - 2].x += s.u.x < 0.5 ? h : -h, u[u.size() - 1].y += s.u.y < 0.5 ? h : -h;
-    }
-    std::vector<Draw> w(u.size());
-    work.subject.sample(technique, work.trial.wo, u, w);
+    std::vector<Numbers> from;
+    std::vector<Vec3d> to;
+    for (const Search& s : all) from.push_back(s.u), to.push_back(of.at[s.of].point.wi);
+    const auto moves = newton_moves(work, technique, from, to, {0x1p-12, 0.1, 2 * grain_of_u});
     for (std::size_t i = 0; i < all.size(); ++i) {
         Search& s = all[i];
-        const Vec3d x = (w[3 * i + 1].wi - w[3 * i].wi) * (1 / (u[3 * i + 1].x - s.u.x)),
-                    y = (w[3 * i + 2].wi - w[3 * i].wi) * (1 / (u[3 * i + 2].y - s.u.y)),
-                    r = of.at[s.of].point.wi - w[3 * i].wi;
-        const double xx = dot(x, x), xy = dot(x, y), yy = dot(y, y), det = xx * yy - xy * xy;
-        const double due = 2 * grain_of_u * (std::sqrt(xx) + std::sqrt(yy)) + 16 * work.direction_resolution();
-        s.arrived = w[3 * i].pdf > 0 && length(r) <= due;
-        if (s.arrived || !(det > 1e-12 * xx * yy)) continue;
-        const double dx = (yy * dot(x, r) - xy * dot(y, r)) / det, dy = (xx * dot(y, r) - xy * dot(x, r)) / det;
-        const double shorter = 0.1 / std::max({0.1, std::fabs(dx), std::fabs(dy)});
-        s.u.x += shorter * dx, s.u.y += shorter * dy;
+        s.arrived = moves[i].arrived;
+        if (!moves[i].moves) continue;
+        s.u.x += moves[i].dx, s.u.y += moves[i].dy;
         for (int k = 0; k < 2; ++k)  // an azimuth goes round
             if (of.chooser != k && (s.u[k] < 0 || s.u[k] >= 1)) s.u[k] -= std::floor(s.u[k]);
         s.u = room_of(of, s.lobe).nearest(s.u);

@@ -11,6 +11,7 @@
 #include "simd/random.h"
 #include "subjects/numbers.h"
 #include "warps/jacobian.h"
+#include "warps/newton.h"
 
 namespace crescent::inline warps {
 
@@ -90,27 +91,16 @@ void find_nearest(const TrialContext& work, const SampleBatch& b, std::vector<So
 
 /// One step of Newton's method for each of these; those that are there need no other.
 void step(const TrialContext& work, int technique, std::span<Sought* const> open) {
-    constexpr double h = 0x1p-15, longest = 0x1p-5;
-    std::vector<Numbers> u;
-    for (const Sought* s : open) {
-        u.insert(u.end(), 3, s->u);
-        u[u.size() - 2].x += s->u.x < 0.5 ? h : -h;
-        u[u.size() - 1].y += s->u.y < 0.5 ? h : -h;
-    }
-    std::vector<Draw> w(u.size());
-    work.subject.sample(technique, work.trial.wo, u, w);
+    std::vector<Numbers> from;
+    std::vector<Vec3d> to;
+    for (const Sought* s : open) from.push_back(s->u), to.push_back(s->w);
+    const auto moves = newton_moves(work, technique, from, to, {0x1p-15, 0x1p-5, 0x1p-22});
+    const auto on_grid = [](double v) { return std::round(std::clamp(v, 0.0, last) * 0x1p24) * 0x1p-24; };
     for (std::size_t i = 0; i < open.size(); ++i) {
         Sought& s = *open[i];
-        const Vec3d x = (w[3 * i + 1].wi - w[3 * i].wi) * (1 / (u[3 * i + 1].x - s.u.x)),
-                    y = (w[3 * i + 2].wi - w[3 * i].wi) * (1 / (u[3 * i + 2].y - s.u.y)), r = s.w - w[3 * i].wi;
-        const double xx = dot(x, x), xy = dot(x, y), yy = dot(y, y), det = xx * yy - xy * xy;
-        const double due = 0x1p-22 * (std::sqrt(xx) + std::sqrt(yy)) + 16 * work.direction_resolution();
-        s.reached = w[3 * i].pdf > 0 && length(r) <= due;
-        if (s.reached || !(det > 1e-12 * xx * yy)) continue;
-        const double dx = (yy * dot(x, r) - xy * dot(y, r)) / det, dy = (xx * dot(y, r) - xy * dot(x, r)) / det;
-        const double shorter = longest / std::max({longest, std::fabs(dx), std::fabs(dy)});
-        const auto on_grid = [](double v) { return std::round(std::clamp(v, 0.0, last) * 0x1p24) * 0x1p-24; };
-        s.u.x = on_grid(s.u.x + shorter * dx), s.u.y = on_grid(s.u.y + shorter * dy);
+        s.reached = moves[i].arrived;
+        if (!moves[i].moves) continue;
+        s.u.x = on_grid(s.u.x + moves[i].dx), s.u.y = on_grid(s.u.y + moves[i].dy);
     }
 }
 
