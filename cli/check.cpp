@@ -4,6 +4,7 @@
 #include <map>
 
 #include <charconv>
+#include <filesystem>
 #include <cmath>
 
 #include "check.h"
@@ -207,7 +208,10 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
 
 }  // namespace
 
-int check(const CheckFlags& flags) {
+int check(const CheckFlags& given) {
+    CheckFlags flags = given;
+    for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may chdir
+        if (!file->empty()) *file = std::filesystem::absolute(*file).string();
     if (const std::optional<int> code = judged_by_child(flags)) return *code;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);

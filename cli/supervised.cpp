@@ -215,7 +215,6 @@ namespace {
 
 /// What a process that is dead was writing there goes; outputs that had begun to move are brought to their places.
 void clear_after_it(const std::string& out) {
-    if (!std::filesystem::is_directory(out)) return;
     try {
         Staging{out};
     } catch (const OutputError&) {}  // another run is at work there, and settles it

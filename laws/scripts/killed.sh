@@ -1,6 +1,7 @@
 #!/bin/bash
-# kill -9 at any moment: all that stands under the final names is of one run, the one before or the new one; the next
-# run is none the worse; and no file of others is touched. The two runs are of different experiments.
+# kill -9 at any moment: all that a reader finds is of one run, the one before or the new one, and the next run leaves
+# what a run that was never killed leaves, with the user's files and nothing else. The two runs are of different
+# experiments. files_test.cpp ends before each single change; here whole processes are killed at any time.
 . "$(dirname "$0")/common.sh"
 
 other="$work/other.toml"
@@ -10,64 +11,74 @@ start=$(date +%s%N)
 expect 0 "$CRESCENT" run "$other" --quiet --out second
 length=$((($(date +%s%N) - start) / 1000000))
 
-# visible FOLDER: what a reader finds there under names that are not hidden, links followed.
-visible() { (cd "$1" && find -L . -type f ! -path './.*' ! -name timing.json -exec sha256sum {} + | sort -k 2); }
+# visible FOLDER: what is there but for the user's files and what varies from run to run.
+visible() {
+    (cd "$1" && find . -type f ! -name timing.json ! -name notes.txt ! -path '*/mine*' -exec sha256sum {} + | sort -k 2)
+}
 visible first >of_first
 visible second >of_second
 cmp -s of_first of_second && die "the two experiments have the same outputs"
+theirs=(notes.txt plates/mine.png films/mine/film.exr mine/thesis.txt)
 
 prepare() {
-    rm -rf killed
-    cp -a first killed
-    mkdir -p killed/.crescent-99999-backup && echo mine >killed/.crescent-99999-backup/thesis.txt
-    echo mine >killed/notes.txt
-    echo mine >killed/plates/mine.png
-}
-judge() {
-    for name in .crescent-99999-backup/thesis.txt notes.txt plates/mine.png; do
-        [ "$(cat "killed/$name" 2>/dev/null)" = mine ] || die "killed $1: $name is gone"
-        rm "killed/$name"
+    find killed .killed.crescent -mindepth 1 -delete 2>/dev/null
+    mkdir -p killed && cp -a first/. killed
+    for name in "${theirs[@]}"; do
+        mkdir -p "$(dirname "killed/$name")" && echo mine >"killed/$name"
     done
-    visible killed >of_killed
-    cmp -s of_killed of_first && return
-    cmp -s of_killed of_second && { reached=1; return; }
-    die "killed $1: a mixture of two runs: $(cat of_killed)"
 }
-
-for part in 10 60 90 100; do
-    prepare
-    "$CRESCENT" run "$other" --quiet --out killed >/dev/null 2>&1 &
-    run=$!
-    sleep "$(awk "BEGIN { print $length * $part / 100000 }")"
+# judge HOW WHEN: after a kill, and after the next run. one_by_one: files may be of two runs in between.
+judge() {
+    visible killed >of_killed
+    if [ "$1" = whole ]; then
+        cmp -s of_killed of_second && reached=1
+        [ "${reached:-0}" = 1 ] || cmp -s of_killed of_first || cmp -s of_killed of_second ||
+            die "killed $2: a mixture of two runs: $(diff of_first of_killed)"
+        for name in notes.txt plates/mine.png; do [ -e "killed/$name" ] || die "killed $2: $name is gone"; done
+    fi
+    expect 0 "$CRESCENT" run "$other" --quiet --out killed
+    visible killed | diff of_second - >difference || die "killed $2: the next run: $(cat difference)"
+    for name in "${theirs[@]}"; do
+        [ "$(cat "killed/$name" 2>/dev/null)" = mine ] || die "killed $2: $name is gone"
+    done
+    [ -z "$(ls -Ad .killed.crescent killed/.crescent-work 2>/dev/null)" ] || die "killed $2: something is left behind"
+}
+kill_at() { # PERMILLE HOW [COMMAND...]: kills a run at that part of its time
+    "${@:3}" "$CRESCENT" run "$other" --quiet --out killed >/dev/null 2>&1 &
+    local run=$!
+    sleep "$(awk "BEGIN { print $length * $1 / 1000000 }")"
     kill -s KILL "$run" 2>/dev/null
     wait "$run" 2>/dev/null
-    judge "after $part % of a run"
+    judge "$2" "after $1/1000 of a run"
+}
+
+for part in 50 300 500 700 800 850 900 950 1000 1050; do
+    prepare
+    kill_at $part whole
 done
 
-# Before system calls that publish, and Ctrl-C at the same places; files_test.cpp stops before each single one.
+# A file system that cannot exchange two folders, or refuses to rename one; and a kill at calls that publish.
 if command -v strace >/dev/null && strace -qq -o /dev/null true 2>/dev/null; then
-    prepare
-    strace -f -qq -e trace=renameat,linkat,symlinkat,unlinkat,fsync -o calls "$CRESCENT" run "$other" --quiet \
-        --out killed >/dev/null 2>&1
-    judge "never"
-    for call in renameat linkat symlinkat unlinkat fsync; do
-        many=$(grep -c "[^a-z]$call(" calls)
-        [ "$many" -ge 5 ] || die "only $many calls of $call publish"
-        for k in 1 $((many / 4)) $((many / 2)) $((3 * many / 4)) "$many"; do
-            for signal in KILL INT; do
-                [ $signal = INT ] && [ $call != renameat ] && continue
-                prepare
-                strace -f -qq -e trace=$call -e inject=$call:signal=$signal:when=$((k > 0 ? k : 1)) -o /dev/null \
-                    "$CRESCENT" run "$other" --quiet --out killed >/dev/null 2>&1
-                judge "by SIG$signal at $call number $k of $many"
-            done
-        done
+    for fault in renameat2:error=EINVAL renameat2:error=EXDEV renameat2:signal=KILL linkat:error=EPERM \
+        unlink:signal=KILL:when=1 unlink:signal=KILL:when=3 rmdir:signal=KILL:when=1 rename:signal=KILL:when=1; do
+        prepare
+        strace -f -qq -e "trace=${fault%%:*}" -e "inject=$fault" -o calls "$CRESCENT" run "$other" --quiet \
+            --out killed >/dev/null 2>&1
+        case $fault in
+            *error*) visible killed | diff of_second - >difference || die "with $fault: $(cat difference)" ;;
+        esac
+        reached=1 judge whole "by $fault"
     done
 fi
 
-prepare
-expect 0 "$CRESCENT" run "$other" --quiet --out killed
-judge "never"
+# Where OUT cannot be renamed: a mount point, which has its stage inside where nothing can be made beside it.
+rm -rf killed && mkdir killed
+if mount -t tmpfs -o size=64m none killed 2>/dev/null; then
+    trap 'umount "$work/killed"; rm -rf "$work"' EXIT
+    for part in 600 900 1000; do
+        prepare
+        kill_at $part one_by_one
+    done
+fi
 [ "${reached:-0}" = 1 ] || die "the new outputs never came"
-find killed -name '.crescent-stage-*' | grep -q . && die "stages are left: $(ls -A killed)"
 exit 0

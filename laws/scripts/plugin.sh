@@ -140,7 +140,7 @@ set -m
 "$CRESCENT" run waits.toml --out kept --quiet >printed 2>said &
 run=$!
 set +m
-for _ in $(seq 200); do compgen -G 'kept/.crescent-stage-*/owner' >/dev/null && break || sleep 0.05; done
+for _ in $(seq 200); do [ -e .kept.crescent/lock ] && break || sleep 0.05; done
 children=$(cat /proc/$run/task/*/children 2>/dev/null)
 kill -s INT "$run"
 wait "$run"

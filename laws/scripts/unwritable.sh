@@ -26,7 +26,7 @@ grep -q 'GB of memory' said || die "the message does not say how much memory is 
 # Two runs into one folder: the second is told.
 "$CRESCENT" run "$tiny" --quiet --out shared --set 'arms.cosine.n=[16777216]' >/dev/null 2>&1 &
 first=$!
-until compgen -G 'shared/.crescent-stage-*/owner' >/dev/null; do sleep 0.05; done
+until [ -e .shared.crescent/lock ]; do sleep 0.05; done
 expect 3 "$CRESCENT" run "$tiny" --out shared
 grep -q 'another run' said || die "the second run is not told of the first: $(cat said)"
 kill "$first"

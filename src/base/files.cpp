@@ -1,22 +1,23 @@
-// The stage is a folder in OUT with 64 random bits in its name. A lock on OUT and one on the stage's owner file keep
-// runs apart; a stage whose lock nobody holds is settled, then removed. commit() leaves the moving to Publication.
+// Each step is one system call or can be repeated, and "moving" names the folder that is to become OUT by its inode:
+// where new/ is that folder it is not in its place yet, else it is what OUT was. So the next start can complete the
+// work from any step.
 #include "base/files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/random.h>
 #include <sys/stat.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <set>
 
 #include "base/errors.h"
-#include "base/publish.h"
 
 namespace crescent::inline base {
 
@@ -24,117 +25,298 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* owner_file = "owner";
-constexpr std::string_view owner_text = "a run of crescent that is writing, or was killed while it wrote\n";
+constexpr std::string_view lock_text = "a run of crescent that is writing, or was killed while it wrote\n";
+constexpr std::string_view list_head =
+    "# Written by crescent. The next run into this folder replaces these files and leaves all others alone.\n";
+constexpr std::string_view list_prefix = ".crescent-";
 
 [[noreturn]] void fail(const std::string& what, const std::string& path, const std::string& why) {
     throw OutputError(fmt::format("{} {}: {}", what, path, why));
 }
 
-[[noreturn]] void in_use(const std::string& folder) {
-    throw OutputError(fmt::format("{} is in use by another run; wait for it or choose another --out", folder));
+void about_to_change() {
+    if (publishing_faults().before_change) publishing_faults().before_change();
+}
+bool move_to(const fs::path& from, const fs::path& to) {
+    about_to_change();
+    return ::rename(from.c_str(), to.c_str()) == 0;
+}
+bool take_away(const fs::path& path) {
+    about_to_change();
+    return ::remove(path.c_str()) == 0;
+}
+void remove_tree(const fs::path& path) {
+    about_to_change();
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+}
+bool exchange(const fs::path& a, const fs::path& b) {
+    about_to_change();
+    if (publishing_faults().no_exchange) return errno = EINVAL, false;
+#ifdef RENAME_EXCHANGE
+    return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+#else
+    return errno = ENOSYS, false;
+#endif
+}
+bool make_folders(const fs::path& path) {
+    about_to_change();
+    std::error_code error;
+    fs::create_directories(path, error);
+    return !error;
 }
 
-/// It cannot be guessed, so nothing can be put in its place beforehand.
-std::string new_stage_name() {
-    std::uint64_t bits = 0;
-    if (getentropy(&bits, sizeof bits) != 0) fail("cannot read", "the system's random numbers", std::strerror(errno));
-    return fmt::format("{}{:016x}", stage_prefix, bits);
+bool is_there(const fs::path& path) {
+    struct stat s{};
+    return lstat(path.c_str(), &s) == 0;
+}
+bool is_folder(const fs::path& path) {
+    struct stat s{};
+    return lstat(path.c_str(), &s) == 0 && S_ISDIR(s.st_mode);
+}
+ino_t inode(const fs::path& path) {
+    struct stat s{};
+    return lstat(path.c_str(), &s) == 0 ? s.st_ino : 0;
+}
+bool same_file(const fs::path& a, const fs::path& b) {
+    struct stat s{}, t{};
+    return lstat(a.c_str(), &s) == 0 && lstat(b.c_str(), &t) == 0 && s.st_ino == t.st_ino && s.st_dev == t.st_dev;
+}
+/// Something is mounted there: it can neither be renamed nor removed.
+bool is_mounted(const fs::path& path) {
+#ifdef STATX_ATTR_MOUNT_ROOT
+    struct statx s{};
+    return statx(AT_FDCWD, path.c_str(), AT_SYMLINK_NOFOLLOW, 0, &s) == 0 &&
+        (s.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+#else
+    return path.empty();
+#endif
 }
 
-bool is_stage_name(const std::string& name) {
-    return name.size() == stage_prefix.size() + 16 && name.starts_with(stage_prefix) &&
-        name.find_first_not_of("0123456789abcdef", stage_prefix.size()) == std::string::npos;
+/// File systems that cannot sync a folder say EINVAL; there is nothing more to be done there.
+bool sync(const fs::path& path) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (file < 0) return false;
+    const bool good = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
+    const int why = errno;
+    close(file);
+    errno = why;
+    return good;
 }
 
-enum class Life { alive, gone, not_ours };
+std::string text_of(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return is_there(path) ? std::string{std::istreambuf_iterator<char>(in), {}} : "";
+}
+bool put(const fs::path& path, std::string_view bytes) {
+    std::ofstream out(path, std::ios::binary);
+    errno = 0;
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    return bool(out);
+}
 
-/// A stage is ours to clear where its owner file says so, is this user's, and no living process holds it.
-Life life_of(const Folder& out, const std::string& stage) {
-    const Folder here = out.sub(stage);
-    struct stat about{};
-    if (!here || here.read(owner_file) != owner_text || fstat(here.descriptor(), &about) != 0 ||
-        about.st_uid != geteuid())
-        return Life::not_ours;
-    const int owner = openat(here.descriptor(), owner_file, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
-    if (owner < 0) return Life::not_ours;
-    const bool held = flock(owner, LOCK_EX | LOCK_NB) != 0;
-    close(owner);
-    return held ? Life::alive : Life::gone;
+/// Names in this order; a folder's entries too.
+std::vector<std::string> entries(const fs::path& folder) {
+    std::vector<std::string> out;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) out.push_back(entry.path().filename().string());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+bool holds(const std::vector<std::string>& all, const std::string& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+}
+bool any_below(const std::vector<std::string>& all, const fs::path& folder) {
+    return std::any_of(
+        all.begin(), all.end(), [&](const auto& name) { return name.starts_with(folder.string() + "/"); });
+}
+
+bool stays_inside(const std::string& name) {
+    const std::string framed = "/" + name + "/";
+    return !name.empty() && framed.find("//") == std::string::npos && framed.find("/./") == std::string::npos &&
+        framed.find("/../") == std::string::npos;
+}
+
+/// The names in a list of outputs; those that could lead out of the folder are left out.
+std::vector<std::string> names_in(const fs::path& list) {
+    std::vector<std::string> names;
+    const std::string text = text_of(list);
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        std::string name = text.substr(begin, end - begin);
+        if (stays_inside(name) && name.front() != '#') names.push_back(std::move(name));
+        begin = end + 1;
+    }
+    return names;
+}
+
+std::string list_of(const std::string& kind) { return std::string(list_prefix) + kind; }
+
+/// What other kinds of work listed in a folder.
+std::vector<std::string> others_lists(const fs::path& out, const std::string& list) {
+    std::vector<std::string> all;
+    for (const std::string& leaf : entries(out))
+        if (leaf.starts_with(list_prefix) && leaf != list && !is_folder(out / leaf))
+            std::ranges::move(names_in(out / leaf), std::back_inserter(all));
+    return all;
+}
+
+struct Moving {
+    ino_t folder = 0;
+    std::string kind;
+};
+/// Of no folder where nothing is moving.
+Moving read_moving(const fs::path& work) {
+    std::ifstream in(work / "moving");
+    Moving out;
+    std::string end;
+    if (!(in >> out.folder >> out.kind >> end) || end != "end") return {};
+    return out;
+}
+
+std::mutex held_mutex;
+std::set<fs::path>& held_here() {
+    static std::set<fs::path> all;
+    return all;
+}
+
+/// This process works in `out`, or `by` cannot be given its owner and rights: another folder cannot take its place.
+bool must_stay(const fs::path& out, const fs::path& by) {
+    struct stat s{};
+    std::error_code none;
+    const fs::path here = fs::current_path(none);
+    if (std::mismatch(out.begin(), out.end(), here.begin(), here.end()).first == out.end()) return true;
+#ifdef __linux__
+    for (const char* rights : {"system.posix_acl_access", "system.posix_acl_default"})
+        if (getxattr(out.c_str(), rights, nullptr, 0) >= 0) return true;
+#endif
+    return stat(out.c_str(), &s) != 0 || chown(by.c_str(), s.st_uid, s.st_gid) != 0 ||
+        chmod(by.c_str(), s.st_mode & 07777) != 0;
+}
+
+/// Absolute, links followed as far as there is something.
+fs::path resolved(const fs::path& path) {
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path), error);
+    return error ? fs::absolute(path) : whole;
 }
 
 }  // namespace
 
-Staging::Staging(std::string folder, std::string kind) : folder_(std::move(folder)), kind_(std::move(kind)) {
+PublishingFaults& publishing_faults() {
+    static PublishingFaults faults;
+    return faults;
+}
+
+Staging::Staging(const std::string& folder, std::string kind) : shown_(folder), kind_(std::move(kind)) {
     std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error || !fs::is_directory(folder_))
-        fail("cannot make the folder", folder_, error ? error.message() : "something else has that name");
-    out_ = Folder(folder_);
-    if (flock(out_.descriptor(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) in_use(folder_);
-    clear_stale();
-    make_stage();
+    out_ = resolved(folder);
+    if (!out_.has_filename()) out_ = out_.parent_path();
+    fs::create_directories(out_.parent_path(), error);
+    out_ = resolved(out_);
+    if (error || (is_there(out_) && !is_folder(out_)))
+        fail("cannot make the folder", folder, error ? error.message() : "something else has that name");
+    open_work();
+    if (read_moving(work_).folder != 0) finish();
+    if (read_moving(work_).folder != 0)
+        fail("cannot clear", work_.string(), "it holds earlier outputs, or files that were beside them");
+    for (const char* name : {"new", "scratch", "moving"}) remove_tree(work_ / name);
+    if (!make_folders(work_ / "new") || !make_folders(work_ / "scratch"))
+        fail("cannot write in", folder, std::strerror(errno));
 }
 
-void Staging::clear_stale() {
-    for (const std::string& name : out_.leaves()) {
-        if (!is_stage_name(name)) continue;
-        const Life life = life_of(out_, name);
-        if (life == Life::alive) in_use(folder_);
-        if (life == Life::not_ours) continue;
-        Publication publication(out_, folder_, name);
-        if (!publication.settle()) fail("cannot end what a killed run began in", folder_, std::strerror(errno));
-        said_.insert(said_.end(), publication.said().begin(), publication.said().end());
-        std::error_code ignored;
-        fs::remove_all(fs::path(folder_) / name, ignored);
+/// Beside OUT where it can be renamed there, else in it.
+void Staging::open_work() {
+    const bool beside = out_.has_filename() && !is_mounted(out_);
+    work_ = out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string());
+    if (!beside || (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST)) {
+        work_ = out_ / ".crescent-work";
+        if (!make_folders(work_)) fail("cannot write in", shown_, std::strerror(errno));
     }
+    for (int tries = 0; !take_lock(); ++tries)  // its holder removed it in between
+        if (tries > 100 || (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST))
+            fail("cannot write in", shown_, std::strerror(errno));
 }
 
-void Staging::make_stage() {
-    do stage_ = new_stage_name();
-    while (!out_.make_folder(stage_) && errno == EEXIST);
-    const Folder stage = out_.sub(stage_);
-    if (!stage) fail("cannot write in", folder_, std::strerror(errno));
-    const auto need = [&](bool done) {
-        if (done) return;
-        const int why = errno;
-        std::error_code ignored;
-        fs::remove_all(fs::path(folder_) / stage_, ignored);
-        fail("cannot write in", folder_, std::strerror(why));
-    };
-    owner_ = openat(stage.descriptor(), owner_file, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    need(owner_ >= 0);
-    (void)flock(owner_, LOCK_EX | LOCK_NB);  // a file system without locks has the folder's alone
-    need(::write(owner_, owner_text.data(), owner_text.size()) == static_cast<ssize_t>(owner_text.size()));
-    need(stage.make_folder("new") && stage.make_folder("scratch"));
-    need(stage.make_link("new", "link") && stage.remove("link"));  // outputs need links to appear as one
+/// A lock of the process, which no child inherits, on a file that is still there once it is taken.
+bool Staging::take_lock() {
+    const fs::path path = work_ / "lock";
+    const std::lock_guard one_at_a_time(held_mutex);
+    const OutputError in_use(fmt::format("{} is in use by another run; wait for it or choose another --out", shown_));
+    if (held_here().contains(work_)) throw in_use;
+    const std::vector<std::string> there = entries(work_);
+    const bool fresh = there.empty() || there == std::vector<std::string>{"lock"};
+    struct stat s{};
+    if (lstat(work_.c_str(), &s) != 0) return false;
+    if (!S_ISDIR(s.st_mode) || s.st_uid != geteuid() || (!fresh && text_of(path) != lock_text))
+        fail("cannot write in", shown_,
+            fmt::format("{} is no folder of this user's runs; move it away or choose another --out", work_.string()));
+    const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (file < 0 && errno == ENOENT) return false;
+    if (file < 0) fail("cannot write in", shown_, std::strerror(errno));
+    struct flock whole{};
+    whole.l_type = F_WRLCK, whole.l_whence = SEEK_SET;
+    const bool taken = fcntl(file, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN);
+    struct stat now{};
+    if (!taken || fstat(file, &now) != 0 || now.st_ino != inode(path)) {
+        close(file);
+        if (!taken) throw in_use;
+        return false;
+    }
+    held_here().insert(work_);
+    lock_ = std::shared_ptr<void>(nullptr, [file, work = work_](void*) {
+        const std::lock_guard one_at_a_time(held_mutex);
+        if (entries(work) == std::vector<std::string>{"lock"} && take_away(work / "lock")) ::rmdir(work.c_str());
+        close(file);
+        held_here().erase(work);
+    });
+    if (pwrite(file, lock_text.data(), lock_text.size(), 0) != static_cast<ssize_t>(lock_text.size()))
+        fail("cannot write in", shown_, std::strerror(errno));
+    return true;
 }
 
 Staging::~Staging() {
-    if (owner_ >= 0) close(owner_);
-    if (out_.kind(".crescent-current") == Folder::Kind::link && out_.link_text(".crescent-current").starts_with(stage_))
-        return;  // the next run settles it
-    std::error_code ignored;
-    fs::remove_all(fs::path(folder_) / stage_, ignored);
+    if (moving_) return;  // the next start completes it
+    for (const char* name : {"new", "scratch"}) remove_tree(work_ / name);
+}
+
+/// Why a file cannot be brought to that name; "" where it can.
+std::string Staging::obstacle(const std::string& name) const {
+    fs::path folder = out_;
+    for (const fs::path& step : fs::path(name).parent_path()) {
+        if (!is_there(folder / step)) break;
+        folder /= step;
+        if (!is_folder(folder)) return "a part of its path is not a folder";
+    }
+    if (is_there(folder) && access(folder.c_str(), W_OK) != 0) return std::strerror(errno);
+    struct stat s{};
+    if (lstat((out_ / name).c_str(), &s) != 0) return "";
+    if (S_ISDIR(s.st_mode)) return std::strerror(EISDIR);
+    if (!S_ISREG(s.st_mode)) return "a link or a device has that name";
+    return is_mounted(out_ / name) ? "something is mounted there" : "";
 }
 
 void Staging::expect(const std::vector<std::string>& names) const {
-    const Publication publication(out_, folder_, stage_);
-    for (const std::string& name : names) publication.check_place(name, false);
+    for (const std::string& name : names)
+        if (const std::string why = obstacle(name); !why.empty())
+            throw OutputError(
+                fmt::format("cannot write {}/{}: {}; every output there is the one of before", shown_, name, why));
 }
 
 std::string Staging::path(const std::string& name) {
-    const fs::path at = fs::path(folder_) / stage_ / "new" / name;
-    if (!out_.sub(stage_ + "/new").parent_of(name, true))
-        fail("cannot make the folder", at.parent_path(), std::strerror(errno));
-    if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
+    const fs::path at = work_ / "new" / name;
+    std::error_code error;
+    fs::create_directories(at.parent_path(), error);
+    if (error) fail("cannot make the folder", at.parent_path(), error.message());
+    if (!holds(names_, name)) names_.push_back(name);
     return at;
 }
 
 void Staging::write(const std::string& name, std::span<const unsigned char> bytes) {
     const std::string at = path(name);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (!out_.sub(stage_ + "/new").parent_of(name, false).write(leaf_of(name), text))
+    if (!put(at, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
         fail("cannot write", at, std::strerror(errno));
 }
 void Staging::write(const std::string& name, const std::string& text) {
@@ -142,12 +324,129 @@ void Staging::write(const std::string& name, const std::string& text) {
 }
 
 void Staging::commit(ProgressMonitor& monitor) {
-    Publication publication(out_, folder_, stage_);
-    publication.publish(std::move(names_), kind_, monitor.outputs);
+    const fs::path made = work_ / "new", list = list_of(kind_);
+    std::sort(names_.begin(), names_.end());
+    std::string text(list_head);
+    for (const std::string& name : names_) text += name + "\n";
+    Names all = names_;
+    all.push_back(list);
+    if (!put(made / list, text)) fail("cannot write", (made / list).string(), std::strerror(errno));
+    expect(all);
+    Names ours = names_in(out_ / list);
+    ours.push_back(list);
+    link_users_files("", ours);
+    std::set<fs::path> synced;
+    for (const std::string& name : all) {
+        synced.insert(made / name);
+        for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path()) synced.insert(made / up);
+    }
+    synced.insert(made);
+    for (const fs::path& path : synced)
+        if (!sync(path)) fail("cannot write", path.string(), std::strerror(errno));
+    if (!put(work_ / "moving", fmt::format("{} {} end\n", inode(made), kind_)) || !sync(work_ / "moving") ||
+        !sync(work_))
+        fail("cannot write in", shown_, std::strerror(errno));
+    monitor.outputs = Outputs::moving;
+    moving_ = true;
+    finish();
+    moving_ = false;
+    monitor.outputs = Outputs::stand;
     names_.clear();
-    said_.insert(said_.end(), publication.said().begin(), publication.said().end());
     for (const std::string& line : said_) monitor.log(line);
     said_.clear();
+}
+
+/// A second name in new/ for each file of the user that is beside ours; what cannot be linked is moved along later.
+void Staging::link_users_files(const Path& below, const Names& ours) const {
+    for (const std::string& leaf : entries(out_ / below)) {
+        const fs::path name = below / leaf, to = work_ / "new" / name;
+        if (out_ / name == work_) continue;
+        if (is_folder(out_ / name)) {
+            if (is_folder(to) || any_below(ours, name)) link_users_files(name, ours);
+        } else if (!holds(ours, name) && !is_there(to)) {
+            make_folders(to.parent_path());
+            about_to_change();
+            static_cast<void>(!linkat(AT_FDCWD, (out_ / name).c_str(), AT_FDCWD, to.c_str(), 0));
+        }
+    }
+}
+
+/// From "moving" on; repeated where it was killed. Throws OutputError where it cannot be completed now.
+void Staging::finish() {
+    const Moving moving = read_moving(work_);
+    const fs::path made = work_ / "new", old = work_ / "old";
+    if (inode(made) == moving.folder && !bring_whole()) bring_one_by_one(moving.kind);
+    sync(out_.parent_path());
+    for (const fs::path& before : {made, old}) {  // after an exchange, and after two renames
+        if (!is_there(before)) continue;
+        const std::string list = list_of(moving.kind);
+        Names ours = names_in(before / list);
+        ours.push_back(list);
+        clear(before, "", ours, others_lists(out_, list));
+        take_away(before / list), take_away(before);
+    }
+    if (!is_there(made) && !is_there(old)) take_away(work_ / "moving");
+    else said_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
+}
+
+/// OUT becomes new/ by one rename or exchange, else by two; false where OUT is as it was.
+bool Staging::bring_whole() const {
+    const fs::path made = work_ / "new", old = work_ / "old";
+    if (work_.parent_path() == out_) return false;
+    if (!is_there(out_)) return move_to(made, out_);
+    if (publishing_faults().no_rename_of_folders || must_stay(out_, made)) return false;
+    if (exchange(made, out_)) return true;
+    if (!move_to(out_, old)) return false;
+    return move_to(made, out_) || (static_cast<void>(move_to(old, out_)), false);
+}
+
+void Staging::bring_one_by_one(const std::string& kind) {
+    const fs::path made = work_ / "new", list = list_of(kind);
+    if (!is_there(made / list)) return remove_tree(made);  // which came last
+    const Names before = names_in(out_ / list), now = names_in(made / list), others = others_lists(out_, list);
+    const auto bring = [&](const std::string& name) {
+        const bool users = is_there(out_ / name) && name != list && !holds(before, name) && !holds(others, name);
+        if (make_folders((out_ / name).parent_path()) && (!users || keep_aside(out_ / name, name)) &&
+            move_to(made / name, out_ / name))
+            return;
+        const int why = errno;
+        if ((now.empty() || name == now.front()) && take_away(work_ / "moving"))
+            moving_ = false;  // nothing has changed
+        errno = why;
+        fail("cannot write", (out_ / name).string(), std::strerror(errno));
+    };
+    for (const std::string& name : now)
+        if (is_there(made / name)) bring(name);
+    for (const std::string& gone : before)
+        if (!holds(now, gone) && is_there(out_ / gone) && obstacle(gone).empty() && take_away(out_ / gone))
+            for (fs::path up = fs::path(gone).parent_path(); !up.empty() && ::rmdir((out_ / up).c_str()) == 0;)
+                up = up.parent_path();
+    bring(list);
+    remove_tree(made);  // what is left are second names of the user's files
+}
+
+/// Removes what is ours from what OUT was and moves the rest into OUT. The list of what is ours stays until the end.
+void Staging::clear(const Path& old, const Path& below, const Names& ours, const Names& others) {
+    for (const std::string& leaf : entries(old / below)) {
+        const fs::path name = below / leaf, from = old / name, to = out_ / name;
+        if (name == ours.back()) continue;
+        if (is_folder(from) && (is_folder(to) || any_below(ours, name)))
+            clear(old, name, ours, others), take_away(from);
+        else if (holds(ours, name) || (!is_folder(from) && same_file(from, to))) take_away(from);
+        else if (!is_there(to)) static_cast<void>(make_folders(to.parent_path()) && move_to(from, to));
+        else if (holds(others, name)) take_away(from);
+        else keep_aside(from, name);
+    }
+}
+
+bool Staging::keep_aside(const Path& from, const Path& name) {
+    int k = 1;
+    const auto as = [&] { return fmt::format("{}.~{}~", name.string(), k); };
+    while (is_there(out_ / as())) ++k;
+    if (!move_to(from, out_ / as())) return false;
+    said_.push_back(fmt::format(
+        "{}/{} was not written by crescent: it is now {}", shown_, name.string(), fs::path(as()).filename().string()));
+    return true;
 }
 
 }  // namespace crescent::inline base

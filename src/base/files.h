@@ -1,47 +1,79 @@
-// Outputs appear as one or not at all: they are written into a folder beside their place and brought there at the end.
+// Outputs appear as one: a whole folder is written beside OUT and exchanged with it by one system call.
+//
+//   OUT                 the outputs, beside files of the user; .crescent-KIND lists which files are ours
+//   .OUT.crescent/      beside OUT while a run writes into it:
+//     lock              held by that run; child processes do not inherit it
+//     new/  scratch/    the outputs in the making, and what is needed on the way
+//     moving            from here on the outputs are brought to their places: what the next start completes
+//     new/ or old/      what OUT was: ours goes, files of the user are moved along into OUT
+//
+// The user's files are in both folders when they are exchanged (hard links); whole folders of the user follow a moment
+// later. Where the file system has no exchange, two renames do it. Where OUT cannot be renamed at all (a mount point,
+// the current folder, another user's), files are renamed into it one by one, the list of them last: there alone a kill
+// can leave files of two runs, until the next start. Where nothing can be made beside OUT, the work is in
+// OUT/.crescent-work.
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "base/folder.h"
 #include "base/progress_monitor.h"
 
 namespace crescent::inline base {
 
-/// A folder of outputs in the making. Nothing shows under a final name before commit(); if the process ends earlier,
-/// earlier outputs stand untouched; wherever it ends inside commit(), all of the old ones stand or all of the new ones.
-/// Throws OutputError where something cannot be written, and where another process is writing into the same folder.
+/// A folder of outputs in the making. Nothing shows under a final name before commit(). Throws OutputError where
+/// something cannot be written, and where another process is writing into the same folder.
 class Staging {
 public:
-    /// Makes `folder` if it is not there, and ends or clears what earlier, killed runs left behind. Work of another
-    /// kind may write into the same folder: it has outputs of its own.
-    explicit Staging(std::string folder, std::string kind = "outputs");
+    /// Resolves `folder` once: a later chdir does not move the outputs. Completes what a killed run began, or clears
+    /// what it left. Work of another kind may write into the same folder: it has outputs of its own.
+    explicit Staging(const std::string& folder, std::string kind = "outputs");
     ~Staging();
     Staging(const Staging&) = delete;
     Staging& operator=(const Staging&) = delete;
 
-    /// Throws where one of these outputs could not be brought to its place: to be told before the work.
+    /// Throws where one of these outputs could not be brought to its place, before the work is done.
     void expect(const std::vector<std::string>& names) const;
     /// Where to write "plates/hero.png" for now.
     std::string path(const std::string& name);
     void write(const std::string& name, std::span<const unsigned char> bytes);
     void write(const std::string& name, const std::string& text);
     /// A folder for what is needed on the way; it goes with the stage.
-    std::string scratch() const { return folder_ + "/" + stage_ + "/scratch"; }
+    std::string scratch() const { return (work_ / "scratch").string(); }
     /// Brings every output to its place and removes files of the earlier outputs that are not among them. What the
-    /// folder holds besides stays. `monitor` is told what stands when, and which files were kept under another name.
+    /// folder holds besides stays; a user's file under the name of an output is kept as NAME.~1~, and `monitor` logs
+    /// it.
     void commit(ProgressMonitor& monitor);
 
 private:
-    void clear_stale();
-    void make_stage();
+    using Path = std::filesystem::path;
+    using Names = std::vector<std::string>;
 
-    std::string folder_, kind_, stage_;  // stage_: its name in the folder
-    Folder out_;
-    int owner_ = -1;  // a locked file in the stage: its holder is alive
-    std::vector<std::string> names_, said_;
+    void open_work();
+    bool take_lock();
+    std::string obstacle(const std::string& name) const;
+    void link_users_files(const Path& below, const Names& ours) const;
+    void finish();
+    bool bring_whole() const;
+    void bring_one_by_one(const std::string& kind);
+    void clear(const Path& old, const Path& below, const Names& ours, const Names& others);
+    bool keep_aside(const Path& from, const Path& name);
+
+    std::string shown_, kind_;    // shown_: OUT as it was given
+    Path out_, work_;             // absolute, links followed
+    std::shared_ptr<void> lock_;  // its end takes an empty work folder away
+    bool moving_ = false;         // outputs are being brought to their places
+    Names names_, said_;
 };
+
+/// For tests: called before each change that brings outputs to their places; and a file system that lacks calls.
+struct PublishingFaults {
+    void (*before_change)() = nullptr;
+    bool no_exchange = false, no_rename_of_folders = false;
+};
+PublishingFaults& publishing_faults();
 
 }  // namespace crescent::inline base

@@ -1,5 +1,5 @@
-// Outputs appear as one: whichever system call is the last one, all that is seen is of one run; and no file of others
-// is touched.
+// Outputs appear as one: killed before any change, a reader finds one run whole, and the next run leaves what a run
+// that was never killed leaves, the user's files with it. In each way of bringing outputs to their places.
 #include "base/files.h"
 
 #include <gmock/gmock.h>
@@ -7,12 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "base/errors.h"
-#include "base/publish.h"
 
 namespace crescent::inline base {
 namespace {
@@ -25,21 +23,34 @@ const Files old_run = {{"metrics.json", "old"}, {"report.html", "old"}, {"plates
     {"plates/heat.png", "old"}, {"films/a/b.exr", "old"}};
 const Files new_run = {
     {"metrics.json", "new"}, {"report.html", "new"}, {"plates/hero.png", "new"}, {"plates/rose.png", "new"}};
+const Files users = {{"notes.txt", "mine"}, {"plates/mine.png", "mine"}, {"films/mine.txt", "mine"},
+    {"thesis/chapter/one.tex", "mine"}, {"plates/more/mine.png", "mine"}};
+
+enum class Way { exchange, two_renames, one_by_one, current_folder };
 
 int steps_left = 0;
 void end_at_last_step() {
     if (steps_left-- == 0) ::_exit(99);
 }
 
-class Publishing : public testing::Test {
+class Publishing : public testing::TestWithParam<Way> {
 protected:
     // In memory, where there is such a place: these tests sync some thousand times.
     fs::path top_ = fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
         ("publishing-" + std::to_string(getpid()));
-    fs::path out_ = top_ / "out";
+    fs::path out_ = top_ / "out", before_ = fs::current_path();
     ProgressMonitor monitor_;
-    void SetUp() override { fs::remove_all(top_), fs::create_directories(top_); }
-    void TearDown() override { fs::remove_all(top_); }
+    void SetUp() override {
+        fs::remove_all(top_), fs::create_directories(top_);
+        publishing_faults() = {nullptr, way() == Way::two_renames, way() == Way::one_by_one};
+    }
+    void TearDown() override {
+        fs::current_path(before_);
+        publishing_faults() = {};
+        fs::remove_all(top_);
+    }
+    Way way() const { return HasParam() ? GetParam() : Way::exchange; }
+    static bool HasParam() { return testing::UnitTest::GetInstance()->current_test_info()->value_param() != nullptr; }
 
     static void put(const fs::path& at, const std::string& text) {
         fs::create_directories(at.parent_path());
@@ -49,12 +60,27 @@ protected:
         std::ifstream file(at);
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    void publish(const Files& files) {
-        Staging staging(out_);
+    void publish(const Files& files, const std::string& kind = "outputs") {
+        Staging staging(out_, kind);
         for (const auto& [name, text] : files) staging.write(name, text);
         staging.commit(monitor_);
     }
-    /// What a reader finds under the names of both runs, links followed.
+    void start_over(const Files& run) {
+        fs::current_path(before_);
+        fs::remove_all(out_), fs::remove_all(top_ / ".out.crescent");
+        for (const auto& [name, text] : users) put(out_ / name, text);
+        if (way() == Way::current_folder) fs::current_path(out_);
+        publish(run);
+    }
+    /// Every file and link below the folder that OUT is in, as they are.
+    Files all() const {
+        Files out;
+        for (const auto& entry : fs::recursive_directory_iterator(top_))
+            if (!entry.is_directory() || entry.is_symlink() || fs::is_empty(entry))
+                out[entry.path().lexically_relative(top_).string()] = entry.is_regular_file() ? text_of(entry) : "-";
+        return out;
+    }
+    /// What a reader finds in OUT under the names of both runs.
     Files seen() const {
         Files out;
         for (const Files& run : {old_run, new_run})
@@ -62,26 +88,17 @@ protected:
                 if (fs::is_regular_file(out_ / name)) out[name] = text_of(out_ / name);
         return out;
     }
-    /// Every regular file and link below OUT but for the manifest.
-    std::vector<std::string> all() const {
-        std::vector<std::string> out;
-        for (const auto& entry : fs::recursive_directory_iterator(out_))
-            if (!entry.is_directory() || entry.is_symlink())
-                if (entry.path().filename() != manifest_file("outputs"))
-                    out.push_back(
-                        entry.path().lexically_relative(out_).string() + (entry.is_symlink() ? " (a link)" : ""));
-        std::sort(out.begin(), out.end());
-        return out;
+    std::size_t users_files_seen() const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(users, [&](const auto& file) { return text_of(out_ / file.first) == file.second; }));
     }
-    /// A process that publishes and ends before its `step`-th change. True where it came to its end.
-    bool publish_until(int step, const Files& files) {
+    /// A process that does the work and ends before its `step`-th change. True where it came to its end.
+    template <class Work> bool ends_before(int step, const Work& work) {
         const pid_t child = fork();
         if (child == 0) {
-            Staging staging(out_);
-            for (const auto& [name, text] : files) staging.write(name, text);
             steps_left = step;
-            before_change = end_at_last_step;
-            staging.commit(monitor_);
+            publishing_faults().before_change = end_at_last_step;
+            work();
             ::_exit(0);
         }
         int status = 0;
@@ -90,93 +107,98 @@ protected:
     }
 };
 
-std::vector<std::string> names_of(const Files& files) {
-    std::vector<std::string> out;
-    for (const auto& [name, text] : files) out.push_back(name);
-    return out;
+std::string name_of(const testing::TestParamInfo<Way>& info) {
+    const char* names[] = {"exchange", "two_renames", "one_by_one", "current_folder"};
+    return names[static_cast<int>(info.param)];
+}
+INSTANTIATE_TEST_SUITE_P(
+    Each, Publishing, testing::Values(Way::exchange, Way::two_renames, Way::one_by_one, Way::current_folder), name_of);
+
+TEST_P(Publishing, KilledBeforeAnyChangeLosesNothingAndTheNextRunLeavesNothingBehind) {
+    start_over(new_run);
+    const Files clean = all();
+    ASSERT_EQ(users_files_seen(), users.size());
+    int steps = 0, mixed = 0;
+    for (bool done = false; !done; ++steps) {
+        start_over(old_run);
+        done = ends_before(steps, [&] { publish(new_run); });
+        const Files now = seen();
+        const bool whole = now == old_run || now == new_run || (way() == Way::two_renames && now.empty());
+        mixed += !whole;
+        if (way() != Way::one_by_one && way() != Way::current_folder) {
+            ASSERT_TRUE(whole) << "ended before change " << steps;
+        }
+        if (way() == Way::exchange) {
+            EXPECT_EQ(text_of(out_ / "notes.txt") + text_of(out_ / "plates/mine.png"), "minemine") << steps;
+        }
+        { Staging next(out_); }  // a later run that is stopped as it begins
+        ASSERT_TRUE(seen() == old_run || seen() == new_run) << "ended before change " << steps;
+        ASSERT_EQ(users_files_seen(), users.size()) << "ended before change " << steps;
+        ASSERT_FALSE(fs::exists(top_ / ".out.crescent")) << "ended before change " << steps;
+        publish(new_run);
+        ASSERT_EQ(all(), clean) << "ended before change " << steps;
+    }
+    EXPECT_GT(steps, 20);
+    EXPECT_LT(mixed, 10);
 }
 
-TEST_F(Publishing, StoppedBeforeAnyStepLeavesOneRunWhole) {
-    int old_seen = 0, new_seen = 0;
-    for (bool done = false; !done;) {
-        fs::remove_all(out_);
-        publish(old_run);
-        done = publish_until(old_seen + new_seen, new_run);
-        const Files now = seen();
-        ASSERT_TRUE(now == old_run || now == new_run) << "ended before step " << old_seen + new_seen;
-        ++(now == old_run ? old_seen : new_seen);
-        { Staging next(out_); }  // a later run that is stopped as it begins
-        EXPECT_EQ(seen(), now);
-        EXPECT_EQ(all(), names_of(now)) << "nothing else is left";
-        publish(old_run);
-        EXPECT_EQ(all(), names_of(old_run));
-    }
-    EXPECT_GT(old_seen, 15);
-    EXPECT_GT(new_seen, 5);
+TEST_P(Publishing, KilledTwiceLosesNothing) {
+    start_over(new_run);
+    const Files clean = all();
+    for (int first = 3; first < 60; first += 7)
+        for (int second = 0; second < 40; second += 3) {
+            start_over(old_run);
+            ends_before(first, [&] { publish(new_run); });
+            ends_before(second, [&] { publish(new_run); });
+            publish(new_run);
+            ASSERT_EQ(all(), clean) << first << " " << second;
+        }
+}
+
+TEST_P(Publishing, ReplacesItsOwnFilesAndKeepsTheUsers) {
+    start_over(old_run);
+    put(out_ / "report.html", "ours, changed");
+    put(out_ / "plates/rose.png", "written by hand");
+    publish({{"film.mp4", "film"}}, "film");
+    EXPECT_EQ(seen().size(), old_run.size() + 1) << "another kind of work leaves these outputs";
+    publish(new_run);
+    EXPECT_EQ(seen(), new_run);
+    EXPECT_EQ(text_of(out_ / "plates/rose.png.~1~"), "written by hand");
+    EXPECT_EQ(text_of(out_ / "film.mp4"), "film");
+    EXPECT_EQ(users_files_seen(), users.size());
+    EXPECT_FALSE(fs::exists(out_ / "films/a"));
+    EXPECT_EQ(monitor_.outputs, Outputs::stand);
 }
 
 TEST_F(Publishing, ForTheFirstTimeShowsAllOrNothing) {
     for (int step = 0;; ++step) {
         fs::remove_all(out_);
-        const bool done = publish_until(step, new_run);
-        ASSERT_TRUE(seen().empty() || seen() == new_run) << "ended before step " << step;
+        const bool done = ends_before(step, [&] { publish(new_run); });
+        ASSERT_TRUE(!fs::exists(out_) || seen() == new_run) << "ended before change " << step;
         if (done) break;
     }
-    EXPECT_EQ(seen(), new_run);
 }
 
-TEST_F(Publishing, EndsWhatWasStoppedEvenIfThatIsStoppedToo) {
-    for (const int first : {12, 20, 24, 28})
-        for (int second = 0; second < 60; second += 3) {
-            fs::remove_all(out_);
-            publish(old_run);
-            publish_until(first, new_run);
-            const Files now = seen();
-            if (const pid_t child = fork(); child == 0) {
-                steps_left = second;
-                before_change = end_at_last_step;
-                { Staging next(out_); }
-                ::_exit(0);
-            } else {
-                waitpid(child, nullptr, 0);
-            }
-            ASSERT_EQ(seen(), now) << first << " " << second;
-            { Staging next(out_); }
-            ASSERT_EQ(all(), names_of(now)) << first << " " << second;
-        }
-}
-
-TEST_F(Publishing, WhatIsInTheWayAfterTheFirstStepsLeavesEverythingOld) {
+TEST_F(Publishing, KeepsTheFoldersRightsAndWorksThroughALink) {
+    fs::create_directories(top_ / "real/out");
+    fs::permissions(top_ / "real/out", fs::perms(0750));
+    fs::create_directory_symlink("real/out", out_);
     publish(old_run);
-    Staging staging(out_);
-    for (const auto& [name, text] : new_run) staging.write(name, text);
-    static fs::path way;
-    way = out_ / "plates/hero.png";
-    steps_left = 8;
-    before_change = [] {
-        if (steps_left-- == 0) fs::remove(way), fs::create_directories(way / "in the way");
-    };
-    EXPECT_THROW(staging.commit(monitor_), OutputError);
-    before_change = nullptr;
-    EXPECT_EQ(monitor_.outputs, Outputs::untouched);
-    Files expected = old_run;
-    expected.erase("plates/hero.png");
-    Files now = seen();
-    now.erase("plates/hero.png");
-    EXPECT_EQ(now, expected);
-}
-
-TEST_F(Publishing, LeavesFilesOfOthersAlone) {
-    const std::vector<std::string> theirs = {".crescent-99999-backup/thesis.txt", ".crescent-123abc/notes",
-        "plates/mine.png", ".crescent-stage-0123456789abcdef/kept", "thesis.tex"};
-    for (const std::string& name : theirs) put(out_ / name, "theirs");
-    put(out_ / "report.html", "written by hand");
-    publish(old_run);
-    EXPECT_EQ(text_of(out_ / "report.html.~1~"), "written by hand");
     publish(new_run);
-    publish({{"metrics.json", "alone"}});
-    for (const std::string& name : theirs) EXPECT_EQ(text_of(out_ / name), "theirs") << name;
-    EXPECT_EQ(all().size(), theirs.size() + 2) << testing::PrintToString(all());
+    EXPECT_TRUE(fs::is_symlink(out_));
+    EXPECT_EQ(seen(), new_run);
+    EXPECT_EQ(fs::status(out_).permissions(), fs::perms(0750));
+    EXPECT_EQ(std::distance(fs::directory_iterator(top_ / "real"), {}), 1);
+}
+
+TEST_F(Publishing, GoesWhereThePathLedWhenItBegan) {
+    fs::create_directories(top_ / "elsewhere");
+    fs::current_path(top_);
+    Staging staging("out");
+    staging.write("metrics.json", "new");
+    fs::current_path(top_ / "elsewhere");
+    staging.commit(monitor_);
+    EXPECT_EQ(text_of(out_ / "metrics.json"), "new");
 }
 
 TEST_F(Publishing, IsNotLedElsewhereByALink) {
@@ -190,44 +212,44 @@ TEST_F(Publishing, IsNotLedElsewhereByALink) {
     EXPECT_EQ(text_of(top_ / "victim/hero.png"), "victim");
     EXPECT_TRUE(seen().size() == 1 && fs::is_symlink(out_ / "metrics.json"));
     fs::remove(out_ / "metrics.json");
-    put(out_ / manifest_file("outputs"), "../victim/hero.png\n/etc/hostname\nplates/../../victim/hero.png\n");
-    publish(new_run);
-    EXPECT_EQ(text_of(top_ / "victim/hero.png"), "victim");
+    fs::create_directory_symlink(top_ / "victim", out_ / "linked");
+    put(out_ / ".crescent-outputs",
+        "../victim/hero.png\n/etc/hostname\nplates/../../victim/hero.png\nlinked/hero.png\n");
+    for (const bool stays : {true, false}) {
+        publishing_faults().no_rename_of_folders = stays;
+        publish(new_run);
+        EXPECT_EQ(text_of(top_ / "victim/hero.png"), "victim");
+        EXPECT_TRUE(fs::is_symlink(out_ / "linked"));
+    }
 }
 
-TEST_F(Publishing, WorksThroughALinkAndInTheCurrentFolder) {
-    fs::create_directories(top_ / "real");
-    fs::create_directory_symlink("real", out_);
-    publish(old_run);
-    EXPECT_TRUE(fs::is_symlink(out_));
-    EXPECT_EQ(seen(), old_run);
-    const fs::path before = fs::current_path();
-    fs::current_path(top_ / "real");
-    out_ = ".";
-    publish(new_run);
-    EXPECT_EQ(seen(), new_run);
-    fs::current_path(before);
-}
-
-TEST_F(Publishing, IsForOneRunAtATime) {
-    Staging first(out_);
-    try {
-        Staging second(out_);
-        FAIL();
-    } catch (const OutputError& error) { EXPECT_THAT(error.what(), HasSubstr("another run")); }
-    first.write("metrics.json", "first");
-    first.commit(monitor_);
-    EXPECT_EQ(text_of(out_ / "metrics.json"), "first");
-    EXPECT_EQ(monitor_.outputs, Outputs::stand);
-}
-
-TEST_F(Publishing, OfAnotherKindLeavesTheseOutputs) {
-    publish(old_run);
-    Staging film(out_, "film");
-    film.write("film.mp4", "film");
-    film.commit(monitor_);
-    EXPECT_EQ(seen(), old_run);
-    EXPECT_EQ(text_of(out_ / "film.mp4"), "film");
+TEST_F(Publishing, IsForOneRunAtATimeAndNoChildKeepsTheLock) {
+    int pipe_ends[2];
+    ASSERT_EQ(pipe(pipe_ends), 0);
+    pid_t child = 0;
+    {
+        Staging first(out_);
+        try {
+            Staging second(out_);
+            FAIL();
+        } catch (const OutputError& error) { EXPECT_THAT(error.what(), HasSubstr("another run")); }
+        if (child = fork(); child == 0) {
+            char byte;
+            close(pipe_ends[1]);
+            ::_exit(read(pipe_ends[0], &byte, 1) == 0 ? 0 : 1);
+        }
+        EXPECT_TRUE(ends_before(99, [&] {
+            try {
+                Staging second(out_);
+                ::_exit(1);
+            } catch (const OutputError&) { ::_exit(0); }
+        })) << "another process";
+        first.write("metrics.json", "first");
+        first.commit(monitor_);
+    }
+    EXPECT_NO_THROW(publish(new_run)) << "while a child of the first run lives";
+    close(pipe_ends[1]), close(pipe_ends[0]);
+    waitpid(child, nullptr, 0);
 }
 
 TEST_F(Publishing, NamesWhatCannotBeWritten) {
@@ -235,6 +257,13 @@ TEST_F(Publishing, NamesWhatCannotBeWritten) {
     EXPECT_THROW(Staging{out_.string()}, OutputError);
     EXPECT_THROW(Staging{(out_ / "below").string()}, OutputError);
     EXPECT_THROW(Staging{"/proc/crescent"}, OutputError);
+    fs::remove(out_);
+    fs::create_directory_symlink("nowhere", out_);
+    EXPECT_THROW(Staging{out_.string()}, OutputError);
+    fs::remove(out_);
+    put(top_ / ".out.crescent/new/theirs", "theirs");
+    EXPECT_THROW(Staging{out_.string()}, OutputError);
+    EXPECT_EQ(text_of(top_ / ".out.crescent/new/theirs"), "theirs");
 }
 
 }  // namespace

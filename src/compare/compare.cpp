@@ -12,7 +12,8 @@ namespace crescent::inline comparing {
 
 CompareResult compare(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary) {
-    const plates::Canvas probe(1, 1, {});  // a missing font is told before the work
+    const plates::Canvas probe(1, 1, {});  // a missing font is found before the work, and a folder that is in use
+    Staging staging(options.out);
     const Readings all = read_all(plan, monitor);
     const CompareResult result = judge(plan, all, monitor);
     std::map<std::string, std::vector<unsigned char>> pictures;
@@ -20,7 +21,6 @@ CompareResult compare(const ComparePlan& plan, const CompareOptions& options, co
         pictures[name] = encode_png(picture,
             {{"Software", "crescent " + provenance.version}, {"Title", name}, {"Command", provenance.command}});
     monitor.check();
-    Staging staging(options.out);
     for (const auto& [name, png] : pictures) staging.write("plates/" + name + ".png", png);
     if (!result.ladders.empty()) staging.write("plates/ladders.svg", ladders_svg(result, plan.theme));
     staging.write("metrics.json", compare_json(plan, all, result, provenance));
