@@ -141,6 +141,7 @@ std::function<int()> parse(int argc, char** argv) {
     app.require_subcommand(0, 1);
     Work work;
     add_run(app, work);
+    add_join(app, work);
     add_film(app, work);
     add_list(app, work);
     add_schema(app, work);

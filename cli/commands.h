@@ -35,6 +35,12 @@ struct RunFlags {
 };
 int run(const RunFlags& flags);
 
+struct JoinFlags {
+    std::vector<std::string> parts;
+    std::string out;
+};
+int join(const JoinFlags& flags);
+
 struct FilmFlags {
     std::string file;
     std::vector<std::string> overrides;  // PATH=VALUE

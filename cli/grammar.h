@@ -34,6 +34,7 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 
 // Each adds one command; `work` receives what performs it once the parser met it.
 void add_run(CLI::App& app, Work& work);
+void add_join(CLI::App& app, Work& work);
 void add_film(CLI::App& app, Work& work);
 void add_check(CLI::App& app, Work& work);
 void add_compare(CLI::App& app, Work& work);

@@ -17,8 +17,15 @@ computes them in GLSL, the same to a tolerance: docs/gl.md.
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml,
 timing.json, plates/, films/, in place of those of an earlier run. They appear
 as one, or not at all. --only metrics writes metrics.json, metrics.csv and
-junit.xml; --seed-range lets several machines share the seeds. A long run
-that was stopped resumes when the same command is given again.)";
+junit.xml; --seed-range lets several machines share the seeds (assertions that
+need the others are skipped), and `crescent join` makes one run of the parts.
+A long run that was stopped resumes when the same command is given again.)";
+
+constexpr const char* join_footer = R"(A PART is the folder of a run or its metrics.json. All must be of one
+experiment (--seeds and --seed-range do not change it), version and
+instrument; seeds that two of them have must agree bit for bit. Written under
+DIR: metrics.json, metrics.csv and junit.xml, as of one run with all seeds.
+Assertions that need seeds which are in no part are skipped.)";
 
 constexpr const char* film_footer = R"(The film of an experiment: every picture, curve and number comes from the run
 that it is made with. Written under DIR as one: crescent.mp4, captions
@@ -90,6 +97,17 @@ void add_run(CLI::App& app, Work& work) {
         ->type_name("SECONDS")
         ->check(seconds);
     c->add_flag("--quiet", f->quiet, "no progress; the summary stays");
+}
+
+void add_join(CLI::App& app, Work& work) {
+    std::shared_ptr<JoinFlags> f;
+    CLI::App* c = command(app, work, "join", "Join runs of parts of an experiment's seeds into one.", join, f);
+    c->footer(join_footer);
+    c->add_option("PART", f->parts, "the folder of a run, or its metrics.json")
+        ->required()
+        ->type_name("...")
+        ->check(told);
+    c->add_option("--out", f->out, "where the outputs go")->required()->type_name("DIR")->check(told);
 }
 
 void add_film(CLI::App& app, Work& work) {

@@ -11,6 +11,7 @@
 //   plan, prepare, execute, collect, write
 //                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and meters -> every
 //                     number -> a folder; a stop is an answer, see run/execute.h
+//   join              runs of parts of an experiment's seeds -> the metrics of all of them
 //   measure_in_memory an Experiment -> films, meters and evidence, nothing written
 //   compare           renders of other programs -> meters, bias tests, plates and report under one folder
 //   run               an Experiment -> films, meters, plates and report under one folder
@@ -61,6 +62,7 @@
 #include "plates/words.h"
 #include "reference/reference.h"
 #include "report/report.h"
+#include "run/join.h"
 #include "run/preview.h"
 #include "run/run.h"
 #include "run/version.h"

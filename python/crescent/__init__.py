@@ -14,7 +14,7 @@ from ._crescent import version as __version__
 from ._judgement import Judgement, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
-from .experiments import Experiment, Film, Measured, load, parse, run
+from .experiments import Experiment, Film, Measured, join, load, parse, run
 
 __all__ = [
     "Experiment",
@@ -31,6 +31,7 @@ __all__ = [
     "brdf_names",
     "check",
     "commit",
+    "join",
     "load",
     "parse",
     "pdf_of",

@@ -1,4 +1,4 @@
-"""Experiments and runs in memory: :func:`load`, :func:`parse`, :func:`run`.
+"""Experiments and runs in memory: :func:`load`, :func:`parse`, :func:`run`, :func:`join`.
 
 e = crescent.load("experiments/gallery.toml")
 e["image.width"] = 320                      # checked as the file is; ValueError names what is wrong
@@ -12,9 +12,10 @@ import csv
 import io
 import json
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
+from os.path import abspath
 from typing import Any
 
 import numpy as np
@@ -122,7 +123,7 @@ class Experiment:
         return parse, (self.text, self._core.file)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Experiment) and self.hash == other.hash
+        return isinstance(other, Experiment) and self.hash == other.hash and self["seeds"] == other["seeds"]
 
     def __repr__(self) -> str:
         return f"<Experiment {self._core.file} {self.hash}>"
@@ -200,7 +201,7 @@ class Measured:
 
     @property
     def holds(self) -> bool:
-        """Every assertion of the experiment holds; those on plates are not judged here."""
+        """No assertion of the experiment fails; those on plates, or on seeds that were not run, are skipped."""
         return bool(self._core.holds)
 
     def records(self) -> list[dict[str, Any]]:
@@ -254,12 +255,26 @@ def run(
     `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and evidence too.
     `out`: a folder for metrics and films. Films are the same bits whatever `threads` and `isa` say.
     """
+    folder = None if out is None else abspath(out)
     e = experiment if isinstance(experiment, Experiment) else load(experiment)
     if len(np.shape(seeds)) != 1 or len(seeds) != 2:
         raise ValueError(f"seeds is {seeds!r}: expected the first and the last of the series, (1, 0) for all")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     core = _crescent.run(e._core, seeds[0], seeds[1], threads=threads, isa=isa, studies=studies, progress=progress)
     measured = Measured(core, e._core.s())
-    if out is not None:
-        measured.write(out)
+    if folder is not None:
+        measured.write(folder)
+    return measured
+
+
+def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None = None) -> Measured:
+    """Joins runs of parts of one experiment's seeds, as `crescent join` does.
+
+    `parts`: folders of runs, or their metrics.json. `out`: a folder for the metrics. There are no films.
+    """
+    folder = None if out is None else abspath(out)
+    core, s = _crescent.join([fspath(part) for part in parts])
+    measured = Measured(core, s)
+    if folder is not None:
+        measured.write(folder)
     return measured

@@ -125,6 +125,15 @@ void add_experiments(nb::module_& m) {
         .def("junit", [](const Measured& x) { return junit_xml(inputs_of(x)); })
         .def("write", &write_folder, "folder"_a);
     m.def(
+        "join",
+        [](const std::vector<std::string>& parts) {
+            const nb::gil_scoped_release free;
+            auto joined = std::make_shared<Measured>(join(parts, "crescent.join"));
+            const double s = joined->experiment.s();
+            return std::pair(std::move(joined), s);
+        },
+        "parts"_a);
+    m.def(
         "run", &measured, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a, "progress"_a.none());
 }
 

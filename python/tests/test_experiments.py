@@ -138,6 +138,20 @@ def test_a_folder_is_written_as_one(measured, tmp_path):
         measured.write(tmp_path / "file")
 
 
+def test_parts_of_the_seeds_join_to_the_whole(measured, tmp_path):
+    crescent.run(crescent.parse(TINY), seeds=(1, 1), out=tmp_path / "first")
+    crescent.run(crescent.parse(TINY), seeds=(2, 2), out=tmp_path / "second")
+    joined = crescent.join([tmp_path / "second", tmp_path / "first/metrics.json"], out=tmp_path / "joined")
+    whole, got = dict(measured.metrics), dict(joined.metrics)
+    assert whole.pop("provenance")["seeds"] == got.pop("provenance")["seeds"]
+    assert whole == got and joined.holds == measured.holds and joined.records() == measured.records()
+    assert (tmp_path / "joined/metrics.csv").exists() and not len(joined.films)
+    with pytest.raises(ValueError, match="other experiment"):
+        other = crescent.parse(TINY).with_({"ball.s": 31})
+        crescent.run(other, seeds=(2, 2), out=tmp_path / "other")
+        crescent.join([tmp_path / "first", tmp_path / "other"])
+
+
 def test_ctrl_c_ends_a_run(interruptible):
     e = crescent.parse(TINY).with_({"arms.cosine.n": [1 << 20], "image.width": 480, "image.height": 320})
     asked = []

@@ -143,14 +143,11 @@ std::string text_of(const Published& published) {
 std::string canonical_text(const Experiment& experiment) { return Writer(experiment)(); }
 
 std::uint64_t hash(const Experiment& experiment) {
-    std::string text;
-    if (experiment.figures) {  // where they stand does not count, what they say does
-        Experiment without = experiment;
-        without.published.reset();
-        text = canonical_text(without) + text_of(*experiment.figures);
-    } else {
-        text = canonical_text(experiment);
-    }
+    Experiment counted = experiment;
+    counted.seeds = 1;                                  // a longer series is more of the same experiment
+    if (experiment.figures) counted.published.reset();  // what they say counts, not where they are
+    std::string text = canonical_text(counted);
+    if (experiment.figures) text += text_of(*experiment.figures);
     if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code: no key says it
         text += toml_text(experiment.s_of);
     return XXH3_64bits(text.data(), text.size());

@@ -113,7 +113,8 @@ inline constexpr double most_error_share = 0.25;
 
 /// Every number of a run, as metrics.json holds them.
 struct Metrics {
-    std::vector<RunMeter> runs;  // every arm, n, s, seed
+    std::vector<RunMeter> runs;         // every arm, n, s, seed
+    std::vector<std::uint32_t> series;  // every seed of the experiment, of which `runs` may have a part; empty: theirs
     std::vector<BandMeter> bands;
     std::vector<Ladder> ladders;
     std::vector<FurnaceMeter> furnaces;

@@ -83,17 +83,37 @@ struct Measurements {
     RunIndex runs;
     const PlateBytes& plate_bytes;
     bool drawn;  // whether any plates were to be
+
+    std::uint32_t own_seed() const { return metrics.series.empty() ? experiment.seed : metrics.series.front(); }
+    /// The seeds that a check is read at.
+    std::vector<std::uint32_t> seeds(bool median) const {
+        if (!median || runs.seeds().empty()) return {own_seed()};
+        return metrics.series.empty() ? runs.seeds() : metrics.series;
+    }
 };
+
+bool is_of_a_run(const ParsedQuantity& q) { return !q.number && subject_of(q.word) == QuantityOf::run; }
+
+/// Which seeds of the series a check needs and this run does not have; "" where none is missing.
+std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
+    const auto& series = of.metrics.series;
+    if (!is_of_a_run(plan.check.left) && !is_of_a_run(plan.check.right)) return "";
+    const auto ran = [&](std::uint32_t seed) {
+        return std::ranges::find(of.runs.seeds(), seed) != of.runs.seeds().end();
+    };
+    if (series.empty() || of.runs.seeds().empty() || std::ranges::all_of(of.seeds(plan.median), ran)) return "";
+    return plan.median && series.size() > 1 ? "needs seeds 1 to " + std::to_string(series.size()) : "needs seed 1";
+}
 
 /// One side of a check: its value, and what is to be said of it.
 double side(ParsedQuantity q, bool over_seeds, const Measurements& of, AssertionResult& out) {
     (void)resolve_quantity(q, of.experiment);  // an experiment built in code may leave n out
     std::vector<double> values;
-    const std::vector own{of.experiment.seed};
-    for (const std::uint32_t seed : over_seeds && !of.runs.seeds().empty() ? of.runs.seeds() : own)
+    for (const std::uint32_t seed : of.seeds(over_seeds))
         values.push_back(value_of(
             q, of.metrics, of.experiment, seed, of.plate_bytes, [&](const RunKey& key) { return of.runs.find(key); }));
     const double value = quantile(values, 0.5);
+    if (!out.skipped.empty()) return value;
     out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
     if (!of.drawn && !q.number && subject_of(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
     return value;
@@ -121,6 +141,7 @@ std::vector<AssertionResult> judge(
         AssertionResult r;
         const auto& [left, right, op] = plan.check;
         r.name = plan.name, r.op = op;
+        r.skipped = seeds_missing(plan, measurements);
         r.measured = side(left, plan.median, measurements, r);
         r.bound = side(right, plan.median, measurements, r);
         r.cannot_fail = cannot_fail(left, op, right);

@@ -21,8 +21,9 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
     const PlateBytes& plate_bytes);
 
 /// One result for each assertion, in the experiment's order. over = "median" compares the median of each side over all
-/// seeds that were run (an even count: the mean of the middle two). A NaN on either side, at any of these seeds, fails.
-/// `drawn` = false: no plates were made in this run, so that claims about them are skipped.
+/// seeds of the series (an even count: the mean of the middle two). A NaN on either side, at any of these seeds, fails.
+/// An assertion is skipped where it needs what this run does not have: a seed that it is read at (all of the series for
+/// a median, the experiment's own else; none where neither side is read off a film), or, with `drawn` = false, a plate.
 std::vector<AssertionResult> judge(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 

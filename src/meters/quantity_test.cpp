@@ -91,6 +91,27 @@ TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {
     EXPECT_EQ(result.text, "rmse.H(b, n=4) < rmse.H(a, n=4) (medians over seeds)");
 }
 
+TEST(Assertions, AreSkippedWhereASeedThatTheyNeedWasNotRun) {
+    const auto all = two_arms({{"rmse.H(b, n=4) < rmse.H(a, n=4)", true}, {"fireflies(a) == 5", false},
+        {"furnace(white) == 0.27", true}, {"region_pixels(H) == 8", false}, {"1 > furnace(white)", true}});
+    const auto skipped = [&](const Metrics& m) {
+        std::vector<std::string> out;
+        for (const AssertionResult& a : judge(all, m, {})) {
+            out.push_back(a.skipped);
+            EXPECT_TRUE(a.pass != !a.skipped.empty()) << a.name;
+            EXPECT_FALSE(a.failed()) << a.name;
+        }
+        return out;
+    };
+    Metrics m = measured();
+    m.series = {5, 6, 7};
+    EXPECT_EQ(skipped(m), std::vector<std::string>(5));
+    m.series = {5, 6, 7, 8};
+    EXPECT_EQ(skipped(m), (std::vector<std::string>{"needs seeds 1 to 4", "", "", "", ""}));
+    m.series = {4, 5, 6, 7};
+    EXPECT_EQ(skipped(m), (std::vector<std::string>{"needs seeds 1 to 4", "needs seed 1", "", "", ""}));
+}
+
 TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
     Metrics m = measured();
     m.runs[0].regions[0].rmse = std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,6 @@
 // metrics.json: every number of a run, as docs/metrics.schema.json describes it. Units are those of meters/metrics.h.
 // The same run gives the same bytes: keys in a fixed order, doubles in the shortest form that reads back the same.
+#include <algorithm>
 #include <cmath>
 
 #include "report/provenance_json.h"
@@ -113,27 +114,71 @@ Json evidence_json(const Evidence& e) {
         {"rejections", list(e.rejections, rejection_json)}};
 }
 
+/// As a file of published figures has them.
+Json published_json(const Published& p) {
+    Json out = {{"source", p.source}, {"runs", Json::array()}, {"furnaces", Json::object()}};
+    if (p.seed) out["seed"] = *p.seed;
+    for (const auto& [key, value] : p.runs) {
+        const auto& [arm, n, s, meter] = key;
+        out["runs"].push_back({{"arm", arm}, {"n", n}, {"s", s}, {meter, value}});
+    }
+    for (const auto& [name, value] : p.furnaces) out["furnaces"][name] = value;
+    return out;
+}
+
+/// The experiment in full, so that parts of its seeds can be joined without its files.
+Json experiment_json(const ReportInputs& in) {
+    Json out = {{"file", in.provenance.experiment_file}, {"hash", in.provenance.experiment_hash}};
+    if (in.provenance.experiment_text.empty()) return out;
+    out["text"] = in.provenance.experiment_text;
+    if (!in.experiment.overrides.empty()) out["set"] = in.experiment.overrides;
+    if (in.experiment.figures) out["published"] = published_json(*in.experiment.figures);
+    return out;
+}
+
 }  // namespace
+
+std::vector<int> Provenance::missing() const {
+    std::vector<int> out;
+    for (int place = 1; place <= series; ++place)
+        if (std::ranges::find(places, place) == places.end()) out.push_back(place);
+    return out;
+}
+
+std::string ranges_text(const std::vector<int>& ascending) {
+    std::string out;
+    for (std::size_t k = 0; k < ascending.size();) {
+        std::size_t last = k;
+        while (last + 1 < ascending.size() && ascending[last + 1] == ascending[last] + 1) ++last;
+        out += (out.empty() ? "" : ", ") + std::to_string(ascending[k]);
+        if (last > k) out += " to " + std::to_string(ascending[last]);
+        k = last + 1;
+    }
+    return out;
+}
 
 Json provenance_json(const Provenance& p) {
     Json out = {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
         {"experiment", {{"file", p.experiment_file}, {"hash", p.experiment_hash}}}, {"seeds", p.seeds},
         {"instrument", p.instrument}, {"command", p.command}};
-    if (p.series > 0)
-        out["series"] = {{"first", p.first_of_series},
-            {"last", p.first_of_series + static_cast<int>(p.seeds.size()) - 1}, {"of", p.series}};
+    if (p.series > 0 && !p.places.empty()) {
+        out["series"] = {{"first", p.places.front()}, {"last", p.places.back()}, {"of", p.series}};
+        if (const std::vector<int> missing = p.missing(); !missing.empty()) out["series"]["missing"] = missing;
+    }
     for (const auto& [what, said] : p.instrument_details) out["instrument_details"][what] = said;
     return out;
 }
 
 std::string metrics_json(const ReportInputs& in) {
     const Metrics& m = in.metrics;
+    Json provenance = provenance_json(in.provenance);
+    provenance["experiment"] = experiment_json(in);
     const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
         {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels}, {"runs", list(m.runs, run_json)},
         {"bands", list(m.bands, band_json)}, {"ladders", list(m.ladders, ladder_json)},
         {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
         {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
-        {"evidence", evidence_json(in.evidence)}, {"provenance", provenance_json(in.provenance)}};
+        {"evidence", evidence_json(in.evidence)}, {"provenance", std::move(provenance)}};
     return text(out);
 }
 

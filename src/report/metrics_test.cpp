@@ -4,8 +4,10 @@
 #include <fstream>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/errors.h"
 #include "pages/json_number.h"
 #include "report/sample_test.h"
 #include "report/wellformed_test.h"
@@ -35,6 +37,39 @@ TEST(MetricsJson, ReadsBackEveryNumberExactly) {
     EXPECT_EQ(json["runs"][3]["n"], 64);
     EXPECT_EQ(json["films"]["phong n=64 s=32"], "0123456789abcdef");
     EXPECT_EQ(json["provenance"]["command"], "crescent run a.toml --seeds 3");
+}
+
+TEST(MetricsJson, IsReadBackToTheSameBytes) {
+    Sample s;
+    s.experiment = parse(
+        "seeds = 3\nseed = 7\n[image]\nwidth = 8\nheight = 8\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\nvfov_deg "
+        "= 40\n[shapes.ball]\nkind = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nrho_d = [0.5, 0.5, 0.5]\n[fill]\n"
+        "radiance = [1, 1, 1]\n[arms.cosine]\nn = 4\n",
+        "a.toml", {"ball.radius=0.9"});
+    s.experiment.figures.emplace();
+    s.experiment.figures->source = "elsewhere", s.experiment.figures->seed = 7;
+    s.experiment.figures->runs[{"cosine", 4, 1, "rmse.H"}] = 0.1 + 0.2;
+    s.provenance.experiment_text = canonical_text(s.experiment);
+    s.provenance.experiment_hash = fmt::format("{:016x}", hash(s.experiment));
+    s.provenance.places = {1, 2, 3}, s.provenance.series = 3;
+    s.metrics.runs[0].largest = inf, s.metrics.runs[0].y_mean = 5e-324, s.metrics.runs[1].bad = ~std::uint64_t{0};
+    s.region("cosine", "H", 7).rmse = nan, s.region("cosine", "H", 7).var = -0.0;
+    const std::string text = metrics_json(s.inputs());
+    MetricsFile read = read_metrics(text, "part/metrics.json");
+    read.metrics.bands = s.metrics.bands, read.metrics.ladders = s.metrics.ladders;
+    EXPECT_EQ(metrics_json({read.experiment, read.metrics, read.evidence, read.provenance, s.plates}), text);
+    keep("with-its-experiment", nlohmann::json::parse(text), true);
+
+    auto changed = nlohmann::json::parse(text);
+    changed["provenance"]["experiment"]["text"] = s.provenance.experiment_text + "[arms.phong]\nn = 4\n";
+    EXPECT_THROW((void)read_metrics(changed.dump(), "a"), InputError) << "another text than its hash says";
+    for (const char* part : {"runs", "evidence", "provenance", "films"}) {
+        auto lacking = nlohmann::json::parse(text);
+        lacking.erase(part);
+        EXPECT_THROW((void)read_metrics(lacking.dump(), "a"), InputError) << part;
+    }
+    EXPECT_THROW((void)read_metrics("{\"format\": \"another\"}", "a"), InputError);
+    EXPECT_THROW((void)read_metrics("title = 'TOML'", "a"), InputError);
 }
 
 TEST(MetricsJson, NotANumberAndInfinityAreWordsNeverNull) {

@@ -15,10 +15,17 @@ namespace crescent::inline report {
 struct Provenance {
     std::string version, commit, compiler, experiment_file, experiment_hash, instrument, command;
     std::vector<std::uint32_t> seeds;
-    int first_of_series = 1, series = 0;  // the place of the first of them in the experiment's series, and its length
+    std::vector<int> places;  // of these seeds in the experiment's series, from 1
+    int series = 0;           // how many seeds the series has
     std::vector<std::pair<std::string, std::string>>
-        instrument_details{};  // what a driver says of itself; none: the CPU
+        instrument_details{};       // what a driver says of itself; none: the CPU
+    std::string experiment_text{};  // canonical_text() of the experiment with all of its seeds
+
+    /// The places of the series that are not among `places`.
+    std::vector<int> missing() const;
 };
+/// {1, 2, 3, 7} -> "1 to 3, 7".
+std::string ranges_text(const std::vector<int>& ascending);
 
 /// What varies from run to run; stands apart in timing.json.
 struct ArmTiming {
@@ -59,6 +66,16 @@ struct ReportInputs {
 
 /// The files of a report, as bytes: the same inputs give the same ones.
 std::string metrics_json(const ReportInputs& in);
+/// What a metrics.json holds, every number as it was: metrics_json() of it gives the same bytes where bands, ladders
+/// and assertions, which follow from the rest, are computed from it.
+struct MetricsFile {
+    Experiment experiment;  // with the seed and the number of seeds of this file
+    Metrics metrics;
+    Evidence evidence;
+    Provenance provenance;
+};
+/// Throws InputError, with `name` for the file, where the text is something else or was changed.
+MetricsFile read_metrics(const std::string& text, const std::string& name);
 std::string metrics_csv(const ReportInputs& in);
 std::string junit_xml(const ReportInputs& in);
 std::string report_html(const ReportInputs& in);

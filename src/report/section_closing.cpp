@@ -160,7 +160,7 @@ std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
 }
 
 std::string result_of(const AssertionResult& a) {
-    if (!a.skipped.empty()) return "not judged: " + escape(a.skipped);
+    if (!a.skipped.empty()) return "skipped: " + escape(a.skipped);
     if (a.failed()) return "<b class=\"bad\">FAILED</b>";
     return a.cannot_fail ? "holds<small>whatever the run measures</small>" : "holds";
 }
@@ -220,6 +220,8 @@ PageSection provenance(Page& page) {
     add("Instrument", escape(p.instrument));
     for (const auto& [what, said] : p.instrument_details) table.row({html::heading(escape(what)), words(escape(said))});
     add("Seeds", seeds_text(p.seeds));
+    if (const std::vector<int> missing = p.missing(); !missing.empty())
+        add("A part of the series", fmt::format("seeds {} of {}", ranges_text(p.places), p.series));
     html::Table films("Hashes (XXH3-64) of the float films at the first seed; equal films have equal hashes",
         {words("Film"), words("Hash")});
     for (const auto& [name, hash] : page.in.metrics.film_hashes)

@@ -1,6 +1,7 @@
 // What a run says on the terminal, at most 80 columns: whether all held, the headline figures (published, measured at
 // the published seed, median and 5-95 % over seeds), the hashes of the films, bad samples, speed, where to look.
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -32,10 +33,21 @@ std::string failures_line(const std::vector<const AssertionResult*>& failed, std
     return clip(head + failed.front()->name, columns - more.size()) + more;
 }
 
+/// How many were skipped, a line for each reason.
+std::string skipped_lines(const std::vector<AssertionResult>& all) {
+    std::map<std::string, std::uint64_t> reasons;
+    for (const AssertionResult& a : all)
+        if (!a.skipped.empty()) ++reasons[a.skipped];
+    std::string out;
+    for (const auto& [why, count] : reasons) out += fmt::format("{} skipped: {}\n", plural(count, "assertion"), why);
+    return out;
+}
+
 std::string verdict(const std::vector<AssertionResult>& given, const Paint& paint) {
     std::vector<AssertionResult> all;
     std::ranges::copy_if(given, std::back_inserter(all), [](const AssertionResult& a) { return a.skipped.empty(); });
-    if (all.empty()) return "no assertions in this experiment\n";
+    if (given.empty()) return "no assertions in this experiment\n";
+    if (all.empty()) return "no assertion was evaluated\n";
     std::vector<const AssertionResult*> failed;
     for (const AssertionResult& a : all)
         if (a.failed()) failed.push_back(&a);
@@ -113,6 +125,7 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
 }
 
 std::string speed(const Timing& t) {
+    if (t.threads == 0) return {};  // nothing was computed: runs were joined
     std::uint64_t samples = 0;
     double seconds = 0;
     for (const ArmTiming& arm : t.arms) {
@@ -143,7 +156,11 @@ std::string where(const ReportInputs& in, const std::string& out_dir, const Outp
 std::string terminal_summary(
     const ReportInputs& in, const Timing& timing, const std::string& out_dir, const OutputParts& parts, bool colour) {
     const Paint paint{colour};
-    std::string out = verdict(in.metrics.assertions, paint) + table(in, paint) + films(hashes_shown(in), paint);
+    std::string out = verdict(in.metrics.assertions, paint) + skipped_lines(in.metrics.assertions);
+    if (const std::vector<int> missing = in.provenance.missing(); !missing.empty())
+        out += fmt::format("seeds {} of {}: a part of the series; missing: {}\n", ranges_text(in.provenance.places),
+            in.provenance.series, ranges_text(missing));
+    out += table(in, paint) + films(hashes_shown(in), paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format(
             "\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));

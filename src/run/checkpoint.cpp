@@ -1,5 +1,6 @@
 // The run's folder is named by the XXH3-64 of its key: version, commit, the files of program and library, the
-// experiment's hash, the instrument, the plugins. Meters are CBOR records of a Journal, tiles a file for each pass.
+// experiment's hash, the instrument and the seeds, the plugins. Meters are CBOR records of a Journal, tiles a file for
+// each pass.
 #include "run/checkpoint.h"
 
 #include <dlfcn.h>
@@ -61,9 +62,9 @@ bool are_of(const Experiment& experiment, const std::vector<RegionMeter>& meters
         [](const RegionMeter& m, const Region& region) { return m.region == region.name; });
 }
 
-std::string key_of(const Experiment& experiment, const std::string& instrument) {
+std::string key_of(const Experiment& experiment, const std::string& work) {
     return fmt::format(
-        "{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), instrument, marks_of(experiment));
+        "{} {} {} {:016x} {}{}", version(), commit(), build_mark(), hash(experiment), work, marks_of(experiment));
 }
 
 /// A folder of the run's own: a link that stands there leads elsewhere, and nothing is kept.
@@ -79,10 +80,10 @@ bool holds_files(const std::string& folder) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
+Checkpoint::Checkpoint(const Experiment& experiment, const std::string& work, const std::string& out,
     double checkpoint_after_s, ProgressMonitor& monitor)
     : all_(out + "/.crescent-kept"),
-      key_(key_of(experiment, instrument)),
+      key_(key_of(experiment, work)),
       folder_(fmt::format("{}/{:016x}", all_, XXH3_64bits(key_.data(), key_.size()))),
       checkpoint_after_s_(checkpoint_after_s),
       monitor_(monitor),

@@ -17,10 +17,11 @@ namespace crescent::inline runs {
 
 class Checkpoint {
 public:
-    /// Outputs go to `out`; nothing is kept before `checkpoint_after_s` seconds; `instrument` as provenance names it.
+    /// Outputs go to `out`; nothing is kept before `checkpoint_after_s` seconds. `work`: what the results depend on
+    /// beside the experiment and the build, as the instrument and the seeds.
     /// Says so where there is something to go on from.
-    Checkpoint(const Experiment& experiment, const std::string& instrument, const std::string& out,
-        double checkpoint_after_s, ProgressMonitor& monitor);
+    Checkpoint(const Experiment& experiment, const std::string& work, const std::string& out, double checkpoint_after_s,
+        ProgressMonitor& monitor);
     /// Where the run ends before discard(): says what is kept.
     ~Checkpoint();
     Checkpoint(const Checkpoint&) = delete;

@@ -50,11 +50,11 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
     }
 }
 
-/// The tail index of each region's samples at the first seed. It belongs to an arm and exponent, not to N, and stands
-/// beside every rung.
+/// The tail index of each region's samples, of the stream of the experiment's own seed whichever part of its series
+/// this is. It belongs to an arm and exponent, not to N: it is given with every rung of the first seed.
 void add_tails(
     const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& monitor, Metrics& metrics) {
-    const std::vector<Job> jobs = jobs_of(plan.experiment, plan.seeds.front());
+    const std::vector<Job> jobs = jobs_of(plan.whole, plan.whole.seed);
     const std::vector<Region>& regions = plan.experiment.regions;
     std::vector<std::optional<Tail>> tails(jobs.size() * regions.size());
     parallel_for(std::size_t{0}, tails.size(), [&](std::size_t k) {
@@ -64,7 +64,7 @@ void add_tails(
     for (std::size_t k = 0; k < tails.size(); ++k) {
         const Job& job = jobs[k / regions.size()];
         for (RunMeter& run : metrics.runs)
-            if (run.key.seed == job.seed && run.key.arm == job.arm && run.key.s == job.s)
+            if (run.key.seed == plan.seeds.front() && run.key.arm == job.arm && run.key.s == job.s)
                 run.regions[k % regions.size()].tail = tails[k];
     }
 }
@@ -81,14 +81,9 @@ void add_hashes(Measured& out) {
     for (std::size_t k = 0; k < all.size(); ++k) out.metrics.film_hashes[all[k].first] = hashes[k];
 }
 
-void add_summaries(Measured& out) {
-    add_hashes(out);
+void add_references_compared(Measured& out) {
     const Experiment& experiment = out.experiment;
     Metrics& metrics = out.metrics;
-    const Published* published = figures_of(experiment);
-    metrics.bands = bands(experiment, metrics.runs, published);
-    metrics.published_seed = published ? published->seed : std::nullopt;
-    metrics.ladders = ladders(experiment, metrics.runs);
     for (std::size_t e = 0; e < out.quadrature.size(); ++e)
         for (const Region& region : experiment.regions)
             metrics.references.push_back(compare(out.quadrature[e],
@@ -119,6 +114,16 @@ std::optional<Tail> region_tail(
     return region_tail(scene, ArmInUse{job.sampler, job.outside.get()}, job.seed, box, isa, monitor);
 }
 
+void add_spreads(Measured& out) {
+    const Experiment& experiment = out.experiment;
+    Metrics& metrics = out.metrics;
+    const Published* published = figures_of(experiment);
+    metrics.bands = bands(experiment, metrics.runs, published);
+    metrics.published_seed = published ? published->seed : std::nullopt;
+    metrics.ladders = ladders(experiment, metrics.runs);
+    metrics.assertions = judge(experiment, metrics, {}, false);
+}
+
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command) {
     Provenance p;
     p.version = version();
@@ -129,7 +134,9 @@ Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, cons
     p.instrument = instrument.name(), p.instrument_details = instrument.details();
     p.command = command.empty() ? "crescent run " + plan.experiment.file : command;
     p.seeds = plan.seeds;
-    p.first_of_series = plan.range.first, p.series = plan.series;
+    for (int place = plan.range.first; place <= plan.range.last; ++place) p.places.push_back(place);
+    p.series = plan.whole.seeds;
+    p.experiment_text = canonical_text(plan.whole);
     return p;
 }
 
@@ -151,16 +158,20 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         stage("tails, furnaces and evidence", [&] {  // none of them waits for another
             side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
                 [&] {
-                    out.evidence = measure_evidence(plan.experiment, with.isa, monitor);
+                    out.evidence = measure_evidence(plan.whole, with.isa, monitor);
                     out.metrics.furnaces =
-                        furnaces(plan.experiment, figures_of(out.experiment), with.isa, monitor, prepared.outside);
+                        furnaces(plan.whole, figures_of(out.experiment), with.isa, monitor, prepared.outside);
                 });
         });
     }
     add_view(prepared, out);
-    stage("meters", [&] { add_summaries(out); });
+    out.metrics.series = seeds_of(plan.whole);
+    stage("meters", [&] {
+        add_hashes(out);
+        add_references_compared(out);
+        add_spreads(out);
+    });
     out.provenance = provenance_of(plan, *with.instrument, options.command);
-    out.metrics.assertions = judge(out.experiment, out.metrics, {}, false);
     for (AssertionResult& a : with.instrument->assertions()) out.metrics.assertions.push_back(std::move(a));
     return out;
 }

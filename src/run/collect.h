@@ -47,6 +47,9 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
 std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor);
 
+/// What follows from the meters of all seeds: bands, ladders, and the assertions that need no plate.
+void add_spreads(Measured& measured);
+
 /// What made the outputs of a plan: its experiment, seeds, version, instrument and command.
 Provenance provenance_of(const RunPlan& plan, const Instrument& instrument, const std::string& command);
 

@@ -111,7 +111,7 @@ void add_references(
         const ReferencePlan& asked = plan.experiment.reference;
         if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
         monitor.begin("the note's reference", pixels);
-        prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.experiment, with.isa, monitor, note.get());
+        prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor, note.get());
     });
 }
 

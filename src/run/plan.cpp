@@ -35,9 +35,8 @@ std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
 
 RunPlan plan(const Experiment& experiment, SeedRange range) {
     RunPlan out;
-    out.experiment = with_figures(experiment);
-    out.hash = hash(out.experiment);
-    out.series = experiment.seeds;
+    out.whole = out.experiment = with_figures(experiment);
+    out.hash = hash(out.whole);
     if (range.last == 0) range.last = experiment.seeds;
     if (range.first < 1 || range.first > range.last || range.last > experiment.seeds)
         throw InputError({"--seed-range", 0, 0},

@@ -27,11 +27,12 @@ struct SeedRange {
 };
 
 struct RunPlan {
-    /// As it was given, with its published figures; its seed is the first of this plan's, `seeds` how many there are.
+    /// As it was given, with its published figures. What does not depend on the seeds of this plan is measured of it.
+    Experiment whole;
+    /// The same; its seed is the first of this plan's, `seeds` how many there are.
     Experiment experiment;
-    std::uint64_t hash = 0;            // of the experiment as it was given
+    std::uint64_t hash = 0;            // of the whole
     SeedRange range;                   // last is never 0 here
-    int series = 0;                    // how many seeds the whole series has
     std::vector<std::uint32_t> seeds;  // no two alike; films of the first are kept, of the others meters alone
     std::vector<double> exponents;     // every s that a job has: a reference is needed for each
     std::vector<Job> jobs;             // seed by seed

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 
 #include "base/files.h"
@@ -41,7 +42,7 @@ std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared
     for (std::size_t k = 0, seed = 0; k < plan.jobs.size(); ++k) {
         const Job& job = plan.jobs[k];
         if (k == 0 || job.seed != plan.jobs[k - 1].seed)
-            monitor.begin(fmt::format("seed {} of {}", plan.range.first + static_cast<int>(seed++), plan.series),
+            monitor.begin(fmt::format("seed {} of {}", plan.range.first + static_cast<int>(seed++), plan.whole.seeds),
                 samples_of(plan, job.seed, prepared.geometry_pixels));
         results.push_back(execute(plan, prepared, job, engine, monitor, job.seed == plan.seeds.front(), checkpoint));
         monitor.check();
@@ -67,21 +68,27 @@ Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, 
     return out;
 }
 
+/// What is kept is of one instrument, one experiment and one part of its seeds.
+std::string checkpoint_key(const RunPlan& plan, const Engine& engine) {
+    return fmt::format("{} {:016x} {}:{}", engine.instrument->name(), plan.hash, plan.range.first, plan.range.last);
+}
+
 Engine engine_of(const RunOptions& options) { return settled({options.threads, options.isa, options.instrument}); }
 
 }  // namespace
 
 RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
     const Stopwatch start;
+    const std::string out = std::filesystem::absolute(options.out).string();  // a sampler may change the current folder
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
     if (options.parts.draws()) check_font(plan.experiment);
     Prepared prepared = look(plan, engine);
-    Staging staging(options.out);
+    Staging staging(out);
     staging.expect(outputs_of(plan, options.parts));
     std::optional<Checkpoint> checkpoint;  // what a program drew yesterday it may not draw today
     if (!may_change(plan.experiment))
-        checkpoint.emplace(plan.experiment, engine.instrument->name(), options.out, options.keep_after_s, monitor);
+        checkpoint.emplace(plan.experiment, checkpoint_key(plan, engine), out, options.keep_after_s, monitor);
     Measured all = measured(plan, std::move(prepared), engine, options, monitor, checkpoint ? &*checkpoint : nullptr);
     all.timing.total_s = start.seconds();
     on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, monitor, options.parts); });

@@ -83,18 +83,17 @@ bool may_be_missed(const ShadingPoints& sites, std::size_t i, std::size_t k, dou
 class MonteCarloPixels {
 public:
     MonteCarloPixels(const Scene& scene, const Experiment& experiment, const ShadingPoints& sites,
-        const std::string& isa, ProgressMonitor& monitor)
+        const std::vector<std::uint32_t>& seeds, const std::string& isa, ProgressMonitor& monitor)
         : scene_(scene), sites_(sites) {
         const ReferencePlan& plan = experiment.reference;
-        const auto seed = [&](std::uint32_t k) { return reference_seed(experiment, k); };
         if (sites.lobe >= 0)
             lobe_ = estimate_sites(only_lobe(sites), lobe_info(static_cast<LobeKind>(sites.lobe)).own_arm,
-                plan.lobe_spp, seed(0), isa, &monitor.stop);
+                plan.lobe_spp, seeds[0], isa, &monitor.stop);
         lobe_n_ = static_cast<double>(plan.lobe_spp);
         light_n_ = static_cast<double>(plan.disk_spp);
         for (std::size_t k = 0; k < scene.lights().size(); ++k)
-            lights_.push_back(estimate_sites(only_light(scene, sites, k), "light-area", plan.disk_spp,
-                seed(static_cast<std::uint32_t>(k + 1)), isa, &monitor.stop));
+            lights_.push_back(estimate_sites(
+                only_light(scene, sites, k), "light-area", plan.disk_spp, seeds[k + 1], isa, &monitor.stop));
     }
 
     void write(std::size_t i, ReferenceFilm& film) const {
@@ -134,9 +133,10 @@ private:
 
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     constexpr std::uint32_t salt = 0x4ef1ce;
+    constexpr std::uint32_t longest_series = 4096;  // the most that an experiment's `seeds` can be
     const auto drawn_from = [&](std::uint32_t seed) {
-        for (int a = 0; a < experiment.seeds; ++a)
-            if (seed_of(experiment.seed, static_cast<std::uint32_t>(a)) == seed) return true;
+        for (std::uint32_t a = 0; a < longest_series; ++a)
+            if (seed_of(experiment.seed, a) == seed) return true;
         return false;
     };
     std::uint32_t seed = pcg4d(Vec4u<std::uint32_t>{experiment.reference.seed, k, salt, 0u}).x;
@@ -148,6 +148,9 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
     const std::string& isa, ProgressMonitor& monitor, TileCheckpoint* checkpoint) {
     std::vector<double> exponents;
     for (const TiledScene& view : views) exponents.push_back(view.scene().s());
+    std::vector<std::uint32_t> seeds;  // of the lobe, then of each light
+    for (std::size_t k = 0; k <= views.at(0).scene().lights().size(); ++k)
+        seeds.push_back(reference_seed(experiment, static_cast<std::uint32_t>(k)));
     return by_tiles(experiment.image, exponents, monitor, checkpoint,
         [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
             for (std::size_t e = 0; e < views.size(); ++e) {
@@ -157,7 +160,7 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
                         for (std::size_t i = 0; i < sites.count; ++i) copy_pixel(films[0], films[e], sites.pixel[i]);
                         continue;
                     }
-                    const MonteCarloPixels pixels(views[e].scene(), experiment, sites, isa, monitor);
+                    const MonteCarloPixels pixels(views[e].scene(), experiment, sites, seeds, isa, monitor);
                     for (std::size_t i = 0; i < sites.count; ++i) pixels.write(i, films[e]);
                 }
             }

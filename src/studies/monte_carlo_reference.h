@@ -15,7 +15,8 @@
 
 namespace crescent::inline studies {
 
-/// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from.
+/// Seed k of the note's reference: hashed from its own, and none of those that the experiment's arms draw from, however
+/// many seeds are run.
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k);
 
 /// One film a view, which are the same but for their exponents, see views_at. `experiment`: whose reference it is; says

@@ -1,0 +1,173 @@
+// metrics.json -> what it was written from. Doubles are written in the shortest form that reads back the same, so every
+// number is the one that was measured. The experiment is in the provenance as text; its hash shows that it is whole.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "experiment/published.h"
+#include "pages/json_number.h"
+#include "report/report.h"
+
+namespace crescent::inline report {
+namespace {
+
+/// What number() wrote.
+double number_of(const Json& json) {
+    if (!json.is_string()) return json.get<double>();
+    for (const double x : {HUGE_VAL, -HUGE_VAL, std::nan("")})
+        if (json == number(x)) return x;
+    throw Json::type_error::create(302, "expected a number, \"nan\", \"inf\" or \"-inf\"", &json);
+}
+
+std::optional<double> optional_of(const Json& json) {
+    return json.is_null() ? std::nullopt : std::optional(number_of(json));
+}
+
+void read(const Json& json, double& to) { to = number_of(json); }
+void read(const Json& json, std::uint64_t& to) { to = json.get<std::uint64_t>(); }
+
+std::optional<Tail> tail_of(const Json& json) {
+    if (!json.contains("tail")) return {};
+    const Json& tail = json.at("tail");
+    return Tail{number_of(tail.at("k")), number_of(tail.at("se")), tail.at("exceedances").get<std::uint64_t>()};
+}
+
+template <class T, class F> std::vector<T> list_of(const Json& json, F one) {
+    std::vector<T> out;
+    for (const Json& item : json) out.push_back(one(item));
+    return out;
+}
+
+RunMeter run_of(const Json& json) {
+    RunMeter run;
+    run.key = {json.at("arm").get<std::string>(), json.at("n").get<std::uint64_t>(), number_of(json.at("s")),
+        json.at("seed").get<std::uint32_t>()};
+#define CRESCENT_READ(name, Type) read(json.at(#name), to.name);
+    const auto frame = [&](RunMeter& to) { CRESCENT_FRAME_METERS(CRESCENT_READ) };
+    frame(run);
+    for (const auto& [name, region] : json.at("regions").items()) {
+        RegionMeter m;
+        m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
+        const auto meters = [](const Json& json, RegionMeter& to) { CRESCENT_REGION_METERS(CRESCENT_READ) };
+        meters(region, m);
+        run.regions.push_back(std::move(m));
+    }
+#undef CRESCENT_READ
+    return run;
+}
+
+FurnaceMeter furnace_of(const Json& json) {
+    FurnaceMeter out;
+    out.name = json.at("name").get<std::string>(), out.arm = json.at("arm").get<std::string>();
+    out.part = json.at("part").get<std::string>(), out.n = json.at("n").get<std::uint64_t>();
+    out.measured = number_of(json.at("measured")), out.expected = number_of(json.at("expected"));
+    out.tail = tail_of(json);
+    if (!out.tail || !out.tail->heavy()) out.se = number_of(json.at("se"));
+    out.bad = json.at("bad").get<std::uint64_t>(), out.published = optional_of(json.at("published"));
+    return out;
+}
+
+ReferenceMeter reference_of(const Json& json) {
+    return {number_of(json.at("s")), json.at("region").get<std::string>(), optional_of(json.at("rms_difference")),
+        optional_of(json.at("rms_standard_error")), number_of(json.at("quadrature_error")),
+        optional_of(json.at("rmse_unlike")), number_of(json.at("error_share"))};
+}
+
+AssertionResult assertion_of(const Json& json) {
+    AssertionResult out;
+    out.name = json.at("name").get<std::string>(), out.pass = json.at("pass").get<bool>();
+    out.measured = number_of(json.at("measured")), out.bound = number_of(json.at("bound"));
+    out.op = json.at("op").get<std::string>(), out.text = json.at("text").get<std::string>();
+    out.cannot_fail = json.value("cannot_fail", false), out.skipped = json.value("skipped", "");
+    return out;
+}
+
+Evidence evidence_of(const Json& json) {
+    Evidence e;
+    e.s = number_of(json.at("s")), e.rho_d = number_of(json.at("rho_d")), e.rho_s = number_of(json.at("rho_s"));
+    e.expected = number_of(json.at("expected")), e.alpha = number_of(json.at("alpha"));
+    e.furnace = list_of<FurnaceQuantiles>(json.at("furnace"), [](const Json& q) {
+        return FurnaceQuantiles{q.at("arithmetic").get<std::string>(), q.at("u_bits").get<int>(),
+            q.at("n").get<std::uint64_t>(), number_of(q.at("q05")), number_of(q.at("q25")), number_of(q.at("median")),
+            number_of(q.at("q75")), number_of(q.at("q95"))};
+    });
+    e.caps = list_of<FurnaceCap>(
+        json.at("caps"), [](const Json& c) { return FurnaceCap{c.at("u_bits").get<int>(), number_of(c.at("y"))}; });
+    e.lost = list_of<LostSupport>(json.at("lost"), [](const Json& l) {
+        return LostSupport{number_of(l.at("theta_R_deg")), number_of(l.at("measured")), number_of(l.at("se")),
+            number_of(l.at("theory"))};
+    });
+    e.rejections = list_of<FalseRejection>(json.at("rejections"), [](const Json& r) {
+        return FalseRejection{number_of(r.at("s")), number_of(r.at("k")), r.at("n").get<std::uint64_t>(),
+            r.at("runs").get<int>(), r.at("rejected").get<int>(), number_of(r.at("low")), number_of(r.at("high"))};
+    });
+    return e;
+}
+
+Provenance provenance_of(const Json& json) {
+    Provenance p;
+    p.version = json.at("version").get<std::string>(), p.commit = json.at("commit").get<std::string>();
+    p.compiler = json.at("compiler").get<std::string>(), p.instrument = json.at("instrument").get<std::string>();
+    p.command = json.at("command").get<std::string>();
+    const Json& experiment = json.at("experiment");
+    p.experiment_file = experiment.at("file").get<std::string>();
+    p.experiment_hash = experiment.at("hash").get<std::string>();
+    p.experiment_text = experiment.at("text").get<std::string>();
+    p.seeds = json.at("seeds").get<std::vector<std::uint32_t>>();
+    p.series = json.at("series").at("of").get<int>();
+    const auto missing = json.at("series").value("missing", std::vector<int>{});
+    for (int place = 1; place <= p.series; ++place)
+        if (std::ranges::find(missing, place) == missing.end()) p.places.push_back(place);
+    if (json.contains("instrument_details"))
+        for (const auto& [what, said] : json.at("instrument_details").items())
+            p.instrument_details.emplace_back(what, said.get<std::string>());
+    return p;
+}
+
+Experiment experiment_of(const Provenance& p, const Json& json, const std::string& name) {
+    Experiment e = parse(p.experiment_text, std::filesystem::path(name).filename().string());
+    e.file = p.experiment_file;
+    e.overrides = json.value("set", std::vector<std::string>{});
+    if (json.contains("published")) e.figures = parse_published(json.at("published").dump(), name);
+    if (fmt::format("{:016x}", hash(e)) != p.experiment_hash)
+        throw InputError({name, 0, 0},
+            "the experiment in it does not have the hash that is stated beside it; expected the file as it was "
+            "written, by this version of crescent");
+    e.seed = p.seeds.at(0), e.seeds = static_cast<int>(p.seeds.size());
+    return e;
+}
+
+MetricsFile file_of(const Json& json, const std::string& name) {
+    if (json.at("format") != "crescent metrics 1")
+        throw InputError({name, 0, 0}, "expected the format 'crescent metrics 1'");
+    MetricsFile out;
+    out.provenance = provenance_of(json.at("provenance"));
+    out.experiment = experiment_of(out.provenance, json.at("provenance").at("experiment"), name);
+    Metrics& m = out.metrics;
+    m.runs = list_of<RunMeter>(json.at("runs"), run_of);
+    m.furnaces = list_of<FurnaceMeter>(json.at("furnace"), furnace_of);
+    m.references = list_of<ReferenceMeter>(json.at("references"), reference_of);
+    m.assertions = list_of<AssertionResult>(json.at("assertions"), assertion_of);
+    m.shape_pixels = json.at("shape_pixels").get<std::map<std::string, std::uint64_t>>();
+    m.film_hashes = json.at("films").get<std::map<std::string, std::string>>();
+    m.geometry_pixels = json.at("geometry_pixels").get<std::uint64_t>();
+    out.evidence = evidence_of(json.at("evidence"));
+    return out;
+}
+
+}  // namespace
+
+MetricsFile read_metrics(const std::string& text, const std::string& name) {
+    try {
+        return file_of(Json::parse(text), name);
+    } catch (const Json::exception& error) {
+        throw InputError({name, 0, 0}, fmt::format("expected the metrics.json of a run: {}", error.what()));
+    } catch (const std::out_of_range&) {
+        throw InputError({name, 0, 0}, "expected the metrics.json of a run: it has no seeds");
+    }
+}
+
+}  // namespace crescent::inline report

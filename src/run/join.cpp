@@ -1,0 +1,248 @@
+// What does not depend on the seed must agree in all parts, and rows of one seed wherever two parts have it. Film
+// hashes, and what compares references by films, are of a run's first seed: they are those of the part that begins
+// with it. Tails are of the experiment's own seed in every part and are given with the first seed.
+#include "run/join.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "base/errors.h"
+#include "base/files.h"
+#include "experiment/experiment.h"
+#include "pages/json_number.h"
+#include "run/plan.h"
+
+namespace crescent::inline runs {
+
+namespace {
+
+struct Part {
+    std::string name;
+    Json json;
+    MetricsFile file;
+};
+
+std::string text_of(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!in || text.empty())
+        throw InputError({path, 0, 0}, "expected the metrics.json of a run, or the folder of one, that can be read");
+    return text;
+}
+
+Part read_part(const std::string& given) {
+    std::error_code ignored;
+    const bool folder = std::filesystem::is_directory(given, ignored);
+    const std::string path = folder ? (std::filesystem::path(given) / "metrics.json").string() : given;
+    const std::string text = text_of(path);
+    MetricsFile file = read_metrics(text, path);
+    return {path, Json::parse(text), std::move(file)};
+}
+
+/// "section.key" -> value, of an experiment's canonical text.
+std::map<std::string, std::string> values_in(const std::string& text) {
+    std::map<std::string, std::string> out;
+    std::string section;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string line = text.substr(begin, end - begin);
+        const std::size_t equals = line.find(" = ");
+        if (line.starts_with('[')) section = line.substr(1, line.size() - 2) + ".";
+        else if (equals != std::string::npos) out[section + line.substr(0, equals)] = line.substr(equals + 3);
+        begin = end + 1;
+    }
+    return out;
+}
+
+/// Where two experiments differ: "; ball.s is 32 there and 64 here".
+std::string difference(const std::string& there, const std::string& here) {
+    const auto a = values_in(there), b = values_in(here);
+    std::set<std::string> keys;
+    for (const auto& all : {a, b})
+        for (const auto& [key, value] : all) keys.insert(key);
+    const auto said = [](const auto& in, const std::string& key) {
+        const auto at = in.find(key);
+        return at == in.end() ? "not given" : at->second.substr(0, 60);
+    };
+    for (const std::string& key : keys)
+        if (key != "seeds" && said(a, key) != said(b, key))
+            return fmt::format("; {} is {} there and {} here", key, said(a, key), said(b, key));
+    return "; the published figures differ";
+}
+
+[[noreturn]] void refuse(const Part& first, const Part& part, const std::string& why) {
+    throw InputError({part.name, 0, 0}, fmt::format("cannot be joined with {}: {}", first.name, why));
+}
+
+void check_same(const Part& first, const Part& part, const std::string& what, const Json& a, const Json& b) {
+    if (a.dump() != b.dump())
+        refuse(first, part, fmt::format("{} differs; expected the same value, bit for bit", what));
+}
+
+/// What references are apart from the films that they were compared by.
+Json of_no_film(Json references) {
+    for (Json& reference : references)
+        for (const char* key : {"rmse_unlike", "error_share"}) reference.erase(key);
+    return references;
+}
+
+/// Hashes of references: their names are those of no run.
+Json reference_hashes(const Part& part) {
+    Json out = part.json.at("films");
+    for (const RunMeter& run : part.file.metrics.runs) out.erase(to_string(run.key));
+    return out;
+}
+
+void check_alike(const Part& first, const Part& part) {
+    const Provenance &a = first.file.provenance, &b = part.file.provenance;
+    if (a.experiment_hash != b.experiment_hash)
+        refuse(first, part,
+            "it is of another experiment" + difference(a.experiment_text, b.experiment_text) +
+                "; expected parts of one experiment");
+    for (const auto& [what, x, y] : {std::tuple("version", a.version, b.version), {"commit", a.commit, b.commit},
+             {"instrument", a.instrument, b.instrument}})
+        if (x != y) refuse(first, part, fmt::format("{} is '{}' there and '{}' here", what, x, y));
+    for (const char* key : {"geometry_pixels", "shape_pixels", "furnace", "evidence"})
+        check_same(first, part, fmt::format("'{}'", key), first.json.at(key), part.json.at(key));
+    check_same(
+        first, part, "the reference", of_no_film(first.json.at("references")), of_no_film(part.json.at("references")));
+    check_same(first, part, "the hash of a reference", reference_hashes(first), reference_hashes(part));
+    if (a.seeds.front() != b.seeds.front()) return;
+    check_same(first, part, "'films'", first.json.at("films"), part.json.at("films"));
+    check_same(first, part, "'references'", first.json.at("references"), part.json.at("references"));
+}
+
+using TailKey = std::tuple<std::string, double, std::string>;  // arm, s, region
+
+/// Runs of all parts by their seed, tails apart.
+class Rows {
+public:
+    void add(const Part& part) {
+        const Json& rows = part.json.at("runs");
+        std::set<std::uint32_t> fresh;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            RunMeter run = part.file.metrics.runs[k];
+            Json row = rows[k];
+            for (RegionMeter& region : run.regions) {
+                Json& at = row.at("regions").at(region.region);
+                if (region.tail) add_tail(part, run, region, at);
+                at.erase("tail"), region.tail.reset();
+            }
+            const auto [known, is_new] =
+                text_.try_emplace({run.key.arm, run.key.n, run.key.s, run.key.seed}, std::pair(row.dump(), part.name));
+            if (!is_new && known->second.first != row.dump())
+                throw InputError({part.name, 0, 0},
+                    fmt::format("cannot be joined with {}: {} at seed {} differs; expected the same numbers, bit for "
+                                "bit",
+                        known->second.second, to_string(run.key), run.key.seed));
+            if (is_new) by_seed_[run.key.seed].push_back(std::move(run));
+        }
+    }
+
+    const std::vector<RunMeter>* of(std::uint32_t seed) const {
+        const auto at = by_seed_.find(seed);
+        return at == by_seed_.end() ? nullptr : &at->second;
+    }
+
+    void give_tails(RunMeter& run) const {
+        for (RegionMeter& region : run.regions)
+            if (const auto at = tails_.find({run.key.arm, run.key.s, region.region}); at != tails_.end())
+                region.tail = at->second.tail;
+    }
+
+private:
+    struct KnownTail {
+        std::optional<Tail> tail;
+        std::string text;
+    };
+
+    void add_tail(const Part& part, const RunMeter& run, const RegionMeter& region, const Json& at) {
+        const std::string text = at.at("tail").dump();
+        const auto [known, is_new] =
+            tails_.try_emplace({run.key.arm, run.key.s, region.region}, KnownTail{region.tail, text});
+        if (!is_new && known->second.text != text)
+            throw InputError({part.name, 0, 0},
+                fmt::format("cannot be joined: the tail of {} in {} differs from that of a part before; expected the "
+                            "same, bit for bit",
+                    run.key.arm, region.region));
+    }
+
+    std::map<std::tuple<std::string, std::uint64_t, double, std::uint32_t>, std::pair<std::string, std::string>> text_;
+    std::map<std::uint32_t, std::vector<RunMeter>> by_seed_;
+    std::map<TailKey, KnownTail> tails_;
+};
+
+/// Claims of the instrument, which follow the experiment's own: one that fails in any part fails.
+std::vector<AssertionResult> instrument_claims(const std::vector<Part>& parts) {
+    std::vector<AssertionResult> out;
+    for (const Part& part : parts) {
+        const auto& all = part.file.metrics.assertions;
+        for (std::size_t k = part.file.experiment.assertions.size(); k < all.size(); ++k) {
+            const auto known = std::ranges::find(out, all[k].name, &AssertionResult::name);
+            if (known == out.end()) out.push_back(all[k]);
+            else if (all[k].failed()) *known = all[k];
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Measured join(const std::vector<std::string>& given, const std::string& command) {
+    std::vector<Part> parts;
+    Rows rows;
+    for (const std::string& path : given) {
+        parts.push_back(read_part(path));
+        check_alike(parts.front(), parts.back());
+        rows.add(parts.back());
+    }
+    const auto of_longest_series =
+        std::ranges::max_element(parts, {}, [](const Part& part) { return part.file.provenance.series; });
+    Measured out;
+    out.experiment = of_longest_series->file.experiment;
+    out.provenance = of_longest_series->file.provenance;
+    out.provenance.command = command, out.provenance.seeds.clear(), out.provenance.places.clear();
+    Experiment whole = parse(out.provenance.experiment_text, "experiment");
+    out.metrics.series = seeds_of(whole);
+    for (std::size_t k = 0; k < out.metrics.series.size(); ++k) {
+        const std::vector<RunMeter>* runs = rows.of(out.metrics.series[k]);
+        if (!runs) continue;
+        out.provenance.seeds.push_back(out.metrics.series[k]);
+        out.provenance.places.push_back(static_cast<int>(k) + 1);
+        for (RunMeter run : *runs) {
+            if (out.provenance.seeds.size() == 1) rows.give_tails(run);
+            out.metrics.runs.push_back(std::move(run));
+        }
+    }
+    ensure(!out.provenance.seeds.empty(), "a part has a seed of its own series");
+    out.experiment.seed = out.provenance.seeds.front();
+    out.experiment.seeds = static_cast<int>(out.provenance.seeds.size());
+    const auto begins = std::ranges::find_if(
+        parts, [&](const Part& part) { return part.file.provenance.seeds.front() == out.experiment.seed; });
+    ensure(begins != parts.end(), "the first seed of all is the first of a part");
+    const Metrics& of_first = begins->file.metrics;
+    out.metrics.film_hashes = of_first.film_hashes, out.metrics.references = of_first.references;
+    out.metrics.furnaces = of_first.furnaces, out.metrics.shape_pixels = of_first.shape_pixels;
+    out.metrics.geometry_pixels = of_first.geometry_pixels, out.evidence = begins->file.evidence;
+    add_spreads(out);
+    std::ranges::move(instrument_claims(parts), std::back_inserter(out.metrics.assertions));
+    return out;
+}
+
+void write_metrics(const Measured& m, const std::string& folder, ProgressMonitor& monitor) {
+    const ReportInputs in{m.experiment, m.metrics, m.evidence, m.provenance, m.plates};
+    Staging staging(folder);
+    staging.write("metrics.json", metrics_json(in));
+    staging.write("metrics.csv", metrics_csv(in));
+    staging.write("junit.xml", junit_xml(in));
+    staging.commit(monitor);
+}
+
+}  // namespace crescent::inline runs
