@@ -47,8 +47,8 @@ run 0 3:5 b # with films, plates and report
 run 0 5:7 c --only metrics
 # Without what says where it comes from.
 bare() {
-    /usr/bin/python3 -c 'import json, sys; m = json.load(open(sys.argv[1])); m.pop("provenance"); print(json.dumps(m))' \
-        "$1/metrics.json"
+    /usr/bin/python3 -c 'import json, sys; m = json.load(sys.stdin); m.pop("provenance"); print(json.dumps(m))' \
+        <"$1/metrics.json"
 }
 same() {
     cmp "$1/metrics.csv" "$2/metrics.csv" || die "metrics.csv of $1 and $2 differ"

@@ -196,6 +196,16 @@ bool must_stay(const fs::path& out, const fs::path& by) {
         chmod(by.c_str(), s.st_mode & 07777) != 0;
 }
 
+/// Whether there can be a folder beside `out` from which names can be moved into it.
+bool can_be_beside(const fs::path& out) {
+    struct stat s{}, above{};
+    const fs::path parent = out.parent_path();
+    const bool other_device =
+        stat(out.c_str(), &s) == 0 && stat(parent.c_str(), &above) == 0 && s.st_dev != above.st_dev;
+    return out.has_filename() && out.filename().string().size() < 240 && !is_mounted(out) && !other_device &&
+        access(parent.c_str(), W_OK) == 0;
+}
+
 /// Absolute, links followed as far as there is something.
 fs::path resolved(const fs::path& path) {
     std::error_code error;
@@ -218,26 +228,24 @@ Staging::Staging(const std::string& folder, std::string kind) : shown_(folder), 
     out_ = resolved(out_);
     if (error || (is_there(out_) && !is_folder(out_)))
         fail("cannot make the folder", folder, error ? error.message() : "something else has that name");
-    open_work();
-    if (read_moving(work_).folder != 0) finish();
-    if (read_moving(work_).folder != 0)
-        fail("cannot clear", work_.string(), "it holds earlier outputs, or files that were beside them");
-    for (const char* name : {"new", "scratch", "moving"}) remove_tree(work_ / name);
+    const fs::path inside = out_ / ".crescent-work";
+    if (is_folder(inside)) complete(inside);  // of a run for which OUT was a mount point
+    lock_.reset();
+    complete(can_be_beside(out_) ? out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string()) : inside);
     if (!make_folders(work_ / "new") || !make_folders(work_ / "scratch"))
         fail("cannot write in", folder, std::strerror(errno));
 }
 
-/// Beside OUT where it can be renamed there, else in it.
-void Staging::open_work() {
-    const bool beside = out_.has_filename() && !is_mounted(out_);
-    work_ = out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string());
-    if (!beside || (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST)) {
-        work_ = out_ / ".crescent-work";
-        if (!make_folders(work_)) fail("cannot write in", shown_, std::strerror(errno));
-    }
-    for (int tries = 0; !take_lock(); ++tries)  // its holder removed it in between
-        if (tries > 100 || (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST))
-            fail("cannot write in", shown_, std::strerror(errno));
+/// Takes this work folder, completes what a killed run began there and clears what it left.
+void Staging::complete(const Path& work) {
+    work_ = work;
+    if (work_.parent_path() == out_) make_folders(out_);
+    for (int tries = 0; (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST) || !take_lock(); ++tries)
+        if (!is_folder(work_) || tries > 100) fail("cannot write in", shown_, std::strerror(errno));
+    if (read_moving(work_).folder != 0) finish();
+    if (read_moving(work_).folder != 0)
+        fail("cannot clear", work_.string(), "it holds earlier outputs, or files that were beside them");
+    for (const char* name : {"new", "scratch", "moving", "one-by-one"}) remove_tree(work_ / name);
 }
 
 /// A lock of the process, which no child inherits, on a file that is still there once it is taken.
@@ -279,7 +287,7 @@ bool Staging::take_lock() {
 
 Staging::~Staging() {
     if (moving_) return;  // the next start completes it
-    for (const char* name : {"new", "scratch"}) remove_tree(work_ / name);
+    for (const char* name : {"new", "scratch", "one-by-one"}) remove_tree(work_ / name);
 }
 
 /// Why a file cannot be brought to that name; "" where it can.
@@ -348,7 +356,12 @@ void Staging::commit(ProgressMonitor& monitor) {
         fail("cannot write in", shown_, std::strerror(errno));
     monitor.outputs = Outputs::moving;
     moving_ = true;
-    finish();
+    try {
+        finish();
+    } catch (const OutputError&) {
+        if (!moving_) monitor.outputs = Outputs::untouched;
+        throw;
+    }
     moving_ = false;
     monitor.outputs = Outputs::stand;
     names_.clear();
@@ -385,14 +398,14 @@ void Staging::finish() {
         clear(before, "", ours, others_lists(out_, list));
         take_away(before / list), take_away(before);
     }
-    if (!is_there(made) && !is_there(old)) take_away(work_ / "moving");
+    if (!is_there(made) && !is_there(old)) take_away(work_ / "one-by-one"), take_away(work_ / "moving");
     else said_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
 }
 
 /// OUT becomes new/ by one rename or exchange, else by two; false where OUT is as it was.
 bool Staging::bring_whole() const {
     const fs::path made = work_ / "new", old = work_ / "old";
-    if (work_.parent_path() == out_) return false;
+    if (work_.parent_path() == out_ || is_there(work_ / "one-by-one")) return false;
     if (!is_there(out_)) return move_to(made, out_);
     if (publishing_faults().no_rename_of_folders || must_stay(out_, made)) return false;
     if (exchange(made, out_)) return true;
@@ -403,8 +416,10 @@ bool Staging::bring_whole() const {
 void Staging::bring_one_by_one(const std::string& kind) {
     const fs::path made = work_ / "new", list = list_of(kind);
     if (!is_there(made / list)) return remove_tree(made);  // which came last
+    if (!put(work_ / "one-by-one", "")) fail("cannot write in", shown_, std::strerror(errno));
     const Names before = names_in(out_ / list), now = names_in(made / list), others = others_lists(out_, list);
     const auto bring = [&](const std::string& name) {
+        expect({name});
         const bool users = is_there(out_ / name) && name != list && !holds(before, name) && !holds(others, name);
         if (make_folders((out_ / name).parent_path()) && (!users || keep_aside(out_ / name, name)) &&
             move_to(made / name, out_ / name))

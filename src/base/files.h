@@ -4,7 +4,8 @@
 //   .OUT.crescent/      beside OUT while a run writes into it:
 //     lock              held by that run; child processes do not inherit it
 //     new/  scratch/    the outputs in the making, and what is needed on the way
-//     moving            from here on the outputs are brought to their places: what the next start completes
+//     moving            from here on the outputs are brought to their places: what the next start completes;
+//     one-by-one        by renaming them one by one
 //     new/ or old/      what OUT was: ours goes, files of the user are moved along into OUT
 //
 // The user's files are in both folders when they are exchanged (hard links); whole folders of the user follow a moment
@@ -52,7 +53,7 @@ private:
     using Path = std::filesystem::path;
     using Names = std::vector<std::string>;
 
-    void open_work();
+    void complete(const Path& work);
     bool take_lock();
     std::string obstacle(const std::string& name) const;
     void link_users_files(const Path& below, const Names& ours) const;
@@ -69,11 +70,12 @@ private:
     Names names_, said_;
 };
 
-/// For tests: called before each change that brings outputs to their places; and a file system that lacks calls.
+/// For tests: what is called before each change that brings outputs to their places, and what the file system lacks.
 struct PublishingFaults {
     void (*before_change)() = nullptr;
     bool no_exchange = false, no_rename_of_folders = false;
 };
+/// Those of this process: none, where no test set some.
 PublishingFaults& publishing_faults();
 
 }  // namespace crescent::inline base

@@ -118,6 +118,7 @@ TEST_P(Publishing, KilledBeforeAnyChangeLosesNothingAndTheNextRunLeavesNothingBe
     start_over(new_run);
     const Files clean = all();
     ASSERT_EQ(users_files_seen(), users.size());
+    ASSERT_FALSE(fs::exists(top_ / ".out.crescent"));
     int steps = 0, mixed = 0;
     for (bool done = false; !done; ++steps) {
         start_over(old_run);
@@ -153,6 +154,22 @@ TEST_P(Publishing, KilledTwiceLosesNothing) {
             publish(new_run);
             ASSERT_EQ(all(), clean) << first << " " << second;
         }
+}
+
+TEST_P(Publishing, KilledInOneWayIsCompletedInAnother) {
+    start_over(new_run);
+    const Files clean = all();
+    for (int step = 3; step < 60; ++step) {
+        start_over(old_run);
+        ends_before(step, [&] { publish(new_run); });
+        fs::current_path(before_);
+        publishing_faults() = {nullptr, step % 2 == 0, way() == Way::exchange};
+        { Staging next(out_); }
+        EXPECT_TRUE(seen() == old_run || seen() == new_run) << "ended before change " << step;
+        publish(new_run);
+        ASSERT_EQ(all(), clean) << "ended before change " << step;
+        publishing_faults() = {nullptr, way() == Way::two_renames, way() == Way::one_by_one};
+    }
 }
 
 TEST_P(Publishing, ReplacesItsOwnFilesAndKeepsTheUsers) {
