@@ -42,6 +42,15 @@ expect 0 "$CRESCENT" "${long[@]}"
 same_outputs alone stopped
 [ -e stopped/.crescent-kept ] && die "what was kept outlived the outputs"
 
+# Another part of the same experiment's seeds takes nothing from it either, and leaves it where it is.
+kill_when 'cosine-s32-seed7-*'
+kept=(stopped/.crescent-kept/*)
+expect 0 "$CRESCENT" "${long[@]}" --seed-range 2:2 --only metrics
+grep -q 'resuming from' said && die "another part went on from what was kept: $(cat said)"
+[ -e "${kept[0]}" ] || die "what one part kept went with another one's outputs"
+expect 0 "$CRESCENT" "${long[@]}"
+same_outputs alone stopped
+
 # The same scene with another lamp, stopped and run into one folder: none of the first one's tiles is taken.
 sed 's/radiance = \[90, 80, 70\]/radiance = [900, 800, 700]/' "$tiny" >bright.toml
 kill_when 'cosine-s32-seed7-*'

@@ -116,7 +116,7 @@ class Experiment:
 
     @property
     def hash(self) -> str:
-        """What tells experiments apart, computed from every value but the number of seeds."""
+        """What identifies an experiment, computed from every value but the number of seeds."""
         return self._core.hash
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -192,8 +192,10 @@ bool must_stay(const fs::path& out, const fs::path& by) {
     for (const char* rights : {"system.posix_acl_access", "system.posix_acl_default"})
         if (getxattr(out.c_str(), rights, nullptr, 0) >= 0) return true;
 #endif
-    return stat(out.c_str(), &s) != 0 || chown(by.c_str(), s.st_uid, s.st_gid) != 0 ||
-        chmod(by.c_str(), s.st_mode & 07777) != 0;
+    if (stat(out.c_str(), &s) != 0) return true;
+    for (const auto& entry : fs::recursive_directory_iterator(by, none))
+        if (is_folder(entry) && chown(entry.path().c_str(), s.st_uid, s.st_gid) != 0) return true;
+    return chown(by.c_str(), s.st_uid, s.st_gid) != 0 || chmod(by.c_str(), s.st_mode & 07777) != 0;
 }
 
 /// Whether there can be a folder beside `out` from which names can be moved into it.
@@ -241,7 +243,8 @@ void Staging::complete(const Path& work) {
     work_ = work;
     if (work_.parent_path() == out_) make_folders(out_);
     for (int tries = 0; (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST) || !take_lock(); ++tries)
-        if (!is_folder(work_) || tries > 100) fail("cannot write in", shown_, std::strerror(errno));
+        if (const int why = errno; !is_folder(work_) || tries > 100)
+            fail("cannot write in", shown_, std::strerror(why));
     if (read_moving(work_).folder != 0) finish();
     if (read_moving(work_).folder != 0)
         fail("cannot clear", work_.string(), "it holds earlier outputs, or files that were beside them");

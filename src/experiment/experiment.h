@@ -138,7 +138,7 @@ Experiment with_figures(Experiment experiment);
 
 /// The experiment as a file that is read as the same experiment: every key with its effective value, in one layout.
 std::string canonical_text(const Experiment& experiment);
-/// What tells experiments apart: XXH3 of every value but the number of seeds and, in place of their path, of the
+/// What identifies an experiment: XXH3 of every value but the number of seeds and, in place of their path, of the
 /// published figures. Computed anew at each call, so that it is right for an experiment that was made or changed in
 /// code.
 std::uint64_t hash(const Experiment& experiment);

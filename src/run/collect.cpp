@@ -51,7 +51,7 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
 }
 
 /// The tail index of each region's samples, of the stream of the experiment's own seed whichever part of its series
-/// this is. It belongs to an arm and exponent, not to N: it is given with every rung of the first seed.
+/// this is. It belongs to an arm and exponent, not to N: it is given with every N of the first seed.
 void add_tails(
     const RunPlan& plan, const Prepared& prepared, const std::string& isa, ProgressMonitor& monitor, Metrics& metrics) {
     const std::vector<Job> jobs = jobs_of(plan.whole, plan.whole.seed);
