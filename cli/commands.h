@@ -79,9 +79,9 @@ int check(const CheckFlags& flags);
 struct CompareFlags {
     std::string file, out;                                      // "": none; out/compare
     std::vector<std::string> arms, reference, regions, masks;   // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
-    std::vector<std::string> layers, spp, seconds, assertions;  // NAME=LAYER, [NAME=]N, [NAME=]S, a check
-    std::string expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
-    bool pair = false, schema = false, json = false, quiet = false;
+    std::vector<std::string> layers, spp, seconds, assertions;  // [NAME=]LAYER, [NAME=]N, [NAME=]S, a check
+    std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
+    bool crop = false, pair = false, schema = false, json = false, quiet = false;
     unsigned error_rates = 0, seed = 1;  // error_rates: how many calls; 0: not asked for
 };
 int compare(const CompareFlags& flags);

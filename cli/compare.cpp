@@ -62,6 +62,14 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
         out.push_back({{"masks", name, "file"}, file, false, "--mask " + text});
     }
     for (const std::string& text : f.layers) {
+        if (text.find('=') == std::string::npos) {  // of all
+            for (const std::string& arm : arms_of(f))
+                out.push_back({{"arms", arm, "layer"}, text, false, "--layer " + text});
+            out.push_back({{"reference_layer"}, text, false, "--layer " + text});
+        }
+    }
+    for (const std::string& text : f.layers) {
+        if (text.find('=') == std::string::npos) continue;
         const auto [name, layer] = cut("--layer", text, "NAME=LAYER");
         if (name == "reference") out.push_back({{"reference_layer"}, layer, false, "--layer " + text});
         else out.push_back({{"arms", name, "layer"}, layer, false, "--layer " + text});
@@ -71,6 +79,8 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     for (const std::string& text : f.assertions)
         out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
     if (!f.theme.empty()) out.push_back({{"theme"}, f.theme, false, "--theme " + f.theme});
+    if (!f.align.empty()) out.push_back({{"align"}, f.align, false, "--align " + f.align});
+    if (f.crop) out.push_back({{"crop"}, "true", true, "--crop"});
     if (f.pair) out.push_back({{"pair"}, "true", true, "--pair"});
     if (!f.expect.empty()) out.push_back({{"expect"}, f.expect, false, "--expect " + f.expect});
     const std::pair<const char*, std::string> numbers[] = {
@@ -95,9 +105,10 @@ std::string command_of(const CompareFlags& f) {
         all("--layer", f.layers);
     all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
     if (f.pair) out += " --pair";
-    const std::pair<const char*, std::string> rest[] = {{"--expect", f.expect}, {"--smallest", f.smallest},
-        {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim}, {"--brightest", f.brightest},
-        {"--theme", f.theme}};
+    if (f.crop) out += " --crop";
+    const std::pair<const char*, std::string> rest[] = {{"--align", f.align}, {"--expect", f.expect},
+        {"--smallest", f.smallest}, {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim},
+        {"--brightest", f.brightest}, {"--theme", f.theme}};
     for (const auto& [flag, value] : rest)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     return out;

@@ -29,10 +29,13 @@ void add_compare(CLI::App& app, Work& work) {
     many("--reference", f->reference, "the converged image, or several", "FILES");
     many("--region", f->regions, "a box, both ends inside, from the bottom-left", "NAME=x0,y0,x1,y1");
     many("--mask", f->masks, "pixels above 0 in a picture", "NAME=FILE");
-    many("--layer", f->layers, "which layer of an arm's files, or reference=LAYER", "NAME=LAYER");
+    many("--layer", f->layers, "which layer of the files, of one arm's, or of reference=LAYER", "[NAME=]LAYER");
     many("--spp", f->spp, "samples a pixel of one render", "[NAME=]N");
     many("--seconds", f->seconds, "time of one render", "[NAME=]S");
     many("--assert", f->assertions, "a claim such as 'rmse.H(a) < rmse.H(b)'", "CHECK");
+    c->add_option("--align", f->align, "display: place data windows that differ in the display window")
+        ->type_name("display");
+    c->add_flag("--crop", f->crop, "compare the pixels that the data windows of all renders share");
     c->add_flag("--pair", f->pair, "renders with the same number in their names share random numbers");
     c->add_option("--expect", f->expect, "same: a difference between arms fails")->type_name("same");
     c->add_option("--smallest", f->smallest, "with it: the difference that must have been seen; default 1%")

@@ -3,38 +3,29 @@
 // added: R, G and B of one sample rise and fall together.
 #include "compare/exr_extra.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfDoubleAttribute.h>
-#include <OpenEXR/ImfFloatAttribute.h>
-#include <OpenEXR/ImfIntAttribute.h>
-#include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
-#include "color/rgb.h"
-#include "films/film.h"
+#include "base/errors.h"
+#include "compare/exr_layers.h"
 
 namespace crescent::inline comparing {
 
 namespace {
 
 /// A number in an attribute: an int, a float, or text such as "12.5" or "01:02.50" (minutes and seconds, hours before).
-std::optional<double> number_of(const Imf::Attribute& attribute) {
-    if (const auto* a = dynamic_cast<const Imf::IntAttribute*>(&attribute)) return a->value();
-    if (const auto* a = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) return static_cast<double>(a->value());
-    if (const auto* a = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) return a->value();
-    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute);
-    if (!text) return {};
+std::optional<double> number_of(const ExrAttribute& attribute) {
+    if (attribute.number) return attribute.number;
     double total = 0;
-    std::string_view rest = text->value();
+    std::string_view rest = attribute.text;
     while (true) {
         double piece = 0;
         const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), piece);
-        if (error != std::errc{}) return {};
+        if (error == std::errc::result_out_of_range) piece = HUGE_VAL;
+        else if (error != std::errc{}) return {};
         total = 60 * total + piece;
         rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
         if (rest.empty() || rest == "s") return total;
@@ -43,17 +34,8 @@ std::optional<double> number_of(const Imf::Attribute& attribute) {
     }
 }
 
-/// "ViewLayer.Variance" -> variance.
-std::string last_of(const std::string& layer) {
-    const std::string name = lower(layer);
-    const std::size_t at = name.find_last_of("./");
-    return at == std::string::npos ? name : name.substr(at + 1);
-}
-
-using Colours = std::map<std::string, std::string>;
-
 /// Channels of Y or of R, G and B.
-std::vector<std::string> of_light(const Colours& colours) {
+std::vector<std::string> of_light(const ColourChannels& colours) {
     if (const auto y = colours.find("y"); y != colours.end()) return {y->second};
     if (colours.contains("r") && colours.contains("g") && colours.contains("b"))
         return {colours.at("r"), colours.at("g"), colours.at("b")};
@@ -65,39 +47,23 @@ bool counts_samples(std::string name) {
     return name == "samples" || name == "samplecount" || name == "debugsamplecount" || name == "nsamples";
 }
 
-std::string samples_in(const std::string& layer, const Colours& colours) {
+std::string samples_in(const std::string& layer, const ColourChannels& colours) {
     if (layer.empty()) {
         for (const auto& [name, channel] : colours)
             if (counts_samples(name)) return channel;
         return {};
     }
-    return counts_samples(last_of(layer)) ? colours.begin()->second : "";
+    return counts_samples(last_name(layer)) ? colours.begin()->second : "";
 }
 
 }  // namespace
 
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
-std::map<std::string, std::map<std::string, std::string>> exr_channels(const Imf::Header& header) {
-    std::map<std::string, std::map<std::string, std::string>> out;
-    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-        const std::string name = c.name();
-        const std::size_t dot = name.rfind('.');
-        if (dot == std::string::npos) out[""][lower(name)] = name;
-        else out[name.substr(0, dot)][lower(name.substr(dot + 1))] = name;
-    }
-    return out;
-}
-
-ExrExtra exr_extra(const Imf::Header& header, const std::string& part) {
-    const auto all = exr_channels(header);
+ExrExtra exr_extra(const ExrPart& part) {
+    const auto all = exr_channels(part);
     ExrExtra out;
     const bool pbrt = all.contains("RelativeVariance");
     for (const auto& [layer, colours] : all) {
-        const std::string name = last_of(layer.empty() ? part : layer);
+        const std::string name = last_name(layer.empty() ? part.name : layer);
         if (const std::string samples = samples_in(layer, colours); !samples.empty()) out.samples = samples;
         using Kind = ExrExtra::Kind;
         Kind kind = Kind::none;
@@ -123,8 +89,7 @@ void set_variance(Render& out, const ExrExtra& extra, const std::vector<std::vec
             0;  // R, G and B of one sample rise and fall together: their deviations add, never too little
         for (std::size_t c = 0; c < planes.size() && extra.kind != Kind::moments; ++c) {
             const double x = std::max(0.0, static_cast<double>(planes[c][i]));
-            deviation +=
-                (planes.size() == 3 ? luminance_weights[c] : 1) * (extra.kind == Kind::error ? x : std::sqrt(x));
+            deviation += (planes.size() == 3 ? out.weights[c] : 1) * (extra.kind == Kind::error ? x : std::sqrt(x));
         }
         double variance = deviation * deviation;
         if (extra.kind == Kind::moments) {
@@ -137,20 +102,28 @@ void set_variance(Render& out, const ExrExtra& extra, const std::vector<std::vec
 
 void set_samples(Render& out, const ExrExtra& extra, const std::vector<float>& plane) {
     double sum = 0, most = 0;
-    for (const float n : plane) sum += static_cast<double>(n), most = std::max(most, static_cast<double>(n));
+    for (const float n : plane) {
+        if (!std::isfinite(n) || n < 0)
+            throw InputError({out.file, 0, 0},
+                fmt::format("channel '{}': expected samples a pixel, 0 or more, found {}", extra.samples, n));
+        sum += static_cast<double>(n), most = std::max(most, static_cast<double>(n));
+    }
     if (!(most > 1)) return;
     out.sample_channel = extra.samples;
     if (!out.spp) out.spp = sum / static_cast<double>(plane.size());
 }
 
-std::optional<double> exr_attribute(const Imf::Header& header, std::initializer_list<const char*> names) {
-    for (auto a = header.begin(); a != header.end(); ++a) {
-        std::string name = lower(a.name());
-        name = name.substr(std::min(name.find_last_of("./") + 1, name.size()));
+std::optional<double> exr_attribute(
+    const std::string& path, const ExrPart& part, const char* what, std::initializer_list<const char*> names) {
+    for (const ExrAttribute& a : part.attributes) {
+        std::string name = last_name(a.name);
         std::erase_if(name, [](char c) { return c == '_' || c == ' ' || c == '-'; });
-        for (const char* word : names)
-            if (name == word)
-                if (const auto value = number_of(a.attribute()); value && *value > 0) return value;
+        if (std::none_of(names.begin(), names.end(), [&](const char* word) { return name == word; })) continue;
+        const std::optional<double> value = number_of(a);
+        if (value && !(std::isfinite(*value) && *value >= 0))
+            throw InputError({path, 0, 0},
+                fmt::format("attribute '{}': expected {}, a finite number above 0, found {}", a.name, what, *value));
+        if (value && *value > 0) return value;
     }
     return {};
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <glob.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +10,6 @@
 
 #include "base/parallel.h"
 #include "compare/second_pass.h"
-
-#include "base/parallel.h"
 
 namespace crescent::inline comparing {
 
@@ -113,16 +110,6 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, const 
 
 namespace {
 
-std::string hash_of(const Render& render) {
-    XXH3_state_t* state = XXH3_createState();
-    XXH3_64bits_reset(state);
-    for (const std::vector<float>* plane : {&render.r, &render.g, &render.b})
-        XXH3_64bits_update(state, plane->data(), plane->size() * sizeof(float));
-    const std::uint64_t hash = XXH3_64bits_digest(state);
-    XXH3_freeState(state);
-    return fmt::format("{:016x}", hash);
-}
-
 std::vector<std::uint64_t> numbers_in(const std::string& path) {
     const std::string name = std::filesystem::path(path).replace_extension().string();  // folders may tell seeds
     std::vector<std::uint64_t> out;
@@ -153,30 +140,25 @@ void FirstPass::arm(ArmReadings& to, const std::vector<std::string>& files, cons
     each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
         fit(render);
         look(render);
-        RenderFile file{render.file, hash_of(render), render.layer, render.variance_channels, render.sample_channel,
-            render.spp, render.seconds, numbers_in(render.file)};
+        RenderFile file{render.file, fmt::format("{:016x}", render.hash), render.layer, render.variance_channels,
+            render.sample_channel, render.spp, render.seconds, numbers_in(render.file)};
         known(file, name);
         const std::optional<double>& samples = spp ? spp : render.spp;
         if (render.per_sample && !samples)
-            all_.warnings.push_back(
-                fmt::format("{}: {} is the variance of one sample, and nothing says how many there "
-                            "are: give --spp",
-                    render.file, render.variance_channels));
+            warnings_.add(render.file,
+                fmt::format("{} is the variance of one sample, and nothing says how many there are: give --spp",
+                    render.variance_channels));
         to.film.add(render, !render.per_sample ? 1 : samples ? 1 / *samples : 0);
         to.files.push_back(std::move(file));
     });
 }
 
 void FirstPass::fit(const Render& render) {
-    if (first_.empty()) {
-        first_ = render.file;
+    if (all_.bad.empty()) {
         all_.width = render.width, all_.height = render.height;
         all_.bad.assign(render.size(), false);
-    } else if (render.width != all_.width || render.height != all_.height) {
-        throw InputError({render.file, 0, 0},
-            fmt::format("expected {} x {} pixels as in {}, found {} x {}", all_.width, all_.height, first_,
-                render.width, render.height));
     }
+    ensure(render.width == all_.width && render.height == all_.height, "renders of a view have one size");
 }
 
 void FirstPass::look(const Render& render) {
@@ -186,14 +168,11 @@ void FirstPass::look(const Render& render) {
         if (!finite) ++bad, all_.bad[i] = true;
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
     }
-    const auto warn = [&](std::uint64_t count, const char* what) {
-        if (count)
-            all_.warnings.push_back(fmt::format("{}: {} pixel{} {}", render.file, count, count == 1 ? "" : "s", what));
-    };
-    warn(bad, "not finite: left out of every meter");
-    warn(negative, "with a negative channel");
+    for (const std::string& note : render.notes) warnings_.add(render.file, note);
+    if (bad) warnings_.add(render.file, "not finite: left out of every meter", bad);
+    if (negative) warnings_.add(render.file, "with a negative channel", negative);
     if (bad == render.size()) throw InputError({render.file, 0, 0}, "no pixel of it is finite");
-    if (render.size() > 1 && all_equal(render)) all_.warnings.push_back(render.file + ": all pixels are equal");
+    if (render.size() > 1 && all_equal(render)) warnings_.add(render.file, "all pixels are equal");
 }
 
 void FirstPass::known(const RenderFile& file, const std::string& arm) {
@@ -203,7 +182,8 @@ void FirstPass::known(const RenderFile& file, const std::string& arm) {
     if (other == arm)
         throw InputError(
             {file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
-    all_.warnings.push_back(fmt::format("{} of {}: the same pixels as {} of {}", file.path, arm, path, other));
+    warnings_.add(fmt::format("{} of {}", file.path, arm), fmt::format("the same pixels as {} of {}", path, other), 0,
+        fmt::format("the same pixels as {}", other));
 }
 
 }  // namespace crescent::inline comparing

@@ -1,6 +1,7 @@
 // What the first pass keeps while it reads: the size that all must have, and which pixels it has seen in which file.
 #pragma once
 
+#include "compare/file_warnings.h"
 #include "compare/renders.h"
 
 namespace crescent::inline comparing {
@@ -12,6 +13,8 @@ public:
     /// first that does not fit.
     void arm(ArmReadings& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
         const std::optional<double>& spp);
+    /// Of all files so far, into the readings.
+    void report_warnings() { all_.warnings = warnings_.lines(); }
 
 private:
     void fit(const Render& render);
@@ -20,7 +23,7 @@ private:
 
     Readings& all_;
     ProgressMonitor& monitor_;
-    std::string first_;
+    FileWarnings warnings_;
     std::map<std::string, std::pair<std::string, std::string>> seen_;  // hash -> path, arm
 };
 

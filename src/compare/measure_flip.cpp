@@ -34,8 +34,8 @@ std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, st
     std::vector<Flips> out(all.regions.size());
     if (!all.reference || !plan.flip) return out;
     monitor.begin("FLIP", 1);
-    const MeanFilm& ref = all.reference->film;
-    const Render test = all.source.read(all.arms[a].files[0].path, plan.arms[a].layer);
+    const Render ref = in_rec709(all, all.reference->film);
+    const Render test = in_rec709(all, all.source.read(all.arms[a].files[0].path, plan.arms[a].layer));
     const std::vector<float> hdr = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
         {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
     const auto seen = photograph(test.r, test.g, test.b, plan.exposure),

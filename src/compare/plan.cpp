@@ -120,6 +120,8 @@ void check_names(ParseContext& context, ComparePlan& plan) {
                         hint(q->region, regions)));
         }
     }
+    if (plan.crop && plan.align == Alignment::display)
+        context.report("crop", "crop and align = \"display\": expected one of them");
     if (plan.expect == Expectation::same && plan.arms.size() < 2 && plan.reference.empty())
         context.report("expect", "expect = \"same\": expected two arms, or an arm and a reference");
 }

@@ -31,6 +31,9 @@ struct MaskPlan {
 
 enum class Expectation { nothing, same };
 
+/// Where renders are held against each other: all in the same windows, or each in its own display window.
+enum class Alignment { windows, display };
+
 struct ComparePlan {
     std::string file;  // the TOML, or "crescent compare"
     std::string title;
@@ -40,12 +43,14 @@ struct ComparePlan {
     std::vector<Region> regions;
     std::vector<MaskPlan> masks;
     std::vector<AssertionPlan> assertions;
-    bool pair = false;          // renders of two arms with the same number in their names share their random numbers
-    double exposure = 1;        // of photographs
-    Theme theme = Theme::dark;  // of plates
-    double alpha = 0.01;        // chance that a call says "a difference" where there is none
-    double firefly_k = 4;       // a firefly: |Y - Y_ref| > k Y_ref
-    double trim = 0;            // share of pixels left out of relMSE and MAPE, the largest first
+    bool pair = false;  // renders of two arms with the same number in their names share their random numbers
+    Alignment align = Alignment::windows;
+    bool crop = false;                   // compare the pixels that all data windows share
+    double exposure = 1;                 // of photographs
+    Theme theme = Theme::dark;           // of plates
+    double alpha = 0.01;                 // chance that a call says "a difference" where there is none
+    double firefly_k = 4;                // a firefly: |Y - Y_ref| > k Y_ref
+    double trim = 0;                     // share of pixels left out of relMSE and MAPE, the largest first
     double pixels_per_degree = 67.0206;  // of the viewer, for FLIP: 0.7 m from a 0.7 m wide display of 3840 pixels
     bool flip = true;                    // whether FLIP is measured
     std::optional<double> brightest;     // the most that Y of a pixel of one render can be

@@ -112,13 +112,14 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
     const Fits f = fits(all, content_band, arms + (all.reference ? 1 : 0));
     std::vector<Column> columns;
     std::vector<Residual> residuals;
-    const auto add = [&](const std::string& name, const View& view) {
+    const auto add = [&](const std::string& name, const Render& seen) {
+        const View view{seen.width, seen.height, seen.r.data(), seen.g.data(), seen.b.data(), nullptr};
         columns.push_back({name, photograph_block(view, all.frame(), f.whole, plan.exposure),
             photograph_block(view, crop_of(all), f.close, plan.exposure)});
     };
     for (std::size_t a = 0; a < arms; ++a) {
         const Render r = all.source.read(all.arms[a].files[0].path, plan.arms[a].layer);
-        add(plan.arms[a].name, {r.width, r.height, r.r.data(), r.g.data(), r.b.data(), nullptr});
+        add(plan.arms[a].name, in_rec709(all, r));
         const MeanFilm& about = all.reference ? all.reference->film : all.arms[a].film;
         if (!all.reference && about.count < 2) continue;
         Residual residual{plan.arms[a].name, std::vector<float>(r.size())};
@@ -126,10 +127,7 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
             residual.plane[i] = static_cast<float>(std::fabs(static_cast<double>(r.y(i)) - about.y[i]));
         residuals.push_back(std::move(residual));
     }
-    if (all.reference) {
-        const MeanFilm& ref = all.reference->film;
-        add("reference", {all.width, all.height, ref.r.data(), ref.g.data(), ref.b.data(), nullptr});
-    }
+    if (all.reference) add("reference", in_rec709(all, all.reference->film));
     Canvas c(sheet_width, sheet_height, ground, 1, plan.theme);
     header(c, false, "one render of each arm");
     draw(c, all, content_band, columns);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <future>
+#include <memory>
 
+#include "compare/common_view.h"
 #include "compare/first_pass.h"
 #include "compare/schema.h"
 #include "compare/second_pass.h"
@@ -29,19 +31,15 @@ PixelSet boxed(const std::string& name, const Box& box, int width) {
     return set;
 }
 
-PixelSet masked(const Readings& all, const MaskPlan& plan) {
-    const Render mask = all.source.read(plan.file, "");
-    if (mask.width != all.width || mask.height != all.height)
-        throw InputError({plan.file, 0, 0},
-            fmt::format("expected {} x {} pixels as the renders have, found {} x {}", all.width, all.height, mask.width,
-                mask.height));
+PixelSet masked(CommonView& view, const MaskPlan& plan) {
+    const Render mask = view.read_mask(plan.file);
     PixelSet set{plan.name, {}, {}};
     for (std::size_t i = 0; i < mask.size(); ++i)
         if (mask.y(i) > 0) set.pixels.push_back(static_cast<std::uint32_t>(i));
     return set;
 }
 
-void regions(const ComparePlan& plan, Readings& all) {
+void regions(const ComparePlan& plan, Readings& all, CommonView& view) {
     for (const Region& r : plan.regions) {
         if (r.box.x1 >= all.width || r.box.y1 >= all.height)
             throw InputError(r.at,
@@ -50,7 +48,7 @@ void regions(const ComparePlan& plan, Readings& all) {
                     r.name, all.width - 1, all.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
         add_set(all, boxed(r.name, r.box, all.width), r.at);
     }
-    for (const MaskPlan& m : plan.masks) add_set(all, masked(all, m), m.at);
+    for (const MaskPlan& m : plan.masks) add_set(all, masked(view, m), m.at);
     add_set(all, boxed(whole_frame, all.frame(), all.width), {plan.file, 0, 0});
 }
 
@@ -71,26 +69,67 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
     }
 }
 
+Render in_rec709(const Readings& all, Render render) {
+    if (!same_primaries(all.primaries, {})) convert(render, conversion(all.primaries, {}));
+    render.primaries = {}, render.weights = luminance_weights_of({});
+    return render;
+}
+
+Render in_rec709(const Readings& all, const MeanFilm& film) {
+    Render out("", all.width, all.height, Render::empty);
+    out.r = film.r, out.g = film.g, out.b = film.b;
+    return in_rec709(all, std::move(out));
+}
+
+namespace {
+
+/// The files of every arm, then those of the reference.
+struct Files {
+    std::vector<std::vector<std::string>> arms;
+    std::vector<std::string> reference;
+    std::size_t total = 0;
+};
+
+Files files_of(const ComparePlan& plan, const RenderSource& source) {
+    Files out;
+    for (const RenderArm& arm : plan.arms) out.arms.push_back(source.expand(arm.files, arm.at));
+    if (!plan.reference.empty()) out.reference = source.expand(plan.reference, {plan.file, 0, 0});
+    for (const auto& files : out.arms) out.total += files.size();
+    out.total += out.reference.size();
+    return out;
+}
+
+void share_windows(CommonView& view, const ComparePlan& plan, const Files& files, ProgressMonitor& monitor) {
+    monitor.begin("data windows", static_cast<double>(files.total));
+    const auto each = [&](const std::vector<std::string>& paths, const std::string& layer) {
+        for (const std::string& path : paths) monitor.check(), view.share(path, layer), monitor.advance(1);
+    };
+    for (std::size_t a = 0; a < files.arms.size(); ++a) each(files.arms[a], plan.arms[a].layer);
+    each(files.reference, plan.reference_layer);
+}
+
+}  // namespace
+
 Readings read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source) {
     Readings all;
+    const Files files = files_of(plan, source);
+    const auto view = std::make_shared<CommonView>(plan, source.read);
+    if (plan.crop) share_windows(*view, plan, files, monitor);
     all.source = source;
-    std::vector<std::vector<std::string>> files;
-    std::size_t total = 0;
-    for (const RenderArm& arm : plan.arms)
-        files.push_back(source.expand(arm.files, arm.at)), total += files.back().size();
-    std::vector<std::string> reference;
-    if (!plan.reference.empty()) reference = source.expand(plan.reference, {plan.file, 0, 0});
-    total += reference.size();
-    monitor.begin("first pass: means", static_cast<double>(total));
+    all.source.read = [view](const std::string& path, const std::string& layer) { return view->read(path, layer); };
+    monitor.begin("first pass: means", static_cast<double>(files.total));
     FirstPass first(all, monitor);
     all.arms.resize(plan.arms.size());
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        first.arm(all.arms[a], files[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
-    if (!reference.empty()) first.arm(all.reference.emplace(), reference, plan.reference_layer, "the reference", {});
+        first.arm(all.arms[a], files.arms[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
+    if (!files.reference.empty())
+        first.arm(all.reference.emplace(), files.reference, plan.reference_layer, "the reference", {});
+    first.report_warnings();
+    all.primaries = view->primaries();
     all.tiles = Tiles(all.width, all.height);
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
-    regions(plan, all);
-    monitor.begin("second pass: what each render says", static_cast<double>(total));
+    regions(plan, all, *view);
+    monitor.begin("second pass: what each render says", static_cast<double>(files.total));
     for (std::size_t a = 0; a < plan.arms.size(); ++a) second_pass(plan, all, all.arms[a], plan.arms[a].layer, monitor);
     if (all.reference) second_pass(plan, all, *all.reference, plan.reference_layer, monitor);
     return all;

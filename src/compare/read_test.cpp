@@ -7,44 +7,23 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
-#include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <random>
 
-#include <unistd.h>
-
+#include "base/npy.h"
 #include "compare/render.h"
-#include "base/errors.h"
+#include "compare/scratch_folder.h"
+#include "compare/written_exr.h"
 
 namespace crescent::inline comparing {
 namespace {
 
 using ::testing::HasSubstr;
 
-/// A folder that goes with the test.
-class Renders : public ::testing::Test {
-protected:
-    Renders()
-        : folder_(
-              std::filesystem::temp_directory_path() / fmt::format("crescent-compare-{}-{}", ::getpid(), count_++)) {
-        std::filesystem::create_directories(folder_);
-    }
-    ~Renders() override { std::filesystem::remove_all(folder_); }
+using Renders = ScratchFolder;
 
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    std::string write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
-    }
-
-    std::filesystem::path folder_;
-    static inline int count_ = 0;
-};
-
-std::string bytes_of(const std::vector<float>& values) {
+std::string raw(const std::vector<float>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
 }
 
@@ -59,9 +38,7 @@ void expect_four(const Render& r) {
     EXPECT_EQ(r.b, (std::vector<float>{0, 0, 1, 1}));
 }
 
-TEST_F(Renders, ReadPfmRowsFromTheBottom) {
-    expect_four(read_render(write("a.pfm", "PF\n2 2\n-1.0\n" + bytes_of(four))));
-}
+TEST_F(Renders, ReadPfmRowsFromTheBottom) { expect_four(read_render(write("a.pfm", "PF\n2 2\n-1.0\n" + raw(four)))); }
 
 TEST_F(Renders, ReadNpyRowsFromTheTop) {
     std::vector<float> top_down(four.begin() + 6, four.end());
@@ -69,7 +46,7 @@ TEST_F(Renders, ReadNpyRowsFromTheTop) {
     std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2, 3), }";
     header.resize(117, ' ');
     expect_four(read_render(
-        write("a.npy", std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header + "\n" + bytes_of(top_down))));
+        write("a.npy", std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header + "\n" + raw(top_down))));
 }
 
 TEST_F(Renders, ReadRadianceHdr) {
@@ -151,13 +128,15 @@ TEST_F(Renders, ReadOpenExrAsRenderersWriteIt) {
     }
 }
 
-TEST_F(Renders, FillTheDisplayWindowFromASmallerDataWindow) {
+TEST_F(Renders, HaveThePixelsOfTheirDataWindow) {
     Part p{"rgb", ""};
     p.data = {{0, 1}, {1, 1}};  // the lower row alone
     write_exr(path("a.exr"), {p});
     const Render r = read_render(path("a.exr"));
-    EXPECT_EQ(r.r, (std::vector<float>{1, 0, 0, 0}));
-    EXPECT_EQ(r.g, (std::vector<float>{0, 1, 0, 0}));
+    EXPECT_EQ(r.data, (PixelWindow{0, 1, 1, 1}));
+    EXPECT_EQ(r.display, (PixelWindow{0, 0, 1, 1}));
+    EXPECT_EQ(r.r, (std::vector<float>{1, 0}));
+    EXPECT_EQ(r.g, (std::vector<float>{0, 1}));
 }
 
 TEST_F(Renders, TakeVariancesAndSamplesByTheirNames) {
@@ -201,6 +180,106 @@ TEST_F(Renders, RefusePicturesAndBrokenFiles) {
         write("e.hdr", "#?RADIANCE\n\n-Y 2 +X 2\n"), write("f.npy", std::string("\x93NUMPY\x01\x00\x04\x00{}\n\n", 14)),
         write("g.txt", "hello"), path("absent.exr")};
     for (const std::string& file : broken) EXPECT_THROW((void)read_render(file), InputError) << file;
+}
+
+TEST_F(Renders, TextHeadersAreRefusedWithTheirLine) {
+    const std::pair<const char*, const char*> bad[] = {{"PF\n2 2\n\n....", ":3:1: expected a scale"},
+        {"PF\n2\n\n....", ":3:1: expected a width and a height"}, {"PF4\n2 2\n-1\n", ":1:1: expected 'PF'"},
+        {"PF\n2 x\n-1\n", ":2:1: expected a width"}, {"PF\n2 2\nnan\n", ":3:1: expected a scale"},
+        {"PF\n2 2\n0\n", ":3:1: expected a scale"}, {"PF\n70000 2\n-1\n", ":2:1: expected 1 to 65536"},
+        {"PF\n2 2", ":2:1: expected a line"}, {"Pf\n60000 60000\n-1\n....", "the file is cut off"},
+        {"#?RADIANCE\nEXPOSURE=\n\n-Y 2 +X 2\n", ":2:1: expected EXPOSURE="},
+        {"#?RADIANCE\nEXPOSURE=-1\n\n-Y 2 +X 2\n", ":2:1: expected EXPOSURE="},
+        {"#?RADIANCE\nEXPOSURE=inf\n\n-Y 2 +X 2\n", ":2:1: expected EXPOSURE="},
+        {"#?RADIANCE\nFORMAT=32-bit_rle_cmyk\n\n-Y 2 +X 2\n", ":2:1: expected FORMAT="},
+        {"#?RADIANCE\nPRIMARIES=1 2 3\n\n-Y 2 +X 2\n", ":2:1: expected PRIMARIES="},
+        {"#?RADIANCE\nCOLORCORR=1 0 1\n\n-Y 2 +X 2\n", ":2:1: expected COLORCORR="},
+        {"#?RADIANCE\n\n-Y two +X 2\n", ":3:1: expected a resolution"},
+        {"#?RADIANCE\n\n\n", ":3:1: expected a resolution"},
+        {"#?RADIANCE\n\n-Y 60000 +X 60000\n....", "the file is cut off"},
+        {"#?RADIANCE\n\n-Y 1 +X 9\n\2\2\1\7", "byte 26: expected a scanline of 9 pixels"}};
+    for (const auto& [text, message] : bad)
+        EXPECT_THAT(refusal([&] { return read_render(write("bad", text)); }), HasSubstr(message)) << text;
+}
+
+TEST_F(Renders, NpyHeadersAreRefusedWithWhatWasExpected) {
+    const auto npy = [](const std::string& dictionary, char version = 1) {
+        return std::string("\x93NUMPY") + version + '\0' + static_cast<char>(dictionary.size()) + '\0' + dictionary +
+            "1234";
+    };
+    const std::pair<std::string, const char*> bad[] = {{npy("{}"), "expected 'descr'"},
+        {npy("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 1)}"), "expected a 'descr' of floats"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, -1)}"), "expected a 'shape'"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1"), "expected a 'shape'"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': 1}"), "expected a 'shape'"},
+        {npy("{'descr': '<f4', 'shape': (1, 1)}"), "expected 'fortran_order'"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1, 2)}"), "1, 3 or 4"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': ()}"), "1, 3 or 4"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': (60000, 60000)}"), "the file is cut off"},
+        {npy("{'descr': '<f4', 'fortran_order': False, 'shape': (18446744073709551615, 4)}"), "pixels a side"},
+        {npy("{'descr': '<f4'", 9), "byte 7: expected an NPY format of 1 to 3"},
+        {std::string("\x93NUMPY\1\0\xff\xff{", 11), "expected an NPY file"},
+        {std::string("\x93NUMPY\1\0\xff\x7f{}", 12), "byte 9: "}};
+    for (const auto& [bytes, message] : bad)
+        EXPECT_THAT(refusal([&] { return read_render(write("bad.npy", bytes)); }), HasSubstr(message)) << bytes;
+    for (const char* good : {"{\"shape\": (1, 1,), 'descr': '>f4', 'fortran_order': True}",
+             "{'descr':'>f4','fortran_order':False,'shape':(1,1,1)}"})
+        EXPECT_FLOAT_EQ(read_render(write("a.npy", npy(good))).b[0], 2.5931515e-9f);  // the bytes of "1234"
+}
+
+TEST_F(Renders, RadianceHdrMeansTheSameInEveryEncoding) {
+    const std::string pixel("\x80\x40\x20\x82", 4);
+    std::string flat;
+    for (int i = 0; i < 20; ++i) flat += pixel;
+    const std::string size = "\n-Y 1 +X 20\n", begin = "#?RADIANCE\n";
+    const std::string coded = std::string("\2\2\0\x14", 4) + "\x94\x80\x94\x40\x94\x20\x94\x82";
+    const std::string old = pixel + std::string("\1\1\1\x13", 4);
+    for (const std::string& bytes : {flat, coded, old}) {
+        const Render r = read_render(write("a.hdr", begin + size + bytes));
+        EXPECT_EQ(r.r, std::vector<float>(20, 2.0f));
+        EXPECT_EQ(r.g, std::vector<float>(20, 1.0f));
+        EXPECT_EQ(r.b, std::vector<float>(20, 0.5f));
+    }
+    const Render corrected =
+        read_render(write("b.hdr", begin + "EXPOSURE=2\nEXPOSURE= 2\nCOLORCORR=1 2 4\n" + size + flat));
+    EXPECT_EQ(corrected.r[0], 0.5f);
+    EXPECT_EQ(corrected.g[0], 0.125f);
+    EXPECT_EQ(corrected.b[0], 0.03125f);
+    const Render xyz = read_render(write("c.hdr", begin + "FORMAT=32-bit_rle_xyze\n" + size + flat));
+    EXPECT_NEAR(xyz.y(0), 1, 1e-6);
+    const Render aces =
+        read_render(write("d.hdr", begin + "PRIMARIES=.713 .293 .165 .83 .128 .044 .32168 .33767\n" + size + flat));
+    EXPECT_NEAR(aces.y(0), 2 * 0.2722287 + 0.6740818 + 0.5 * 0.0536895, 1e-5);
+}
+
+/// Damaged files of every format are read or refused: no other exception, no crash.
+TEST_F(Renders, DamagedFilesAreReadOrRefused) {
+    std::vector<std::string> whole = {"PF\n2 2\n-1.0\n" + raw(four),
+        "#?RADIANCE\nEXPOSURE=1\n\n-Y 1 +X 9\n" + std::string("\2\2\0\x9\x89\x80\x89\x40\x89\x20\x89\x82", 12),
+        std::string("\x93NUMPY\1\0\x3c\0{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1)}   ....", 74)};
+    for (const Imf::Compression c : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION,
+             Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})
+        for (const bool tiled : {false, true}) {
+            WrittenExr exr;
+            exr.compression = c, exr.tiled = tiled, exr.type = Imf::HALF;
+            exr.write(path("whole.exr"));
+            whole.push_back(bytes_of(path("whole.exr")));
+        }
+    std::mt19937 random(1);
+    const auto below = [&](std::size_t n) { return n ? random() % n : 0; };
+    for (int k = 0; k < 4000; ++k) {
+        std::string bytes = whole[below(whole.size())];
+        for (std::size_t n = 1 + below(3); n-- > 0 && !bytes.empty();) {
+            const std::size_t at = below(2) ? below(bytes.size()) : below(std::min<std::size_t>(bytes.size(), 450));
+            const std::size_t what = below(5);
+            if (what == 0) bytes[at] = static_cast<char>(random());
+            if (what == 1) bytes[at] = static_cast<char>(bytes[at] ^ 1 << below(8));
+            if (what == 2) bytes.resize(at);
+            if (what == 3) bytes.insert(at, 1, static_cast<char>(random()));
+            if (what == 4) bytes.erase(at, 1 + below(6));
+        }
+        EXPECT_NO_THROW((void)refusal([&] { return read_render(write("damaged", bytes)); })) << k;
+    }
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ struct RenderSource {
 };
 
 struct Readings {
-    RenderSource source;
+    RenderSource source;  // its renders fit each other, see common_view.h
+    Chromaticities primaries;
     int width = 0, height = 0;
     Tiles tiles;
     std::vector<PixelSet> regions;  // those of the plan, masks, then the whole frame
@@ -98,6 +99,10 @@ struct Readings {
     std::vector<std::string> warnings;
     Box frame() const { return {0, 0, width - 1, height - 1}; }
 };
+
+/// A render of these readings, or a film's mean, in Rec.709, as plates and FLIP show it.
+Render in_rec709(const Readings& all, Render render);
+Render in_rec709(const Readings& all, const MeanFilm& film);
 
 /// Reads everything twice. Throws InputError where files do not fit each other.
 Readings read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source = {});

@@ -62,6 +62,14 @@ const Section& compare_schema() {
             {"pair", Type::flag, none, "", defaulted, "false",
                 "Renders of two arms with the same number in their names share their random numbers.",
                 to<&ComparePlan::pair>},
+            {"align", Type::word, none, "", defaulted, "\"windows\"",
+                "windows: renders whose data windows differ are refused; display: each is placed in its display "
+                "window, with 0 outside of its data window.",
+                to<&ComparePlan::align>, {"windows", "display"}},
+            {"crop", Type::flag, none, "", defaulted, "false",
+                "Compare the pixels that the data windows of all renders share; regions are counted from their "
+                "bottom-left.",
+                to<&ComparePlan::crop>},
             {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1", "Of photographs.",
                 to<&ComparePlan::exposure>},
             {"theme", Type::word, none, "", defaulted, "\"dark\"", "Ground and inks of plates.",

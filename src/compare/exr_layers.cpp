@@ -1,0 +1,171 @@
+// Layers are what is before the last '.', '/' or ':' of a channel's name (OpenEXR's own rule has '.' alone).
+#include "compare/exr_layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "base/errors.h"
+#include "base/hint.h"
+#include "base/text.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+using Kind = ExrLayer::Kind;
+
+/// "[Red]" -> r; "" where it is no colour.
+std::string colour_of(const std::string& word) {
+    std::string name = lower(word);
+    std::erase_if(name, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' '; });
+    static const std::map<std::string, std::string> words = {{"r", "r"}, {"red", "r"}, {"g", "g"}, {"green", "g"},
+        {"b", "b"}, {"blue", "b"}, {"y", "y"}, {"ry", "ry"}, {"by", "by"}, {"x", "x"}, {"z", "z"}};
+    const auto at = words.find(name);
+    return at == words.end() ? "" : at->second;
+}
+
+std::string joined(const std::string& part, const std::string& layer) {
+    return part.empty() || layer.empty() ? part + layer : part + "/" + layer;
+}
+
+/// What an instrument or a mask wrote, by its name: no radiance.
+bool is_data(const std::string& layer) {
+    static constexpr const char* words[] = {"crypto", "normal", "depth", "position", "variance", "motion", "vector",
+        "uv", "albedo", "error", "second_moment", "largest", "horizon", "hits", "stddev", "samplecount", "denois"};
+    const std::string name = lower(layer);
+    return std::any_of(
+        std::begin(words), std::end(words), [&](const char* word) { return name.find(word) != std::string::npos; });
+}
+
+/// Names that renderers give to the beauty.
+bool is_usual(const std::string& layer) {
+    static const std::set<std::string> usual = {
+        "", "rgba", "rgb", "beauty", "combined", "color", "colour", "default", "composite", "c", "ci"};
+    return usual.contains(last_name(layer));
+}
+
+/// Three numbers called x, y and z are a position or a direction more often than a colour.
+bool is_xyz_colour(const std::string& layer) {
+    const std::string name = last_name(layer);
+    return is_usual(layer) || name == "xyz" || name == "ciexyz" || name == "cie_xyz";
+}
+
+void add_layers(std::vector<ExrLayer>& out, const ExrPart& part, bool alone) {
+    const std::string part_name = alone ? "" : part.name;
+    for (const auto& [prefix, colours] : exr_channels(part)) {
+        ExrLayer layer{Kind::rgb, part.index, joined(part_name, prefix), joined(part.name, prefix), prefix, {}, true};
+        const auto all = [&](std::initializer_list<const char*> names) {
+            std::vector<std::string> channels;
+            for (const char* name : names)
+                if (const auto at = colours.find(name); at != colours.end()) channels.push_back(at->second);
+            return channels.size() == names.size() ? channels : std::vector<std::string>{};
+        };
+        layer.radiance = !is_data(prefix) && !(prefix.empty() && is_data(part_name));
+        if (layer.channels = all({"r", "g", "b"}); !layer.channels.empty()) {
+        } else if (layer.channels = all({"x", "y", "z"}); !layer.channels.empty()) {
+            layer.kind = Kind::xyz, layer.radiance = layer.radiance && is_xyz_colour(layer.name);
+        } else if (layer.channels = all({"y", "ry", "by"}); !layer.channels.empty()) {
+            layer.kind = Kind::luminance_chroma;
+        } else if (layer.channels = all({"y"}); !layer.channels.empty()) {
+            layer.kind = Kind::grey;
+            const bool vector = colours.contains("x") || (colours.contains("z") && !is_usual(layer.name));
+            layer.radiance = layer.radiance && !vector && !colours.contains("ry") && !colours.contains("by") &&
+                lower(prefix) != "luminance";
+        }
+        if (!layer.channels.empty()) out.push_back(std::move(layer));
+    }
+}
+
+std::string names_of(const std::vector<ExrLayer>& layers) {
+    std::vector<std::string> names;
+    for (const ExrLayer& layer : layers)
+        if (layer.radiance)
+            names.push_back(layer.name.empty() ? "(channels without a layer)" : fmt::format("'{}'", layer.name));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string channels_found(const ExrFile& file) {
+    constexpr std::size_t most = 40;
+    std::vector<std::string> names;
+    for (const ExrPart& part : file.parts())
+        for (const ExrChannel& c : part.channels)
+            names.push_back(printable(file.parts().size() > 1 ? joined(part.name, c.name) : c.name, 80));
+    const std::size_t all = names.size();
+    names.resize(std::min(all, most));
+    return fmt::format("{}{}", fmt::join(names, ", "), all > most ? fmt::format(" and {} more", all - most) : "");
+}
+
+/// The beauty: the only layer, or the only one with a usual name; channels without a layer before all others.
+const ExrLayer* beauty(const std::vector<ExrLayer>& layers) {
+    std::vector<const ExrLayer*> all, usual;
+    for (const ExrLayer& layer : layers) {
+        if (!layer.radiance) continue;
+        if (layer.name.empty()) return &layer;
+        all.push_back(&layer);
+        if (is_usual(layer.name)) usual.push_back(&layer);
+    }
+    if (all.size() == 1) return all[0];
+    return usual.size() == 1 ? usual[0] : nullptr;
+}
+
+}  // namespace
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::string last_name(const std::string& layer) {
+    const std::string name = lower(layer);
+    const std::size_t at = name.find_last_of("./:");
+    return at == std::string::npos ? name : name.substr(at + 1);
+}
+
+std::map<std::string, ColourChannels> exr_channels(const ExrPart& part) {
+    std::map<std::string, ColourChannels> out;
+    for (const ExrChannel& channel : part.channels) {
+        const std::string& name = channel.name;
+        std::size_t cut = name.find_last_of("./:");
+        if (const std::size_t line = name.rfind('_');
+            cut == std::string::npos && line != std::string::npos && !colour_of(name.substr(line + 1)).empty())
+            cut = line;
+        const std::string word = cut == std::string::npos ? name : name.substr(cut + 1), colour = colour_of(word);
+        const std::string layer = cut == std::string::npos ? "" : name.substr(0, cut);
+        // Of "R" and "red" in one layer the first stays, capitals before all: the file's order.
+        out[layer].emplace(colour.empty() ? lower(word) : colour, name);
+    }
+    return out;
+}
+
+ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& wanted) {
+    std::vector<ExrLayer> layers;
+    bool deep = false;
+    for (const ExrPart& part : file.parts()) {
+        if (part.deep) deep = true;
+        else add_layers(layers, part, file.parts().size() == 1);
+    }
+    const auto fail = [&](const std::string& why) {
+        throw InputError({path, 0, 0}, fmt::format("{}; channels found: {}", why, channels_found(file)));
+    };
+    if (deep && layers.empty()) fail("deep images are not supported: expected an image of one colour a pixel");
+    if (wanted.empty()) {
+        if (const ExrLayer* found = beauty(layers)) return *found;
+        if (names_of(layers).empty())
+            fail("expected channels R, G and B, or Y, or X, Y and Z, found none that hold radiance");
+        fail("several layers hold radiance: say which with --layer: " + names_of(layers));
+    }
+    std::vector<const ExrLayer*> found;
+    for (const ExrLayer& layer : layers)
+        if (layer.name == wanted || layer.alone == wanted) found.push_back(&layer);
+    if (found.size() == 1) return *found[0];
+    if (found.size() > 1) fail(fmt::format("{} layers are called '{}'", found.size(), wanted));
+    std::vector<std::string> names;
+    for (const ExrLayer& layer : layers) names.push_back(layer.name);
+    fail(fmt::format("no layer '{}': expected one of {}{}", wanted, names_of(layers), did_you_mean(wanted, names)));
+    return {};
+}
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,91 @@
+#include "compare/open_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "base/errors.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+const char* kind_of(mode_t mode) {
+    return S_ISDIR(mode) ? "a folder"
+        : S_ISFIFO(mode) ? "a pipe, and renders are read twice: write it to a file"
+        : S_ISSOCK(mode) ? "a socket"
+                         : "a device";
+}
+
+FileState state_of(const struct stat& s) {
+    FileState out;
+    out.device = static_cast<std::uint64_t>(s.st_dev), out.inode = static_cast<std::uint64_t>(s.st_ino);
+    out.size = static_cast<std::uint64_t>(std::max<off_t>(0, s.st_size));
+#ifdef __APPLE__
+    const timespec& t = s.st_mtimespec;
+#else
+    const timespec& t = s.st_mtim;
+#endif
+    out.modified = static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+    return out;
+}
+
+}  // namespace
+
+OpenFile::OpenFile(const std::string& path) : path_(path) {
+    struct stat s{};
+    const auto check = [&](int failed) {
+        if (failed) fail(std::string("expected a render that can be read: ") + std::strerror(errno));
+        if (!S_ISREG(s.st_mode)) fail(std::string("expected a render, found ") + kind_of(s.st_mode));
+    };
+    check(::stat(path.c_str(), &s));  // before open(), which waits for a pipe and may start a device
+    file_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (file_ < 0) check(-1);
+    try {
+        check(::fstat(file_, &s));
+    } catch (...) {
+        ::close(file_);
+        throw;
+    }
+    state_ = state_of(s);
+}
+
+OpenFile::~OpenFile() { ::close(file_); }
+
+void OpenFile::fail(const std::string& message) const { throw InputError({path_, 0, 0}, message); }
+
+std::size_t OpenFile::read_some(std::uint64_t from, std::span<char> to) const {
+    std::size_t done = 0;
+    while (done < to.size()) {
+        const ssize_t n = ::pread(file_, to.data() + done, to.size() - done, static_cast<off_t>(from + done));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail(std::string("expected a render that can be read: ") + std::strerror(errno));
+        if (n == 0) break;
+        done += static_cast<std::size_t>(n);
+    }
+    return done;
+}
+
+void OpenFile::read(std::uint64_t from, std::span<char> to) const {
+    if (const std::size_t n = read_some(from, to); n < to.size())
+        fail(fmt::format("expected {} bytes from byte {} on, found {}: the file is cut off", to.size(), from, n));
+}
+
+void OpenFile::expect_bytes(std::uint64_t from, std::uint64_t bytes, const std::string& of) const {
+    const std::uint64_t there = from < size() ? size() - from : 0;
+    if (there < bytes)
+        fail(fmt::format(
+            "the file is cut off: {}, expected {} bytes from byte {} on, found {}", of, bytes, from, there));
+}
+
+void OpenFile::expect_unchanged() const {
+    struct stat s{};
+    if (::fstat(file_, &s) || state_of(s) != state_) fail("the file was changed while it was read");
+}
+
+}  // namespace crescent::inline comparing

@@ -1,0 +1,234 @@
+// OpenEXR files of every kind: pixels as OpenEXR itself reads them, names of channels, primaries, and what is refused.
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <limits>
+
+#include "compare/render.h"
+#include "compare/scratch_folder.h"
+#include "compare/written_exr.h"
+
+namespace crescent::inline comparing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::vector<Imf::Compression> compressions = {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+    Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
+    Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION};
+
+class ExrFiles : public ScratchFolder {
+protected:
+    std::string file(const WrittenExr& exr) {
+        const std::string name = path(fmt::format("{}.exr", count_++));
+        exr.write(name);
+        return name;
+    }
+    std::string refused(const WrittenExr& exr, const std::string& layer = "") {
+        return refusal([&] { return read_render(file(exr), layer); });
+    }
+    /// A channel as OpenEXR's C++ library reads it, bottom row first.
+    static std::vector<float> reference(const std::string& name, const char* channel) {
+        Imf::InputFile in(name.c_str());
+        const Imath::Box2i d = in.header().dataWindow();
+        const int w = d.max.x - d.min.x + 1, h = d.max.y - d.min.y + 1;
+        std::vector<float> plane(static_cast<std::size_t>(w * h));
+        Imf::FrameBuffer buffer;
+        buffer.insert(channel,
+            Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(plane.data() + (h - 1) * w - d.min.x) + 4L * w * d.min.y, 4,
+                static_cast<std::size_t>(-4L * w)));
+        in.setFrameBuffer(buffer);
+        in.readPixels(d.min.y, d.max.y);
+        return plane;
+    }
+    int count_ = 0;
+};
+
+TEST_F(ExrFiles, EveryCompressionHasThePixelsThatOpenExrReads) {
+    for (const Imf::Compression compression : compressions)
+        for (const Imf::PixelType type : {Imf::FLOAT, Imf::HALF, Imf::UINT})
+            for (const bool tiled : {false, true}) {
+                SCOPED_TRACE(fmt::format(
+                    "compression {} type {} tiled {}", static_cast<int>(compression), static_cast<int>(type), tiled));
+                WrittenExr exr;
+                exr.channels = {"A", "B", "G", "R"};
+                exr.data = {{-3, 5}, {36, 60}};
+                exr.compression = compression, exr.type = type, exr.tiled = tiled;
+                const std::string name = file(exr);
+                const Render r = read_render(name);
+                ASSERT_EQ(r.size(), 40u * 56u);
+                EXPECT_EQ(r.r, reference(name, "R"));
+                EXPECT_EQ(r.g, reference(name, "G"));
+                EXPECT_EQ(r.b, reference(name, "B"));
+                if (compression == Imf::NO_COMPRESSION && type == Imf::FLOAT)
+                    EXPECT_EQ(r.r[0], WrittenExr::value(3, -3, 60));
+            }
+}
+
+TEST_F(ExrFiles, ColoursAreKnownByTheirNames) {
+    const std::vector<std::vector<std::string>> spellings = {{"rgba.red", "rgba.green", "rgba.blue"},
+        {"C.r", "C.g", "C.b"}, {"Beauty.[red]", "Beauty.[green]", "Beauty.[blue]"}, {"Color.R", "Color.G", "Color.B"},
+        {"red", "green", "blue"}, {"RED", "Green", "bLUE"},
+        {"RenderLayer.Combined.R", "RenderLayer.Combined.G", "RenderLayer.Combined.B"},
+        {"beauty_R", "beauty_G", "beauty_B"}, {"a.b.c.R", "a.b.c.G", "a.b.c.B"}};
+    for (const auto& names : spellings) {
+        SCOPED_TRACE(names[0]);
+        WrittenExr exr;
+        exr.channels = names;
+        exr.constant = {{"depth.Z", 7}, {"N.X", 1}, {"N.Y", 1}, {"N.Z", 1}, {"motion.X", 1}, {"motion.Y", 1}};
+        const std::string name = file(exr);
+        const Render r = read_render(name);
+        EXPECT_EQ(r.r, reference(name, names[0].c_str()));
+        EXPECT_EQ(r.g, reference(name, names[1].c_str()));
+        EXPECT_EQ(r.b, reference(name, names[2].c_str()));
+    }
+}
+
+TEST_F(ExrFiles, SeveralLayersAreNamedAndOneIsAskedFor) {
+    WrittenExr exr;
+    exr.channels = {"direct.R", "direct.G", "direct.B", "indirect.R", "indirect.G", "indirect.B"};
+    EXPECT_THAT(refused(exr), AllOf(HasSubstr("--layer"), HasSubstr("'direct', 'indirect'"), HasSubstr("indirect.G")));
+    EXPECT_EQ(read_render(file(exr), "indirect").r[0], WrittenExr::value(3, 0, 12));
+    exr.channels = {"beauty.R", "beauty.G", "beauty.B", "rgba.R", "rgba.G", "rgba.B"};  // both could be meant
+    EXPECT_THAT(refused(exr), HasSubstr("--layer"));
+    exr.channels = {"beauty.R", "beauty.G", "beauty.B", "diffuse.R", "diffuse.G", "diffuse.B"};
+    EXPECT_EQ(read_render(file(exr)).layer, "beauty");
+    exr.channels = {"P.X", "P.Y", "P.Z"};  // positions
+    EXPECT_THAT(refused(exr), HasSubstr("channels found: P.X, P.Y, P.Z"));
+    EXPECT_EQ(refused(exr, "P"), "");
+    exr.channels = {"u", "v", "objectId"};
+    EXPECT_THAT(refused(exr), HasSubstr("channels found: objectId, u, v"));
+}
+
+TEST_F(ExrFiles, XyzBecomesRgbOfTheSameLuminance) {
+    WrittenExr exr;
+    exr.channels = {};
+    exr.constant = {{"X", 0.4f}, {"Y", 0.5f}, {"Z", 0.3f}};
+    const Render r = read_render(file(exr));
+    EXPECT_NEAR(r.y(0), 0.5, 1e-6);
+    const Rgb xyz = transformed(rgb_to_xyz({}), {r.r[0], r.g[0], r.b[0]});
+    EXPECT_NEAR(xyz[0], 0.4, 1e-6);
+    EXPECT_NEAR(xyz[2], 0.3, 1e-6);
+    exr.constant = {{"Y", 0.5f}, {"Z", 30.0f}};  // grey and a depth
+    EXPECT_EQ(read_render(file(exr)).g[0], 0.5f);
+}
+
+TEST_F(ExrFiles, LuminanceFollowsThePrimaries) {
+    WrittenExr exr;
+    exr.channels = {};
+    exr.constant = {{"R", 1.0f}, {"G", 2.0f}, {"B", 4.0f}};
+    EXPECT_NEAR(read_render(file(exr)).y(0), 0.2126 + 2 * 0.7152 + 4 * 0.0722, 1e-6);
+    Imf::addChromaticities(exr.more, {{0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.32168f, 0.33767f}});
+    EXPECT_NEAR(read_render(file(exr)).y(0), 0.2722287 + 2 * 0.6740818 + 4 * 0.0536895, 1e-5);
+    exr.more = {};
+    Imf::addChromaticities(exr.more, {{0.3f, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}});
+    EXPECT_THAT(refused(exr), HasSubstr("'chromaticities'"));
+}
+
+TEST_F(ExrFiles, LuminanceAndChromaAreReadByOpenExr) {
+    const std::string name = path("yc.exr");
+    std::vector<Imf::Rgba> pixels(32 * 16, Imf::Rgba(0.5f, 0.25f, 0.125f));
+    {
+        Imf::RgbaOutputFile out(name.c_str(), 32, 16, Imf::WRITE_YC);
+        out.setFrameBuffer(pixels.data(), 1, 32);
+        out.writePixels(16);
+    }
+    const Render r = read_render(name);
+    ASSERT_EQ(r.size(), pixels.size());
+    EXPECT_NEAR(r.r[100], 0.5, 5e-3);
+    EXPECT_NEAR(r.g[100], 0.25, 5e-3);
+    EXPECT_NEAR(r.b[100], 0.125, 5e-3);
+}
+
+TEST_F(ExrFiles, DeepImagesAreNotSupported) {
+    const std::string name = path("deep.exr");
+    {
+        Imf::Header header(2, 1);
+        header.setType(Imf::DEEPSCANLINE);
+        header.compression() = Imf::ZIPS_COMPRESSION;
+        header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+        Imf::DeepScanLineOutputFile out(name.c_str(), header);
+        unsigned counts[2] = {1, 1};
+        float a = 1, b = 2;
+        float* samples[2] = {&a, &b};
+        Imf::DeepFrameBuffer buffer;
+        buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts), 4, 8));
+        buffer.insert("R", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples), 8, 16, 4));
+        out.setFrameBuffer(buffer);
+        out.writePixels(1);
+    }
+    EXPECT_THAT(refusal([&] { return read_render(name); }), HasSubstr("deep images are not supported"));
+}
+
+TEST_F(ExrFiles, CountsAndTimesAreFiniteAndNotNegative) {
+    const float bad[] = {std::numeric_limits<float>::infinity(), std::nanf(""), -1.0f};
+    for (const float value : bad) {
+        WrittenExr exr;
+        exr.more.insert("samplesPerPixel", Imf::FloatAttribute(value));
+        EXPECT_THAT(refused(exr), HasSubstr("'samplesPerPixel'"));
+        exr.more = {};
+        exr.more.insert("cycles.ViewLayer.render_time", Imf::DoubleAttribute(static_cast<double>(value)));
+        EXPECT_THAT(refused(exr), HasSubstr("render_time"));
+        exr.more = {};
+        exr.constant = {{"samples", value}};
+        EXPECT_THAT(refused(exr), HasSubstr("'samples'"));
+    }
+    for (const char* text : {"nan", "inf", "-3", "1e999", "01:nan"}) {
+        WrittenExr exr;
+        exr.more.insert("renderTime", Imf::StringAttribute(text));
+        EXPECT_THAT(refused(exr), HasSubstr("'renderTime'")) << text;
+    }
+    WrittenExr exr;
+    exr.more.insert("spp", Imf::IntAttribute(64));
+    exr.more.insert("renderTime", Imf::StringAttribute("unknown"));
+    EXPECT_EQ(read_render(file(exr)).spp, 64);
+}
+
+/// The dataWindow attribute of a file with other corners.
+std::string with_data_window(std::string bytes, int x1, int y1) {
+    const std::string key = std::string("dataWindow\0box2i\0", 17);
+    const std::size_t at = bytes.find(key) + key.size() + 4 + 8;
+    std::memcpy(&bytes[at], &x1, 4), std::memcpy(&bytes[at + 4], &y1, 4);
+    return bytes;
+}
+
+TEST_F(ExrFiles, HeadersThatPromiseMoreThanTheFileHoldsAreRefused) {
+    for (const Imf::Compression compression : compressions)
+        for (const Imf::PixelType type : {Imf::FLOAT, Imf::HALF}) {
+            SCOPED_TRACE(fmt::format("compression {} type {}", static_cast<int>(compression), static_cast<int>(type)));
+            WrittenExr exr;
+            exr.data = exr.display = {{0, 0}, {31, 15}};
+            exr.compression = compression, exr.type = type;
+            const std::string bytes = bytes_of(file(exr));
+            ASSERT_EQ(refusal([&] { return read_render(write("same.exr", with_data_window(bytes, 31, 15))); }), "");
+            for (const auto& [x, y] : {std::pair{63, 15}, {31, 31}, {14090263, 15}, {31, 2147483647}, {-1, 15}})
+                EXPECT_THAT(refusal([&] { return read_render(write("more.exr", with_data_window(bytes, x, y))); }),
+                    HasSubstr("more.exr: "))
+                    << x << " " << y;
+        }
+}
+
+TEST_F(ExrFiles, NoBeginningOfAFileIsAFile) {
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION}) {
+        WrittenExr exr;
+        exr.compression = compression;
+        const std::string bytes = bytes_of(file(exr));
+        for (std::size_t n = 0; n < bytes.size(); n += n < 500 ? 7 : 31)
+            EXPECT_THAT(
+                refusal([&] { return read_render(write("cut.exr", bytes.substr(0, n))); }), HasSubstr("cut.exr: "))
+                << n;
+    }
+}
+
+}  // namespace
+}  // namespace crescent::inline comparing
