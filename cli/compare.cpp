@@ -46,6 +46,26 @@ void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std
     }
 }
 
+/// "LAYER" of all files, or "NAME=LAYER" of an arm or the reference, which overrides it. Layers may have a '=' too.
+void layers_of(std::vector<CompareFlag>& out, const CompareFlags& flags) {
+    const std::vector<std::string> arms = arms_of(flags);
+    const auto named = [&](const std::string& text) {
+        const std::string name = text.substr(0, text.find('='));
+        return name.size() < text.size() && (name == "reference" || std::count(arms.begin(), arms.end(), name));
+    };
+    const auto add = [&](const std::string& name, const std::string& layer, const std::string& text) {
+        if (name == "reference") out.push_back({{"reference_layer"}, layer, false, "--layer " + text});
+        else out.push_back({{"arms", name, "layer"}, layer, false, "--layer " + text});
+    };
+    for (const std::string& text : flags.layers) {
+        if (named(text)) continue;
+        for (const std::string& arm : arms) add(arm, text, text);
+        add("reference", text, text);
+    }
+    for (const std::string& text : flags.layers)
+        if (named(text)) add(text.substr(0, text.find('=')), text.substr(text.find('=') + 1), text);
+}
+
 std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     std::vector<CompareFlag> out;
     for (const std::string& text : f.arms) {
@@ -61,19 +81,7 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
         const auto [name, file] = cut("--mask", text, "NAME=FILE");
         out.push_back({{"masks", name, "file"}, file, false, "--mask " + text});
     }
-    for (const std::string& text : f.layers) {
-        if (text.find('=') == std::string::npos) {  // of all
-            for (const std::string& arm : arms_of(f))
-                out.push_back({{"arms", arm, "layer"}, text, false, "--layer " + text});
-            out.push_back({{"reference_layer"}, text, false, "--layer " + text});
-        }
-    }
-    for (const std::string& text : f.layers) {
-        if (text.find('=') == std::string::npos) continue;
-        const auto [name, layer] = cut("--layer", text, "NAME=LAYER");
-        if (name == "reference") out.push_back({{"reference_layer"}, layer, false, "--layer " + text});
-        else out.push_back({{"arms", name, "layer"}, layer, false, "--layer " + text});
-    }
+    layers_of(out, f);
     per_arm(out, f, f.spp, "--spp", "spp");
     per_arm(out, f, f.seconds, "--seconds", "seconds");
     for (const std::string& text : f.assertions)

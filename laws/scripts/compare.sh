@@ -125,3 +125,48 @@ bad "pixels as the renders have" --arm 'a=s[789]/films/uniform.exr' --layer a=n=
 bad "--pair: expected" --arm 'a=s[78]/films/uniform.exr' --arm 'b=s[789]/films/cosine.exr' --layer a=n=16 \
     --layer b=n=16 --pair
 bad "did you mean 'same'?" --arm 'a=s[78]/films/uniform.exr' --layer a=n=16 --expect sane
+
+# Windows that differ are aligned or cropped, and --layer without an arm is of all files.
+printf 'PF\n2 2\n-1.0\n%048d' 0 >two.pfm
+printf 'PF\n2 2\n-1.0\n%048d' 7 >other.pfm
+expect 0 "$CRESCENT" compare --arm a=two.pfm --arm b=other.pfm --align display --out aligned --quiet
+printf 'PF\n2 1\n-1.0\n%024d' 3 >row.pfm
+bad "expected 2 x 2 pixels as in two.pfm" --arm a=two.pfm --arm b=row.pfm
+expect 0 "$CRESCENT" compare --arm a=two.pfm --arm b=row.pfm --crop --out cropped --quiet
+grep -q '"height": 1,' cropped/metrics.json || die "not cropped: $(head -n 20 cropped/metrics.json)"
+grep -q -- '--crop' cropped/report.html || die "the report's command lacks --crop"
+bad "expected one of them" --arm a=two.pfm --arm b=row.pfm --crop --align display
+bad "expected one of windows, display" --arm a=two.pfm --align left
+expect 0 "$CRESCENT" compare --arm 'u=s[789]/films/uniform.exr' --arm 'c=s[789]/films/cosine.exr' --layer n=16 \
+    --layer c=n=4 --out layered --quiet
+grep -q '"layer": "n=16"' layered/metrics.json && grep -q '"layer": "n=4"' layered/metrics.json || die "not the layers"
+mkfifo pipe
+bad "found a pipe" --arm a=pipe
+bad "found a device" --arm a=/dev/zero
+
+# Headers of a few bytes that promise gigabytes: refused before memory is taken.
+printf 'PF\n60000 60000\n-1.0\n1234' >huge.pfm
+printf '#?RADIANCE\n\n-Y 60000 +X 60000\n1234' >huge.hdr
+printf '\223NUMPY\1\0\107\0%-70s\n1234' "{'descr': '<f8', 'fortran_order': False, 'shape': (60000, 60000, 4)}" \
+    >huge.npy
+/usr/bin/python3 - <<'END' || die "no huge.exr"
+import struct
+exr = open("s7/films/uniform.exr", "rb").read()
+key, other = b"dataWindow\0box2i\0", b"DataWindow\0box2i\0"
+while key in exr:  # its lower right corner is 4 + 8 bytes behind
+    at = exr.index(key)
+    corner = at + len(key) + 12
+    exr = exr[:at] + other + exr[at + len(key):corner] + struct.pack("<2i", 59999, 59999) + exr[corner + 8:]
+open("huge.exr", "wb").write(exr.replace(b"DataWindow\0", b"dataWindow\0"))
+END
+expect 0 /usr/bin/python3 - "$CRESCENT" <<'END'
+import os, resource, subprocess, sys
+for name in ("huge.pfm", "huge.hdr", "huge.npy", "huge.exr"):
+    for way in (["--arm", f"a={name}"], ["--arm", f"a={name}", "--layer", "n=16"],
+                ["--arm", "a=s[789]/films/uniform.exr", "--layer", "a=n=16", "--reference", name]):
+        call = subprocess.run([sys.argv[1], "compare", *way, "--out", "nowhere"], capture_output=True, text=True)
+        assert call.returncode == 2 and name + ":" in call.stderr, (way, call)
+        assert not os.path.exists("nowhere"), way
+peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss  # KiB, of the largest of them
+assert peak < 1 << 20, peak
+END

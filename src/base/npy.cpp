@@ -1,3 +1,4 @@
+// NumPy's format: a magic word, a version, and a Python dictionary of the array's type and shape.
 #include "base/npy.h"
 
 #include <fmt/format.h>

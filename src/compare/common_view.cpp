@@ -1,3 +1,4 @@
+// What the first render has, all others must have, or be brought to.
 #include "compare/common_view.h"
 
 #include <fmt/format.h>

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "compare/renders.h"
-#include "compare/scratch_folder.h"
-#include "compare/written_exr.h"
+#include "compare/scratch_folder_test.h"
+#include "compare/written_exr_test.h"
 
 namespace crescent::inline comparing {
 namespace {

@@ -1,3 +1,4 @@
+// Chunk by chunk: OpenEXR's table of offsets, what each chunk must hold at least, and what it holds.
 #include "compare/exr_chunks.h"
 
 #include <fmt/format.h>

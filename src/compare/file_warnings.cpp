@@ -1,3 +1,4 @@
+// Kinds of warnings in the order in which they come.
 #include "compare/file_warnings.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// POSIX files: stat() before open(), pread() after it.
 #include "compare/open_file.h"
 
 #include <fcntl.h>

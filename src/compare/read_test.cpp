@@ -13,8 +13,8 @@
 
 #include "base/npy.h"
 #include "compare/render.h"
-#include "compare/scratch_folder.h"
-#include "compare/written_exr.h"
+#include "compare/scratch_folder_test.h"
+#include "compare/written_exr_test.h"
 
 namespace crescent::inline comparing {
 namespace {

@@ -1,3 +1,4 @@
+// Lines out of the first 64 KiB of a file.
 #include "compare/text_header.h"
 
 #include <fmt/format.h>

@@ -1,15 +1,14 @@
-// CSV with a header by its columns' names, in any order; NPY (format 1 to 3) of <f4 or <f8, two-dimensional, by its
+// CSV with a header by its columns' names, in any order; NPY of floats, two-dimensional, by its
 // number of columns. Numbers that overflow are infinite, those that underflow are 0. Every mistake is named with line
 // and column.
 #include "subjects/table_file.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
-#include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 
+#include "base/npy.h"
 #include "base/text.h"
 #include "subjects/pipe_text.h"
 
@@ -86,91 +85,34 @@ void name_columns(FileDiagnostics& in, const NumberTable& t, const std::vector<s
     in.throw_if_any();
 }
 
-struct NpyHeader {
-    std::size_t rows = 0, columns = 0, size = 0;
-    bool by_column = false;
-};
-
-std::string_view without_blanks(std::string_view s) {
-    return s.substr(std::min(s.find_first_not_of(" \t\r\n"), s.size()));
-}
-
-/// What stands after a key of the header, which is a Python dictionary.
-std::string_view value_of(std::string_view header, std::string_view key) {
-    const std::size_t at = header.find(key);
-    return at == std::string_view::npos ? std::string_view() : without_blanks(header.substr(at + key.size()));
-}
-
-bool take(std::string_view& s, char c) {
-    if (!s.starts_with(c)) return false;
-    s = without_blanks(s.substr(1));
-    return true;
-}
-
-/// A count of at most fifteen digits.
-bool take_count(std::string_view& s, std::size_t& out) {
-    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), out);
-    if (error != std::errc{} || end - s.data() > 15) return false;
-    s = without_blanks(s.substr(static_cast<std::size_t>(end - s.data())));
-    return true;
-}
-
-NpyHeader npy_header(FileDiagnostics& in, std::istream& file) {
-    char magic[10];
-    if (!file.read(magic, 10) || std::memcmp(magic, "\x93NUMPY", 6) != 0)
-        in.add(0, 0, "not an NPY file"), in.throw_if_any();
-    const auto byte = [](char c) { return static_cast<std::uint32_t>(static_cast<unsigned char>(c)); };
-    std::uint32_t length = byte(magic[8]) | byte(magic[9]) << 8;
-    if (magic[6] > 1) {
-        char more[2] = {};
-        file.read(more, 2);
-        length |= byte(more[0]) << 16 | byte(more[1]) << 24;
-    }
-    if (length > 65536) in.add(0, 0, "the NPY header is too long"), in.throw_if_any();
-    std::string header(length, ' ');
-    file.read(header.data(), static_cast<std::streamsize>(length));
-    NpyHeader out;
-    std::string_view type = value_of(header, "'descr':"), shape = value_of(header, "'shape':");
-    if (type.starts_with("'<f4'")) out.size = 4;
-    if (type.starts_with("'<f8'")) out.size = 8;
-    const bool known = out.size > 0 && take(shape, '(') && take_count(shape, out.rows) && take(shape, ',') &&
-        take_count(shape, out.columns) && (take(shape, ','), take(shape, ')'));
-    if (!known)
-        in.add(0, 0,
-            fmt::format("expected a two-dimensional array of <f4 or <f8, not {}", printable(trimmed(header), 100))),
-            in.throw_if_any();
-    out.by_column = value_of(header, "'fortran_order':").starts_with("True");
-    return out;
-}
-
 NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<std::vector<std::string>>& layouts) {
-    const NpyHeader h = npy_header(in, file);
+    std::string first(longest_npy_header, '\0');
+    file.read(first.data(), static_cast<std::streamsize>(first.size()));
+    first.resize(static_cast<std::size_t>(file.gcount()));
+    const NpyHeader h = read_npy_header(in.path, first);
+    const auto refuse = [&](const std::string& message) { in.add(0, 0, message), in.throw_if_any(); };
+    if (h.shape.size() != 2)
+        refuse(fmt::format("expected a two-dimensional array, not one of {} dimensions", h.shape.size()));
+    const std::size_t rows = h.shape[0], columns = h.shape[1];
     NumberTable t;
     std::string expected;
     for (const auto& layout : layouts) {
-        if (layout.size() == h.columns) t.columns = layout;
+        if (layout.size() == columns) t.columns = layout;
         expected += fmt::format("{}{} ({})", expected.empty() ? "" : " or ", layout.size(), fmt::join(layout, ","));
     }
-    if (t.columns.empty())
-        in.add(0, 0, fmt::format("expected {} columns, not {}", expected, h.columns)), in.throw_if_any();
-    const auto start = file.tellg();
+    if (t.columns.empty()) refuse(fmt::format("expected {} columns, not {}", expected, columns));
+    file.clear();
     file.seekg(0, std::ios::end);
-    const std::size_t bytes = static_cast<std::size_t>(file.tellg() - start);
-    if (bytes / h.size / h.columns < h.rows)
-        in.add(0, 0, fmt::format("the file ends in row {} of {}", bytes / h.size / h.columns + 1, h.rows)),
-            in.throw_if_any();
-    file.seekg(start);
-    std::vector<char> raw(h.rows * h.columns * h.size);
+    const std::size_t bytes = static_cast<std::size_t>(file.tellg()) - h.end;
+    if (bytes / h.bytes / columns < rows)
+        refuse(fmt::format("the file ends in row {} of {}", bytes / h.bytes / columns + 1, rows));
+    file.seekg(static_cast<std::streamoff>(h.end));
+    std::vector<char> raw(rows * columns * h.bytes);
     file.read(raw.data(), static_cast<std::streamsize>(raw.size()));
-    t.values.resize(h.rows * h.columns);
-    for (std::size_t r = 0; r < h.rows; ++r)
-        for (std::size_t c = 0; c < h.columns; ++c) {
-            const char* at = &raw[h.size * (h.by_column ? c * h.rows + r : r * h.columns + c)];
-            float single = 0;
-            double& v = t.values[r * h.columns + c];
-            if (h.size == 4) std::memcpy(&single, at, 4), v = static_cast<double>(single);
-            else std::memcpy(&v, at, 8);
-        }
+    t.values.resize(rows * columns);
+    for (std::size_t r = 0; r < rows; ++r)
+        for (std::size_t c = 0; c < columns; ++c)
+            t.values[r * columns + c] = npy_number(h, &raw[h.bytes * (h.by_column ? c * rows + r : r * columns + c)]);
     return t;
 }
 
