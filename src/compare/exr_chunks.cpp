@@ -47,6 +47,8 @@ struct Decoder {
 
 void keep_message(exr_const_context_t, exr_result_t, const char* message) { said = message ? message : ""; }
 
+void forget_messages() { said.clear(); }
+
 void expect_success(const OpenFile& file, exr_result_t result) {
     if (result == EXR_ERR_SUCCESS) return;
     if (said.empty()) said = exr_get_default_error_message(result);

@@ -13,6 +13,8 @@ namespace crescent::inline comparing {
 void keep_message(exr_const_context_t, exr_result_t, const char* message);
 /// Throws InputError, with what OpenEXR said, where it is no success.
 void expect_success(const OpenFile& file, exr_result_t result);
+/// Drops what was said before, of another file.
+void forget_messages();
 /// Throws it too where something was said all the same: of a broken attribute OpenEXR skips some bytes and reads on.
 void expect_silence(const OpenFile& file);
 

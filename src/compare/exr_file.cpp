@@ -117,6 +117,7 @@ ExrFile::ExrFile(const OpenFile& file) : file_(file) {
     start.user_data = const_cast<OpenFile*>(&file);
     start.read_fn = read_bytes, start.size_fn = file_size;
     start.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    forget_messages();
     expect_success(file, exr_start_read(&context_, file.path().c_str(), &start));
     try {
         expect_silence(file);

@@ -146,6 +146,10 @@ Planes ExrFile::read(const ExrPart& part, const std::vector<std::string>& channe
 }
 
 Planes ExrFile::read_luminance_chroma(const ExrPart& part, const std::string& layer) const {
+    for (const char* channel : {"Y", "RY", "BY"})
+        if (!part.channel(layer.empty() ? channel : layer + "." + channel))
+            file_.fail(fmt::format("expected luminance and chroma in channels Y, RY and BY, found none called '{}{}{}'",
+                layer, layer.empty() ? "" : ".", channel));
     if (part.index > 0) file_.fail("luminance and chroma (Y, RY, BY) are read from the first part of a file alone");
     check(part);
     if (!is_dwa(part))  // the C++ library takes what a chunk lacks for 0

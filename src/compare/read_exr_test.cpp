@@ -27,6 +27,14 @@ const std::vector<Imf::Compression> compressions = {Imf::NO_COMPRESSION, Imf::RL
     Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::B44A_COMPRESSION,
     Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION};
 
+/// The dataWindow attribute of a file with other corners.
+std::string with_data_window(std::string bytes, int x1, int y1) {
+    const std::string key = std::string("dataWindow\0box2i\0", 17);
+    const std::size_t at = bytes.find(key) + key.size() + 4 + 8;
+    std::memcpy(&bytes[at], &x1, 4), std::memcpy(&bytes[at + 4], &y1, 4);
+    return bytes;
+}
+
 class ExrFiles : public ScratchFolder {
 protected:
     std::string file(const WrittenExr& exr) {
@@ -73,6 +81,18 @@ TEST_F(ExrFiles, EveryCompressionHasThePixelsThatOpenExrReads) {
                 if (compression == Imf::NO_COMPRESSION && type == Imf::FLOAT)
                     EXPECT_EQ(r.r[0], WrittenExr::value(3, -3, 60));
             }
+}
+
+TEST_F(ExrFiles, TilesAreReadAtFullResolution) {
+    for (const Imf::LevelMode levels : {Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
+        WrittenExr exr;
+        exr.tiled = true, exr.levels = levels;
+        const Render r = read_render(file(exr));
+        ASSERT_EQ(r.size(), 21u * 13u);
+        for (int y = 0; y < 13; ++y)
+            for (int x = 0; x < 21; ++x)
+                ASSERT_EQ(r.g[static_cast<std::size_t>((12 - y) * 21 + x)], WrittenExr::value(1, x, y));
+    }
 }
 
 TEST_F(ExrFiles, ColoursAreKnownByTheirNames) {
@@ -136,18 +156,30 @@ TEST_F(ExrFiles, LuminanceFollowsThePrimaries) {
 }
 
 TEST_F(ExrFiles, LuminanceAndChromaAreReadByOpenExr) {
-    const std::string name = path("yc.exr");
-    std::vector<Imf::Rgba> pixels(32 * 16, Imf::Rgba(0.5f, 0.25f, 0.125f));
-    {
-        Imf::RgbaOutputFile out(name.c_str(), 32, 16, Imf::WRITE_YC);
-        out.setFrameBuffer(pixels.data(), 1, 32);
-        out.writePixels(16);
+    constexpr int w = 32, h = 38;
+    std::vector<Imf::Rgba> pixels(static_cast<std::size_t>(w * h), Imf::Rgba(0.5f, 0.25f, 0.125f));
+    for (const Imf::Compression compression : compressions) {
+        SCOPED_TRACE(static_cast<int>(compression));
+        const std::string name = path("yc.exr");
+        {
+            Imf::RgbaOutputFile out(name.c_str(), w, h, Imf::WRITE_YC, 1, {0, 0}, 1, Imf::INCREASING_Y, compression);
+            out.setFrameBuffer(pixels.data(), 1, w);
+            out.writePixels(h);
+        }
+        const Render r = read_render(name);
+        ASSERT_EQ(r.size(), pixels.size());
+        for (const std::size_t i : {std::size_t{0}, std::size_t{700}, r.size() - 1}) {
+            EXPECT_NEAR(r.r[i], 0.5, 5e-3);
+            EXPECT_NEAR(r.g[i], 0.25, 5e-3);
+            EXPECT_NEAR(r.b[i], 0.125, 5e-3);
+        }
+        const std::string bytes = bytes_of(name);
+        EXPECT_NE(
+            refusal([&] { return read_render(write("wide.exr", with_data_window(bytes, 2 * w - 1, h - 1))); }), "");
     }
-    const Render r = read_render(name);
-    ASSERT_EQ(r.size(), pixels.size());
-    EXPECT_NEAR(r.r[100], 0.5, 5e-3);
-    EXPECT_NEAR(r.g[100], 0.25, 5e-3);
-    EXPECT_NEAR(r.b[100], 0.125, 5e-3);
+    WrittenExr lower;  // which OpenEXR does not take for luminance and chroma
+    lower.channels = {"y", "ry", "by"};
+    EXPECT_THAT(refused(lower), HasSubstr("channels Y, RY and BY"));
 }
 
 TEST_F(ExrFiles, DeepImagesAreNotSupported) {
@@ -192,14 +224,6 @@ TEST_F(ExrFiles, CountsAndTimesAreFiniteAndNotNegative) {
     exr.more.insert("spp", Imf::IntAttribute(64));
     exr.more.insert("renderTime", Imf::StringAttribute("unknown"));
     EXPECT_EQ(read_render(file(exr)).spp, 64);
-}
-
-/// The dataWindow attribute of a file with other corners.
-std::string with_data_window(std::string bytes, int x1, int y1) {
-    const std::string key = std::string("dataWindow\0box2i\0", 17);
-    const std::size_t at = bytes.find(key) + key.size() + 4 + 8;
-    std::memcpy(&bytes[at], &x1, 4), std::memcpy(&bytes[at + 4], &y1, 4);
-    return bytes;
 }
 
 TEST_F(ExrFiles, HeadersThatPromiseMoreThanTheFileHoldsAreRefused) {

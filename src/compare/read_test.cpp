@@ -267,7 +267,7 @@ TEST_F(Renders, DamagedFilesAreReadOrRefused) {
         }
     std::mt19937 random(1);
     const auto below = [&](std::size_t n) { return n ? random() % n : 0; };
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 1500; ++k) {
         std::string bytes = whole[below(whole.size())];
         for (std::size_t n = 1 + below(3); n-- > 0 && !bytes.empty();) {
             const std::size_t at = below(2) ? below(bytes.size()) : below(std::min<std::size_t>(bytes.size(), 450));

@@ -22,6 +22,7 @@ struct WrittenExr {
     Imf::PixelType type = Imf::FLOAT;
     Imf::Compression compression = Imf::ZIP_COMPRESSION;
     bool tiled = false;
+    Imf::LevelMode levels = Imf::ONE_LEVEL;               // of tiles; the full resolution alone is written
     std::vector<std::pair<std::string, float>> constant;  // channels of one value
     Imf::Header more;                                     // its attributes that the others lack are written too
 
@@ -61,10 +62,10 @@ struct WrittenExr {
             buffer.insert(names[c], Imf::Slice(type, first - corner, size, size * static_cast<std::size_t>(w)));
         }
         if (tiled) {
-            header.setTileDescription(Imf::TileDescription(8, 8));
+            header.setTileDescription(Imf::TileDescription(8, 8, levels));
             Imf::TiledOutputFile file(path.c_str(), header);
             file.setFrameBuffer(buffer);
-            file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+            file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1);
         } else {
             Imf::OutputFile file(path.c_str(), header);
             file.setFrameBuffer(buffer);
