@@ -27,6 +27,30 @@ std::string colour_of(const std::string& word) {
     return at == words.end() ? "" : at->second;
 }
 
+/// "Combined.R" -> Combined, r; what is no colour keeps its name in lower case.
+std::pair<std::string, std::string> layer_and_colour(const std::string& channel) {
+    std::size_t cut = channel.find_last_of("./:");
+    if (const std::size_t line = channel.rfind('_');
+        cut == std::string::npos && line != std::string::npos && !colour_of(channel.substr(line + 1)).empty())
+        cut = line;
+    const std::string word = cut == std::string::npos ? channel : channel.substr(cut + 1), colour = colour_of(word);
+    return {cut == std::string::npos ? "" : channel.substr(0, cut), colour.empty() ? lower(word) : colour};
+}
+
+/// Two channels of the layer's part that are the same colour of it, where the ones taken have not OpenEXR's own names.
+std::pair<std::string, std::string> doubled(const ExrPart& part, const ExrLayer& layer) {
+    for (const std::string& taken : layer.channels) {
+        const auto [prefix, colour] = layer_and_colour(taken);
+        std::string own = colour;
+        for (char& c : own) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        if (taken.ends_with(own)) continue;
+        for (const ExrChannel& other : part.channels)
+            if (other.name != taken && layer_and_colour(other.name) == std::pair{prefix, colour})
+                return {taken, other.name};
+    }
+    return {};
+}
+
 std::string joined(const std::string& part, const std::string& layer) {
     return part.empty() || layer.empty() ? part + layer : part + "/" + layer;
 }
@@ -126,16 +150,9 @@ std::string last_name(const std::string& layer) {
 
 std::map<std::string, ColourChannels> exr_channels(const ExrPart& part) {
     std::map<std::string, ColourChannels> out;
-    for (const ExrChannel& channel : part.channels) {
-        const std::string& name = channel.name;
-        std::size_t cut = name.find_last_of("./:");
-        if (const std::size_t line = name.rfind('_');
-            cut == std::string::npos && line != std::string::npos && !colour_of(name.substr(line + 1)).empty())
-            cut = line;
-        const std::string word = cut == std::string::npos ? name : name.substr(cut + 1), colour = colour_of(word);
-        const std::string layer = cut == std::string::npos ? "" : name.substr(0, cut);
-        // Of "R" and "red" in one layer the first stays, capitals before all: the file's order.
-        out[layer].emplace(colour.empty() ? lower(word) : colour, name);
+    for (const ExrChannel& channel : part.channels) {  // of "R" and "red" in one layer the first stays, capitals first
+        const auto [layer, colour] = layer_and_colour(channel.name);
+        out[layer].emplace(colour, channel.name);
     }
     return out;
 }
@@ -151,8 +168,13 @@ ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::s
         throw InputError({path, 0, 0}, fmt::format("{}; channels found: {}", why, channels_found(file)));
     };
     if (deep && layers.empty()) fail("deep images are not supported: expected an image of one colour a pixel");
+    const auto take = [&](const ExrLayer& layer) {
+        const auto [one, other] = doubled(file.parts()[static_cast<std::size_t>(layer.part)], layer);
+        if (!one.empty()) fail(fmt::format("'{}' and '{}' are the same colour of one layer", one, other));
+        return layer;
+    };
     if (wanted.empty()) {
-        if (const ExrLayer* found = beauty(layers)) return *found;
+        if (const ExrLayer* found = beauty(layers)) return take(*found);
         if (names_of(layers).empty())
             fail("expected channels R, G and B, or Y, or X, Y and Z, found none that hold radiance");
         fail("several layers hold radiance: say which with --layer: " + names_of(layers));
@@ -160,7 +182,7 @@ ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::s
     std::vector<const ExrLayer*> found;
     for (const ExrLayer& layer : layers)
         if (layer.name == wanted || layer.alone == wanted) found.push_back(&layer);
-    if (found.size() == 1) return *found[0];
+    if (found.size() == 1) return take(*found[0]);
     if (found.size() > 1) fail(fmt::format("{} layers are called '{}'", found.size(), wanted));
     std::vector<std::string> names;
     for (const ExrLayer& layer : layers) names.push_back(layer.name);

@@ -126,6 +126,10 @@ TEST_F(ExrFiles, SeveralLayersAreNamedAndOneIsAskedFor) {
     exr.channels = {"P.X", "P.Y", "P.Z"};  // positions
     EXPECT_THAT(refused(exr), HasSubstr("channels found: P.X, P.Y, P.Z"));
     EXPECT_EQ(refused(exr, "P"), "");
+    exr.channels = {"r", "red", "green", "blue"};  // which of two reds?
+    EXPECT_THAT(refused(exr), HasSubstr("'r' and 'red' are the same colour"));
+    exr.channels = {"R", "G", "B", "red"};
+    EXPECT_EQ(read_render(file(exr)).r[0], WrittenExr::value(0, 0, 12));
     exr.channels = {"u", "v", "objectId"};
     EXPECT_THAT(refused(exr), HasSubstr("channels found: objectId, u, v"));
 }
