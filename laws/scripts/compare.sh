@@ -90,6 +90,56 @@ expect 0 /usr/bin/python3 -c 'import json; json.load(open("keys.json"))'
 expect 0 "$CRESCENT" compare --error-rates 3 --quiet
 grep -q '^### How often a bias is found' printed || die "no rates: $(cat printed)"
 
+# Differences that are none of mean Y: values that are not finite, hue at equal luminance, renders of equal seeds.
+expect 0 /usr/bin/python3 - <<'END'
+import random, struct
+def write(name, pixels, side=32):
+    with open(name + ".pfm", "wb") as out:
+        out.write(b"PF\n%d %d\n-1.0\n" % (side, side) + struct.pack("<%df" % len(pixels), *pixels))
+def render(seed):
+    rng = random.Random(seed)
+    return [mean * rng.gammavariate(25, 1 / 25) for _ in range(32 * 32) for mean in (1.0, 0.8, 0.6)]
+for k in range(8):
+    first, other = render(k), render(100 + k)
+    write(f"first{k}", first), write(f"other{k}", other)
+    write(f"nan{k}", [float("nan") if i == 3 * (5 * 32 + 7) + 1 else x for i, x in enumerate(other)])
+    write(f"hue{k}", [x * (1.05, 1, 1 - 0.05 * 0.2126 / 0.0722 / 0.6)[i % 3] for i, x in enumerate(other)])
+    write(f"corner{7 - k}", [x * (1.03 if i < 3 * 32 * 8 and i % 96 < 24 else 1) for i, x in enumerate(first)])
+END
+first=(--arm 'a=first?.pfm' --smallest 0.05 --quiet)
+expect 0 "$CRESCENT" compare "${first[@]}" --arm 'b=other?.pfm' --expect same --out other
+expect 1 "$CRESCENT" compare "${first[@]}" --arm 'b=nan?.pfm' --expect same --out nan
+expect 1 "$CRESCENT" compare "${first[@]}" --arm b=nan0.pfm --expect same --out nan-single
+expect 1 "$CRESCENT" compare "${first[@]}" --arm 'b=nan?.pfm' --region box=0,0,9,9 --assert 'y_mean.box(b) < 9' \
+    --out nan
+expect 0 "$CRESCENT" compare "${first[@]}" --arm 'b=nan?.pfm' --region box=9,9,19,19 --assert 'y_mean.box(b) < 9' \
+    --out nan-elsewhere
+expect 1 "$CRESCENT" compare "${first[@]}" --arm 'b=hue?.pfm' --expect same --out hue
+expect 1 "$CRESCENT" compare "${first[@]}" --arm 'b=corner?.pfm' --expect same --out corner
+expect 0 "$CRESCENT" compare --arm 'a=first?.pfm' --arm 'b=first?.pfm' --expect same --quiet --out alike
+expect 0 "$CRESCENT" compare --arm a=first0.pfm --arm b=first0.pfm --expect same --quiet --out alike
+expect 4 "$CRESCENT" compare --arm a=first0.pfm --arm b=first1.pfm --expect same --quiet --out single
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import json, sys
+import jsonschema
+schema = json.load(open(sys.argv[1] + "/docs/compare.schema.json"))
+bias = {}
+for name in ("other", "nan", "nan-single", "hue", "corner", "alike", "single"):
+    result = json.load(open(name + "/metrics.json"))
+    jsonschema.validate(result, schema)
+    (bias[name],) = result["bias"]  # of b against a
+assert not bias["other"]["differs"] and not bias["other"]["shared_seeds"]["renders"], bias["other"]
+for name, renders in (("nan", 8), ("nan-single", 1)):
+    found = bias[name]["non_finite"]["a"]
+    assert found["pixels"] == 1 and found["first"] == [[7, 5]] and found["renders"] == [renders, renders], found
+assert bias["hue"]["regions"]["frame"]["differs_in"] == ["R", "B"], bias["hue"]["regions"]
+corner = bias["corner"]
+assert corner["paired"] and corner["shared_seeds"]["all"], corner
+assert [(r["a"] + r["b"]) for r in corner["shared_seeds"]["renders"]] == [7] * 8, corner["shared_seeds"]
+assert [0, 0, 7, 7] in [tile["box"] for tile in corner["tiles"]["first"]], corner["tiles"]
+assert bias["alike"]["identical"] and not bias["single"]["differs"] and bias["single"]["single"]["different"] == 1024
+END
+
 # bad WORDS MESSAGE: exit 2, the message, nothing written.
 bad() {
     local message=$1

@@ -1,14 +1,17 @@
-// Do two sets of renders have the same expectation? Welch's t-test over renders, per region, tile and pixel, after
-// Jung, Hanika & Dachsbacher 2020, "Detecting Bias in Monte Carlo Renderers using Welch's t-test", JCGT 9(2); with the
-// chance of a false alarm shared out: half to the regions (Holm), a quarter each to tiles and pixels (false
-// discoveries).
+// Do two sets of renders have the same expectation? Welch's t-test over renders, of Y and each channel, per region,
+// tile and pixel, after Jung, Hanika & Dachsbacher 2020, "Detecting Bias in Monte Carlo Renderers using Welch's
+// t-test", JCGT 9(2); Student's over the differences of renders that share their random numbers. The chance of a false
+// alarm is shared out: half to the regions (Holm), a quarter each to tiles and pixels (false discoveries); within each,
+// half to Y and a sixth to each channel (Bonferroni). Where values are not finite, half of all of it is for them.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "compare/judge.h"
+#include "compare/pairs.h"
 #include "compare/pixel_tests.h"
+#include "compare/quantities.h"
 #include "compare/sides.h"
 #include "pages/numbers.h"
 
@@ -18,111 +21,276 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr double lone_pixel = 0.5;     // a tile whose spread is half one pixel of one render is not judged by a t-test
 constexpr std::size_t named_most = 5;  // places that are named
 
-template <class Read> Values over(const ArmReadings& arm, Read read) {
-    Values out;
-    for (std::size_t k = 0; k < arm.files.size(); ++k) out.push_back(read(arm, k));
-    return out;
-}
+/// The two sides, one for each quantity: with independent renders, and in pairs where there are some.
+struct AllSides {
+    std::vector<Sides> apart, paired;
+
+    const Sides& first() const { return apart[0]; }
+    /// Pairs, unless a few of their pixels decide the mean.
+    const Sides& in_region(std::size_t quantity, std::size_t region) const {
+        const bool pairs = !paired.empty() && paired[quantity].heavy_in(region).empty();
+        return pairs ? paired[quantity] : apart[quantity];
+    }
+    const Sides& in_tile(std::size_t quantity, std::size_t tile) const {
+        const bool pairs = !paired.empty() && !paired[quantity].lone_pixel_in(tile);
+        return pairs ? paired[quantity] : apart[quantity];
+    }
+};
 
 std::string why_not(const Sides& sides, std::size_t region) {
+    if (sides.all.regions[region].pixels.empty()) return "no pixel is finite in every render";
     if (sides.a.files.size() < 2 || (sides.other && sides.b.files.size() < 2))
         return "two renders or more of each arm are needed";
-    if (!sides.pairs.empty() && sides.pairs.size() < 2) return "two pairs or more are needed";
+    if (sides.pairs && sides.pairs->size() < 2) return "two pairs or more are needed";
+    const std::string heavy = sides.heavy_in(region);
     for (const ArmResult* arm : {&sides.arm, sides.other}) {
-        if (!arm || !arm->regions[region].mean_heavy()) continue;
+        if (!arm || arm->name != heavy) continue;
         const auto& needed = arm->regions[region].renders_needed;
-        return "heavy tail: " + arm->name +
+        return "heavy tail: " + heavy +
             (needed ? fmt::format(", from about {:.0f} renders on it could be said", *needed)
                     : ", and from how many renders on it could be said is not known");
     }
-    return "";
+    return heavy.empty() ? "" : "heavy tail: " + heavy;
 }
 
-MeanTest region_test(const Sides& sides, std::size_t r, double level) {
-    const auto read = [&](const ArmReadings& arm, std::size_t k) { return arm.regions[k][r].y; };
-    const Values a = over(sides.a, read), b = over(sides.b, read);
+MeanTest mean_test(const Sides& sides, std::size_t r, double level) {
+    const Values a = sides.region_means(sides.a, r), b = sides.region_means(sides.b, r);
     const PixelSet& set = sides.all.regions[r];
     MeanTest t;
-    t.region = set.name, t.a = mean_interval(a, confidence).mean, t.b = mean_interval(b, confidence).mean;
+    t.region = quantity_names[sides.quantity], t.paired = sides.in_pairs();
+    t.a = mean_interval(a, confidence).mean, t.b = mean_interval(b, confidence).mean;
     t.why = why_not(sides, r);
     if (!t.why.empty()) return t;
     const SetNoise noise = sides.noise_of(set);
     t.welch = sides.test(a, b, noise, false);
-    const double unseen = std::max(sides.unseen(1, noise.pixels, level), sides.unseen(-1, noise.pixels, level));
-    t.smallest = std::max(detectable(t.welch, level), unseen) / std::max(std::fabs(t.b), 1e-300);
+    const double blind = std::max({sides.unseen(1, noise.pixels, level), sides.unseen(-1, noise.pixels, level),
+        sides.blind(t.a, t.b, noise.pixels, noise.own, level)});
+    t.smallest = std::max(detectable(t.welch, level), blind) / std::max(std::fabs(t.b), 1e-300);
+    if (std::isnan(t.welch.p)) t.why = "the noise of one side is not a finite number";
     return t;
 }
 
 /// p is small, and events no brighter than some render's or than the files' bound could have been missed.
 std::string doubted(const Sides& sides, const MeanTest& t, double pixels, double level) {
-    const auto events = sides.needed({{}, t.a, t.b, t.welch.p}, pixels, level);
+    const auto events = sides.needed({{}, t.a, t.b, t.welch.p, sides.quantity}, pixels, level);
     if (!events) return {};
     return fmt::format(
-        "heavy tail: {} is darker by {}, which events brighter than {} in one of {:.0f} pixels could make up that none "
-        "of its renders met",
-        events->arm, percent(std::fabs(t.a - t.b) / std::max(t.a, t.b), 2), figures(events->size, 2), events->one_in);
+        "heavy tail: {} is darker by {}{}, which events brighter than {} in one of {:.0f} pixels could make up that "
+        "none of its renders met",
+        events->arm, percent(std::fabs(t.a - t.b) / std::max(t.a, t.b), 2),
+        sides.quantity == 0 ? "" : fmt::format(" in {}", quantity_names[sides.quantity]), figures(events->size, 2),
+        events->one_in);
 }
 
-void test_regions(const Sides& sides, double alpha, BiasResult& out) {
-    const double level = alpha / static_cast<double>(sides.all.regions.size());
-    Values p;
-    for (std::size_t r = 0; r < sides.all.regions.size(); ++r) {
-        out.regions.push_back(region_test(sides, r, level));
-        p.push_back(out.regions.back().why.empty() ? out.regions.back().welch.p : std::nan(""));
-    }
-    const std::vector<bool> differs = holm(p, alpha);
-    for (std::size_t r = 0; r < p.size(); ++r) {
-        MeanTest& t = out.regions[r];
-        if (!differs[r]) continue;
+/// The tests of one region, a quantity each, and their p with and without what the tests cannot see.
+struct RegionTests {
+    std::vector<MeanTest> each;
+    Values p, seen;
+};
+
+RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
+    RegionTests out;
+    for (std::size_t q = 0; q < all.apart.size(); ++q) {
+        const Sides& sides = all.in_region(q, r);
+        const double share = level * level_share(q, all.apart.size());
+        const MeanTest t = mean_test(sides, r, share);
+        const double p = t.why.empty() ? t.welch.p : std::nan("");
+        out.p.push_back(p), out.seen.push_back(p), out.each.push_back(t);
+        if (std::isnan(p)) continue;
         const SetNoise noise = sides.noise_of(sides.all.regions[r]);
-        const double d = t.a - t.b;
-        t.differs = std::fabs(d) >= sides.blind(t.a, t.b, noise.pixels, noise.a + noise.b, level);
-        if (std::fabs(d) < sides.unseen(d, noise.pixels, level)) t.doubt = doubted(sides, t, noise.pixels, level);
+        if (std::fabs(t.a - t.b) < sides.blind(t.a, t.b, noise.pixels, noise.own, share)) out.seen.back() = 1;
+    }
+    return out;
+}
+
+/// What is small by p alone, and is none of the differences that the tests can see.
+std::string doubt_of(const AllSides& all, const RegionTests& tests, std::size_t r, double level) {
+    const std::size_t q = joint_p(tests.p).quantity;
+    const Sides& sides = all.in_region(q, r);
+    const MeanTest& t = tests.each[q];
+    const double pixels = static_cast<double>(sides.all.regions[r].pixels.size()),
+                 share = level * level_share(q, tests.each.size());
+    const bool missed = std::fabs(t.a - t.b) < sides.unseen(t.a - t.b, pixels, share);
+    return missed ? doubted(sides, t, pixels, share) : "";
+}
+
+void test_regions(const AllSides& all, double alpha, BiasResult& out) {
+    const auto& regions = all.first().all.regions;
+    const double level = alpha / static_cast<double>(regions.size());
+    std::vector<RegionTests> tests;
+    Values p, seen;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        tests.push_back(region_tests(all, r, level));
+        p.push_back(joint_p(tests[r].p).p), seen.push_back(joint_p(tests[r].seen).p);
+    }
+    const std::vector<bool> small = holm(p, alpha), differs = holm(seen, alpha);
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        RegionTests& of = tests[r];
+        for (std::size_t q = 0; q < of.each.size() && differs[r]; ++q)
+            of.each[q].differs = of.seen[q] / level_share(q, of.each.size()) <= std::max(level, seen[r]);
+        MeanTest& t = out.regions.emplace_back(of.each[0]);
+        t.region = regions[r].name, t.joint_p = seen[r];
+        t.channels.assign(of.each.begin() + 1, of.each.end());
+        if (small[r] && !differs[r]) t.doubt = doubt_of(all, of, r, level);
     }
 }
 
-bool alone(const ArmReadings& arm, std::size_t tile) {
-    double sum = 0, largest = 0;
-    for (const auto& render : arm.tiles) sum += render[tile].spread, largest = std::max(largest, render[tile].largest);
-    return sum > 0 && largest > lone_pixel * sum;
-}
+/// The test of one quantity in one tile; p is NaN where it is not made.
+struct TileTest {
+    double p = std::nan(""), difference = std::nan("");
+    bool left_out = false;
+};
 
-void test_tile(const Sides& sides, std::size_t t, double level, PlaceTests& out) {
-    const auto read = [&](const ArmReadings& arm, std::size_t k) { return arm.tiles[k][t].y; };
-    const Values a = over(sides.a, read), b = over(sides.b, read);
-    if (!std::isfinite(a[0]) || !std::isfinite(b[0])) return;  // no finite pixel
+TileTest test_tile(const Sides& sides, std::size_t t, double level) {
+    TileTest out;
+    const Values a = sides.tile_means(sides.a, t), b = sides.tile_means(sides.b, t);
     const SetNoise noise = sides.noise_of(sides.all.tiles.box(t, sides.all.width, sides.all.height));
-    const double d = out.difference[t] = mean_interval(a, confidence).mean - mean_interval(b, confidence).mean;
-    if (alone(sides.a, t) || (sides.other && alone(sides.b, t))) {
-        ++out.left_out;
-        return;
-    }
+    if (noise.pixels == 0) return out;  // none is finite
+    const double d = out.difference = mean_interval(a, confidence).mean - mean_interval(b, confidence).mean;
+    out.left_out = sides.lone_pixel_in(t);
+    if (out.left_out) return out;
     const Welch w = sides.test(a, b, noise, true);
-    if (w.se == 0 && d == 0) return;  // the same constant on both sides
-    out.p[t] = std::fabs(d) < sides.blind(noise.mean_a, noise.mean_b, noise.pixels, noise.a + noise.b, level) ? 1 : w.p;
-    ++out.tested;
+    if (w.se == 0 && d == 0 && !sides.in_pairs()) return out;  // the same constant on both sides
+    const bool blind = std::fabs(d) < sides.blind(noise.mean_b + d, noise.mean_b, noise.pixels, noise.own, level);
+    out.p = blind ? 1 : w.p;
+    out.left_out = std::isnan(out.p);
+    return out;
 }
 
-void test_tiles(const Sides& sides, double alpha, BiasResult& result) {
+void name_tiles(const AllSides& all, BiasResult& result) {
     PlaceTests& out = result.tiles;
-    const std::size_t count = sides.all.tiles.count();
-    out.p.assign(count, std::nan("")), out.difference.assign(count, std::nan(""));
-    for (std::size_t t = 0; t < count; ++t) test_tile(sides, t, alpha / static_cast<double>(count), out);
-    out.differs = discoveries(out.p, alpha, sides.dependent);
     std::vector<std::size_t> found;
-    for (std::size_t t = 0; t < count; ++t)
-        if (out.differs[t]) found.push_back(t);
+    for (std::size_t t = 0; t < out.p.size(); ++t)
+        if (out.differs[t]) found.push_back(t), ++result.tiles_by[out.quantity[t]];
     out.different = found.size();
     std::sort(found.begin(), found.end(),
         [&](std::size_t s, std::size_t t) { return out.p[s] != out.p[t] ? out.p[s] < out.p[t] : s < t; });
     for (std::size_t k = 0; k < std::min(found.size(), named_most); ++k) {
-        const Box box = sides.all.tiles.box(found[k], sides.all.width, sides.all.height);
-        const SetNoise mean = sides.noise_of(box);
-        result.tiles_found.push_back({box, mean.mean_a, mean.mean_b, out.p[found[k]]});
+        const Readings& readings = all.first().all;
+        const Box box = readings.tiles.box(found[k], readings.width, readings.height);
+        const std::size_t q = out.quantity[found[k]];
+        const double b = all.apart[q].noise_of(box).mean_b;
+        result.tiles_found.push_back({box, b + out.difference[q][found[k]], b, out.p[found[k]], q});
     }
+}
+
+void test_tiles(const AllSides& all, double alpha, BiasResult& result) {
+    PlaceTests& out = result.tiles;
+    const std::size_t count = all.first().all.tiles.count(), quantities = all.apart.size();
+    out.difference.assign(quantities, Values(count, std::nan("")));
+    result.tiles_by.assign(quantities, 0);
+    for (std::size_t t = 0; t < count; ++t) {
+        Values p;
+        bool left_out = false;
+        for (std::size_t q = 0; q < quantities; ++q) {
+            const double level = alpha / static_cast<double>(count) * level_share(q, quantities);
+            const TileTest test = test_tile(all.in_tile(q, t), t, level);
+            p.push_back(test.p), out.difference[q][t] = test.difference, left_out |= test.left_out;
+        }
+        const JointP joint = joint_p(p);
+        out.p.push_back(joint.p), out.quantity.push_back(joint.quantity);
+        if (std::isnan(joint.p)) out.left_out += left_out;
+        else ++out.tested;
+    }
+    out.differs = discoveries(out.p, alpha, all.first().dependent);
+    name_tiles(all, result);
+}
+
+std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult& found, double alpha) {
+    std::optional<MissedEvents> hardest;
+    const std::size_t quantities = all.apart.size();
+    const auto look = [&](const Found& place, double pixels, double level) {
+        const auto events =
+            all.apart[place.quantity].needed(place, pixels, level * level_share(place.quantity, quantities));
+        if (events && (!hardest || events->size > hardest->size)) hardest = events;
+    };
+    const auto& regions = all.first().all.regions;
+    for (std::size_t r = 0; r < found.regions.size(); ++r) {
+        const double pixels = static_cast<double>(regions[r].pixels.size()),
+                     level = alpha / static_cast<double>(regions.size());
+        const MeanTest& y = found.regions[r];
+        if (y.differs) look({{}, y.a, y.b, 0, 0}, pixels, level);
+        for (std::size_t c = 0; c < y.channels.size(); ++c)
+            if (y.channels[c].differs) look({{}, y.channels[c].a, y.channels[c].b, 0, c + 1}, pixels, level);
+    }
+    for (const Found& tile : found.tiles_found)
+        look(
+            tile, all.first().noise_of(tile.box).pixels, found.place_alpha / static_cast<double>(found.tiles.p.size()));
+    for (const Found& pixel : found.pixels_found) look(pixel, 1, pixel_level(all.first(), found.place_alpha));
+    return hardest;
+}
+
+/// Whether the renders of the two sides have the same pixels, one for one.
+bool same_renders(const ArmReadings& a, const ArmReadings& b) {
+    const auto hashes = [](const ArmReadings& arm) {
+        std::vector<std::string> out;
+        for (const RenderFile& file : arm.files) out.push_back(file.hash);
+        std::sort(out.begin(), out.end());
+        return out;
+    };
+    return hashes(a) == hashes(b);
+}
+
+SingleDifference single_difference(const Sides& sides) {
+    SingleDifference out;
+    const auto& pixels = sides.all.regions.back().pixels;
+    double squares = 0;
+    for (const std::uint32_t i : pixels) {
+        double most = 0;
+        for (std::size_t q = 0; q < sides.all.quantities; ++q)
+            most = std::max(most, std::fabs(sides.a.film.of(q).mean[i] - sides.b.film.of(q).mean[i]));
+        const double y = sides.a.film.y()[i] - sides.b.film.y()[i];
+        squares += y * y, out.different += most > 0;
+        if (most <= out.largest) continue;
+        const int x = static_cast<int>(i) % sides.all.width, row = static_cast<int>(i) / sides.all.width;
+        out.largest = most, out.at = {x, row, x, row};
+    }
+    out.pixels = pixels.size();
+    out.rms = pixels.empty() ? 0 : std::sqrt(squares / static_cast<double>(pixels.size()));
+    return out;
+}
+
+/// Pairs by the names of the files where that was wished, else by what the renders share where it makes the tests
+/// sharper; `level` is that of one region.
+std::vector<RenderPair> pairs_for(const ComparePlan& plan, const Sides& sides, double level, BiasResult& out) {
+    out.shared = shared_seeds(sides.all, sides.a, sides.b);
+    out.all_shared = all_paired(out.shared, sides.a, sides.b);
+    if (plan.pair && !sides.referred) return pairs_of(sides.a, sides.b);
+    std::vector<RenderPair> pairs;
+    if (sharper_in_pairs(out.shared, sides.a, sides.b, level))
+        for (const SeedPair& p : out.shared) pairs.emplace_back(p.a, p.b);
+    return pairs;
+}
+
+/// What the tests of means say of renders that are not the same.
+void test_means(const ComparePlan& plan, const CompareResult& measured, const Readings& all, double alpha,
+    BiasResult& out, ProgressMonitor& monitor) {
+    AllSides sides;
+    const auto sides_of = [&](std::vector<Sides>& to, const PairedRenders* paired) {
+        for (std::size_t q = 0; q < all.quantities; ++q)
+            to.emplace_back(plan, all, measured, out.arm_a, out.arm_b, q, paired);
+    };
+    sides_of(sides.apart, nullptr);
+    const Sides& first = sides.first();
+    const double region = alpha / 2 / static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
+    std::optional<PairedRenders> paired;
+    if (auto pairs = pairs_for(plan, first, region, out); !pairs.empty())
+        paired = paired_renders(plan, all, out.arm_a, out.arm_b, std::move(pairs), monitor);
+    if (paired) sides_of(sides.paired, &*paired);
+    out.paired = paired.has_value();
+    test_regions(sides, alpha / 2, out);
+    const bool renders = first.a.files.size() >= 2 && (first.referred || first.b.files.size() >= 2);
+    if (renders && !all.regions.back().pixels.empty()) {
+        test_tiles(sides, out.place_alpha, out);
+        test_pixels(paired ? sides.paired : sides.apart, out.place_alpha, out);
+    }
+    if (first.a.files.size() == 1 && first.b.files.size() == 1) {
+        out.single = single_difference(first);  // the bits of -0 and of NaN differ where values do not
+        out.identical = out.single->pixels > 0 && out.single->different == 0 && !out.non_finite.differs();
+    }
+    if (out.differs()) out.unless = missed_events(sides, out, alpha / 2);
 }
 
 }  // namespace
@@ -131,9 +299,28 @@ bool CompareResult::differs() const {
     return std::any_of(bias.begin(), bias.end(), [](const BiasResult& b) { return b.differs(); });
 }
 
+std::vector<std::string> MeanTest::differs_in() const {
+    std::vector<std::string> out;
+    if (differs) out.push_back(quantity_names[0]);
+    for (const MeanTest& channel : channels)
+        if (channel.differs) out.push_back(channel.region);
+    return out;
+}
+
 bool BiasResult::differs() const {
-    return tiles.different > 0 || pixels_different > 0 ||
-        std::any_of(regions.begin(), regions.end(), [](const MeanTest& t) { return t.differs; });
+    return non_finite.differs() || tiles.different > 0 || pixels_different > 0 ||
+        std::any_of(regions.begin(), regions.end(), [](const MeanTest& t) { return !t.differs_in().empty(); });
+}
+
+std::size_t BiasResult::shown() const {
+    std::vector<std::uint64_t> counts(colour_quantities);
+    for (const auto* by : {&tiles_by, &pixels_by})
+        for (std::size_t q = 0; q < by->size(); ++q) counts[q] += (*by)[q];
+    for (const MeanTest& t : regions) {
+        counts[0] += t.differs;
+        for (std::size_t c = 0; c < t.channels.size(); ++c) counts[c + 1] += t.channels[c].differs;
+    }
+    return counts[0] ? 0 : static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
 }
 
 std::string reference_error_from(const ArmReadings& reference) {
@@ -143,38 +330,25 @@ std::string reference_error_from(const ArmReadings& reference) {
            "pixels";
 }
 
-std::optional<MissedEvents> missed_events(const Sides& sides, const BiasResult& found, double alpha) {
-    std::optional<MissedEvents> hardest;
-    const auto look = [&](const Found& place, double pixels, double level) {
-        const auto events = sides.needed(place, pixels, level);
-        if (events && (!hardest || events->size > hardest->size)) hardest = events;
-    };
-    for (std::size_t r = 0; r < found.regions.size(); ++r) {
-        const MeanTest& t = found.regions[r];
-        const double pixels = static_cast<double>(sides.all.regions[r].pixels.size());
-        if (t.differs) look({{}, t.a, t.b, 0}, pixels, alpha / static_cast<double>(found.regions.size()));
-    }
-    for (const Found& tile : found.tiles_found)
-        look(tile, sides.noise_of(tile.box).pixels, found.place_alpha / static_cast<double>(found.tiles.p.size()));
-    for (const Found& pixel : found.pixels_found) look(pixel, 1, pixel_level(sides, found.place_alpha));
-    return hardest;
-}
-
 BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
-    std::size_t b, double alpha) {
+    std::size_t b, double alpha, ProgressMonitor& monitor) {
     const Sides sides(plan, all, measured, a, b);
     BiasResult out;
     out.a = plan.arms[a].name, out.b = sides.referred ? the_reference : plan.arms[b].name;
-    out.arm_a = a, out.arm_b = b, out.place_alpha = alpha / 4;
-    out.paired = !sides.pairs.empty(), out.dependent = sides.dependent;
+    out.arm_a = a, out.arm_b = b, out.dependent = sides.dependent;
     if (sides.referred) out.reference_error = reference_error_from(sides.b);
-    test_regions(sides, alpha / 2, out);
-    if (sides.a.files.size() >= 2 && (sides.referred || sides.b.files.size() >= 2)) {
-        test_tiles(sides, out.place_alpha, out);
-        test_pixels(sides, out.place_alpha, out);
-    }
-    if (out.differs()) out.unless = missed_events(sides, out, alpha / 2);
-    out.sentence = sentence_of(out, alpha / 2);
+    out.non_finite = compare_non_finite(all, sides.a, sides.b, alpha / 2);
+    const double rest = out.non_finite.any() ? alpha / 2 : alpha;
+    out.place_alpha = rest / 4;
+    out.identical = same_renders(sides.a, sides.b);
+    if (out.identical)
+        for (std::size_t r = 0; r < all.regions.size(); ++r) {
+            MeanTest& t = out.regions.emplace_back();
+            t.region = all.regions[r].name, t.joint_p = 1;
+            t.a = t.b = mean_interval(sides.region_means(sides.a, r), confidence).mean;
+        }
+    else test_means(plan, measured, all, rest, out, monitor);
+    out.sentence = sentence_of(all, out, rest / 2);
     return out;
 }
 

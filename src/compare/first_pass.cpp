@@ -8,41 +8,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/parallel.h"
 #include "compare/second_pass.h"
 
 namespace crescent::inline comparing {
-
-void MeanFilm::add(const Render& render, double variance_scale) {
-    if (count == 0) {
-        y.assign(render.size(), 0), m2.assign(render.size(), 0);
-        for (std::vector<float>* plane : {&r, &g, &b}) plane->assign(render.size(), 0);
-        told_variance.assign(render.variance.size(), 0);
-    }
-    if (render.variance.size() != told_variance.size() || variance_scale == 0)
-        told_variance.clear();  // not every file has one
-    ++count;
-    rounding = std::max(rounding, render.rounding);
-    const double n = static_cast<double>(count);
-    const float share = static_cast<float>(1 / n);
-    const auto add_pixel = [&](std::size_t i) {
-        const double value = static_cast<double>(render.y(i)), off = value - y[i];
-        y[i] += off / n;
-        m2[i] += off * (value - y[i]);
-        r[i] += (render.r[i] - r[i]) * share, g[i] += (render.g[i] - g[i]) * share;
-        b[i] += (render.b[i] - b[i]) * share;
-        if (!told_variance.empty()) told_variance[i] += render.variance[i] * static_cast<float>(variance_scale);
-    };
-    const auto width = static_cast<std::size_t>(render.width);
-    parallel_for(std::size_t{0}, static_cast<std::size_t>(render.height), [&](std::size_t row) {
-        for (std::size_t i = row * width; i < (row + 1) * width; ++i) add_pixel(i);
-    });
-}
-
-double MeanFilm::variance(std::size_t i) const {
-    if (count >= 2) return m2[i] / static_cast<double>(count - 1);
-    return told_variance.empty() ? std::nan("") : told_variance[i] / static_cast<double>(count);
-}
 
 Tiles::Tiles(int width, int height) {
     const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
@@ -139,7 +107,7 @@ void FirstPass::arm(ArmReadings& to, const std::vector<std::string>& files, cons
     const std::string& name, const std::optional<double>& spp) {
     each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
         fit(render);
-        look(render);
+        look(render, to);
         RenderFile file{render.file, fmt::format("{:016x}", render.hash), render.layer, render.variance_channels,
             render.sample_channel, render.spp, render.seconds, numbers_in(render.file)};
         known(file, name);
@@ -161,18 +129,21 @@ void FirstPass::fit(const Render& render) {
     ensure(render.width == all_.width && render.height == all_.height, "renders of a view have one size");
 }
 
-void FirstPass::look(const Render& render) {
+void FirstPass::look(const Render& render, ArmReadings& to) {
     std::uint64_t bad = 0, negative = 0;
     for (std::size_t i = 0; i < render.size(); ++i) {
         const bool finite = std::isfinite(render.r[i]) && std::isfinite(render.g[i]) && std::isfinite(render.b[i]);
-        if (!finite) ++bad, all_.bad[i] = true;
+        if (!finite) {
+            if (to.not_finite.empty()) to.not_finite.assign(render.size(), 0);
+            ++bad, all_.bad[i] = true, ++to.not_finite[i];
+        }
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
     }
     for (const std::string& note : render.notes) warnings_.add(render.file, note);
     if (bad) warnings_.add(render.file, "not finite: left out of every meter", bad);
     if (negative) warnings_.add(render.file, "with a negative channel", negative);
-    if (bad == render.size()) throw InputError({render.file, 0, 0}, "no pixel of it is finite");
-    if (render.size() > 1 && all_equal(render)) warnings_.add(render.file, "all pixels are equal");
+    if (render.size() > 1 && bad < render.size() && all_equal(render))
+        warnings_.add(render.file, "all pixels are equal");
 }
 
 void FirstPass::known(const RenderFile& file, const std::string& arm) {

@@ -18,7 +18,7 @@ public:
 
 private:
     void fit(const Render& render);
-    void look(const Render& render);
+    void look(const Render& render, ArmReadings& to);
     void known(const RenderFile& file, const std::string& arm);
 
     Readings& all_;

@@ -27,7 +27,8 @@ std::string lead(const CompareResult& result) {
             "\n";
     else if (!result.assertions.empty()) out += "<p class=\"verdict good\">All assertions hold.</p>\n";
     std::vector<std::string> found;
-    for (const std::string& sentence : found_about_means(result)) found.push_back(escape(sentence));
+    for (const std::string& sentence : found_about_means(result))
+        if (sentence != result.sentence) found.push_back(escape(sentence));
     return out + (found.empty() ? "" : html::list(found));
 }
 

@@ -47,22 +47,54 @@ double value_of(const ParsedQuantity& side, const CompareResult& result, std::st
     return std::nan("");
 }
 
-AssertionResult asserted(const AssertionPlan& plan, CompareResult& result) {
+/// Why no number of a region counts: some of its pixels are not finite on one side of some pair; "" where none is.
+std::string spoiled(const Readings& all, const CompareResult& result, const std::string& region) {
+    const auto set =
+        std::find_if(all.regions.begin(), all.regions.end(), [&](const PixelSet& s) { return s.name == region; });
+    const auto inside = [&](const FailingPixels& failing) {
+        return std::any_of(failing.pixels.begin(), failing.pixels.end(),
+            [&](std::uint32_t i) { return std::binary_search(set->left_out.begin(), set->left_out.end(), i); });
+    };
+    for (const BiasResult& b : result.bias)
+        if (inside(b.non_finite.a) || inside(b.non_finite.b)) return failing_pixels(all, b);
+    if (all.arms.size() > 1 || all.reference) return {};
+    const ArmReadings& only = all.arms[0];
+    const auto fails = [&](std::uint32_t i) { return only.not_finite[i] == only.files.size(); };
+    const auto count = std::count_if(set->left_out.begin(), set->left_out.end(), fails);
+    return count ? fmt::format("{} of its pixels are finite in no render", count) : "";
+}
+
+AssertionResult asserted(const AssertionPlan& plan, const Readings& all, CompareResult& result) {
     AssertionResult out;
     out.name = plan.name, out.op = plan.check.op, out.text = to_string(plan.check);
     std::string why;
     out.measured = value_of(plan.check.left, result, why), out.bound = value_of(plan.check.right, result, why);
     if (!why.empty()) result.warnings.push_back(out.name + ": " + why);
     out.pass = holds(out.measured, out.op, out.bound);
+    for (const ParsedQuantity* side : {&plan.check.left, &plan.check.right}) {
+        if (side->number) continue;
+        const std::string bad = spoiled(all, result, side->region);
+        if (bad.empty()) continue;
+        out.pass = false, out.text += fmt::format(" (cannot hold in {}: {})", side->region, bad);
+        break;
+    }
     return out;
 }
 
 /// With expect = "same": what was not seen well enough to say so; "" where all was.
 std::string not_seen(const ComparePlan& plan, const BiasResult& bias) {
+    if (bias.non_finite.undecided)
+        return fmt::format(
+            "of {} and {}, {} pixels are not finite in half of the renders of one side or more and in "
+            "none of the other; more renders would show whether that is chance",
+            bias.a, bias.b, bias.non_finite.undecided);
     for (const MeanTest& t : bias.regions) {
         if (!t.doubt.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.doubt);
         if (!t.why.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.why);
-        if (t.smallest > plan.smallest)
+        for (const MeanTest& c : t.channels)
+            if (!c.why.empty())
+                return fmt::format("{} of {} and {} in {}: {}", c.region, bias.a, bias.b, t.region, c.why);
+        if (!(t.smallest <= plan.smallest))
             return fmt::format(
                 "{} and {} in {}: a difference of {:.2g} % would have been seen, {:.2g} % was asked; more renders "
                 "would tell",
@@ -84,9 +116,10 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
     for (const BiasResult& bias : result.bias)
         if (bias.differs()) result.state = State::fails, result.sentence = bias.sentence;
     for (const BiasResult& bias : result.bias) {
-        const std::string why = not_seen(plan, bias);
+        const std::string why = bias.identical ? "" : not_seen(plan, bias);
         if (why.empty() || result.state != State::holds) continue;
-        result.state = State::inconclusive, result.sentence = "Whether they are the same cannot be said: " + why + ".";
+        result.state = State::inconclusive;
+        result.sentence = bias.single ? bias.sentence : "Whether they are the same cannot be said: " + why + ".";
     }
 }
 
@@ -103,15 +136,15 @@ CompareResult judge(const ComparePlan& plan, const Readings& all, ProgressMonito
     const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
     const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
     for (std::size_t a = 0; a < arms; ++a) {
-        if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, alpha));
+        if (all.reference) out.bias.push_back(judge_bias(plan, all, out, a, arms, alpha, monitor));
         for (std::size_t b = 0; b < a; ++b) {
-            out.bias.push_back(judge_bias(plan, all, out, a, b, alpha));
+            out.bias.push_back(judge_bias(plan, all, out, a, b, alpha, monitor));
             if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1)
                 out.noise.push_back(judge_noise(plan, all, a, b, alpha));
         }
     }
     out.rankings = rank(out), out.ladders = ladders_of(out);
-    for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, out));
+    for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, all, out));
     conclude(plan, out);
     return out;
 }

@@ -31,20 +31,18 @@ std::string reference_error_from(const ArmReadings& reference);
 
 /// Whether two arms (b = arms.size(): the reference) have the same expectation; `alpha` is shared by all its tests.
 BiasResult judge_bias(const ComparePlan& plan, const Readings& all, const CompareResult& measured, std::size_t a,
-    std::size_t b, double alpha);
+    std::size_t b, double alpha, ProgressMonitor& monitor);
 
 /// What it found, in one sentence; `alpha` is that of its regions.
-std::string sentence_of(const BiasResult& bias, double alpha);
+std::string sentence_of(const Readings& all, const BiasResult& bias, double alpha);
+/// Pixels of a pair that are not finite and differ, in words; "" where there are none.
+std::string failing_pixels(const Readings& all, const BiasResult& bias);
 
 /// The sentences of all pairs; of many pairs those in which nothing was found are one sentence.
 std::vector<std::string> found_about_means(const CompareResult& result);
 
 /// Where the variance of arm a differs from that of b.
 NoiseResult judge_noise(const ComparePlan& plan, const Readings& all, std::size_t a, std::size_t b, double alpha);
-
-/// Pairs of renders of two arms with the same number in their names: indices into their files. Throws InputError where
-/// a render has no partner.
-std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const ArmReadings& a, const ArmReadings& b);
 
 /// Arms in order by what a unit of time or a sample buys, region by region.
 std::vector<Ranking> rank(const CompareResult& result);

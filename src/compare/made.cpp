@@ -6,8 +6,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <numbers>
 
+#include "color/rgb.h"
 #include "math/functions.h"
 #include "simd/random.h"
 
@@ -21,16 +25,60 @@ double normal(const Vec2<float>& u) {
         math::cos(2 * std::numbers::pi * static_cast<double>(u.y));
 }
 
-Render made_render(const std::string& path, const MadeNoise& noise, std::uint32_t seed, int width) {
-    Render out(path, width, width);
-    for (std::size_t i = 0; i < out.size(); ++i)
-        out.r[i] = out.g[i] = out.b[i] =
-            static_cast<float>(made_pixel(noise, seed, static_cast<std::uint32_t>(i), width));
+/// Gamma of mean 1 and this standard deviation, at most 1 (Marsaglia & Tsang 2000, "A Simple Method for Generating
+/// Gamma Variables").
+double gamma(double sd, std::uint32_t seed, std::uint32_t pixel) {
+    const double shape = 1 / (sd * sd), d = shape - 1.0 / 3, c = 1 / std::sqrt(9 * d);
+    for (std::uint32_t k = 0;; k += 2) {
+        const double x = normal(draw(seed, pixel, k)), v = (1 + c * x) * (1 + c * x) * (1 + c * x);
+        if (v <= 0) continue;
+        const auto u = static_cast<double>(draw(seed, pixel, k + 1).x);
+        if (math::log(u) < x * x / 2 + d - d * v + d * math::log(v)) return d * v / shape;
+    }
+}
+
+/// The chance of NaN is drawn from a stream of its own.
+bool fails(const MadeNoise& noise, std::uint32_t seed, std::uint32_t pixel) {
+    return noise.failing > 0 && static_cast<double>(draw(seed_of(seed, 4), pixel, 0).x) < noise.failing;
+}
+
+/// Means over width x width pixels, across the edges of the picture.
+void filter(std::vector<float>& plane, int side, int width) {
+    const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>((y + side) % side) * static_cast<std::size_t>(side) +
+            static_cast<std::size_t>((x + side) % side);
+    };
+    const std::vector<float> from = plane;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            double sum = 0;
+            for (int j = 0; j < width; ++j)
+                for (int i = 0; i < width; ++i) sum += static_cast<double>(from[at(x - i, y - j)]);
+            plane[at(x, y)] = static_cast<float>(sum / (width * width));
+        }
+}
+
+Render made_render(const std::string& path, const MadeNoise& noise, std::uint32_t seed, const MadeWorld& world) {
+    Render out(path, world.width, world.width);
+    const double factors[] = {1 + noise.hue, 1, 1 - noise.hue * luminance_weights[0] / luminance_weights[2]};
+    std::vector<float>* channels[] = {&out.r, &out.g, &out.b};
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
+        const double shared = made_pixel(noise, seed, i, world.width);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const double own = world.own > 0 ? made_pixel(noise, seed_of(seed, c + 1), i, world.width) : 0;
+            (*channels[c])[i] = static_cast<float>(factors[c] * ((1 - world.own) * shared + world.own * own));
+        }
+        if (fails(noise, seed, i)) out.g[i] = std::nanf("");
+    }
+    for (std::vector<float>* channel : channels)
+        if (noise.filter > 1) filter(*channel, world.width, noise.filter);
     return out;
 }
 
 /// Of the k-th render of arm a (0) or b (1).
-std::uint32_t seed_of_render(std::uint32_t seed, std::uint32_t k, std::uint32_t arm) {
+std::uint32_t seed_of_render(const MadeWorld& world, std::uint32_t seed, std::uint32_t k, std::uint32_t arm) {
+    const auto shared = static_cast<std::uint32_t>(world.shared);
+    if (arm == 1 && k < shared) return seed_of(seed, 2 * (shared - 1 - k) + 1);
     return seed_of(seed, 2 * k + 1 + arm);
 }
 
@@ -59,6 +107,11 @@ int hits_of(std::uint32_t seed, std::uint32_t pixel, double chance) {
     return hits;
 }
 
+struct Made {
+    std::mutex mutex;
+    std::map<std::string, Render> renders;
+};
+
 RenderSource source_of(const MadeWorld& world, std::uint32_t seed) {
     RenderSource out;
     out.expand = [world](const std::vector<std::string>& patterns, const SourceLocation&) {
@@ -67,12 +120,22 @@ RenderSource source_of(const MadeWorld& world, std::uint32_t seed) {
         for (int k = 0; k < count; ++k) paths.push_back(fmt::format("{}-{}", patterns[0], k));
         return paths;
     };
-    out.read = [world, seed](const std::string& path, const std::string&) {
-        if (path.starts_with("reference")) return made_render(path, {}, seed, world.width);
+    const auto make = [world, seed](const std::string& path) {
+        if (path.starts_with("reference")) return made_render(path, {}, seed, world);
         std::uint32_t k = 0;
         std::from_chars(path.data() + 2, path.data() + path.size(), k);
         const bool first = path.starts_with('a');
-        return made_render(path, first ? world.a : world.b, seed_of_render(seed, k, first ? 0 : 1), world.width);
+        return made_render(path, first ? world.a : world.b, seed_of_render(world, seed, k, first ? 0 : 1), world);
+    };
+    const auto made = std::make_shared<Made>();  // every render is read twice or more
+    out.read = [make, made](const std::string& path, const std::string&) {
+        {
+            const std::lock_guard lock(made->mutex);
+            if (const auto found = made->renders.find(path); found != made->renders.end()) return found->second;
+        }
+        Render render = make(path);
+        const std::lock_guard lock(made->mutex);
+        return made->renders.emplace(path, std::move(render)).first->second;
     };
     return out;
 }
@@ -86,6 +149,9 @@ std::string to_string(const MadeNoise& noise) {
         case MadeNoise::Kind::pareto: return fmt::format("Pareto, index {:g}", noise.size);
         case MadeNoise::Kind::hits: return fmt::format("hits of 16 samples, {:g} % each", 100 * noise.size);
         case MadeNoise::Kind::sparks: return fmt::format("sparks, 1 in {:g} pixels of a sixteenth", 1 / noise.size);
+        case MadeNoise::Kind::gamma:
+            return fmt::format("gamma, {:g} %", 100 * noise.size) +
+                (noise.filter > 1 ? fmt::format(", filtered over {0} x {0}", noise.filter) : "");
         case MadeNoise::Kind::events: break;
     }
     return fmt::format("bright events, 1 in {:g} pixels", 1 / noise.size);
@@ -101,6 +167,7 @@ double made_pixel(const MadeNoise& noise, std::uint32_t seed, std::uint32_t pixe
         const double a = noise.size;
         y = (a - 1) / a * math::pow(static_cast<double>(u.x), -1 / a);
     }
+    if (noise.kind == Kind::gamma) y = gamma(noise.size, seed, pixel);
     if (noise.kind == Kind::hits) y = hits_of(seed, pixel, noise.size) / (16 * noise.size);
     if (is_rare(noise)) {
         const bool local = noise.kind == Kind::sparks;
@@ -117,7 +184,7 @@ bool met_events(const MadeWorld& world, std::uint32_t seed) {
     const auto some = [&](const MadeNoise& noise, std::uint32_t arm) {
         for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(world.renders); ++k)
             for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(world.width * world.width); ++i)
-                if (met(noise, seed_of_render(seed, k, arm), i, world.width)) return true;
+                if (met(noise, seed_of_render(world, seed, k, arm), i, world.width)) return true;
         return false;
     };
     return (!is_rare(world.a) || some(world.a, 0)) && (!is_rare(world.b) || some(world.b, 1));

@@ -10,11 +10,14 @@ namespace crescent::inline comparing {
 /// Rules are chosen on these three. The next three stand by to measure what was chosen: pareto: of this tail index (>
 /// 1; the variance is infinite up to 2). hits: the mean of 16 samples, each of which meets a lamp with this chance.
 /// sparks: 0.9, and in a sixteenth of the frame with this chance a pixel a spark of one size, which makes up the rest
-/// there.
+/// there. gamma: of this sd.
 struct MadeNoise {
-    enum class Kind { normal, lognormal, events, pareto, hits, sparks } kind = Kind::normal;
+    enum class Kind { normal, lognormal, events, pareto, hits, sparks, gamma } kind = Kind::normal;
     double size = 0;  // sd, sd of the logarithm, tail index, or chance
     double bias = 0;
+    double hue = 0;      // red is brighter by this share, and blue darker by so much that Y is the same
+    double failing = 0;  // chance that a pixel of a render is NaN
+    int filter = 1;      // a pixel is the mean of so many by so many of independent noise
 };
 /// "normal noise", for tables.
 std::string to_string(const MadeNoise& noise);
@@ -24,9 +27,11 @@ struct MadeWorld {
     MadeNoise a, b;
     int renders = 8, width = 32;
     bool referred = true;  // false: the arms alone
+    double own = 0;        // of each channel's noise this share is its own, the rest that of all three; 0: grey
+    int shared = 0;        // so many renders of b have the random numbers of renders of a, in reverse order
 };
 
-/// Luminance of one pixel of a render `width` pixels wide: a pure function of its arguments.
+/// One pixel of a grey render `width` pixels wide: a pure function of its arguments.
 double made_pixel(const MadeNoise& noise, std::uint32_t seed, std::uint32_t pixel, int width);
 /// Whether each arm whose noise is events or sparks met one in some pixel of some render.
 bool met_events(const MadeWorld& world, std::uint32_t seed);

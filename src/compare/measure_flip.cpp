@@ -28,14 +28,21 @@ std::array<std::vector<float>, 3> photograph(
     return out;
 }
 
+/// FLIP filters: a value that is not finite would spread to its neighbours.
+void blacken(Render& image, const std::vector<bool>& bad) {
+    for (std::size_t i = 0; i < bad.size(); ++i)
+        if (bad[i]) image.r[i] = image.g[i] = image.b[i] = 0;
+}
+
 }  // namespace
 
 std::vector<Flips> measure_flip(const ComparePlan& plan, const Readings& all, std::size_t a, ProgressMonitor& monitor) {
     std::vector<Flips> out(all.regions.size());
     if (!all.reference || !plan.flip) return out;
     monitor.begin("FLIP", 1);
-    const Render ref = in_rec709(all, all.reference->film);
-    const Render test = in_rec709(all, all.source.read(all.arms[a].files[0].path, plan.arms[a].layer));
+    Render ref = in_rec709(all, all.reference->film);
+    Render test = in_rec709(all, all.source.read(all.arms[a].files[0].path, plan.arms[a].layer));
+    for (Render* image : {&test, &ref}) blacken(*image, all.bad);
     const std::vector<float> hdr = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
         {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
     const auto seen = photograph(test.r, test.g, test.b, plan.exposure),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compare/judge.h"
+#include "compare/schema.h"
 #include "compare/sides.h"
 #include "math/functions.h"
 #include "stats/tail.h"
@@ -13,8 +14,6 @@
 namespace crescent::inline comparing {
 
 namespace {
-
-constexpr double heavy_share = 0.5;  // one squared error that is half of their sum decides the mean by itself
 
 using Values = std::vector<double>;
 
@@ -132,6 +131,21 @@ std::optional<double> told_over_measured(const ArmReadings& arm, const PixelSet&
     return measured > 0 ? std::optional(told / static_cast<double>(arm.film.count) / measured) : std::nullopt;
 }
 
+/// A value that is not finite is none: nothing compares with it.
+void keep_finite(MeterValue& m) {
+    if (m.value && !std::isfinite(*m.value)) m = missing(fmt::format("it is {}, not a finite number", *m.value));
+    if (m.interval && !(std::isfinite(m.interval->first) && std::isfinite(m.interval->second)))
+        m.interval.reset(), m.why = "its interval is not finite";
+}
+
+RegionResult without_pixels(const PixelSet& set, const std::vector<QuantityWord>& words) {
+    RegionResult out;
+    out.region = set.name;
+    for (const QuantityWord& word : words)
+        out.meters.emplace_back(std::string(word.word), missing("no pixel is finite in every render"));
+    return out;
+}
+
 }  // namespace
 
 const MeterValue& RegionResult::meter(const std::string& name) const {
@@ -166,6 +180,7 @@ double reference_variance(const Readings& all, std::size_t region) {
 RegionResult measure_region(
     const Readings& all, const ArmReadings& arm, std::size_t region, const Cost& cost, const Flips& flips) {
     const PixelSet& set = all.regions[region];
+    if (set.pixels.empty()) return without_pixels(set, compare_words());
     RegionResult out;
     out.region = set.name, out.pixels = set.pixels.size();
     tail_of(arm, region, out);
@@ -194,6 +209,7 @@ RegionResult measure_region(
     out.power = arm.power[region];
     out.colour = noise_colour(out.power);
     out.told_ratio = told_over_measured(arm, set);
+    for (auto& [name, value] : out.meters) keep_finite(value);
     return out;
 }
 

@@ -17,7 +17,7 @@ namespace {
 MeanInterval spread_of(const ArmReadings& arm, std::size_t tile) {
     const double k = static_cast<double>(arm.files.size());
     std::vector<double> each;
-    for (const auto& render : arm.tiles) each.push_back(render[tile].spread * k / (k - 1));
+    for (const auto& render : arm.quantities[0].tiles) each.push_back(render[tile].spread * k / (k - 1));
     return mean_interval(each, confidence);
 }
 

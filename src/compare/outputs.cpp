@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "compare/judge.h"
+#include "compare/quantities.h"
 #include "compare/schema.h"
 #include "base/text.h"
 #include "pages/csv.h"
@@ -61,32 +62,93 @@ Json arm_json(const ArmResult& arm, const ArmReadings& readings, const std::vect
     return out;
 }
 
+Json box_json(const Box& box) { return {box.x0, box.y0, box.x1, box.y1}; }
+
 Json found_json(const std::vector<Found>& found) {
     Json out = Json::array();
     for (const Found& f : found)
-        out.push_back({{"box", {f.box.x0, f.box.y0, f.box.x1, f.box.y1}}, {"a", number(f.a)}, {"b", number(f.b)},
-            {"p", number(f.p)}});
+        out.push_back({{"box", box_json(f.box)}, {"channel", quantity_names[f.quantity]}, {"a", number(f.a)},
+            {"b", number(f.b)}, {"p", number(f.p)}});
     return out;
 }
 
-Json bias_json(const BiasResult& b) {
-    Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"paired", b.paired}, {"say", b.sentence},
-        {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"}, {"regions", Json::object()}};
-    if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
-    for (const MeanTest& t : b.regions) {
-        Json& at = out["regions"][t.region] = {{"a", number(t.a)}, {"b", number(t.b)}, {"differs", t.differs}};
-        if (!t.doubt.empty()) at["doubt"] = t.doubt;
-        if (!t.why.empty()) at["why"] = t.why;
-        else
-            at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
-            at["smallest"] = number(t.smallest);
+void put_test(Json& at, const MeanTest& t) {
+    at["a"] = number(t.a), at["b"] = number(t.b);
+    if (!t.doubt.empty()) at["doubt"] = t.doubt;
+    if (!t.why.empty()) {
+        at["why"] = t.why;
+        return;
     }
+    at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
+    at["smallest"] = number(t.smallest), at["paired"] = t.paired;
+}
+
+Json region_test_json(const MeanTest& t) {
+    Json out = {{"differs", !t.differs_in().empty()}, {"differs_in", t.differs_in()}};
+    put_test(out, t);
+    if (!std::isnan(t.joint_p)) out["joint_p"] = number(t.joint_p);
+    for (const MeanTest& c : t.channels) {
+        Json& at = out["channels"][c.region] = {{"differs", c.differs}};
+        put_test(at, c);
+    }
+    return out;
+}
+
+Json by_json(const std::vector<std::uint64_t>& by) {
+    Json out = Json::object();
+    for (std::size_t q = 0; q < by.size(); ++q) out[quantity_names[q]] = by[q];
+    return out;
+}
+
+Json failing_json(const FailingPixels& f, int width) {
+    constexpr std::size_t first_most = 5;
+    Json out = {{"pixels", f.pixels.size()}, {"first", Json::array()}};
+    Box box;
+    for (std::size_t k = 0; k < f.pixels.size(); ++k) {
+        const int x = static_cast<int>(f.pixels[k]) % width, y = static_cast<int>(f.pixels[k]) / width;
+        if (k < first_most) out["first"].push_back({x, y});
+        if (k == 0) box = {x, y, x, y};
+        box.x0 = std::min(box.x0, x), box.x1 = std::max(box.x1, x), box.y1 = std::max(box.y1, y);
+    }
+    if (f.pixels.empty()) return out;
+    out["box"] = box_json(box);
+    out["renders"] = {f.least, f.most}, out["renders_of_the_other"] = {f.other_least, f.other_most};
+    return out;
+}
+
+Json non_finite_json(const NonFinite& n, int width) {
+    Json out = {{"differs", n.differs()}, {"a", failing_json(n.a, width)}, {"b", failing_json(n.b, width)},
+        {"left_out", {{"both_sides", n.both}, {"one_side", n.one}, {"undecided", n.undecided}}},
+        {"groups", Json::object()}};
+    for (const FailedGroups& g : n.groups)
+        out["groups"][g.region] = {{"a", g.a}, {"b", g.b}, {"p", number(g.p)}, {"differs", g.differs}};
+    return out;
+}
+
+Json seeds_json(const BiasResult& b) {
+    Json out = {{"all", b.all_shared}, {"level", shared_seed_level}, {"renders", Json::array()}};
+    for (const SeedPair& p : b.shared)
+        out["renders"].push_back({{"a", p.a}, {"b", p.b}, {"correlation", number(p.correlation)}});
+    return out;
+}
+
+Json bias_json(const BiasResult& b, int width) {
+    Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"identical", b.identical}, {"paired", b.paired},
+        {"say", b.sentence}, {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"},
+        {"regions", Json::object()}, {"shared_seeds", seeds_json(b)},
+        {"non_finite", non_finite_json(b.non_finite, width)}};
+    if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
+    for (const MeanTest& t : b.regions) out["regions"][t.region] = region_test_json(t);
     if (b.unless)
         out["unless_missed"] = {{"arm", b.unless->arm}, {"brighter_than", number(b.unless->size)},
             {"times_mean", number(b.unless->of_mean)}, {"one_in", number(b.unless->one_in)}};
+    if (b.single)
+        out["single"] = {{"pixels", b.single->pixels}, {"different", b.single->different},
+            {"rms", number(b.single->rms)}, {"largest", number(b.single->largest)},
+            {"at", {b.single->at.x0, b.single->at.y0}}};
     out["tiles"] = {{"tested", b.tiles.tested}, {"left_out", b.tiles.left_out}, {"different", b.tiles.different},
-        {"first", found_json(b.tiles_found)}};
-    out["pixels"] = {{"tested", b.pixels_tested}, {"different", b.pixels_different},
+        {"most_in", by_json(b.tiles_by)}, {"first", found_json(b.tiles_found)}};
+    out["pixels"] = {{"tested", b.pixels_tested}, {"different", b.pixels_different}, {"most_in", by_json(b.pixels_by)},
         {"first", found_json(b.pixels_found)}, {"p", b.pixel_p}};
     return out;
 }
@@ -139,7 +201,7 @@ std::string compare_json(
     for (const Ranking& r : result.rankings)
         out["rankings"].push_back({{"region", r.region}, {"by", r.measure}, {"order", r.order}, {"say", r.sentence}});
     for (const SppLadder& l : result.ladders) out["ladders"].push_back(ladder_json(l, result));
-    for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b));
+    for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b, all.width));
     for (const NoiseResult& n : result.noise) out["noise"].push_back(noise_json(n));
     for (const AssertionResult& a : result.assertions)
         out["assertions"].push_back({{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)},
@@ -200,7 +262,8 @@ std::string compare_summary(
         }
     }
     out += "\n";
-    for (const std::string& sentence : found_about_means(result)) out += sentence + "\n";
+    for (const std::string& sentence : found_about_means(result))
+        if (sentence != result.sentence) out += sentence + "\n";
     if (!result.rankings.empty()) out += "\n";
     for (const Ranking& r : result.rankings) out += r.sentence + "\n";
     return out + "\n" + out_dir + "/report.html tells the rest.\n";

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "compare/page.h"
+#include "compare/quantities.h"
 #include "pages/charts.h"
 #include "pages/html.h"
 #include "pages/numbers.h"
@@ -15,36 +16,65 @@ namespace {
 
 using html::words;
 
+std::vector<html::Cell> row_of(const std::string& name, const MeanTest& t, const std::string& verdict) {
+    const bool tested = t.why.empty();
+    return {html::heading(escape(name)), html::figure(figures(t.a)), html::figure(figures(t.b)),
+        html::figure(tested ? figures(t.welch.p, 2) : ""), html::figure(tested ? percent(t.smallest, 2) : ""),
+        words(verdict)};
+}
+
+/// Y of each region; below it the channels, where one of them differs.
 std::string region_table(const BiasResult& b) {
     html::Table table(fmt::format("{} and {}{}", escape(b.a), escape(b.b), b.paired ? ", in pairs" : ""),
         {words("region"), {"mean <i>Y</i>", true}, {"of the other", true}, {"<i>p</i>", true}, {"smallest seen", true},
             words("verdict")});
     for (const MeanTest& t : b.regions) {
-        const bool tested = t.why.empty();
-        const std::string verdict = t.differs ? "<b class=\"bad\">differs</b>"
-            : t.doubt.empty()                 ? "no difference found"
-                                              : escape(t.doubt);
-        table.row({html::heading(escape(t.region)), html::figure(figures(t.a)), html::figure(figures(t.b)),
-            html::figure(tested ? figures(t.welch.p, 2) : ""), html::figure(tested ? percent(t.smallest, 2) : ""),
-            words(tested ? verdict : escape(t.why))});
+        const std::vector<std::string> in = t.differs_in();
+        const bool channel = std::any_of(t.channels.begin(), t.channels.end(), [](auto& c) { return c.differs; });
+        table.row(row_of(t.region, t,
+            !in.empty()            ? fmt::format("<b class=\"bad\">differs in {}</b>", html::join(in))
+                : !t.why.empty()   ? escape(t.why)
+                : !t.doubt.empty() ? escape(t.doubt)
+                : b.identical      ? "identical"
+                                   : "no difference found"));
+        for (const MeanTest& c : t.channels)
+            if (channel)
+                table.row(row_of(
+                    t.region + ", mean " + c.region, c, c.differs ? "<b class=\"bad\">differs</b>" : escape(c.why)));
     }
     return table.str();
 }
 
+/// The places that differ by the quantity that differs the most in each: "Y 3, R 12".
+std::string most_in(const std::vector<std::uint64_t>& by) {
+    std::vector<std::string> out;
+    for (std::size_t q = 0; q < by.size(); ++q)
+        if (by[q]) out.push_back(fmt::format("{} {}", quantity_names[q], by[q]));
+    return out.empty() ? "" : fmt::format(" (most in {})", html::join(out));
+}
+
 std::string places(const BiasResult& b) {
-    if (b.tiles.p.empty()) return {};
-    std::string out =
-        fmt::format("Tiles: {} tested, {} differ, {} left out.", b.tiles.tested, b.tiles.different, b.tiles.left_out);
-    if (!b.pixel_p.empty()) out += fmt::format(" Pixels: {} tested, {} differ.", b.pixels_tested, b.pixels_different);
-    if (b.dependent) out += " Neighbouring pixels’ noise is correlated: after Benjamini and Yekutieli.";
-    return html::p(out);
+    std::string out;
+    if (!b.tiles.p.empty())
+        out += fmt::format("Tiles: {} tested, {} differ{}, {} left out.", b.tiles.tested, b.tiles.different,
+            most_in(b.tiles_by), b.tiles.left_out);
+    if (!b.pixel_p.empty())
+        out +=
+            fmt::format(" Pixels: {} tested, {} differ{}.", b.pixels_tested, b.pixels_different, most_in(b.pixels_by));
+    if (b.shown() != 0)
+        out += fmt::format(" The maps show {}, in which they differ, not <i>Y</i>.", quantity_names[b.shown()]);
+    if (b.dependent && !out.empty()) out += " Neighbouring pixels’ noise is correlated: after Benjamini and Yekutieli.";
+    return out.empty() ? "" : html::p(out);
 }
 
 /// What holds of every pair, once.
 std::string method(const CompareResult& result) {
     std::string out =
-        "Welch’s test over renders, of the mean <i>Y</i> of each region, tile and pixel; false discoveries are "
-        "controlled after Holm (regions) and Benjamini and Hochberg (tiles, pixels). A tile is left out where one "
+        "Welch’s test over renders, of the mean <i>Y</i>, and of R, G and B where renders are in colour, of each "
+        "region, tile and pixel; Student’s of the differences of pairs where renders share their random numbers. Half "
+        "of a level is for <i>Y</i>, a sixth for each channel; false discoveries are "
+        "controlled after Holm (regions) and Benjamini and Hochberg (tiles, pixels). Values that are not finite on one "
+        "side alone are a difference. A tile is left out where one "
         "pixel "
         "of one render carries half of its spread. A difference that rare events which no render met could make up "
         "counts as none. <i>Smallest seen</i>: the difference that would have been found nine times out of ten.";

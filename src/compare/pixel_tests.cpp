@@ -1,6 +1,7 @@
-// Welch's t-test at each pixel over the renders, in chunks side by side. Two p: the histogram's is plain; the one that
-// names pixels takes a spread for no less than its tile's, since a pixel may give one value in every render by chance.
-// Named pixels are those of a false discovery rate of alpha.
+// Welch's t-test at each pixel over the renders (Student's of the differences where they are paired), in chunks side by
+// side, of Y and of each channel. Two p: the histogram's is plain and of Y; the one that names pixels takes a spread
+// for no less than its tile's, since a pixel may give one value in every render by chance. Named pixels are those of a
+// false discovery rate of alpha.
 #include "compare/pixel_tests.h"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "compare/quantities.h"
 
 namespace crescent::inline comparing {
 
@@ -48,82 +50,110 @@ struct Moments {
 };
 
 /// A tile's variance at a pixel's brightness, where that is below the tile's.
-double scaled(const ArmReadings& arm, std::size_t tile, double variance, double y) {
+double scaled(const QuantityReadings& read, std::size_t tile, double variance, double value) {
     double mean = 0;
-    for (const auto& render : arm.tiles) mean += render[tile].y / static_cast<double>(arm.tiles.size());
-    const double share = mean > 0 ? std::min(1.0, std::fabs(y) / mean) : 1;
+    for (const auto& render : read.tiles) mean += render[tile].mean / static_cast<double>(read.tiles.size());
+    const double share = mean > 0 ? std::min(1.0, std::fabs(value) / mean) : 1;
     return variance * share * share;
 }
 
-/// `floored`: a pixel may give the same value in every render by chance (so many hits of so many samples), and its
+/// A pixel may give the same value in every render by chance (so many hits of so many samples): where `floored`, its
 /// spread is never taken for less than that of its tile, at the pixel's own brightness.
 Moments moments(const Sides& s, std::size_t i, bool floored) {
-    const double ka = static_cast<double>(s.a.files.size()), kb = static_cast<double>(s.b.files.size());
-    double va = s.a.film.variance(i), vb = s.b.film.variance(i);
-    if (floored) {
-        const int w = s.all.width;
-        const std::size_t t = s.all.tiles.of(static_cast<int>(i) % w, static_cast<int>(i) / w);
-        va = std::max(va, scaled(s.a, t, s.tile_a[t], s.a.film.y[i]));
-        vb = std::max(vb, scaled(s.b, t, s.tile_b[t], s.b.film.y[i]));
-    }
-    va /= ka, vb /= kb;
+    const auto x = static_cast<int>(i % static_cast<std::size_t>(s.all.width)),
+               y = static_cast<int>(i / static_cast<std::size_t>(s.all.width));
+    const std::size_t t = s.all.tiles.of(x, y), q = s.quantity;
+    const auto over_renders = [&](const ArmReadings& side, const std::vector<double>& tiles,
+                                  const ArmReadings& bright) {
+        double v = side.film.variance(i, q);
+        if (floored) v = std::max(v, scaled(bright.quantities[q], t, tiles[t], bright.film.of(q).mean[i]));
+        return v / static_cast<double>(side.files.size());
+    };
     Moments m;
-    m.difference = s.a.film.y[i] - s.b.film.y[i];
-    m.known = !std::isnan(va) && !std::isnan(vb) && (va + vb > 0 || m.difference != 0);
+    m.difference = s.mean_a(i) - s.mean_b(i);
+    double sum = 0, below = 0;
+    const auto add = [&](double v, std::size_t renders) {
+        sum += v, below += renders > 1 ? v * v / static_cast<double>(renders - 1) : 0;
+    };
+    if (s.in_pairs()) {
+        m.difference = s.differences->film.of(q).mean[i];
+        add(over_renders(*s.differences, s.tile_paired, s.a), s.differences->files.size());
+    } else {
+        add(over_renders(s.a, s.tile_a, s.a), s.a.files.size());
+        add(over_renders(s.b, s.tile_b, s.b), s.b.files.size());
+    }
+    m.known = std::isfinite(sum) && (sum > 0 || m.difference != 0 || s.in_pairs());
     if (!m.known) return m;
-    m.se = std::sqrt(va + vb);
-    const double below = va * va / (ka - 1) + (kb > 1 ? vb * vb / (kb - 1) : 0);
-    m.df = below > 0 ? (va + vb) * (va + vb) / below : 1;
+    m.se = std::sqrt(sum);
+    m.df = below > 0 ? sum * sum / below : 1;
     return m;
 }
+
+/// p of one pixel; NaN where it has no noise and no difference, or its noise is not known. 1 where rare events that no
+/// render met could make up the difference (`level`, see Sides::unseen).
+double pixel_p(const Sides& s, std::size_t i, double level) {
+    const Moments m = moments(s, i, true);
+    if (!m.known) return std::nan("");
+    if (std::fabs(m.difference) < s.blind(s.mean_b(i) + m.difference, s.mean_b(i), 1, 0, level)) return 1;
+    return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : m.difference == 0 ? 1 : 0;
+}
+
+/// A pixel that may differ.
+struct Candidate {
+    JointP p;
+    std::uint32_t pixel = 0;
+    bool operator<(const Candidate& other) const { return p.p != other.p.p ? p.p < other.p.p : pixel < other.pixel; }
+};
 
 /// Counts by chunk, so that threads need not meet.
 struct Part {
     std::array<std::uint64_t, bins> histogram{};
     std::uint64_t tested = 0;
-    std::vector<std::pair<double, std::uint32_t>> small;  // p at most alpha, and whose
+    std::vector<Candidate> small;  // p at most alpha
 };
 
 double most_degrees(const Sides& s) { return static_cast<double>(s.a.files.size() + s.b.files.size()); }
 
-Part part_of(const Sides& s, std::size_t begin, double alpha, double level, const Bins& table) {
-    const auto& pixels = s.all.regions.back().pixels;
+Part part_of(std::span<const Sides> sides, std::size_t begin, double alpha, double level, const Bins& table) {
+    const auto& pixels = sides[0].all.regions.back().pixels;
     Part out;
     for (std::size_t k = begin; k < std::min(pixels.size(), begin + chunk); ++k) {
-        const Moments m = moments(s, pixels[k], false);
-        if (!m.known) continue;
-        const std::size_t bin = m.se > 0 ? table.of(m.difference / m.se, m.df) : 0;
-        ++out.histogram[bin], ++out.tested;
-        if (bin > 0 && alpha <= 1.0 / bins) continue;
-        const double p = pixel_p(s, pixels[k], level);
-        if (p <= alpha) out.small.emplace_back(p, pixels[k]);
+        bool known = false, small = alpha > 1.0 / bins;
+        for (const Sides& s : sides) {
+            const Moments m = moments(s, pixels[k], false);
+            if (!m.known) continue;
+            const std::size_t bin = m.se > 0 ? table.of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0;
+            if (s.quantity == 0) ++out.histogram[bin];
+            known = true, small |= bin == 0;
+        }
+        out.tested += known;
+        if (!known || !small) continue;
+        std::array<double, colour_quantities> p{};
+        for (const Sides& s : sides)
+            p[s.quantity] = pixel_p(s, pixels[k], level * level_share(s.quantity, sides.size()));
+        const JointP joint = joint_p(std::span(p).first(sides.size()));
+        if (joint.p <= alpha) out.small.push_back({joint, pixels[k]});
     }
     return out;
 }
 
 }  // namespace
 
-double pixel_p(const Sides& s, std::size_t i, double level) {
-    const Moments m = moments(s, i, true);
-    if (!m.known) return std::nan("");
-    if (std::fabs(m.difference) < s.blind(s.a.film.y[i], s.b.film.y[i], 1, 0, level)) return 1;
-    return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : 0;
-}
-
 double pixel_level(const Sides& s, double alpha) {
     return alpha / static_cast<double>(s.all.regions.back().pixels.size());
 }
 
-void test_pixels(const Sides& s, double alpha, BiasResult& out) {
+void test_pixels(std::span<const Sides> sides, double alpha, BiasResult& out) {
+    const Sides& s = sides[0];
     if (s.lone_reference() && s.b.film.told_variance.empty()) return;
     const std::size_t count = s.all.regions.back().pixels.size();
     const double level = pixel_level(s, alpha);
     const Bins table(count > table_from ? most_degrees(s) : 0);
     std::vector<Part> parts((count + chunk - 1) / chunk);
-    parallel_for(
-        std::size_t{0}, parts.size(), [&](std::size_t c) { parts[c] = part_of(s, c * chunk, alpha, level, table); });
-    out.pixel_p.assign(bins, 0);
-    std::vector<std::pair<double, std::uint32_t>> small;
+    parallel_for(std::size_t{0}, parts.size(),
+        [&](std::size_t c) { parts[c] = part_of(sides, c * chunk, alpha, level, table); });
+    out.pixel_p.assign(bins, 0), out.pixels_by.assign(sides.size(), 0);
+    std::vector<Candidate> small;
     for (const Part& part : parts) {
         for (std::size_t k = 0; k < bins; ++k) out.pixel_p[k] += part.histogram[k];
         out.pixels_tested += part.tested;
@@ -131,15 +161,18 @@ void test_pixels(const Sides& s, double alpha, BiasResult& out) {
     }
     std::sort(small.begin(), small.end());
     std::vector<double> p;
-    for (const auto& [value, pixel] : small) p.push_back(value);
+    for (const Candidate& c : small) p.push_back(c.p.p);
     out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), alpha, s.dependent);
-    if (out.pixels_different) out.pixel_level = small[out.pixels_different - 1].first;
-    for (std::size_t k = 0; k < std::min<std::size_t>(named_most, out.pixels_different); ++k) {
-        const int x = static_cast<int>(small[k].second) % s.all.width,
-                  y = static_cast<int>(small[k].second) / s.all.width;
-        out.pixels_found.push_back(
-            {{x, y, x, y}, s.a.film.y[small[k].second], s.b.film.y[small[k].second], small[k].first});
+    small.resize(out.pixels_different);
+    for (const Candidate& c : small) {
+        ++out.pixels_by[c.p.quantity], out.different_pixels.push_back(c.pixel);
+        if (out.pixels_found.size() == named_most) continue;
+        const int x = static_cast<int>(c.pixel) % s.all.width, y = static_cast<int>(c.pixel) / s.all.width;
+        const Sides& of = sides[c.p.quantity];
+        const double b = of.mean_b(c.pixel);
+        out.pixels_found.push_back({{x, y, x, y}, b + moments(of, c.pixel, false).difference, b, c.p.p, c.p.quantity});
     }
+    std::sort(out.different_pixels.begin(), out.different_pixels.end());
 }
 
 }  // namespace crescent::inline comparing

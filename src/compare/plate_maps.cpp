@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "math/functions.h"
-#include "compare/pixel_tests.h"
 #include "compare/plate_parts.h"
 #include "compare/plates.h"
+#include "compare/quantities.h"
+#include "compare/sides.h"
 #include "meters/meters.h"
 #include "plates/words.h"
 #include "pages/numbers.h"
@@ -48,23 +49,38 @@ double scale_of(const Sides& s) {
     const auto& pixels = s.all.regions.back().pixels;
     const std::size_t step = pixels.size() / 1000000 + 1;
     for (std::size_t k = 0; k < pixels.size(); k += step)
-        sizes.push_back(std::fabs(s.a.film.y[pixels[k]] - s.b.film.y[pixels[k]]));
+        sizes.push_back(std::fabs(s.mean_a(pixels[k]) - s.mean_b(pixels[k])));
+    if (sizes.empty()) return 1;
     const double top = quantile(std::move(sizes), 0.98);
     return top > 0 ? top : 1;
+}
+
+/// Of pixels that are not finite on one side, which is a difference; others that are not are of the ground's colour.
+bool fails(const BiasResult& found, std::size_t pixel) {
+    const auto in = [&](const std::vector<std::uint32_t>& pixels) {
+        return std::binary_search(pixels.begin(), pixels.end(), static_cast<std::uint32_t>(pixel));
+    };
+    return in(found.non_finite.a.pixels) || in(found.non_finite.b.pixels);
+}
+
+std::string failing_words(const BiasResult& found) {
+    const std::size_t pixels = found.non_finite.a.pixels.size() + found.non_finite.b.pixels.size();
+    return pixels ? fmt::format(" Magenta: {} pixels are not finite on one side.", pixels) : "";
 }
 
 }  // namespace
 
 Picture difference_plate(const Sides& s, const std::string& a, const std::string& b, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
-    header(c, true, fmt::format("mean <i>Y</i> of {} less that of {}", escaped(a), escaped(b)));
+    header(c, true,
+        fmt::format("mean <i>{}</i> of {} less that of {}", quantity_names[s.quantity], escaped(a), escaped(b)));
     Rect band = content_band;
     band.w -= bar_room;
     const double top = scale_of(s);
     const Fit f = fit(s.all.width, s.all.height, std::floor(band.w), std::floor(band.h));
     const auto value = [&](int x, int y) {
         const std::size_t i = pixel(s.all, x, y);
-        return s.all.bad[i] ? std::nan("") : (s.a.film.y[i] - s.b.film.y[i]) / top;
+        return s.all.bad[i] ? std::nan("") : (s.mean_a(i) - s.mean_b(i)) / top;
     };
     framed(c, diverging_block(s.all.frame(), f, theme, value), band);
     bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme), ends(top));
@@ -76,41 +92,45 @@ Picture difference_plate(const Sides& s, const std::string& a, const std::string
             "means over {} and {} renders; the scale ends at the 98th percentile", s.a.files.size(), s.b.files.size()));
 }
 
-Picture bias_plate(const Sides& s, const BiasResult& found, double alpha, Theme theme) {
+Picture bias_plate(const Sides& s, const BiasResult& found, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
-    header(c, true, fmt::format("where mean <i>Y</i> of {} and {} differs", escaped(found.a), escaped(found.b)));
+    const char* name = quantity_names[s.quantity];
+    header(c, true, fmt::format("where {} and {} differ: mean <i>{}</i>", escaped(found.a), escaped(found.b), name));
     Rect band = content_band;
     band.w -= bar_room;
     double top = 0;
-    for (std::size_t t = 0; t < found.tiles.p.size(); ++t)
-        if (found.tiles.differs[t]) top = std::max(top, std::fabs(found.tiles.difference[t]));
-    for (const Found& f : found.pixels_found) top = std::max(top, std::fabs(f.a - f.b));
+    const std::vector<double>& tiles = found.tiles.difference[s.quantity];
+    for (std::size_t t = 0; t < tiles.size(); ++t)
+        if (found.tiles.differs[t]) top = std::max(top, std::fabs(tiles[t]));
+    for (const Found& f : found.pixels_found)
+        if (f.quantity == s.quantity) top = std::max(top, std::fabs(f.a - f.b));
     top = top > 0 ? top : 1;
     const bool by_pixel = !found.pixel_p.empty();
     const Rect left = titled(
         c, column(band, by_pixel ? 2 : 1, 0), fmt::format("{} of {} tiles", found.tiles.different, found.tiles.tested));
     const Fit f = fit(s.all.width, s.all.height, std::floor(left.w), std::floor(left.h));
-    framed(c, tile_block(s.all, f, found.tiles.difference, found.tiles.differs, top, theme), left);
+    framed(c, tile_block(s.all, f, tiles, found.tiles.differs, top, theme), left);
     if (by_pixel) {
         const Rect right =
             titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", found.pixels_different, found.pixels_tested));
-        const double level = pixel_level(s, alpha);
+        const std::vector<std::uint32_t>& differ = found.different_pixels;
         framed(c,
             nearest_block(s.all.frame(), f,
                 [&](int x, int y) {
                     const std::size_t i = pixel(s.all, x, y);
-                    if (s.all.bad[i]) return ground_pixel(theme);
-                    const bool told = found.pixels_different && pixel_p(s, i, level) <= found.pixel_level;
-                    return diverging(told ? visible((s.a.film.y[i] - s.b.film.y[i]) / top) : 0, theme);
+                    if (s.all.bad[i]) return fails(found, i) ? not_a_number_colour : ground_pixel(theme);
+                    const bool differs =
+                        std::binary_search(differ.begin(), differ.end(), static_cast<std::uint32_t>(i));
+                    return diverging(differs ? visible((s.mean_a(i) - s.mean_b(i)) / top) : 0, theme);
                 }),
             right);
     }
     bar(c, {band.right() + gap, band.y + 40, 24, 360}, signed_colours(theme), ends(top));
     return finished(c,
-        fmt::format(
-            "Orange: {} is brighter. Blue: {} is brighter. Grey: not told apart.", escaped(found.a), escaped(found.b)),
-        fmt::format(
-            "Welch’s test over renders, false discoveries controlled after {}; tiles of {} × {} pixels, {} left out",
+        fmt::format("Orange: {} is brighter{}. Blue: {} is brighter. Grey: no difference found.{}", escaped(found.a),
+            s.quantity == 0 ? "" : fmt::format(" in {}", name), escaped(found.b), failing_words(found)),
+        fmt::format("{} over renders, false discoveries controlled after {}; tiles of {} × {} pixels, {} left out",
+            found.paired ? "Student’s test of pairs" : "Welch’s test",
             found.dependent ? "Benjamini and Yekutieli" : "Benjamini and Hochberg", s.all.tiles.size, s.all.tiles.size,
             found.tiles.left_out));
 }

@@ -124,7 +124,7 @@ void shown_renders(const ComparePlan& plan, const Readings& all, std::map<std::s
         if (!all.reference && about.count < 2) continue;
         Residual residual{plan.arms[a].name, std::vector<float>(r.size())};
         for (std::size_t i = 0; i < r.size(); ++i)
-            residual.plane[i] = static_cast<float>(std::fabs(static_cast<double>(r.y(i)) - about.y[i]));
+            residual.plane[i] = static_cast<float>(std::fabs(static_cast<double>(r.y(i)) - about.y()[i]));
         residuals.push_back(std::move(residual));
     }
     if (all.reference) add("reference", in_rec709(all, all.reference->film));
@@ -155,10 +155,10 @@ std::map<std::string, Picture> compare_plates(
     for (std::size_t k = 0; k < result.bias.size(); ++k) {
         const BiasResult& found = result.bias[k];
         if (!shown_pair(result, found.a, found.b)) continue;
-        const Sides sides(plan, all, result, found.arm_a, found.arm_b);
+        const Sides sides(plan, all, result, found.arm_a, found.arm_b, found.shown());
         const std::string pair = fmt::format("{}-{}", found.a, sides.referred ? "reference" : found.b);
         out["difference-" + pair] = difference_plate(sides, found.a, found.b, plan.theme);
-        if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, found.place_alpha, plan.theme);
+        if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, plan.theme);
     }
     for (const NoiseResult& n : result.noise)
         if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(all, n, plan.theme);

@@ -16,7 +16,7 @@ std::map<std::string, Picture> compare_plates(
 struct Sides;
 /// Signed difference of two means, tiles and pixels in which it is told, and the ratio of two variances.
 Picture difference_plate(const Sides& sides, const std::string& a, const std::string& b, Theme theme);
-Picture bias_plate(const Sides& sides, const BiasResult& found, double alpha, Theme theme);
+Picture bias_plate(const Sides& sides, const BiasResult& found, Theme theme);
 Picture noise_plate(const Readings& all, const NoiseResult& noise, Theme theme);
 /// Needs a ladder.
 Picture ladders_plate(const CompareResult& result, Theme theme);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/parallel.h"
 #include "compare/made.h"
@@ -132,8 +133,128 @@ std::vector<Calls> worlds_of(const std::vector<MadeNoise>& noises, bool both, co
     const std::vector<CompareFlag>& more = {}) {
     std::vector<Calls> out;
     for (const MadeNoise& noise : noises)
-        for (const int k : renders) out.push_back({{noise, both ? noise : normal, k, 32, !both}, {}, {}, more});
+        for (const int k : renders) out.push_back({{noise, both ? noise : normal, k, 32, !both, 0, 0}, {}, {}, more});
     return out;
+}
+
+/// The same in colour, each channel with a quarter of its noise of its own: their noise correlates by 0.9.
+constexpr double own_share = 0.25;
+
+/// How often a call does what `is` says, a line each; `first` columns say what the world is.
+struct Counted {
+    std::string first;
+    const Calls* calls;
+    std::function<bool(const CompareResult&)> is;
+};
+std::string counts(const std::string& head, const std::vector<Counted>& lines) {
+    std::string out = head;
+    for (const Counted& l : lines)
+        out += fmt::format("| {} | {} | {} |\n", l.first, l.calls->world.renders,
+            rate_text(count(l.calls->results, l.is), l.calls->results.size()));
+    return out;
+}
+
+/// Between the two arms.
+const BiasResult& arms_of(const CompareResult& r) {
+    return *std::find_if(r.bias.begin(), r.bias.end(), [](const BiasResult& b) { return b.b != the_reference; });
+}
+bool arms_differ(const CompareResult& r) { return arms_of(r).differs(); }
+bool seeds_seen(const CompareResult& r) { return !arms_of(r).shared.empty(); }
+bool all_seeds_seen(const CompareResult& r) { return arms_of(r).all_shared; }
+
+std::vector<Counted> lines_of(
+    const std::vector<Calls>& worlds, auto first, std::function<bool(const CompareResult&)> is) {
+    std::vector<Counted> out;
+    for (const Calls& c : worlds) out.push_back({first(c.world), &c, is});
+    return out;
+}
+
+/// Both arms alike but for `change`, of gamma noise in colour.
+std::vector<Calls> gamma_worlds(const std::vector<double>& sizes, const std::vector<int>& renders, auto change) {
+    std::vector<Calls> out;
+    for (const double size : sizes)
+        for (const int k : renders) {
+            MadeWorld world{{Kind::gamma, 0.2}, {Kind::gamma, 0.2}, k, 32, false, own_share, 0};
+            change(world, size);
+            out.push_back({world, {}, {}, {}});
+        }
+    return out;
+}
+
+/// What is measured beside grey renders of independent seeds.
+struct ColourRates {
+    std::vector<Calls> alike, bias, hue, failing_alike, failing, same_seeds, some_seeds, other_noise;
+
+    ColourRates() {
+        const std::vector<MadeNoise> kinds{{Kind::gamma, 0.2}, {Kind::lognormal, 1}, {Kind::pareto, 2.5},
+            {Kind::hits, 0.02}, {.kind = Kind::gamma, .size = 0.2, .filter = 4}};
+        alike = worlds_of(kinds, true, {4, 16});
+        for (Calls& c : alike) c.world.own = own_share;
+        bias = gamma_worlds({0.01, 0.02}, {4, 8, 16}, [](MadeWorld& w, double size) { w.b.bias = size; });
+        hue = gamma_worlds({0.0025, 0.005, 0.01}, {4, 8, 16}, [](MadeWorld& w, double size) { w.b.hue = size; });
+        failing_alike =
+            gamma_worlds({1e-4, 1e-2}, {4, 16}, [](MadeWorld& w, double size) { w.a.failing = w.b.failing = size; });
+        failing = gamma_worlds({1e-3, 1e-2}, {4, 16}, [](MadeWorld& w, double size) { w.b.failing = size; });
+        const auto shared = [](MadeWorld& w, double size) { w.b.bias = size, w.shared = w.renders; };
+        same_seeds = gamma_worlds({0.001, 0.002}, {4, 8}, shared);
+        some_seeds = gamma_worlds({0}, {4, 8}, [](MadeWorld& w, double) { w.shared = w.renders / 2; });
+        for (const auto& [a, b] : {std::pair(MadeNoise{Kind::normal, 0.2}, MadeNoise{Kind::normal, 0.3}),
+                 {MadeNoise{Kind::lognormal, 0.5}, MadeNoise{Kind::lognormal, 1}}})
+            for (const int k : {4, 8, 16}) other_noise.push_back({{a, b, k, 32, false, own_share, k}, {}, {}, {}});
+    }
+    std::vector<std::vector<Calls>*> all() {
+        return {&alike, &bias, &hue, &failing_alike, &failing, &same_seeds, &some_seeds, &other_noise};
+    }
+    std::string text() const;
+};
+
+std::string ColourRates::text() const {
+    const auto kind = [](const MadeWorld& w) { return to_string(w.a); };
+    const auto percent_of = [](double MadeNoise::* of) {
+        return [of](const MadeWorld& w) { return fmt::format("{:g} %", 100 * (w.b.*of)); };
+    };
+    const auto chance = [](const MadeWorld& w) { return fmt::format("{:g}", w.b.failing); };
+    std::string out =
+        "### In colour\n\nTwo arms, no reference. Three quarters of a channel's noise are that of all three, a quarter "
+        "is its own: the noise of two channels correlates by 0.9.\n\nOf equal arms:\n\n";
+    out += counts("| noise of both | renders | calls that find a difference |\n|---|---|---|\n",
+        lines_of(alike, kind, arms_differ));
+    out += "\nB is brighter by so much, gamma noise of 20 %:\n\n" +
+        counts(
+            "| bias | renders | found |\n|---|---|---|\n", lines_of(bias, percent_of(&MadeNoise::bias), arms_differ));
+    out += "\nRed of B is brighter by so much and blue darker by 2.94 times as much, so that Y is the same:\n\n" +
+        counts("| red | renders | found |\n|---|---|---|\n", lines_of(hue, percent_of(&MadeNoise::hue), arms_differ));
+    out += "\n### Values that are not finite\n\nA pixel of a render of both arms is NaN with this chance:\n\n" +
+        counts("| chance | renders | calls that find a difference |\n|---|---|---|\n",
+            lines_of(failing_alike, chance, arms_differ));
+    out += "\nOf B alone:\n\n" +
+        counts("| chance | renders | found |\n|---|---|---|\n", lines_of(failing, chance, arms_differ));
+    out += "\n### Renders that share their seeds\n\nTaken for such, of independent seeds:\n\n" +
+        counts("| noise of both | renders | calls that take any two for such |\n|---|---|---|\n",
+            lines_of(alike, kind, seeds_seen));
+    const std::string head = "| | renders | calls |\n|---|---|---|\n";
+    std::vector<Counted> seen = lines_of(
+        same_seeds, [](const MadeWorld& w) { return fmt::format("bias {:g} %, all recognised", 100 * w.b.bias); },
+        all_seeds_seen);
+    const auto more = [&](const std::vector<Counted>& lines) { seen.insert(seen.end(), lines.begin(), lines.end()); };
+    more(lines_of(
+        same_seeds,
+        [](const MadeWorld& w) { return fmt::format("bias {:g} %, a difference is found", 100 * w.b.bias); },
+        arms_differ));
+    more(lines_of(some_seeds, [](auto&) { return "half of the seeds are shared, some recognised"; }, seeds_seen));
+    more(lines_of(
+        some_seeds, [](auto&) { return "half of the seeds are shared, all taken for shared"; }, all_seeds_seen));
+    more(
+        lines_of(some_seeds, [](auto&) { return "half of the seeds are shared, a difference is found"; }, arms_differ));
+    const auto pair = [](const char* what) {
+        return [what](const MadeWorld& w) {
+            return fmt::format("{} and {}, equal means, {}", to_string(w.a), to_string(w.b), what);
+        };
+    };
+    more(lines_of(other_noise, pair("all recognised"), all_seeds_seen));
+    more(lines_of(other_noise, pair("a difference is found"), arms_differ));
+    return out + "\nOf the same seeds, in another order; gamma noise of 20 % where nothing else is said:\n\n" +
+        counts(head, seen);
 }
 
 std::string powers(const std::vector<Calls>& biased) {
@@ -166,8 +287,10 @@ std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Progr
     std::vector<Calls> biased;
     for (const double bias : {0.01, 0.02, 0.05})
         for (const int renders : {4, 8, 16})
-            biased.push_back({{coarse, {Kind::normal, 0.2, bias}, renders, 32}, {}, {}, {}});
-    const auto all = {&right, &other, &alike, &bounded, &biased};
+            biased.push_back({{coarse, {Kind::normal, 0.2, bias}, renders, 32, true, 0, 0}, {}, {}, {}});
+    ColourRates colour;
+    std::vector<std::vector<Calls>*> all{&right, &other, &alike, &bounded, &biased};
+    for (std::vector<Calls>* worlds : colour.all()) all.push_back(worlds);
     std::size_t kinds = 0;
     for (const auto* worlds : all) kinds += worlds->size();
     monitor.begin("comparisons", static_cast<double>(repeats) * static_cast<double>(kinds));
@@ -186,7 +309,7 @@ std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Progr
     out +=
         "\n### How often a bias is found\n\nB is brighter by so much everywhere; its noise is 20 %, A's 50 % a "
         "pixel.\n\n" +
-        powers(biased);
+        powers(biased) + "\n" + colour.text();
     out +=
         "\n### How often a 95 % interval holds the truth\n\nStudent's t over renders, bias2 by the jackknife; of arm "
         "A, over the frame. Where a heavy tail is said there is no interval.\n\n";

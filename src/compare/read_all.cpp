@@ -7,6 +7,7 @@
 
 #include "compare/common_view.h"
 #include "compare/first_pass.h"
+#include "compare/quantities.h"
 #include "compare/schema.h"
 #include "compare/second_pass.h"
 
@@ -15,17 +16,15 @@ namespace crescent::inline comparing {
 namespace {
 
 void add_set(Readings& all, PixelSet set, const SourceLocation& at) {
-    const bool any = !set.pixels.empty();
-    std::erase_if(set.pixels, [&](std::uint32_t i) { return all.bad[i]; });
-    if (set.pixels.empty())
-        throw InputError(at,
-            fmt::format("{}: expected {}", set.name,
-                any ? "a pixel that is finite in every render" : "a pixel above 0, found none"));
+    if (set.pixels.empty()) throw InputError(at, set.name + ": expected a pixel above 0, found none");
+    const auto bad = [&](std::uint32_t i) { return all.bad[i]; };
+    std::copy_if(set.pixels.begin(), set.pixels.end(), std::back_inserter(set.left_out), bad);
+    std::erase_if(set.pixels, bad);
     all.regions.push_back(std::move(set));
 }
 
 PixelSet boxed(const std::string& name, const Box& box, int width) {
-    PixelSet set{name, box, {}};
+    PixelSet set{name, box, {}, {}};
     for (int j = box.y0; j <= box.y1; ++j)
         for (int i = box.x0; i <= box.x1; ++i) set.pixels.push_back(static_cast<std::uint32_t>(j * width + i));
     return set;
@@ -33,7 +32,7 @@ PixelSet boxed(const std::string& name, const Box& box, int width) {
 
 PixelSet masked(CommonView& view, const MaskPlan& plan) {
     const Render mask = view.read_mask(plan.file);
-    PixelSet set{plan.name, {}, {}};
+    PixelSet set{plan.name, {}, {}, {}};
     for (std::size_t i = 0; i < mask.size(); ++i)
         if (mask.y(i) > 0) set.pixels.push_back(static_cast<std::uint32_t>(i));
     return set;
@@ -50,6 +49,13 @@ void regions(const ComparePlan& plan, Readings& all, CommonView& view) {
     }
     for (const MaskPlan& m : plan.masks) add_set(all, masked(view, m), m.at);
     add_set(all, boxed(whole_frame, all.frame(), all.width), {plan.file, 0, 0});
+}
+
+/// Y alone where every render is grey.
+std::size_t quantities_of(const Readings& all) {
+    const auto in_colour = [](const ArmReadings& arm) { return arm.film.planes.size() > 1; };
+    const bool any = std::any_of(all.arms.begin(), all.arms.end(), in_colour);
+    return any || (all.reference && in_colour(*all.reference)) ? colour_quantities : 1;
 }
 
 }  // namespace
@@ -77,7 +83,7 @@ Render in_rec709(const Readings& all, Render render) {
 
 Render in_rec709(const Readings& all, const MeanFilm& film) {
     Render out("", all.width, all.height, Render::empty);
-    out.r = film.r, out.g = film.g, out.b = film.b;
+    out.r = film.radiance(0), out.g = film.radiance(1), out.b = film.radiance(2);
     return in_rec709(all, std::move(out));
 }
 
@@ -128,10 +134,13 @@ Readings read_all(const ComparePlan& plan, ProgressMonitor& monitor, const Rende
     all.primaries = view->primaries();
     all.tiles = Tiles(all.width, all.height);
     all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
+    all.quantities = quantities_of(all);
     regions(plan, all, *view);
     monitor.begin("second pass: what each render says", static_cast<double>(files.total));
-    for (std::size_t a = 0; a < plan.arms.size(); ++a) second_pass(plan, all, all.arms[a], plan.arms[a].layer, monitor);
-    if (all.reference) second_pass(plan, all, *all.reference, plan.reference_layer, monitor);
+    const MeanFilm* truth = all.reference ? &all.reference->film : nullptr;
+    for (std::size_t a = 0; a < plan.arms.size(); ++a)
+        second_pass(plan, all, all.source, all.arms[a], plan.arms[a].layer, truth, monitor);
+    if (all.reference) second_pass(plan, all, all.source, *all.reference, plan.reference_layer, nullptr, monitor);
     return all;
 }
 

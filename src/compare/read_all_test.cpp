@@ -4,45 +4,21 @@
 
 #include <cmath>
 
-#include "compare/made.h"
-#include "compare/renders.h"
+#include "compare/memory_renders.h"
 
 namespace crescent::inline comparing {
 namespace {
 
 using ::testing::HasSubstr;
 
-/// Renders of so many pixels a side, by name; all of arm "a" begin with a, of "b" with b.
-class Memory : public ::testing::Test {
+class Memory : public ::testing::Test, public MemoryRenders {
 protected:
-    Render& put(const std::string& name, std::uint32_t seed, int side = 16) {
-        Render r(name, side, side);
-        for (std::size_t i = 0; i < r.size(); ++i)
-            r.r[i] = r.g[i] = r.b[i] = static_cast<float>(
-                made_pixel({MadeNoise::Kind::normal, 0.1, 0}, seed, static_cast<std::uint32_t>(i), side));
-        return renders_[name] = r;
-    }
-    Readings read(std::vector<CompareFlag> flags = {}) const {
-        flags.push_back({{"arms", "a", "files"}, "a", false, "a"});
-        flags.push_back({{"arms", "b", "files"}, "b", false, "b"});
-        RenderSource source;
-        source.expand = [this](const std::vector<std::string>& names, const SourceLocation&) {
-            std::vector<std::string> out;
-            for (const auto& [name, render] : renders_)
-                if (name.starts_with(names[0])) out.push_back(name);
-            return out;
-        };
-        source.read = [this](const std::string& name, const std::string&) { return renders_.at(name); };
-        ProgressMonitor monitor;
-        return read_all(plan_of(flags), monitor, source);
-    }
     std::string refusal(const std::vector<CompareFlag>& flags = {}) const {
         try {
             (void)read(flags);
         } catch (const InputError& error) { return error.what(); }
         return "";
     }
-    std::map<std::string, Render> renders_;
 };
 
 TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndTold) {
@@ -68,7 +44,7 @@ TEST_F(Memory, SizesThatDifferAreRefused) {
 
 TEST_F(Memory, ConstantAndNegativePixelsAreTold) {
     put("a0", 1), put("a1", 2).r[3] = -1, put("b0", 3), put("b1", 4);
-    for (auto* plane : {&renders_["b0"].r, &renders_["b0"].g, &renders_["b0"].b}) plane->assign(256, 0.5f);
+    for (auto* plane : {&renders["b0"].r, &renders["b0"].g, &renders["b0"].b}) plane->assign(256, 0.5f);
     EXPECT_THAT(read().warnings,
         ::testing::ElementsAre(
             HasSubstr("a1: 1 pixel with a negative channel"), HasSubstr("b0: all pixels are equal")));

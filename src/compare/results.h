@@ -1,13 +1,16 @@
 // What a comparison found, as plain data: meters with their doubt, whether arms differ, where the noise moved.
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "compare/non_finite.h"
 #include "compare/renders.h"
+#include "compare/shared_seeds.h"
 #include "compare/spectrum.h"
 #include "meters/metrics.h"
 #include "stats/hypotheses.h"
@@ -16,6 +19,7 @@ namespace crescent::inline comparing {
 
 inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;  // of every interval
+inline constexpr double heavy_share = 0.5;  // one squared error that is half of their sum decides a mean by itself
 
 /// A meter of one arm in one region. `why` says why there is no value or no interval.
 struct MeterValue {
@@ -49,29 +53,44 @@ struct ArmResult {
     const RegionResult& region(const std::string& name) const;
 };
 
-/// One test of equal means.
+/// One test of equal means of a region: of Y, and of each channel where renders are in colour.
 struct MeanTest {
-    std::string region;
-    double a = 0, b = 0;  // mean Y
+    std::string region;   // of a channel's test: its name
+    double a = 0, b = 0;  // means
     Welch welch;
-    bool differs = false;
-    double smallest = 0;  // the relative difference that would have been seen nine times out of ten
-    std::string why;      // why it was not tested; "" where it was
-    std::string doubt;    // p is small, and what else than a bias may be the reason; "" where nothing is
+    bool differs = false;            // in this quantity
+    bool paired = false;             // over differences of pairs of renders
+    double smallest = 0;             // the relative difference that would have been seen nine times out of ten
+    std::string why;                 // why it was not tested; "" where it was
+    std::string doubt;               // p is small, and what else than a bias may be the reason; "" where nothing is
+    std::vector<MeanTest> channels;  // R, G, B
+    double joint_p = std::nan("");   // of no difference in any of them, see quantities.h
+    /// Names of the quantities that differ, Y first.
+    std::vector<std::string> differs_in() const;
 };
 
 /// Tests of many places at once, their false discoveries controlled.
 struct PlaceTests {
-    std::vector<double> p;           // a place; NaN: not tested
-    std::vector<double> difference;  // mean Y of a less that of b
+    std::vector<double> p;                        // a place, of all its quantities; NaN: not tested
+    std::vector<std::size_t> quantity;            // a place: which that p is from
+    std::vector<std::vector<double>> difference;  // [quantity][place]: mean of a less that of b
     std::vector<bool> differs;
     std::size_t tested = 0, left_out = 0, different = 0;
 };
 
-/// A place that differs: pixels, both ends inside, and mean Y of both there.
+/// A place that differs: pixels, both ends inside, and the means of both there of the quantity that differs the most.
 struct Found {
     Box box;
     double a = 0, b = 0, p = 0;
+    std::size_t quantity = 0;
+};
+
+/// How two single files differ; whether that is noise, they do not say.
+struct SingleDifference {
+    std::uint64_t pixels = 0, different = 0;  // finite ones
+    double rms = 0;                           // of the difference of Y
+    double largest = 0;                       // difference of a channel
+    Box at;                                   // the pixel where that is
 };
 
 /// What else than a bias could have made a difference: events of the darker side that none of its renders met, with the
@@ -88,16 +107,24 @@ struct BiasResult {
     std::string a, b;
     std::size_t arm_a = 0, arm_b = 0;  // their places; the number of arms stands for the reference
     double place_alpha = 0;            // what tiles have, and pixels
+    bool identical = false;            // every render of one side has the same pixels as one of the other
     bool paired = false;
-    bool dependent = false;       // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
-    std::string reference_error;  // how the reference's own error is known; "" between arms
+    std::vector<SeedPair> shared;  // renders that share their random numbers, as their residuals show
+    bool all_shared = false;       // each render of either side is one of those
+    NonFinite non_finite;
+    std::optional<SingleDifference> single;  // of one file a side
+    bool dependent = false;                  // neighbouring pixels' noise is correlated: Benjamini-Yekutieli
+    std::string reference_error;             // how the reference's own error is known; "" between arms
     std::vector<MeanTest> regions;
     PlaceTests tiles;
     std::vector<Found> tiles_found, pixels_found;  // the most certain first, a few of them
     std::uint64_t pixels_tested = 0, pixels_different = 0;
-    double pixel_level = 0;              // p at or below which a pixel is told to differ; 0: none is
-    std::vector<std::uint64_t> pixel_p;  // histogram of p over pixels, in twentieths
+    std::vector<std::uint32_t> different_pixels;     // rising
+    std::vector<std::uint64_t> tiles_by, pixels_by;  // of those that differ, by the quantity that differs the most
+    std::vector<std::uint64_t> pixel_p;              // histogram of the p of Y over pixels, in twentieths
     bool differs() const;
+    /// The quantity to show where the sides differ: Y where it differs at all, else the channel that differs the most.
+    std::size_t shown() const;
     std::optional<MissedEvents> unless;  // of the place that is hardest to explain by them; where something differs
     std::string sentence;
 };

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "base/parallel.h"
+#include "compare/non_finite.h"
+#include "compare/shared_seeds.h"
 #include "compare/spectrum.h"
 #include "stats/hypotheses.h"
 #include "stats/tail.h"
@@ -56,12 +59,24 @@ struct Part {
     std::vector<float> large;
 };
 
+/// The same of one quantity; squared deviations from the mean are kept.
+struct QuantityPart {
+    double sum = 0;
+    std::vector<float> large;
+};
+
+/// A pixel's deviations from its mean over renders, the largest of either sign.
+struct Outliers {
+    double rise = 0, fall = 0;
+};
+
 class SecondPass {
 public:
     SecondPass(const ComparePlan& plan, const Readings& all, const MeanFilm* reference)
-        : plan_(plan), all_(all), reference_(reference) {}
+        : plan_(plan), all_(all), reference_(reference), samples_(seed_samples(all)) {}
 
-    void render(const Render& render, ArmReadings& arm, std::vector<Largest>& largest) {
+    void render(const Render& render, ArmReadings& arm, std::vector<Largest>& largest,
+        std::vector<std::vector<Largest>>& deviations) {
         y_.resize(render.size());
         parallel_for(std::size_t{0}, (y_.size() + chunk - 1) / chunk, [&](std::size_t c) {
             for (std::size_t i = c * chunk; i < std::min(y_.size(), (c + 1) * chunk); ++i) y_[i] = render.y(i);
@@ -72,7 +87,10 @@ public:
             spectrum(all_.regions[r], arm, arm.power[r]);
         }
         arm.regions.push_back(std::move(regions));
-        arm.tiles.push_back(tiles(arm));
+        const std::span<const float> values[] = {y_, render.r, render.g, render.b};
+        for (std::size_t q = 0; q < all_.quantities; ++q) quantity(values[q], arm, q, deviations[q]);
+        if (!arm.not_finite.empty()) arm.failed_groups.push_back(failed_groups(render, all_));
+        arm.sampled.push_back(residuals(y_, arm.film, samples_));
     }
 
 private:
@@ -84,13 +102,13 @@ private:
         const std::size_t end = std::min(set.pixels.size(), begin + chunk);
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t i = set.pixels[k];
-            const double spread = (y(i) - film.y[i]) * (y(i) - film.y[i]);
+            const double spread = (y(i) - film.y()[i]) * (y(i) - film.y()[i]);
             sum.y += y(i), sum.spread += spread;
             double squared = spread;
             if (reference_) {
-                const double ref = reference_->y[i], e = y(i) - ref;
+                const double ref = reference_->y()[i], e = y(i) - ref;
                 squared = e * e;
-                sum.mse += squared, sum.with_sum += e * static_cast<double>(film.count) * (film.y[i] - ref);
+                sum.mse += squared, sum.with_sum += e * static_cast<double>(film.count) * (film.y()[i] - ref);
                 sum.fireflies += std::fabs(e) > plan_.firefly_k * ref;
                 sum.relmse += squared / (ref * ref + epsilon);
                 sum.mape += std::fabs(e) / (std::fabs(ref) + epsilon);
@@ -112,6 +130,7 @@ private:
             for (const float x : p.large) largest.add(x);
         }
         const double count = static_cast<double>(set.pixels.size());
+        if (count == 0) return out;
         out.y /= count, out.spread /= count, out.mse /= count, out.with_sum /= count;
         out.relmse /= count, out.mape /= count;
         if (reference_ && plan_.trim > 0) trim(set, out);
@@ -121,7 +140,7 @@ private:
     void trim(const PixelSet& set, RegionReading& out) const {
         std::vector<float> relative, absolute;
         for (const std::uint32_t i : set.pixels) {
-            const double ref = reference_->y[i], e = y(i) - ref;
+            const double ref = reference_->y()[i], e = y(i) - ref;
             relative.push_back(static_cast<float>(e * e / (ref * ref + epsilon)));
             absolute.push_back(static_cast<float>(std::fabs(e) / (std::fabs(ref) + epsilon)));
         }
@@ -137,13 +156,34 @@ private:
         add_spectrum(power, *set.box, [&](int x, int row) {
             const auto i =
                 static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
-            return all_.bad[i] ? 0.0 : scale * (y(i) - about->y[i]);
+            return all_.bad[i] ? 0.0 : scale * (y(i) - about->y()[i]);
         });
+    }
+
+    /// Mean and largest squared deviations of one quantity in a region.
+    double region(std::span<const float> values, const PixelSet& set, const MeanPlane& plane, Largest& largest) const {
+        std::vector<QuantityPart> parts((set.pixels.size() + chunk - 1) / chunk);
+        const float least = largest.least();
+        parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
+            for (std::size_t k = c * chunk; k < std::min(set.pixels.size(), (c + 1) * chunk); ++k) {
+                const double value = static_cast<double>(values[set.pixels[k]]),
+                             off = value - plane.mean[set.pixels[k]];
+                parts[c].sum += value;
+                if (const auto x = static_cast<float>(off * off); x > least) parts[c].large.push_back(x);
+            }
+        });
+        double sum = 0;
+        for (const QuantityPart& p : parts) {
+            sum += p.sum;
+            for (const float x : p.large) largest.add(x);
+        }
+        return sum / static_cast<double>(set.pixels.size());
     }
 
     /// A pixel's deviation that would be an outlier among its K (Grubbs 1950) is a rare event: noise that one sample in
     /// many brings. The largest of them bounds what renders that met none may have missed.
-    TileReading tile(const Box& box, const MeanFilm& film, double lone, double& rare) const {
+    TileReading tile(
+        std::span<const float> values, const Box& box, const MeanPlane& plane, double lone, Outliers& rare) const {
         TileReading out;
         double pixels = 0;
         for (int j = box.y0; j <= box.y1; ++j) {
@@ -151,45 +191,58 @@ private:
                 const auto i =
                     static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
                 if (all_.bad[i]) continue;
-                const double off = y(i) - film.y[i], spread = off * off;
-                out.y += y(i), out.spread += spread, pixels += 1;
+                const double value = static_cast<double>(values[i]), off = value - plane.mean[i], spread = off * off;
+                out.mean += value, out.spread += spread, pixels += 1;
                 out.largest = std::max(out.largest, spread);
-                if (off > 0 && spread >= lone * film.m2[i]) rare = std::max(rare, off);
+                if (spread < lone * plane.m2[i]) continue;
+                rare.rise = std::max(rare.rise, off), rare.fall = std::max(rare.fall, -off);
             }
         }
-        out.y /= pixels, out.spread /= pixels, out.largest /= pixels;
+        out.mean /= pixels, out.spread /= pixels, out.largest /= pixels;
         return out;
     }
 
-    std::vector<TileReading> tiles(ArmReadings& arm) const {
-        std::vector<TileReading> out(all_.tiles.count());
-        std::vector<double> rare(out.size());
+    void quantity(std::span<const float> values, ArmReadings& arm, std::size_t q, std::vector<Largest>& largest) const {
+        const MeanPlane& plane = arm.film.of(q);
+        QuantityReadings& to = arm.quantities[q];
+        std::vector<double> means;
+        for (std::size_t r = 0; r < all_.regions.size(); ++r)
+            means.push_back(region(values, all_.regions[r], plane, largest[r]));
+        to.regions.push_back(std::move(means));
+        std::vector<TileReading> tiles(all_.tiles.count());
+        std::vector<Outliers> rare(tiles.size());
         const double lone = lone_share(arm.film.count);
-        parallel_for(std::size_t{0}, out.size(),
-            [&](std::size_t t) { out[t] = tile(all_.tiles.box(t, all_.width, all_.height), arm.film, lone, rare[t]); });
-        arm.rare_event = std::max(arm.rare_event, *std::max_element(rare.begin(), rare.end()));
-        return out;
+        parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+            tiles[t] = tile(values, all_.tiles.box(t, all_.width, all_.height), plane, lone, rare[t]);
+        });
+        to.tiles.push_back(std::move(tiles));
+        for (const Outliers& o : rare) to.rise = std::max(to.rise, o.rise), to.fall = std::max(to.fall, o.fall);
     }
 
     const ComparePlan& plan_;
     const Readings& all_;
     const MeanFilm* reference_;
+    const SeedSamples samples_;
     std::vector<float> y_;
 };
 
 }  // namespace
 
-void second_pass(
-    const ComparePlan& plan, Readings& all, ArmReadings& arm, const std::string& layer, ProgressMonitor& monitor) {
-    const MeanFilm* reference = all.reference && &*all.reference != &arm ? &all.reference->film : nullptr;
+void second_pass(const ComparePlan& plan, const Readings& all, const RenderSource& source, ArmReadings& arm,
+    const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor) {
     SecondPass pass(plan, all, reference);
     std::vector<Largest> largest;
     for (const PixelSet& set : all.regions) largest.emplace_back(tail_length(set.pixels.size() * arm.files.size()) + 1);
+    std::vector<std::vector<Largest>> deviations(all.quantities, largest);
     arm.power.assign(all.regions.size(), {});
+    arm.quantities.assign(all.quantities, {});
     std::vector<std::string> paths;
     for (const RenderFile& file : arm.files) paths.push_back(file.path);
-    each_render(all.source, paths, layer, monitor, [&](const Render& render) { pass.render(render, arm, largest); });
+    each_render(
+        source, paths, layer, monitor, [&](const Render& render) { pass.render(render, arm, largest, deviations); });
     for (const Largest& values : largest) arm.largest.push_back(values.falling());
+    for (std::size_t q = 0; q < all.quantities; ++q)
+        for (const Largest& values : deviations[q]) arm.quantities[q].largest.push_back(values.falling());
 }
 
 }  // namespace crescent::inline comparing

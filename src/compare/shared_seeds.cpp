@@ -1,0 +1,133 @@
+// About 16 blocks with up to 512 pixels each: what is kept of a render of any size is 32 KiB. Products of
+// residuals are summed over a block, and the sums of blocks are taken to be independent: noise that is correlated over
+// a few pixels leaves the test right, since blocks are large beside them. A residual of K renders is at most sqrt(K -
+// 1) standard deviations, so that bright events cannot decide it. Where K and L renders share m seeds, the means that
+// are taken off make the covariance of residuals of renders that share one 1 - 1/K - 1/L + m/(K L) of that of their
+// noise, and of others m/(K L) of it: less than half from K = L = 3 on.
+#include "compare/shared_seeds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/hypotheses.h"
+
+namespace crescent::inline comparing {
+
+namespace {
+
+constexpr double blocks_wanted = 16;
+constexpr std::size_t pixels_a_block = 512;
+constexpr std::size_t blocks_least = 8;  // fewer say nothing at this level
+
+/// Up to pixels_a_block pixels of a block, as far apart as can be.
+void take_block(const Readings& all, const Box& box, SeedSamples& to) {
+    const std::size_t count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
+    const std::size_t taken = std::min(count, pixels_a_block);
+    for (std::size_t k = 0; k < taken; ++k) {
+        const std::size_t at = k * count / taken, across = static_cast<std::size_t>(box.width());
+        const auto i = (static_cast<std::size_t>(box.y0) + at / across) * static_cast<std::size_t>(all.width) +
+            static_cast<std::size_t>(box.x0) + at % across;
+        if (!all.bad[i]) to.pixels.push_back(static_cast<std::uint32_t>(i));
+    }
+    to.ends.push_back(to.pixels.size());
+}
+
+struct Correlation {
+    double r = 0;
+    bool found = false;
+};
+
+/// Of two renders' residuals, and whether it is above 0 at this level.
+Correlation correlation(const std::vector<float>& a, const std::vector<float>& b, const SeedSamples& at, double level) {
+    std::vector<double> blocks;
+    double product = 0, squares_a = 0, squares_b = 0;
+    for (std::size_t block = 0, k = 0; block < at.ends.size(); ++block) {
+        double sum = 0;
+        for (; k < at.ends[block]; ++k) {
+            const double x = static_cast<double>(a[k]), y = static_cast<double>(b[k]);
+            sum += x * y, squares_a += x * x, squares_b += y * y;
+        }
+        product += sum;
+        if (sum != 0) blocks.push_back(sum);
+    }
+    if (blocks.size() < blocks_least || !(squares_a > 0) || !(squares_b > 0)) return {};
+    const MeanInterval mean = mean_interval(blocks, 0.95);
+    const double limit = student_quantile(1 - level, static_cast<double>(blocks.size() - 1));
+    return {product / std::sqrt(squares_a * squares_b), mean.mean > limit * mean.se};
+}
+
+/// Deviations of one render of each pair from the mean of those renders, in the units of the renders, a row each.
+std::vector<std::vector<double>> deviations(
+    const ArmReadings& arm, const SeedSamples& at, const std::vector<SeedPair>& pairs, std::size_t SeedPair::* render) {
+    std::vector<std::vector<double>> out(pairs.size(), std::vector<double>(at.pixels.size()));
+    for (std::size_t i = 0; i < at.pixels.size(); ++i) {
+        const double sd = std::sqrt(arm.film.variance(at.pixels[i]));
+        double mean = 0;
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            out[k][i] = sd * static_cast<double>(arm.sampled[pairs[k].*render][i]);
+            mean += out[k][i] / static_cast<double>(pairs.size());
+        }
+        for (auto& row : out) row[i] -= mean;
+    }
+    return out;
+}
+
+/// Correlations of the noise of pairs: of deviations from the mean of the paired renders alone, each pixel by its
+/// variance on both sides.
+void estimate_correlations(
+    const ArmReadings& a, const ArmReadings& b, const SeedSamples& at, std::vector<SeedPair>& pairs) {
+    const auto of_a = deviations(a, at, pairs, &SeedPair::a), of_b = deviations(b, at, pairs, &SeedPair::b);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        double product = 0, squares_a = 0, squares_b = 0;
+        for (std::size_t i = 0; i < at.pixels.size(); ++i) {
+            const double variance = a.film.variance(at.pixels[i]) + b.film.variance(at.pixels[i]);
+            if (!(variance > 0)) continue;
+            product += of_a[k][i] * of_b[k][i] / variance;
+            squares_a += of_a[k][i] * of_a[k][i] / variance, squares_b += of_b[k][i] * of_b[k][i] / variance;
+        }
+        if (squares_a > 0 && squares_b > 0) pairs[k].correlation = product / std::sqrt(squares_a * squares_b);
+    }
+}
+
+}  // namespace
+
+SeedSamples seed_samples(const Readings& all) {
+    const double side = std::sqrt(static_cast<double>(all.width) * all.height / blocks_wanted);
+    const int size = std::max(2, static_cast<int>(side));
+    SeedSamples out;
+    for (int y = 0; y < all.height; y += size)
+        for (int x = 0; x < all.width; x += size)
+            take_block(all, {x, y, std::min(all.width, x + size) - 1, std::min(all.height, y + size) - 1}, out);
+    return out;
+}
+
+std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& at) {
+    std::vector<float> out;
+    for (const std::uint32_t i : at.pixels) {
+        const double variance = film.count > 1 ? film.variance(i) : 0;
+        out.push_back(
+            variance > 0 ? static_cast<float>((static_cast<double>(y[i]) - film.y()[i]) / std::sqrt(variance)) : 0);
+    }
+    return out;
+}
+
+std::vector<SeedPair> shared_seeds(const Readings& all, const ArmReadings& a, const ArmReadings& b) {
+    if (a.files.size() < 2 || b.files.size() < 2) return {};
+    const SeedSamples at = seed_samples(all);
+    const double level = shared_seed_level / static_cast<double>(a.files.size() * b.files.size());
+    std::vector<SeedPair> found;
+    double largest = 0;
+    for (std::size_t i = 0; i < a.files.size(); ++i)
+        for (std::size_t j = 0; j < b.files.size(); ++j) {
+            const Correlation c = correlation(a.sampled[i], b.sampled[j], at, level);
+            if (c.found) found.push_back({i, j, c.r}), largest = std::max(largest, c.r);
+        }
+    std::erase_if(found, [&](const SeedPair& p) { return p.correlation < largest / 2; });
+    std::vector<std::size_t> partners_a(a.files.size()), partners_b(b.files.size());
+    for (const SeedPair& p : found) ++partners_a[p.a], ++partners_b[p.b];
+    std::erase_if(found, [&](const SeedPair& p) { return partners_a[p.a] > 1 || partners_b[p.b] > 1; });
+    if (found.size() > 1) estimate_correlations(a, b, at, found);
+    return found;
+}
+
+}  // namespace crescent::inline comparing
