@@ -111,9 +111,10 @@ Sides::Sides(const ComparePlan& plan, const Readings& readings, const CompareRes
       b(second < readings.arms.size() ? readings.arms[second] : *readings.reference),
       arm(measured.arms[first]),
       quantity(of) {
-    constexpr double weights[] = {1, luminance_weights[0], luminance_weights[1], luminance_weights[2]};
+    const Rgb weights = luminance_weights_of(all.primaries);  // a channel may be 1 / weight times as bright as Y
     referred = second >= readings.arms.size();
-    brightest = plan.brightest.value_or(0) / (all.quantities > 1 ? weights[quantity] : 1);
+    brightest = plan.brightest.value_or(0);
+    if (const double weight = quantity > 0 ? weights[quantity - 1] : 1; weight > 0) brightest /= weight;
     if (!referred) other = &measured.arms[second];
     const RegionResult& frame = arm.region(whole_frame);
     dependent = frame.colour == NoiseColour::correlated;
