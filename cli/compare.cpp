@@ -128,10 +128,10 @@ int error_rates(const CompareFlags& flags) {
     const StopOnSignal stop(progress);
     const std::string text = compare_error_rates(flags.error_rates, flags.seed, progress);
     progress.clear();
-    print(fmt::format(
-        "\n## How often compare errs\n\nWritten by the program (crescent {}, commit {}); made again with\n\n"
-        "    crescent compare --error-rates {} --seed {}\n\n{}",
-        crescent::version(), commit(), flags.error_rates, flags.seed, text));
+    print(
+        fmt::format("\n## How often compare errs\n\nWritten by the program (crescent {}, commit {}); reproduced by\n\n"
+                    "    crescent compare --error-rates {} --seed {}\n\n{}",
+            crescent::version(), commit(), flags.error_rates, flags.seed, text));
     return held;
 }
 

@@ -82,7 +82,7 @@ std::string coverage(const std::vector<CompareResult>& all, const std::string& m
 
 std::string false_alarms(const std::vector<Calls>& worlds) {
     std::string out =
-        "| noise of A | of B | renders | calls that tell of a difference | of those in which each arm met what is rare "
+        "| noise of A | of B | renders | calls that find a difference | of those in which each arm met what is rare "
         "in "
         "it | of the others | heavy tail said |\n|---|---|---|---|---|---|---|\n";
     for (const Calls& c : worlds) {
