@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/memory_renders.h"
+#include "compare/memory_renders_test.h"
 #include "compare/schema.h"
 
 namespace crescent::inline comparing {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "compare/memory_renders.h"
+#include "compare/memory_renders_test.h"
 
 namespace crescent::inline comparing {
 namespace {
