@@ -9,7 +9,7 @@ namespace crescent::inline cubature {
 
 namespace {
 
-constexpr int parallels = 6, probes = 192, bisections = 44;
+constexpr int parallels = 6, probes = 192, bisections_of_a_gap = 44;
 
 /// Where g may jump between two points of one parallel or meridian.
 struct Gap {
@@ -57,7 +57,7 @@ std::vector<Gap> gaps_of(const Batch& g) {
 void close_in(std::vector<Gap>& gaps, const Batch& g) {
     std::vector<Vec2d> where(gaps.size());
     std::vector<double> v(gaps.size());
-    for (int k = 0; k < bisections && !gaps.empty(); ++k) {
+    for (int k = 0; k < bisections_of_a_gap && !gaps.empty(); ++k) {
         for (std::size_t i = 0; i < gaps.size(); ++i) where[i] = gaps[i].at(0.5 * (gaps[i].t0 + gaps[i].t1));
         g(where, v);
         for (std::size_t i = 0; i < gaps.size(); ++i) {

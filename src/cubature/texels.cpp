@@ -146,7 +146,7 @@ std::vector<double> ends_of(const Square& g, const std::vector<Piece>& all, bool
 }
 
 /// The least N of which all are multiples of 1/N, but for what a weak kink hides; 0: none, or too few to tell.
-int spacing(const std::vector<double>& positions) {
+int even_spacing(const std::vector<double>& positions) {
     constexpr int most = 8192;
     constexpr double hidden = 4e-3;  // of a texel
     if (positions.size() < 3) return 0;
@@ -205,7 +205,7 @@ std::optional<Integral> integrate_texels(const DirectionBatch& p, std::size_t mo
             const Square g{direction, area, turned, p};
             const std::vector<Piece> pieces = straight_pieces(g);
             if (pieces.size() < lines) continue;
-            const int columns = spacing(ends_of(g, pieces, true)), rows = spacing(ends_of(g, pieces, false));
+            const int columns = even_spacing(ends_of(g, pieces, true)), rows = even_spacing(ends_of(g, pieces, false));
             if (columns == 0 || rows == 0) continue;
             const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
             if (cells + 20000 > most) return {};

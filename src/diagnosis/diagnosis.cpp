@@ -17,9 +17,9 @@ namespace crescent::inline diagnosis {
 
 namespace {
 
-constexpr double close = 2e-3;      // relative
-constexpr double enough = 0.9;      // of all ratios
-constexpr std::size_t least = 100;  // ratios
+constexpr double close_to_one = 2e-3;       // relative
+constexpr double most_ratios = 0.9;         // of all ratios
+constexpr std::size_t fewest_ratios = 100;  // ratios
 
 /// Mean without the largest tenth.
 double trimmed(std::vector<double> v) {
@@ -45,7 +45,7 @@ struct Fitted {
 bool may_be_whole(const Factor& factor, std::span<const Ratio> ratios) {
     std::size_t inside = 0, tried = 0;
     for (std::size_t i = 0; i < ratios.size(); i += 1 + ratios.size() / 64, ++tried)
-        inside += std::fabs(ratios[i].value / factor.g(ratios[i].wi) - 1) <= close + 2 * ratios[i].error;
+        inside += std::fabs(ratios[i].value / factor.g(ratios[i].wi) - 1) <= close_to_one + 2 * ratios[i].error;
     return 4 * inside >= 3 * tried;
 }
 
@@ -64,7 +64,7 @@ Fitted fit(const TrialContext& work, const Factor& factor, std::span<const Ratio
     const double middle = median_of(logs), all = trimmed(sizes(raw, 0));
     std::size_t inside = 0;
     for (std::size_t i = 0; i < logs.size(); ++i) inside += std::fabs(logs[i] - middle) <= may_differ(all, errors[i]);
-    return {static_cast<double>(inside) >= enough * static_cast<double>(ratios.size()), math::exp(middle),
+    return {static_cast<double>(inside) >= most_ratios * static_cast<double>(ratios.size()), math::exp(middle),
         trimmed(sizes(logs, middle)), all};
 }
 
@@ -76,7 +76,9 @@ bool mostly_one(std::span<const Ratio> ratios) {
     return 2 * one >= ratios.size();
 }
 
-double may_differ(double all, double error) { return std::min(close, 0.02 * all) + std::min(2 * error, 0.1 * all); }
+double may_differ(double all, double error) {
+    return std::min(close_to_one, 0.02 * all) + std::min(2 * error, 0.1 * all);
+}
 
 namespace {
 
@@ -96,11 +98,11 @@ std::optional<Diagnosis> explain_one_side(const TrialContext& work, std::span<co
         std::vector<Ratio> off, right;
         for (const Ratio& r : ratios) (((r.wi.z * wo.z < 0) == across) ? off : right).push_back(r);
         std::size_t one = 0;
-        for (const Ratio& r : right) one += std::fabs(r.value - 1) <= close + 2 * r.error;
+        for (const Ratio& r : right) one += std::fabs(r.value - 1) <= close_to_one + 2 * r.error;
         // Few may be on the side that is right, as at the normal of glass: what it comes to is looked at with every
         // draw.
-        if (off.size() < least / 4 || right.empty() || mostly_one(off)) continue;
-        if (static_cast<double>(one) < enough * static_cast<double>(right.size())) continue;
+        if (off.size() < fewest_ratios / 4 || right.empty() || mostly_one(off)) continue;
+        if (static_cast<double>(one) < most_ratios * static_cast<double>(right.size())) continue;
         for (const Factor& factor : factors_of_side(work, across)) {
             const Fitted f = fit(work, factor, off);
             if (!f.fits || !(f.all > 0)) continue;
@@ -128,10 +130,10 @@ std::optional<Diagnosis> explain_by_sides(const TrialContext& work, std::span<co
     const Factor plain{"a constant", [](Vec3d) { return 1.0; }};
     std::vector<Ratio> above, below;
     for (const Ratio& r : ratios) (r.wi.z > 0 ? above : below).push_back(r);
-    if (std::min(above.size(), below.size()) < least / 4) return {};
+    if (std::min(above.size(), below.size()) < fewest_ratios / 4) return {};
     const Fitted a = fit(work, plain, above), b = fit(work, plain, below);
     if (!a.fits || !b.fits || !(a.all + b.all > 0)) return {};
-    if (std::fabs(math::log(a.constant / b.constant)) < 2 * close) return {};
+    if (std::fabs(math::log(a.constant / b.constant)) < 2 * close_to_one) return {};
     const double na = static_cast<double>(above.size()), nb = static_cast<double>(below.size());
     return Diagnosis{"a constant on either side", 1,
         std::clamp(1 - (na * a.left + nb * b.left) / (na * a.all + nb * b.all), 0.0, 1.0),
@@ -142,7 +144,7 @@ std::optional<Diagnosis> explain_by_sides(const TrialContext& work, std::span<co
 }  // namespace
 
 std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio> ratios) {
-    if (ratios.size() < least) return {};
+    if (ratios.size() < fewest_ratios) return {};
     if (work.whole())
         if (std::optional<Diagnosis> found = explain_one_side(work, ratios)) return found;
     if (mostly_one(ratios)) return {};
@@ -155,11 +157,11 @@ std::optional<Diagnosis> explain(const TrialContext& work, std::span<const Ratio
         if (factor.whole && std::fabs(math::log(f.constant)) > may_differ(f.all, 0)) continue;
         const Diagnosis now{factor.name, f.constant, std::clamp(1 - f.left / f.all, 0.0, 1.0),
             factor_text(work, factor.name, f.constant), factor.g};
-        const bool plain = std::fabs(now.constant - 1) < close;
-        if (!best || (plain && std::fabs(best->constant - 1) >= close)) best = now;
+        const bool plain = std::fabs(now.constant - 1) < close_to_one;
+        if (!best || (plain && std::fabs(best->constant - 1) >= close_to_one)) best = now;
         if (factor.name == "a constant") break;
     }
-    if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close) return {};
+    if (best && best->name == "a constant" && std::fabs(best->constant - 1) < close_to_one) return {};
     if (!best && work.whole()) best = explain_by_sides(work, ratios);
     if (best) return best;
     for (const Factor& factor : fitted_factors(work, ratios)) {
@@ -176,8 +178,8 @@ namespace {
 
 /// A factor with an unknown constant may be chance: weights cut off are 1 / cos up to some constant.
 bool is_told_apart(const TrialContext& work, const Diagnosis& found) {
-    return found.name == "a constant" || found.name.ends_with("surface") || std::fabs(found.constant - 1) < close ||
-        !name_of_constant(work, found.constant).empty();
+    return found.name == "a constant" || found.name.ends_with("surface") ||
+        std::fabs(found.constant - 1) < close_to_one || !name_of_constant(work, found.constant).empty();
 }
 
 }  // namespace

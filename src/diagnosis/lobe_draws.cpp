@@ -14,7 +14,7 @@ namespace crescent::inline diagnosis {
 
 namespace {
 
-constexpr std::size_t most_of_a_lobe = 192, fewest = 32, starts = 3;
+constexpr std::size_t most_of_a_lobe = 192, fewest_at_all = 32, starts = 3;
 constexpr std::size_t for_ends = 8000, of_a_point = 11, of_a_way = 40;  // questions
 constexpr int newton_steps = 12;
 constexpr double grain_of_u = 0x1p-24, margin = 0x1p-7 + 0x1p-12;  // differences fit inside
@@ -198,7 +198,7 @@ std::optional<LobeDraws> lobe_draws_of(const TrialContext& work, int technique) 
     for (std::size_t k = 0; k < p.size(); ++k) out->at[k].pdf = p[k];
     std::erase_if(out->at, [](const LobeDraws::At& at) { return !(at.pdf > 0) || !std::isfinite(at.pdf); });
     add_others(work, technique, *out, draws);
-    if (out->at.size() < fewest) return {};
+    if (out->at.size() < fewest_at_all) return {};
     return out;
 }
 

@@ -16,8 +16,8 @@ namespace crescent::inline diagnosis {
 namespace {
 
 using Shares = std::vector<double>;  // x, by lobe
-constexpr double exact = 2e-3, enough = 0.9, telling = 0.05;
-constexpr std::size_t fewest = 32, fewest_of_a_lobe = 8;
+constexpr double exact_x = 2e-3, most_draws = 0.9, telling = 0.05;
+constexpr std::size_t fewest_draws = 32, fewest_of_a_lobe = 8;
 
 /// sum x a over p, less one.
 double off(const Shares& x, const LobeDraws::At& at) {
@@ -33,7 +33,7 @@ std::optional<Shares> shares_of(const LobeDraws& all) {
         rows.push_back(at.drawn);
         for (double& v : rows.back()) v /= at.pdf;
     }
-    return solved_for_one(rows, fewest, 1e-4);
+    return solved_for_one(rows, fewest_draws, 1e-4);
 }
 
 /// How far x is from one at most.
@@ -53,7 +53,7 @@ Counted count(const LobeDraws& of, const Shares& x) {
     out.of_lobe.resize(x.size());
     const Shares as_it_is(x.size(), 1.0);
     for (const LobeDraws::At& at : of.at) {
-        const double o = off(x, at), may = std::min(exact, 0.1 * furthest(x)) + 2 * at.error;
+        const double o = off(x, at), may = std::min(exact_x, 0.1 * furthest(x)) + 2 * at.error;
         if (std::fabs(o) <= may) {
             ++out.inside;
             for (std::size_t l = 0; l < x.size(); ++l) out.of_lobe[l] += x[l] * at.drawn[l] > telling * at.pdf;
@@ -95,7 +95,7 @@ Diagnosis told_of(const LobeDraws& of, const Shares& x, double explained) {
     for (std::size_t l = 0; l < x.size(); ++l) {
         drawn.push_back(of.lobes[l].share());
         claimed.push_back(x[l] * of.lobes[l].share());
-        if (std::fabs(x[l] - 1) > exact) ++is_off, last = l;
+        if (std::fabs(x[l] - 1) > exact_x) ++is_off, last = l;
     }
     if (is_off != 1)
         return {"the chooser's probability", 1, explained,
@@ -112,11 +112,11 @@ Diagnosis told_of(const LobeDraws& of, const Shares& x, double explained) {
 /// What the lobes are drawn with is not what p has; all of them together come to what p integrates to.
 std::optional<Diagnosis> other_shares(const TrialContext& work, int technique, const LobeDraws& of) {
     const std::optional<Shares> x = shares_of(of);
-    if (!x || furthest(*x) < 2 * exact) return {};
+    if (!x || furthest(*x) < 2 * exact_x) return {};
     const auto [least, most] = std::minmax_element(x->begin(), x->end());
-    if (!(*least > -exact) || *most - *least < 2 * exact) return {};  // a constant is told elsewhere
+    if (!(*least > -exact_x) || *most - *least < 2 * exact_x) return {};  // a constant is found elsewhere
     const Counted c = count(of, *x);
-    if (static_cast<double>(c.inside) < enough * static_cast<double>(of.at.size()) || !(c.left < 0.1 * c.all))
+    if (static_cast<double>(c.inside) < most_draws * static_cast<double>(of.at.size()) || !(c.left < 0.1 * c.all))
         return {};
     for (std::size_t n : c.of_lobe)
         if (n < fewest_of_a_lobe) return {};

@@ -11,8 +11,8 @@ namespace crescent::inline diagnosis {
 
 namespace {
 
-constexpr double close = 2e-3;  // relative
-constexpr double enough = 0.9;  // of all points
+constexpr double close_turn = 2e-3;  // relative
+constexpr double most_points = 0.9;  // of all points
 
 /// The frames that are taken for one another.
 struct Turn {
@@ -52,7 +52,7 @@ std::optional<Diagnosis> turned(
     const TrialContext& work, int technique, std::span<const WarpPoint> points, std::span<const Ratio> as_it_is) {
     const std::size_t n = std::min<std::size_t>(points.size(), 256);
     if (n < 32 || mostly_one(as_it_is.first(n))) return {};
-    const auto is_one = [](double off, double error) { return std::fabs(off - 1) <= close + 2 * error; };
+    const auto is_one = [](double off, double error) { return std::fabs(off - 1) <= close_turn + 2 * error; };
     std::size_t one = 0;  // as it is: a turn that leaves p alone explains none of the rest
     for (std::size_t i = 0; i < n; ++i) one += is_one(1 / as_it_is[i].value, points[i].error);
     if (2 * one >= n) return {};
@@ -67,7 +67,7 @@ std::optional<Diagnosis> turned(
             work.subject.pdf(technique, at, p);
             std::size_t same = 0;
             for (std::size_t i = 0; i < n; ++i) same += is_one(p[i] * points[i].jacobian, points[i].error);
-            if (static_cast<double>(same) < enough * static_cast<double>(n)) continue;
+            if (static_cast<double>(same) < most_points * static_cast<double>(n)) continue;
             const char* of[] = {"", " for w_o", " for w_i", ""};
             const std::string name = std::string(turn.name) + of[which];
             return Diagnosis{name, 1, static_cast<double>(same) / static_cast<double>(n),

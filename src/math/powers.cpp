@@ -15,12 +15,13 @@ namespace crescent::math {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr Two ln2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 constexpr double ln2_upper = 0x1.62e42fefap-1;       // 36 bits of it: times a whole number < 2^17 it is exact
 constexpr double ln2_lower = 0x1.cf79abc9e3b3ap-40;  // and the rest
 constexpr Two inverse_ln10 = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
-constexpr double round_magic = 0x1.8p52;  // adding and subtracting it rounds to a whole number
+constexpr double whole_magic = 0x1.8p52;  // adding and subtracting it rounds to a whole number
 constexpr int steps = 32;
 
 /// 2^(j/32): e^x = sum of x^k / k!.
@@ -79,12 +80,12 @@ Exponential exponential(double k, double r) {
 
 /// e^(x + rest) for |x| < 750.
 Exponential exponential_of(double x, double rest) {
-    const double k = (x * (steps / ln2.hi) + round_magic) - round_magic;
+    const double k = (x * (steps / ln2.hi) + whole_magic) - whole_magic;
     return exponential(k, ((x - k * (ln2_upper / steps)) - k * (ln2_lower / steps)) + rest);
 }
 
 double exp(Two x) {
-    if (x.hi > 710) return infinity;
+    if (x.hi > 710) return unbounded;
     if (x.hi < -746) return 0;
     return exponential_of(x.hi, x.lo).value();
 }
@@ -121,7 +122,7 @@ Parts parts_of(double x) {
     const std::uint64_t t = std::bit_cast<std::uint64_t>(x) - lowest;
     const auto exponent = static_cast<std::int64_t>(t) >> 52;
     const double m = std::bit_cast<double>((t & 0xfffffffffffffu) + lowest);
-    const double nearest = (m * steps + round_magic) - round_magic;
+    const double nearest = (m * steps + whole_magic) - whole_magic;
     const auto row = static_cast<std::size_t>(static_cast<int>(nearest) - first_log);
     return {m, nearest / steps, static_cast<double>(exponent) - scale, row, exponent};
 }
@@ -147,8 +148,8 @@ template <bool with_rest> Two logarithm(double x, double rest = 0) {
 
 /// What a logarithm is where there is none to compute: 0, infinity and what is no number.
 bool has_logarithm(double x, double& otherwise) {
-    otherwise = x == 0 ? -infinity : x > 0 ? x : none;
-    return x > 0 && x < infinity;
+    otherwise = x == 0 ? -unbounded : x > 0 ? x : no_number;
+    return x > 0 && x < unbounded;
 }
 
 }  // namespace
@@ -156,14 +157,14 @@ bool has_logarithm(double x, double& otherwise) {
 double exp(double x) { return x == x ? exp(Two{x, 0}) : x; }
 
 double exp2(double x) {
-    if (!(x < 1025)) return x == x ? infinity : x;
+    if (!(x < 1025)) return x == x ? unbounded : x;
     if (x < -1080) return 0;
-    const double k = (x * steps + round_magic) - round_magic;
+    const double k = (x * steps + whole_magic) - whole_magic;
     return exponential(k, (x - k / steps) * ln2.hi).value();
 }
 
 double expm1(double x) {
-    if (!(x < 710)) return x == x ? infinity : x;
+    if (!(x < 710)) return x == x ? unbounded : x;
     if (x < -40) return -1;
     if (std::fabs(x) < 0.1) {
         if (x == 0) return x;  // -0 stays
@@ -210,20 +211,20 @@ double log1p(double x) {
     double otherwise;
     if (std::fabs(x) < 0x1p-54) return x;
     const Two y = sum(1, x);
-    return has_logarithm(y.hi, otherwise) ? rounded_logarithm(y.hi, y.lo) : x == infinity ? x : otherwise;
+    return has_logarithm(y.hi, otherwise) ? rounded_logarithm(y.hi, y.lo) : x == unbounded ? x : otherwise;
 }
 
 double pow(double x, double y) {
     if (y == 0 || x == 1) return 1;
-    if (x != x || y != y) return none;
+    if (x != x || y != y) return no_number;
     double sign = 1;
     if (std::signbit(x)) {
         const bool whole = std::trunc(y) == y;
-        if (x < 0 && !whole) return x == -infinity ? (y < 0 ? 0 : infinity) : none;
+        if (x < 0 && !whole) return x == -unbounded ? (y < 0 ? 0 : unbounded) : no_number;
         if (whole && std::fabs(y) < 0x1p53 && std::fmod(y, 2) != 0) sign = -1;
         x = -x;
     }
-    if (x == 0 || x == infinity) return sign * ((x == 0) == (y < 0) ? infinity : 0.0);
+    if (x == 0 || x == unbounded) return sign * ((x == 0) == (y < 0) ? unbounded : 0.0);
     if (x == 1) return sign;
     const double within = y > 0x1p80 ? 0x1p80 : y < -0x1p80 ? -0x1p80 : y;  // beyond, every result is 0 or infinite
     return sign * exp(logarithm<false>(x) * within);

@@ -46,15 +46,15 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     return true;
 }
 
-struct Key {
+struct GreetingKey {
     const char* name;
     const char* values;
     std::function<bool(std::string_view, Greeting&)> read;
 };
 
-const std::array<Key, 14>& keys() {
+const std::array<GreetingKey, 14>& keys() {
     using S = std::string_view;
-    static const std::array<Key, 14> all = {{
+    static const std::array<GreetingKey, 14> all = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Greeting& g) { return whole_number(v, 1, Numbers::most, g.traits.numbers); }},
         {"domain", "hemisphere or sphere",
@@ -95,7 +95,7 @@ const std::array<Key, 14>& keys() {
 
 GreetingFault unknown(std::string_view name) {
     std::vector<std::string> known;
-    for (const Key& k : keys()) known.emplace_back(k.name);
+    for (const GreetingKey& k : keys()) known.emplace_back(k.name);
     return {fmt::format("one of {} before the '='", fmt::join(known, ", ")),
         fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, known))};
 }
@@ -104,7 +104,7 @@ GreetingFault read_key(std::string_view word, Greeting& out) {
     const std::size_t equals = word.find('=');
     const std::string_view name = word.substr(0, equals), value = equals == word.npos ? "" : word.substr(equals + 1);
     if (equals == word.npos) return {"KEY=VALUE", fmt::format("got the word {} after the keys", shown(word))};
-    for (const Key& k : keys()) {
+    for (const GreetingKey& k : keys()) {
         if (name != k.name) continue;
         if (k.read(value, out)) return {};
         return {fmt::format("{} for {}", k.values, k.name), "got " + shown(value)};

@@ -15,10 +15,10 @@ namespace crescent::inline trials {
 namespace {
 
 constexpr int rays = 8, around = 16, bisections = 44;
-constexpr double least_jump = 0.15;  // of p, from one step along a ray to the next
-constexpr double largest = 0.02;     // 1 - cos: 11 deg; the cells of a larger one are few
-constexpr std::size_t many = 8;      // fewer are left to the cubature
-constexpr double alike = 1e-6;       // of p: what caps leave there is rounding
+constexpr double least_jump = 0.15;     // of p, from one step along a ray to the next
+constexpr double largest = 0.02;        // 1 - cos: 11 deg; the cells of a larger one are few
+constexpr std::size_t many = 8;         // fewer are left to the cubature
+constexpr double rounding_of_p = 1e-6;  // of p: what caps leave there is rounding
 
 /// A great circle from a draw, as far as p first jumps.
 struct Ray {
@@ -103,7 +103,7 @@ void look_round(const Draws& work, int technique, std::vector<Cap>& caps) {
 double left_by(std::span<const Cap> caps, Vec3d w, double p) {
     double left = p;
     for (const Cap& c : caps) left -= c.holds(w) ? c.step : 0;
-    return std::fabs(left) <= alike * p ? 0 : left;
+    return std::fabs(left) <= rounding_of_p * p ? 0 : left;
 }
 
 /// The rays of a draw, of which three neighbours often meet one rim, also where caps overlap.

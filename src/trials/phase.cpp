@@ -12,7 +12,7 @@ namespace crescent::inline trials {
 namespace {
 
 constexpr std::size_t tried = 64;
-constexpr double same = 1e-3;  // relative; nine of ten pairs
+constexpr double same_phase = 1e-3;  // relative; nine of ten pairs
 
 /// Pairs all over the sphere, and the same turned about one axis that is none of the surface. Where w_o below is not
 /// answered for, both directions of such a pair are negated, which keeps the angle between them.
@@ -40,7 +40,7 @@ bool is_phase_function(const Draws& work) {
     for (std::size_t i = 0; i < pairs.size(); ++i) p[i] *= std::fabs(pairs[i].wi.z);
     std::size_t alike = 0;
     for (std::size_t i = 0; i < tried; ++i)
-        alike += p[i] > 0 && std::fabs(p[i] - p[tried + i]) <= same * std::max(p[i], p[tried + i]);
+        alike += p[i] > 0 && std::fabs(p[i] - p[tried + i]) <= same_phase * std::max(p[i], p[tried + i]);
     return 10 * alike >= 9 * tried;
 }
 

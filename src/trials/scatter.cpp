@@ -16,7 +16,7 @@ namespace crescent::inline trials {
 
 namespace {
 
-constexpr double same = 1e-4;                       // relative: what identity grants two answers
+constexpr double same_answer = 1e-4;                // relative: what identity grants two answers
 constexpr double fine = 0x1p-22, coarse = 0x1p-18;  // steps to a neighbour
 
 /// Relative differences of two answers, where either is not 0.
@@ -31,8 +31,8 @@ std::vector<double> differences(std::span<const double> a, std::span<const doubl
 
 /// Answers to one question that differ, at three directions at least and at one of twenty.
 double asked_again(const std::vector<double>& apart) {
-    const auto differ = std::count_if(apart.begin(), apart.end(), [](double v) { return v > same; });
-    return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median_of(apart), same) : 0;
+    const auto differ = std::count_if(apart.begin(), apart.end(), [](double v) { return v > same_answer; });
+    return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median_of(apart), same_answer) : 0;
 }
 
 /// Of neighbours, where the difference does not shrink with the step: a slope is sixteen times smaller at the fine one.

@@ -24,7 +24,7 @@ namespace crescent::inline trials {
 namespace {
 
 /// Weights that differ by the rounding of a float p are alike.
-constexpr double alike = 1e-3;
+constexpr double alike_weights = 1e-3;
 
 /// What a technique makes of one direction.
 struct Part {
@@ -125,7 +125,7 @@ Unmet unmet_of_estimates(const Integrals& work, std::span<const double> x, bool 
                 const std::vector<double> f = work.f(wi, true), p = work.mean_pdf(wi, answers);
                 for (std::size_t i = 0; i < to.size(); ++i) {
                     const double light = work.counts(wi[i]) ? f[i] * std::fabs(wi[i].z) * fill : 0;
-                    to[i] = light > p[i] * s.largest * (1 + alike) ? 2 * pi * (of_p ? p[i] : light) : 0;
+                    to[i] = light > p[i] * s.largest * (1 + alike_weights) ? 2 * pi * (of_p ? p[i] : light) : 0;
                 }
             },
             points, true);
@@ -149,7 +149,7 @@ Unmet look_for_unmet(const Integrals& work, std::span<const double> x, bool even
     const Integral expected = due_mean(work, even);
     Unmet out;
     out.largest = s.largest, out.mean = s.mean;
-    const double threshold = s.largest * (1 + alike);
+    const double threshold = s.largest * (1 + alike_weights);
     double squares = 0;
     const bool roughly = is_short(work, even);
     const int techniques = work.subject.techniques();

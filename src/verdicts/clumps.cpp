@@ -24,7 +24,7 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-constexpr std::size_t fewest = 5;  // draws of a block
+constexpr std::size_t fewest_in_a_block = 5;  // draws of a block
 
 /// Coordinates and p in single precision. That moves a draw by less than the rounding that is granted to every block,
 /// but for a beside 2, where a float is known to 2^-23 of itself: 5e-4 rad about the far pole (solid_angle adds it).
@@ -51,7 +51,7 @@ public:
     /// Before as much as it takes to sort so many draws, or to look at them.
     void make_way(std::size_t draws) const { work_.subject.make_way(draws); }
     void look(const Rect& r, std::span<const PlacedDraw> inside) {
-        if (inside.size() < fewest) return;
+        if (inside.size() < fewest_in_a_block) return;
         make_way(inside.size());
         ++tried_;
         float highest = 0;
@@ -92,7 +92,7 @@ constexpr auto before = [](const PlacedDraw& x, const PlacedDraw& y) { return x.
 void look_at_blocks(const Rect& r, std::span<PlacedDraw> inside, Search& search) {
     constexpr std::size_t most = 1024;  // in larger ones p varies too much
     if (inside.size() <= most) search.look(r, inside);
-    if (inside.size() <= 2 * fewest) return;
+    if (inside.size() <= 2 * fewest_in_a_block) return;
     const double middle = 0.5 * (r.a0 + r.a1), sin = std::sqrt(std::max(middle * (2 - middle), 1e-12));
     const bool along_a = (r.a1 - r.a0) / sin > 2 * pi * (r.b1 - r.b0) * sin;
     const std::size_t half = inside.size() / 2;
@@ -133,7 +133,7 @@ void sort(std::vector<PlacedDraw>& placed, float PlacedDraw::* coordinate, const
 void look_at_slices(std::vector<PlacedDraw>& placed, bool rings, Search& search) {
     float PlacedDraw::* const coordinate = rings ? &PlacedDraw::a : &PlacedDraw::b;
     sort(placed, coordinate, search);
-    for (std::size_t draws : {2 * fewest, 16 * fewest}) {
+    for (std::size_t draws : {2 * fewest_in_a_block, 16 * fewest_in_a_block}) {
         double from = 0;
         for (std::size_t i = 0; i + draws < placed.size(); i += draws + 1) {
             const double to = static_cast<double>(placed[i + draws].*coordinate);

@@ -199,7 +199,7 @@ void tell_fit(const TrialContext& work, int t, const FitToDensity& f, Verdict& v
     v.settle = "More draws, or a sampler that draws something more often.";
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_density(TrialContext& work) {
     Verdict v = work.verdict("density", State::right, "");
     const DeltaParts deltas = delta_parts(work, work.first(0));
     if (deltas_are_wrong(work, deltas, v)) return v;
@@ -227,7 +227,7 @@ Verdict judge(TrialContext& work) {
 
 /// Of each technique the chi-square over the sphere, over rings and over sectors, what is drawn where p is next to
 /// nothing, and of a sky the mean of ln p; and the shares of delta parts.
-std::uint64_t tests(const Trial& t) {
+std::uint64_t tests_of_density(const Trial& t) {
     const Traits traits = t.subject->traits();
     return (traits.wo == Traits::Asked::none ? 6 : 5) * static_cast<std::uint64_t>(t.subject->techniques()) +
         (traits.delta ? 1 : 0);
@@ -235,7 +235,9 @@ std::uint64_t tests(const Trial& t) {
 
 }  // namespace
 
-constinit const VerdictKind kinds::density = {
-    .question = "do the draws follow p?", .judge = judge, .tests = tests, .asked_of_other_seeds = true};
+constinit const VerdictKind kinds::density = {.question = "do the draws follow p?",
+    .judge = judge_density,
+    .tests = tests_of_density,
+    .asked_of_other_seeds = true};
 
 }  // namespace crescent::inline verdicts

@@ -197,7 +197,7 @@ bool mis_weights_are_off(const TrialContext& work, const SampleBatch& b, Verdict
     return m.matters();
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_identity(TrialContext& work) {
     Verdict v = work.verdict("identity", State::right, "");
     const bool loose = work.traits.own_random || work.scatter().any();
     WarpSummary warps;
@@ -215,14 +215,16 @@ Verdict judge(TrialContext& work) {
 }
 
 /// Weights that are estimates, or have no pdf beside them, in the mean.
-std::uint64_t tests(const Trial& t) {
+std::uint64_t tests_of_identity(const Trial& t) {
     const Traits traits = t.subject->traits();
     return t.subject->has_f() && (traits.own_random || !traits.has_pdf) ? 1 : 0;
 }
 
 }  // namespace
 
-constinit const VerdictKind kinds::identity = {
-    .question = "does the sampler agree with itself?", .judge = judge, .tests = tests, .asked_of_other_seeds = true};
+constinit const VerdictKind kinds::identity = {.question = "does the sampler agree with itself?",
+    .judge = judge_identity,
+    .tests = tests_of_identity,
+    .asked_of_other_seeds = true};
 
 }  // namespace crescent::inline verdicts

@@ -60,7 +60,7 @@ void judge_mean(const TrialContext& work, const Spread& s, const Integral& expec
     if (wrong && weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_mean(TrialContext& work) {
     if (!work.subject.has_f())
         return work.verdict("mean", State::skipped,
             work.subject.has_drawn_f() ? "f is known at the draws alone: there is no integral to compare the mean with."
@@ -81,13 +81,13 @@ Verdict judge(TrialContext& work) {
 }
 
 /// Without a pdf(w) under lights from several sides too.
-std::uint64_t tests(const Trial& t) { return t.subject->has_f() ? t.subject->traits().has_pdf ? 1 : 2 : 0; }
+std::uint64_t tests_of_mean(const Trial& t) { return t.subject->has_f() ? t.subject->traits().has_pdf ? 1 : 2 : 0; }
 
 }  // namespace
 
 constinit const VerdictKind kinds::mean = {.question = "is the mean of X the integral?",
-    .judge = judge,
-    .tests = tests,
+    .judge = judge_mean,
+    .tests = tests_of_mean,
     .asked_of_other_seeds = true,
     .may_stay_open = true,
     .needs_variance = true,

@@ -199,7 +199,7 @@ void tell_sum(const TrialContext& work, int technique, const Density& d, const I
     }
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_normalised(TrialContext& work) {
     if (!work.traits.has_pdf) return work.verdict("normalised", State::skipped, "There is no pdf(w) to integrate.");
     Verdict v = work.verdict("normalised", State::right, "");
     for (int t = 0; t < work.subject.techniques(); ++t) {
@@ -226,11 +226,13 @@ Verdict judge(TrialContext& work) {
 }
 
 /// Of each technique the share that draws nothing.
-std::uint64_t tests(const Trial& t) { return static_cast<std::uint64_t>(t.subject->techniques()); }
+std::uint64_t tests_of_normalised(const Trial& t) { return static_cast<std::uint64_t>(t.subject->techniques()); }
 
 }  // namespace
 
-constinit const VerdictKind kinds::normalised = {
-    .question = "does p integrate to one?", .judge = judge, .tests = tests, .asked_of_other_seeds = true};
+constinit const VerdictKind kinds::normalised = {.question = "does p integrate to one?",
+    .judge = judge_normalised,
+    .tests = tests_of_normalised,
+    .asked_of_other_seeds = true};
 
 }  // namespace crescent::inline verdicts

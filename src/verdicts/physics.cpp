@@ -236,7 +236,7 @@ void judge_furnace(const TrialContext& work, const Spread& s, Verdict& v) {
     if (weighs_by_estimates(work)) v.state = State::inconclusive, v.settle = weight_of_estimates;
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_physics(TrialContext& work) {
     Verdict v = work.verdict("physics", State::right, "");
     if (refracts_elsewhere(work, v) || comes_not_back(work, v)) return v;
     if (!work.subject.has_f()) return work.verdict("physics", State::skipped, "There is no BRDF.");
@@ -262,11 +262,14 @@ Verdict judge(TrialContext& work) {
 }
 
 /// The white furnace.
-std::uint64_t tests(const Trial& t) { return t.subject->has_f() ? 1 : 0; }
+std::uint64_t tests_of_physics(const Trial& t) { return t.subject->has_f() ? 1 : 0; }
 
 }  // namespace
 
-constinit const VerdictKind kinds::physics = {
-    .question = "is f a BRDF?", .judge = judge, .tests = tests, .asked_of_other_seeds = true, .of_all_light = true};
+constinit const VerdictKind kinds::physics = {.question = "is f a BRDF?",
+    .judge = judge_physics,
+    .tests = tests_of_physics,
+    .asked_of_other_seeds = true,
+    .of_all_light = true};
 
 }  // namespace crescent::inline verdicts

@@ -41,7 +41,7 @@ std::vector<Contrasts> fresh_contrasts(const Trial& trial, std::size_t index, co
 }
 
 using Members = std::vector<std::size_t>;
-constexpr std::size_t fewest = 4;  // w_o; of fewer, density tells nearly as well
+constexpr std::size_t fewest_members = 4;  // w_o; of fewer, density finds nearly as much
 
 std::vector<Members> groups_of(std::span<const Trial> trials) {
     std::vector<Members> out;
@@ -52,7 +52,7 @@ std::vector<Members> groups_of(std::span<const Trial> trials) {
         if (same == out.end()) out.push_back({i});
         else same->push_back(i);
     }
-    std::erase_if(out, [](const Members& m) { return m.size() < fewest; });
+    std::erase_if(out, [](const Members& m) { return m.size() < fewest_members; });
     return out;
 }
 
@@ -94,7 +94,7 @@ void judge_group(const Members& all, std::span<const Trial> trials, std::span<Ou
             v->evidence[t == 0 ? "contrasts" : "contrasts_2"] = outcomes[i].contrasted->z[t];
         if (outcomes[i].contrasted && v && v->state == State::right) members.push_back(i);
     }
-    if (members.size() < fewest) return;
+    if (members.size() < fewest_members) return;
     std::optional<std::vector<std::vector<Contrasts>>> again;
     for (std::size_t c = 0; c < contrast_count; ++c) {
         Pooled first, second;

@@ -7,7 +7,7 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-std::string told(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
+std::string shown_direction(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
 
 /// f is not 0 under the surface, and the sampler never goes there.
 Verdict unreached_below(const TrialContext& work) {
@@ -15,7 +15,7 @@ Verdict unreached_below(const TrialContext& work) {
     Verdict v = work.verdict("support", State::inconclusive,
         fmt::format("f is {:.4g} under the surface, at {}, where the sampler never draws and p is 0: either f "
                     "transmits and none of that light is ever found, or f ought to return 0 there.",
-            below.f, told(below.at)));
+            below.f, shown_direction(below.at)));
     v.settle = "An f that returns 0 under the surface, or a sampler that draws there.";
     v.evidence["f_below"] = below.f;
     return v;
@@ -32,7 +32,7 @@ Verdict perhaps_lost(const TrialContext& work, double fraction) {
     return v;
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_support(TrialContext& work) {
     if (!work.traits.has_pdf)
         return work.verdict("support", State::skipped, "There is no pdf(w) to tell where it is 0.");
     if (!work.subject.has_f())
@@ -67,6 +67,7 @@ Verdict judge(TrialContext& work) {
 
 }  // namespace
 
-constinit const VerdictKind kinds::support = {.question = "does p reach wherever f L cos is not 0?", .judge = judge};
+constinit const VerdictKind kinds::support = {
+    .question = "does p reach wherever f L cos is not 0?", .judge = judge_support};
 
 }  // namespace crescent::inline verdicts

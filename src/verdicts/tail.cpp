@@ -119,7 +119,7 @@ void judge_variance(const TrialContext& work, const Spread& s, const std::option
     }
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_tail(TrialContext& work) {
     if (!work.subject.has_drawn_f())
         return work.verdict("tail", State::skipped, "There is no BRDF, hence no weights f L cos / p.");
     if (!work.weighs()) return work.verdict("tail", State::skipped, no_weights);
@@ -142,7 +142,7 @@ Verdict judge(TrialContext& work) {
 }  // namespace
 
 constinit const VerdictKind kinds::tail = {.question = "how heavy is the weight X = f L cos / p?",
-    .judge = judge,
+    .judge = judge_tail,
     .may_stay_open = true,
     .needs_variance = true};
 

@@ -181,7 +181,7 @@ std::optional<Verdict> judge_rare_faults(const TrialContext& work, int technique
     return v;
 }
 
-Verdict judge(TrialContext& work) {
+Verdict judge_valid(TrialContext& work) {
     std::uint64_t draws = 0, drawn = 0, nothing = 0;
     for (int t = 0; t < work.subject.techniques(); ++t) {
         std::string fault = first_fault(work, t, work.first(t));
@@ -222,6 +222,6 @@ Verdict judge(TrialContext& work) {
 
 }  // namespace
 
-constinit const VerdictKind kinds::valid = {.question = "can what comes back be used?", .judge = judge};
+constinit const VerdictKind kinds::valid = {.question = "can what comes back be used?", .judge = judge_valid};
 
 }  // namespace crescent::inline verdicts

@@ -17,7 +17,7 @@ namespace crescent::inline verdicts {
 
 namespace {
 
-struct Compared {
+struct ComparedWeights {
     double p = 1;  // of the least likely
     int channel = 0;
     double said = 0, due = 0;
@@ -29,13 +29,13 @@ double weight_of(const TrialContext& work, const Draw& d, int channel) {
 
 bool weighs(const TrialContext& work, const Draw& d) { return d.pdf > 0 && d.weight && work.counts(d.wi); }
 
-void keep_least(Compared& out, const Compared& other) {
+void keep_least(ComparedWeights& out, const ComparedWeights& other) {
     if (other.p < out.p) out = other;
 }
 
 /// Means of (weight - f |cos| / p) g over the draws.
-Compared in_pairs(const TrialContext& work, const SampleBatch& b, int channel) {
-    Compared out{1, channel};
+ComparedWeights in_pairs(const TrialContext& work, const SampleBatch& b, int channel) {
+    ComparedWeights out{1, channel};
     work.f_of_drawn(b);
     std::vector<double> off(b.draws.size()), size(b.draws.size());
     const double n = static_cast<double>(b.draws.size());
@@ -62,7 +62,7 @@ Compared in_pairs(const TrialContext& work, const SampleBatch& b, int channel) {
 }
 
 /// The mean weight against the integral.
-Compared against_integral(const TrialContext& work, const SampleBatch& b, int channel) {
+ComparedWeights against_integral(const TrialContext& work, const SampleBatch& b, int channel) {
     std::vector<double> x(b.draws.size());
     for (std::size_t i = 0; i < x.size(); ++i)
         if (weighs(work, b.draws[i])) x[i] = weight_of(work, b.draws[i], channel);
@@ -74,8 +74,8 @@ Compared against_integral(const TrialContext& work, const SampleBatch& b, int ch
 /// p is known at each draw.
 bool knows_p(const TrialContext& work) { return work.traits.has_pdf && !work.scatter().pdf(); }
 
-Compared compared(const TrialContext& work, const SampleBatch& b) {
-    Compared out;
+ComparedWeights compared(const TrialContext& work, const SampleBatch& b) {
+    ComparedWeights out;
     if (std::none_of(b.draws.begin(), b.draws.end(), [](const Draw& d) { return d.weight.has_value(); })) return out;
     const int channels = work.traits.channels;
     for (int c = 0; c < channels; ++c)
@@ -88,7 +88,7 @@ Compared compared(const TrialContext& work, const SampleBatch& b) {
 }  // namespace
 
 bool weights_are_off(const TrialContext& work, int technique, Verdict& v) {
-    const Compared first = compared(work, work.first(technique));
+    const ComparedWeights first = compared(work, work.first(technique));
     v.evidence["p_weight_in_the_mean"] = first.p;
     if (!work.fails(first.p, [&](int round) { return compared(work, work.draw(technique, round)).p; })) return false;
     v.state = State::wrong;

@@ -12,10 +12,10 @@ namespace crescent::inline warps {
 
 namespace {
 
-constexpr double last = 1 - 0x1p-24;
+constexpr double last_node = 1 - 0x1p-24;
 
 double node(std::size_t i, std::size_t nodes) {
-    return std::min(static_cast<double>(i) / static_cast<double>(nodes - 1), last);
+    return std::min(static_cast<double>(i) / static_cast<double>(nodes - 1), last_node);
 }
 
 class Chooser {
@@ -82,7 +82,7 @@ std::vector<int> choosers_of(
     for (int k = 2; k < work.traits.numbers; ++k) {
         const Chooser one(work, technique, k);
         bool moves = false;
-        for (double to : {0.0, 0.2, 0.45, 0.7, last}) {
+        for (double to : {0.0, 0.2, 0.45, 0.7, last_node}) {
             std::vector<Numbers> u;
             for (const Numbers& v : at) u.push_back(one.moved(v, to));
             const std::vector<Draw> drawn = one.draw(u);

@@ -18,7 +18,7 @@ namespace crescent::inline warps {
 namespace {
 
 constexpr std::size_t candidates = 12000, wanted = 3000, nearest = 10;
-constexpr double last = 1 - 0x1p-24;
+constexpr double last_u = 1 - 0x1p-24;
 
 /// A direction to be reached, and the draws that fell nearest, in order, with minus the cosine to them.
 struct Sought {
@@ -95,7 +95,7 @@ void step(const TrialContext& work, int technique, std::span<Sought* const> open
     std::vector<Vec3d> to;
     for (const Sought* s : open) from.push_back(s->u), to.push_back(s->w);
     const auto moves = newton_moves(work, technique, from, to, {0x1p-15, 0x1p-5, 0x1p-22});
-    const auto on_grid = [](double v) { return std::round(std::clamp(v, 0.0, last) * 0x1p24) * 0x1p-24; };
+    const auto on_grid = [](double v) { return std::round(std::clamp(v, 0.0, last_u) * 0x1p24) * 0x1p-24; };
     for (std::size_t i = 0; i < open.size(); ++i) {
         Sought& s = *open[i];
         s.reached = moves[i].arrived;
