@@ -9,6 +9,7 @@
 #include "against/against.h"
 #include "base/parallel.h"
 #include "base/sanitized_test.h"
+#include "cubature/cubature.h"
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
 #include "subjects/asked_once.h"

@@ -5,27 +5,18 @@
 
 #include "subjects/builtin.h"
 #include "subjects/subject.h"
+#include "subjects/users_trials.h"
 
 namespace crescent::inline subjects {
 
 /// Values given with --set: "s", "alpha", "rho_d", "rho_s".
 using Settings = std::map<std::string, double>;
 
-/// Directions from the normal to 89 deg, each at its own azimuth: (theta, azimuth) in degrees.
-std::vector<std::pair<double, double>> wo_grid(bool full);
-/// Every trial of one arm, or of all where the name is empty. Throws InputError for an unknown name.
-using Grid = std::vector<std::pair<double, double>>;
-/// `grid`: w_o of one's own, (theta, azimuth) in degrees, in place of wo_grid.
+/// Directions from the normal to 89 deg, each at its own azimuth.
+Grid wo_grid(bool full);
+/// Every trial of one arm, or of all where the name is empty, over `grid` in place of wo_grid where it is not empty.
+/// Throws InputError for an unknown name.
 std::vector<Trial> trials_of(const std::string& arm, const Settings& settings, bool full, const Grid& grid = {});
-
-/// A user's sampler over the grid of w_o under an even light, with uniform and cosine beside it where it has a
-/// BRDF.
-/// A sampler whose draws and p are the same whatever w_o is, and that has no BRDF, as that of an environment light, is
-/// judged once.
-std::vector<Trial> trials_of_subject(
-    const std::shared_ptr<const JudgedSampler>& subject, bool full, const Grid& grid = {});
-/// The same at one w_o.
-Trial trial_of_subject(const std::shared_ptr<const JudgedSampler>& subject, double theta, double azimuth);
 
 /// Built-in arm `name` on the surface, light and w_o of each of these trials; with A's f where A is not built in.
 std::vector<Trial> arm_against(const std::string& name, std::span<const Trial> a);

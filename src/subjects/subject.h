@@ -31,19 +31,27 @@ struct Numbers {
     operator Vec2d() const { return {x, y}; }
 };
 
+/// The index below over above: of each channel, of all alike where one number is given, or not known.
+struct Index : std::optional<Vec3d> {
+    Index() = default;
+    Index(double of_all) : optional({of_all, of_all, of_all}) {}
+    Index(Vec3d by_channel) : optional(by_channel) {}
+    Index(std::optional<Vec3d> by_channel) : optional(by_channel) {}
+};
+
 /// What a sampler is, apart from its answers: what it takes, what it gives, and what is known of its surface.
 struct Traits {
     enum class Asked { upper, both, none };  // which w_o it answers for; none: it does not depend on w_o
     int numbers = 2;                         // random numbers of a sample
     int channels = 1;                        // of f and of the weight, 1 or 3
     Asked wo = Asked::upper;
-    bool has_pdf = true;         // false: no pdf(w), and the pdf of a draw is 1 or 0
-    bool own_random = false;     // it draws random numbers of its own: the same u may give another answer
-    bool delta = false;          // some of its draws are of delta parts
-    bool reciprocal = true;      // false: f is known not to be
-    std::optional<Vec3d> eta{};  // index below over above, by channel
-    bool importance = false;     // f is not scaled by eta^2 as radiance is, but the other way
-    int bits = 0;                // of what it computes in: 24, 53; 0: read off the answers
+    bool has_pdf = true;      // false: no pdf(w), and the pdf of a draw is 1 or 0
+    bool own_random = false;  // it draws random numbers of its own: the same u may give another answer
+    bool delta = false;       // some of its draws are of delta parts
+    bool reciprocal = true;   // false: f is known not to be
+    Index eta{};              // index below over above
+    bool importance = false;  // f is not scaled by eta^2 as radiance is, but the other way
+    int bits = 0;             // of what it computes in: 24, 53; 0: read off the answers
 };
 
 /// A direction and the density it came with; pdf 0: nothing drawn. weight: f cos / p where the sampler itself says it.

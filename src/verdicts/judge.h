@@ -7,7 +7,8 @@
 #include "judgements/summary.h"
 #include "judgements/verdict.h"
 #include "subjects/faults.h"
-#include "trials/trial_context.h"
+#include "subjects/subject.h"
+#include "trials/settings.h"
 
 namespace crescent::inline verdicts {
 

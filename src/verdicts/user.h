@@ -23,8 +23,8 @@
 #include <fmt/format.h>
 
 #include "subjects/faults.h"
-#include "subjects/list.h"
 #include "subjects/user_call.h"
+#include "subjects/users_trials.h"
 #include "verdicts/judge.h"
 
 namespace crescent::user {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "judgements/all.h"
+#include "trials/trial_context.h"
 #include "verdicts/efficiency.h"
 #include "verdicts/judge.h"
 
