@@ -1,25 +1,38 @@
-# cmake --install: the program, the libraries with their headers, the experiments, and what find_package(crescent)
-# reads.
+# cmake --install: the libraries with their headers, what find_package(crescent) reads and, where they are built, the
+# program and the experiments.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(crescent_config ${CMAKE_INSTALL_LIBDIR}/cmake/crescent)
-foreach(target IN LISTS crescent_folders ITEMS crescent_face)
+set(crescent_of_run "")
+if(CRESCENT_RUN)
+  set(crescent_of_run ${crescent_folders} crescent_face crescent)
+  list(REMOVE_ITEM crescent_of_run ${crescent_of_check})
+endif()
+foreach(target IN LISTS crescent_of_check crescent_of_run)
   string(REPLACE crescent_ "" short ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${short})
 endforeach()
-install(TARGETS crescent crescent_face ${crescent_folders} EXPORT crescent ARCHIVE
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/crescent)
-install(TARGETS crescent_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+set_target_properties(crescent_public_check PROPERTIES EXPORT_NAME check)
+foreach(part check run)
+  if(crescent_of_${part})
+    install(TARGETS ${crescent_of_${part}} EXPORT crescent_${part} ARCHIVE
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/crescent)
+    install(EXPORT crescent_${part} NAMESPACE crescent:: FILE crescent-${part}.cmake DESTINATION ${crescent_config})
+  endif()
+endforeach()
 install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/crescent FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h"
   EXCLUDE PATTERN "test_*.h" EXCLUDE)
-install(DIRECTORY experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/crescent)
+install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(TARGET crescent_cli)
+  install(TARGETS crescent_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/crescent)
+endif()
 
-install(EXPORT crescent NAMESPACE crescent:: FILE crescentTargets.cmake DESTINATION ${crescent_config})
 configure_package_config_file(cmake/crescentConfig.cmake.in ${PROJECT_BINARY_DIR}/crescentConfig.cmake
   INSTALL_DESTINATION ${crescent_config})
 # Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/crescentConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/crescentConfig.cmake ${PROJECT_BINARY_DIR}/crescentConfigVersion.cmake
-  DESTINATION ${crescent_config})
+  cmake/xxhash.cmake DESTINATION ${crescent_config})

@@ -18,28 +18,20 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
-find_package(fmt REQUIRED)
-find_package(tomlplusplus REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(TBB REQUIRED)
-find_package(Boost REQUIRED)
-find_package(OpenEXR REQUIRED)
-find_package(hwy REQUIRED)
-find_package(PkgConfig REQUIRED)
-if(CRESCENT_PLATES)
-  find_package(PNG REQUIRED)
-  pkg_check_modules(pango REQUIRED IMPORTED_TARGET pangocairo cairo)
-elseif(CRESCENT_TESTS OR CRESCENT_CLI OR CRESCENT_GL OR CRESCENT_FILM)
-  message(FATAL_ERROR "CRESCENT_PLATES=OFF: the program, the tests, the GL instrument and the film need plates")
-endif()
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
-add_library(xxHash::xxhash ALIAS PkgConfig::xxhash)
-
 add_library(crescent_settings INTERFACE)
 # No contraction into fused multiply-add anywhere: films are the same bits from every compiler and instruction set.
-target_compile_options(crescent_settings INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno
-  # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+target_compile_options(crescent_settings INTERFACE -ffp-contract=off)
+if(PROJECT_IS_TOP_LEVEL)
+  target_compile_options(crescent_settings INTERFACE -Wall -Wextra -Wpedantic
+    $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)  # in one file, a name of another file is no shadow
+else()
+  # Part of another project: its warnings. Debug code of a check takes several times as long to run, and what is more
+  # than -O1 takes longer to compile than it saves.
+  target_compile_options(crescent_settings INTERFACE -O1)
+endif()
+target_compile_options(crescent_settings INTERFACE -fno-math-errno
+  # g++ 12 sees overlaps and overflows in std::string's operator+ that are not there (GCC bug 105651).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>
   # Masks of one lane are plain bool, and & on them is meant.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
 if(CRESCENT_SANITIZE)
@@ -80,52 +72,3 @@ endfunction()
 function(crescent_unoptimised)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
-
-# crescent_folder(NAME LIBS...): src/NAME/*.cpp is the target crescent_NAME; it may use every folder named before it.
-# Headers in crescent_read_in_NAME are precompiled for it.
-# *_test.cpp stand beside their sources and are collected for laws/CMakeLists.txt.
-set(crescent_folders "")
-set(crescent_draws plates compare)
-set(crescent_test_sources "")
-macro(crescent_folder name)
-  file(GLOB folder_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
-  set(folder_tests ${folder_sources})
-  list(FILTER folder_sources EXCLUDE REGEX "_test\\.cpp$")
-  list(FILTER folder_tests INCLUDE REGEX "_test\\.cpp$")
-  list(APPEND crescent_test_sources ${folder_tests})
-  if(NOT CRESCENT_PLATES AND ${name} IN_LIST crescent_draws)
-    set(folder_sources "")
-  endif()
-  if(folder_sources)
-    add_library(crescent_${name} STATIC ${folder_sources})
-    target_include_directories(crescent_${name} PUBLIC
-      $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
-    add_library(crescent::${name} ALIAS crescent_${name})
-    target_compile_features(crescent_${name} PUBLIC cxx_std_20)
-    target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN} PRIVATE
-      $<BUILD_INTERFACE:crescent_settings>)
-    if(${name} IN_LIST crescent_fuzzed)
-      target_compile_options(crescent_${name} PRIVATE -fsanitize=fuzzer-no-link)
-    endif()
-    list(LENGTH folder_sources size)
-    if(size GREATER 5)
-      crescent_precompiled(crescent_${name} ${crescent_read_in_${name}})
-    endif()
-    list(PREPEND crescent_folders crescent_${name})
-    if(EXISTS ${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)
-      include(${PROJECT_SOURCE_DIR}/src/${name}/settings.cmake)
-    endif()
-  endif()
-endmacro()
-
-# The public face: crescent.h and every folder behind one name.
-macro(crescent_public_library)
-  file(GLOB face_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.cpp)
-  add_library(crescent_face STATIC ${face_sources})
-  target_include_directories(crescent_face PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/crescent>)
-  target_link_libraries(crescent_face PUBLIC ${crescent_folders} PRIVATE $<BUILD_INTERFACE:crescent_settings>)
-  add_library(crescent INTERFACE)
-  target_link_libraries(crescent INTERFACE crescent_face)
-  add_library(crescent::crescent ALIAS crescent)
-endmacro()

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "verdicts/print.h"
-#include "verdicts/user.h"
+#include <crescent/check.h>
 
 struct MySampler {
     struct Drawn {

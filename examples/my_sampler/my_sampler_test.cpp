@@ -1,9 +1,8 @@
 // The same in one line of a GoogleTest suite.
 #include <cmath>
 
+#include <crescent/gtest.h>
 #include <gtest/gtest.h>
-
-#include "verdicts/gtest.h"
 
 namespace {
 

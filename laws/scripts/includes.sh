@@ -7,7 +7,7 @@ cd "$CRESCENT_SOURCE" || exit 1
 doors='cli gl explainer python web'
 awk '
     FILENAME == "CMakeLists.txt" {
-        if (match($0, /^crescent_folder\([a-z]+/)) rank[substr($0, 17, RLENGTH - 16)] = ++count
+        if (sub(/^ *crescent_folder\(/, "")) { sub(/[ )].*/, ""); rank[$0] = ++count }
         next
     }
     !/^[ \t]*#[ \t]*include[ \t]*"/ { next }

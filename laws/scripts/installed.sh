@@ -10,25 +10,47 @@ expect 0 "$work/prefix/bin/crescent" --version
 stray=$(find "$work/prefix" -name '_crescent*')
 [ -z "$stray" ] || die "the Python module belongs into the wheel: $stray"
 
-# What the README says of a renderer of one's own: its lines for CMake and its C++, as they stand there.
-snippet() {
-    awk -v mark="\`\`\`$1" '$0 == mark { inside = 1; next } inside && /^```/ { exit } inside' \
-        "$CRESCENT_SOURCE/README.md"
+# What the README says of a renderer of one's own: its lines for CMake, both ways, and its C++, as they stand there.
+snippet() { # LANGUAGE WHICH
+    awk -v mark="\`\`\`$1" -v which="$2" '$0 == mark && ++n == which { inside = 1; next } inside && /^```/ { exit }
+        inside' "$CRESCENT_SOURCE/README.md"
 }
-mkdir readme
-{
-    echo 'cmake_minimum_required(VERSION 3.25)'
-    echo 'project(readme LANGUAGES CXX)'
-    echo 'find_package(GTest REQUIRED)'
-    echo 'add_executable(my_tests my_tests.cpp)'
-    snippet cmake
-} >readme/CMakeLists.txt
-snippet cpp >readme/my_tests.cpp
-expect 0 cmake -S readme -B readme/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
-    -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_PREFIX_PATH="$work/prefix"
+readme() { # FOLDER WHICH
+    mkdir "$1"
+    {
+        echo 'cmake_minimum_required(VERSION 3.25)'
+        echo 'project(readme LANGUAGES CXX)'
+        echo 'find_package(GTest REQUIRED)'
+        echo 'add_executable(my_tests my_tests.cpp)'
+        snippet cmake "$2"
+    } >"$1/CMakeLists.txt"
+    snippet cpp 1 >"$1/my_tests.cpp"
+    expect 0 cmake -S "$1" -B "$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
+        -DCMAKE_CXX_COMPILER="${CXX:-g++}" "${@:3}"
+}
+none=()
+for name in OpenEXR Imath Boost tomlplusplus hwy PNG PkgConfig; do none+=("-DCMAKE_DISABLE_FIND_PACKAGE_$name=ON"); done
+readme readme 1 -DCMAKE_PREFIX_PATH="$work/prefix" "${none[@]}"
 expect 0 cmake --build readme/build
 expect 0 readme/build/my_tests
 grep -q '1 test' printed || die "the README's sampler is not judged: $(cat printed)"
+readme fetched 2 -DFETCHCONTENT_SOURCE_DIR_CRESCENT="$CRESCENT_SOURCE"  # subproject.sh compiles it
+# Without components: crescent::check where the rest lacks a library; asked for by name, the rest is an error.
+for components in '' 'COMPONENTS verdicts' 'COMPONENTS run'; do
+    rm -rf lacking && mkdir lacking
+    {
+        echo 'cmake_minimum_required(VERSION 3.25)'
+        echo 'project(lacking LANGUAGES CXX)'
+        echo "find_package(crescent REQUIRED $components)"
+        echo 'if(NOT TARGET crescent::check OR NOT TARGET crescent::verdicts)'
+        echo '  message(FATAL_ERROR "no crescent::check")'
+        echo 'endif()'
+    } >lacking/CMakeLists.txt
+    code=0
+    [ "$components" != 'COMPONENTS run' ] || code=1
+    expect $code cmake -S lacking -B lacking/build -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${none[@]}"
+done
+grep -q OpenEXR said || die "what is missing is not said: $(cat said)"
 
 # A run in memory: an interval for each arm, no file, a stop that is an answer.
 build_example in_memory

@@ -37,9 +37,10 @@ cp compilers/g++ compilers/clang++-19
 # What the configuration cannot do without is installed by ./run as well, which configures the tests with the rest.
 key() { tr '[:upper:]' '[:lower:]' <<<"$1" | sed -E 's/^lib//; s/-dev$//; s/[^a-z]//g'; }
 cd "$CRESCENT_SOURCE" || exit 1
+calls='(find_package|pkg_check_modules)\(\w+ (REQUIRED|QUIET)( IMPORTED_TARGET [^)]+)?'
 needs=$(cat CMakeLists.txt {cmake,src/*}/*.cmake {cli,explainer,gl,laws}/CMakeLists.txt |
-    grep -oE '(find_package|pkg_check_modules)\(\w+ REQUIRED( IMPORTED_TARGET [^)]+)?' |
-    sed -E 's/.*\(//; s/ REQUIRED$//; s/.*IMPORTED_TARGET //')
+    grep -oE "$calls|crescent_need\(\w+ \w+::|find_library\(\w+" |
+    sed -E 's/.*\(//; s/ (REQUIRED|QUIET)$| \w+::$|_LIBRARY$//; s/.*IMPORTED_TARGET //')
 [ "$(wc -w <<<"$needs")" -ge 15 ] || die "too few libraries are found to be needed: $needs"
 for need in $needs; do
     found=
