@@ -48,6 +48,12 @@ CLI::Validator number(double low, double high) {
     return {wrong, range, ""};
 }
 
+void timeout(CLI::App& command, double& to) {
+    command.add_option("--timeout", to, "that one answer of a program or plugin may take; default 10 or 60")
+        ->type_name("SECONDS")
+        ->check(number(0.01, 1e6));
+}
+
 CLI::Validator one_of(const std::vector<std::string>& words) {
     const auto wrong = [=](std::string& text) {
         return std::ranges::find(words, text) != words.end() ? std::string() : expected_one_of(words, text);

@@ -109,6 +109,15 @@ TestSettings test_settings_of(const CheckFlags& flags) {
     return r;
 }
 
+PipeLimits limits_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    PipeLimits limits;
+    limits.stop = &monitor.stop;
+    if (flags.full) limits.total_seconds = 3600;
+    if (flags.patience > 0) limits.total_seconds = flags.patience;
+    limits.limit_answers(flags.timeout);
+    return limits;
+}
+
 int exit_of(State state, const CheckFlags& flags) {
     return state == State::inconclusive && flags.allow_inconclusive ? held : exit_of(state);
 }
@@ -124,16 +133,12 @@ namespace {
 
 std::vector<Trial> trials_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
     if (!flags.exec.empty()) {
-        PipeLimits limits;
-        limits.stop = &monitor.stop;
-        if (flags.full) limits.total_seconds = 3600;
-        if (flags.patience > 0) limits.total_seconds = flags.patience;
-        const auto subject = start_pipe(flags.exec, limits);
+        const auto subject = start_pipe(flags.exec, limits_of(flags, monitor));
         check_sides(flags, subject->traits());
         return trials_of_subject(subject, flags.full, grid_of(flags));
     }
     if (!flags.plugin.empty()) {
-        const auto subject = open_plugin(flags.plugin);
+        const auto subject = open_plugin(flags.plugin, limits_of(flags, monitor));
         check_sides(flags, subject->traits());
         return trials_of_subject(subject, flags.full, grid_of(flags));
     }
@@ -162,6 +167,7 @@ std::string command_of(const CheckFlags& f) {
              {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
         if (given) out += std::string(" ") + flag;
     if (f.patience > 0) out += " --patience " + shortest(f.patience);
+    if (f.timeout > 0) out += " --timeout " + shortest(f.timeout);
     if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
     if (f.seed != 1) out += " --seed " + std::to_string(f.seed);
     return out;
@@ -212,7 +218,6 @@ int check(const CheckFlags& given) {
     CheckFlags flags = given;
     for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
-    if (const std::optional<int> code = judged_by_child(flags)) return *code;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
     try_files(flags);

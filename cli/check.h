@@ -15,8 +15,8 @@ void write_files(const CheckFlags& flags, const Judgement& j);
 std::string shortest(double v);
 /// What is said of a program or plugin that never came to be judged.
 Judgement complaint(const SubjectFault& fault, const CheckFlags& flags, const std::string& command);
-/// Of --plugin: the exit code, once a child process has judged it. Nothing in that child, and where there is none.
-std::optional<int> judged_by_child(const CheckFlags& flags);
+/// What a program or plugin may take.
+PipeLimits limits_of(const CheckFlags& flags, const ProgressMonitor& monitor);
 /// Exit 0: compared; 1: with --expect same, f or the distribution differs; 4: a tail is too heavy to tell.
 int check_against(
     const CheckFlags& flags, std::vector<Trial> a, std::span<const Waiver> waivers, bool same, Progress& monitor);

@@ -38,11 +38,8 @@ std::vector<Trial> others_of(const CheckFlags& flags, std::span<const Trial> a, 
             throw InputError({"--against " + flags.against, 0, 0},
                 "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
                 "or a program");
-    PipeLimits limits;
-    limits.stop = &monitor.stop;
-    if (flags.patience > 0) limits.total_seconds = flags.patience;
     try {
-        return sampler_against(start_pipe(flags.against, limits), a);
+        return sampler_against(start_pipe(flags.against, limits_of(flags, monitor)), a);
     } catch (const InputError&) {  // start_pipe calls it --exec
         throw InputError({"--against " + flags.against, 0, 0}, "neither a built-in arm nor a command of the shell");
     }

@@ -31,6 +31,7 @@ struct RunFlags {
     int gl_device = -1;            // -1: a GPU where there is one
     int seeds = 0, threads = 0;    // 0: the file's; as many as this process may use
     double keep_after = 10;        // s
+    double timeout = 0;            // s that an answer of a program or plugin may take; 0: the defaults
     bool quiet = false, preview = false;
 };
 int run(const RunFlags& flags);
@@ -70,6 +71,7 @@ struct CheckFlags {
     std::vector<std::string> wo;            // x,y,z or degrees
     std::string json, timing, junit, html;  // files to write
     double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
+    double timeout = 0;                     // s that an answer of a program or plugin may take; 0: the defaults
     unsigned seed = 1, error_rates = 0;     // error_rates: how many seeds; 0: not asked for
     unsigned right = 0, first = 0;          // right: how many right samplers; 0: not asked for
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;

@@ -3,7 +3,6 @@
 #include "crescent.h"
 #include "progress.h"
 #include "signals.h"
-#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -25,7 +24,6 @@ int film(const FilmFlags& flags) {
     if (!film_maker()) throw OutputError("this build has no film: it was configured without CRESCENT_FILM");
 
     FilmOptions options = flags.options;
-    if (const std::optional<int> code = done_by_child(experiment, options.out, flags.quiet)) return *code;
     options.height = std::stoi(flags.size);
     options.command = command_of(flags);
 

@@ -32,6 +32,9 @@ CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 CLI::Validator number(double low, double high);
 CLI::Validator one_of(const std::vector<std::string>& words);
 
+/// --timeout.
+void timeout(CLI::App& command, double& to);
+
 // Each adds one command; `work` receives what performs it once the parser met it.
 void add_run(CLI::App& app, Work& work);
 void add_join(CLI::App& app, Work& work);

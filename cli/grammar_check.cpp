@@ -85,6 +85,7 @@ void limits(CLI::App& c, CheckFlags& f, CLI::Option* exec) {
         ->type_name("SECONDS")
         ->needs(exec)
         ->check(number(0.01, 1e6));
+    timeout(c, f.timeout);
     c.add_flag("--accept-few", f.accept_few, "judge a slow --exec by the w_o that there was time for")->needs(exec);
 }
 

@@ -12,7 +12,6 @@
 #include "commands.h"
 #include "crescent.h"
 #include "signals.h"
-#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -59,5 +58,8 @@ int main(int argc, char** argv) {
     crescent::cli::open_standard_streams();
     for (const int failed_write : {SIGPIPE, SIGXFSZ}) std::signal(failed_write, SIG_IGN);  // write() says so too
     crescent::cli::end_on_signals();
-    return crescent::cli::ends_on_purpose(crescent::cli::perform(argc, argv));
+    crescent::Process::adopt_orphans();
+    const int code = crescent::cli::perform(argc, argv);
+    crescent::Process::kill_all();
+    return code;
 }

@@ -8,7 +8,6 @@
 #include "instruments.h"
 #include "progress.h"
 #include "signals.h"
-#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -51,11 +50,10 @@ int run(const RunFlags& flags) {
     const Experiment experiment = load(flags.file, overrides);
 
     options.out = flags.out.empty() ? "out/" + std::filesystem::path(flags.file).stem().string() : flags.out;
-    if (!flags.preview)  // which draws nothing
-        if (const std::optional<int> code = done_by_child(experiment, options.out, flags.quiet)) return *code;
     options.threads = flags.threads;
     options.isa = flags.isa;
     options.keep_after_s = flags.keep_after;
+    options.timeout_s = flags.timeout;
     options.command = command_of(flags);
     options.instrument = instrument(flags);
 

@@ -11,7 +11,6 @@
 
 #include "commands.h"
 #include "crescent.h"
-#include "supervised.h"
 
 namespace crescent::cli {
 
@@ -38,7 +37,8 @@ const char* last_words() {
 extern "C" void end_now(int) {
     const char* words = last_words();
     static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
-    ::_exit(ends_on_purpose(interrupted));
+    Process::kill_all();
+    ::_exit(interrupted);
 }
 
 extern "C" void time_is_up(int signal) {

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <filesystem>
+
 namespace crescent::film {
 
 namespace {
@@ -64,14 +67,18 @@ bool has_word(const std::string& text, const std::string& word) {
 
 void require_ffmpeg(bool webm, bool voice, const std::string& folder, const ProgressMonitor& monitor) {
     const std::string list = folder + "/encoders.txt";
-    int code = 0;
+    ProcessEnd end;
     try {
-        code = Process({"ffmpeg", "-hide_banner", "-encoders"}, "/dev/null", list, "").wait(monitor);
+        end = Process({.argv = {"ffmpeg", "-hide_banner", "-encoders"},
+                          .stdin_file = "/dev/null",
+                          .stdout_file = list,
+                          .stderr_file = "/dev/null"})
+                  .wait(monitor);
     } catch (const OutputError&) {
         throw OutputError(
             "the film is encoded by ffmpeg, which this machine does not have: install the package ffmpeg");
     }
-    if (code != 0) throw OutputError(fmt::format("ffmpeg -encoders ended with {}: expected a working ffmpeg", code));
+    if (!end.well()) throw OutputError("ffmpeg -encoders ended with " + end.text() + ": expected a working ffmpeg");
     std::vector<std::string> needed = {"libx264", "mov_text", "mjpeg"};
     if (voice) needed.push_back("aac");
     if (webm) append(needed, {"libvpx-vp9", "webvtt"});
@@ -82,19 +89,40 @@ void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Prog
             throw OutputError("this ffmpeg has no encoder '" + encoder + "', which the film needs");
 }
 
-Encoder::Encoder(const Ingredients& in) : log_(in.log), process_(arguments(in), "", "", in.log) {}
+Encoder::Encoder(const Ingredients& in)
+    : in_(in), process_({.argv = arguments(in), .stdout_file = "/dev/null", .stderr_file = in.log}) {}
 
-void Encoder::fail() const {
-    const std::string said = contents_of(log_);
-    throw OutputError("ffmpeg could not encode the film" + (said.empty() ? "" : "; it said: " + said.substr(0, 600)));
+void Encoder::fail(const std::string& what) {
+    process_.end(1000);
+    const std::string said = contents_of(in_.log);
+    throw OutputError(
+        "ffmpeg could not encode the film: " + what + (said.empty() ? "" : "; it printed: " + said.substr(0, 600)));
 }
 
-void Encoder::take(const Raster& raster) {
-    if (!process_.write(raster.bytes.data(), raster.bytes.size())) fail();
+void Encoder::take(const Raster& raster, const ProgressMonitor& monitor) {
+    std::string_view bytes(reinterpret_cast<const char*>(raster.bytes.data()), raster.bytes.size());
+    while (!bytes.empty()) {
+        const ssize_t n = process_.write(bytes);
+        if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n));
+        else if (n < 0 && errno != EAGAIN && errno != EINTR) {
+            const std::optional<ProcessEnd> end = process_.ended(1000);
+            fail(end ? "it ended with " + end->text() : "it closed its input");
+        } else {
+            monitor.check();
+            process_.wait_ready(true, false, 50);
+        }
+    }
 }
 
 void Encoder::finish(const ProgressMonitor& monitor) {
-    if (process_.wait(monitor) != 0) fail();
+    if (const ProcessEnd end = process_.wait(monitor); !end.well()) fail("it ended with " + end.text());
+    for (const std::string& file : {in_.mp4, in_.webm}) {
+        std::error_code missing;
+        const std::string name = std::filesystem::path(file).filename().string();
+        if (file.empty()) continue;
+        if (const auto size = std::filesystem::file_size(file, missing); missing || size == 0)
+            fail(fmt::format("it ended with exit code 0, and {} is {}", name, missing ? "not there" : "empty"));
+    }
 }
 
 }  // namespace crescent::film

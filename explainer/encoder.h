@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "process.h"
+#include "crescent.h"
 #include "rasters.h"
 
 namespace crescent::film {
@@ -24,14 +24,14 @@ void require_ffmpeg(bool webm, bool voice, const std::string& folder, const Prog
 class Encoder {
 public:
     explicit Encoder(const Ingredients& in);
-    void take(const Raster& raster);
-    /// Waits for ffmpeg to finish. OutputError where it failed.
+    void take(const Raster& raster, const ProgressMonitor& monitor);
+    /// Waits for ffmpeg to finish. OutputError if it failed, or wrote no film.
     void finish(const ProgressMonitor& monitor);
 
 private:
-    [[noreturn]] void fail() const;
+    [[noreturn]] void fail(const std::string& what);
 
-    std::string log_;
+    Ingredients in_;
     Process process_;
 };
 

@@ -118,7 +118,7 @@ private:
         monitor_.begin(fmt::format("{} frames", part.last - part.first), part.last - part.first);
         Encoder encoder(in);
         for_each_frame(timeline_, options_.height, part.first, part.last, monitor_, [&](const Raster& raster) {
-            encoder.take(raster);
+            encoder.take(raster, monitor_);
             hashes.push_back(raster.hash);
         });
         monitor_.begin("ffmpeg ends the file", 1);
@@ -166,6 +166,7 @@ std::string make(const Experiment& experiment, const FilmOptions& options, Progr
 
     RunOptions run;
     run.out = options.out, run.threads = options.threads, run.isa = options.isa, run.command = options.command;
+    run.timeout_s = options.timeout_s;
     Data data = collect(experiment, run, monitor);
     Voice voice(options.voice, staging.scratch(), monitor);
     if (!options.voice.empty()) monitor.begin("the voice", 1);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "process.h"
+#include "crescent.h"
 
 namespace crescent::film {
 
@@ -73,15 +73,16 @@ const std::vector<float>& Voice::said(const std::string& text) {
     if (known != said_.end()) return known->second;
     const std::string in = folder_ + "/voice.txt", out = folder_ + "/voice.wav", err = folder_ + "/voice.log";
     std::ofstream(in) << text << '\n';
-    Process process({"/bin/sh", "-c", command_}, in, out, err);
-    const int code = process.wait(monitor_);
+    const ProcessEnd end =
+        Process({.argv = {"/bin/sh", "-c", command_}, .stdin_file = in, .stdout_file = out, .stderr_file = err})
+            .wait(monitor_);
     int rate = 0;
     const std::vector<float> samples = samples_of_wav(contents_of(out), rate);
-    if (code != 0 || samples.empty()) {
+    if (!end.well() || samples.empty()) {
         const std::string log = contents_of(err);
         throw OutputError(fmt::format(
             "--voice '{}' {}; expected a program that reads text on stdin and writes a 16-bit WAV to stdout{}",
-            command_, code != 0 ? fmt::format("ended with {}", code) : "gave no WAV",
+            command_, end.well() ? "gave no WAV" : "ended with " + end.text(),
             log.empty() ? "" : "; it said: " + log.substr(0, 300)));
     }
     return said_[text] = resampled(samples, rate);

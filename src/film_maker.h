@@ -23,6 +23,7 @@ struct FilmOptions {
     std::string isa;       // "": the best this machine has
     std::string command;   // as typed, for the last shot
     bool webm = false;
+    double timeout_s = 0;  // for one answer of a program or plugin; 0: 10 and 60 s
 };
 
 /// Makes the film and publishes it under options.out as one; returns a summary for the terminal.

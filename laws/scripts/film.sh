@@ -58,7 +58,17 @@ sed 's/^\[arms.phong\]/[arms.blinn]/; s/^arm = "phong"/arm = "blinn"/' "$small" 
 expect 2 "$CRESCENT" film no-phong.toml --out none --quiet
 grep -q "no arm here samples by 'phong'" said || die "a missing arm is not named: $(cat said)"
 expect 3 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:09 --voice false --out none --quiet
-grep -q "voice 'false' ended with 1" said || die "a voice that fails is not told: $(cat said)"
+grep -q "voice 'false' ended with exit code 1" said || die "a voice that fails is not told: $(cat said)"
+
+# An ffmpeg that ends well and leaves no film, or an empty one, or that does not read its frames: an error that says so.
+mkdir fake
+for what in 'cat >/dev/null|not there' 'cat >/dev/null; : >"${!#}"|is empty' 'exit 0|could not encode' 'kill -9 $$|SIGKILL'; do
+    printf '#!/bin/bash\n[ "$2" = -encoders ] && exec %s "$@"\n%s\n' "$(command -v ffmpeg)" "${what%|*}" >fake/ffmpeg
+    chmod +x fake/ffmpeg
+    PATH="$work/fake:$PATH" expect 3 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:09 --out none --quiet
+    grep -q "ffmpeg.*${what#*|}" said || die "ffmpeg '${what%|*}': $(cat said)"
+    [ ! -e none/crescent.mp4 ] || die "an empty film was published"
+done
 
 # Spoken: an audio stream, and captions that wait for their speech.
 command -v espeak-ng >/dev/null || die "no espeak-ng: it is in the group test of tools/packages.txt"

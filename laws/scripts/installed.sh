@@ -23,6 +23,10 @@ readme() { # FOLDER WHICH
         echo 'find_package(GTest REQUIRED)'
         echo 'add_executable(my_tests my_tests.cpp)'
         snippet cmake "$2"
+        if [ "$2" = 1 ]; then
+            echo 'add_executable(plugin ../plugin.cpp)'
+            echo 'target_link_libraries(plugin PRIVATE crescent::check)'
+        fi
     } >"$1/CMakeLists.txt"
     snippet cpp 1 >"$1/my_tests.cpp"
     expect 0 cmake -S "$1" -B "$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
@@ -30,6 +34,20 @@ readme() { # FOLDER WHICH
 }
 none=()
 for name in OpenEXR Imath Boost tomlplusplus hwy PNG PkgConfig; do none+=("-DCMAKE_DISABLE_FIND_PACKAGE_$name=ON"); done
+# A program of somebody else that loads a plugin: it is executed again as the plugin's host, before its own main().
+cat >plugin.cpp <<'END'
+#include <cstdio>
+
+#include <subjects/plugin.h>
+
+int main(int, char** words) {
+    std::puts("main");
+    const auto plugin = crescent::open_plugin(words[1]);
+    std::vector<crescent::Draw> out(1);
+    plugin->sample(0, {0, 0, 1}, std::vector<crescent::Numbers>{{0.25, 0.5}}, out);
+    std::printf("%s %.6f\n", plugin->name().c_str(), out[0].pdf);
+}
+END
 readme readme 1 -DCMAKE_PREFIX_PATH="$work/prefix" "${none[@]}"
 expect 0 cmake --build readme/build
 expect 0 readme/build/my_tests
@@ -51,6 +69,12 @@ for components in '' 'COMPONENTS verdicts' 'COMPONENTS run'; do
     expect $code cmake -S lacking -B lacking/build -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${none[@]}"
 done
 grep -q OpenEXR said || die "what is missing is not said: $(cat said)"
+
+expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$work/prefix/include/crescent" -o libcosine.so \
+    "$CRESCENT_SOURCE/examples/plugin/cosine.c" -lm
+expect 0 readme/build/plugin ./libcosine.so
+[ "$(cat printed)" = "main
+cosine in C 0.159155" ] || die "a plugin in another program: $(cat printed)"
 
 # A run in memory: an interval for each arm, no file, a stop that is an answer.
 build_example in_memory

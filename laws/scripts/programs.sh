@@ -55,7 +55,7 @@ for name in 'a\033[31m\302\233<&"' "$(printf 'x%.0s' {1..59})\303\251\303\251" '
     ! LC_ALL=C grep -q "$(printf '\033\\|\302\233')" printed || die "a control character of the name: $(cat -v printed)"
 done
 
-# What a program started dies with it, a session of its own included; all of it dies with crescent.
+# What a program started dies with it, a session of its own included; the program dies with crescent.
 gone() {
     for _ in $(seq 50); do
         kill -0 "$(cat "$1")" 2>/dev/null || return 0
@@ -66,9 +66,21 @@ gone() {
 expect 3 check --exec 'setsid sh -c "echo \$\$ >session; exec sleep 300" & read hello; echo hello 1 x
     while [ ! -s session ]; do :; done; exit 3'
 gone session
-"$CRESCENT" check --quiet --exec 'setsid sh -c "echo \$\$ >orphan; exec sleep 300"' >/dev/null 2>&1 &
+"$CRESCENT" check --quiet --exec 'echo $$ >orphan; exec sleep 300' >/dev/null 2>&1 &
 while [ ! -s orphan ]; do sleep 0.1; done
 kill -9 $!
+gone orphan
+# Ctrl-C: all of it, and exit 130.
+rm orphan
+set -m
+"$CRESCENT" check --quiet --exec 'trap "" INT TERM; sleep 300 &
+    setsid sh -c "echo \$\$ >orphan; exec sleep 300" & wait' >/dev/null 2>&1 &
+set +m
+while [ ! -s orphan ]; do sleep 0.1; done
+kill -s INT $!
+wait $!
+code=$?
+[ $code -eq 130 ] || die "SIGINT: exit $code"
 gone orphan
 
 # Files appear whole; no other file is touched, and no link is followed.

@@ -5,7 +5,10 @@ import inspect
 import json
 import os
 import pickle
+import shutil
 import signal
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -67,6 +70,39 @@ def test_three_channels_and_a_weight_that_is_not_f_cos_over_p():
 
     assert crescent.check(weighed, cosine_pdf, colour, wo_deg=[30]).state == "right"
     assert "identity" in crescent.check(wrong, cosine_pdf, colour, wo_deg=[30]).broken()
+
+
+def test_a_plugin_runs_beside_the_module(tmp_path):
+    cc = shutil.which("cc")
+    if not cc:
+        pytest.skip("no C compiler")
+    source = tmp_path / "plugin.c"
+    source.write_text(
+        """#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+unsigned crescent_sampler_abi(void) { return 1; }
+int crescent_sampler_sample(size_t n, const double* wo, const double* u, const double* s, double* wi, double* p) {
+    if (getenv("PLUGIN_ENDS")) _Exit(3);
+    for (size_t i = 0; i < n; ++i) {
+        double c = sqrt(u[2 * i]), r = sqrt(1 - u[2 * i]), a = 6.283185307179586 * u[2 * i + 1];
+        wi[3 * i] = r * cos(a), wi[3 * i + 1] = r * sin(a), wi[3 * i + 2] = c, p[i] = c / 3.141592653589793;
+    }
+    return 0;
+}
+int crescent_sampler_pdf(size_t n, const double* wo, const double* wi, const double* s, double* p) {
+    for (size_t i = 0; i < n; ++i) p[i] = wi[3 * i + 2] > 0 ? wi[3 * i + 2] / 3.141592653589793 : 0;
+    return 0;
+}
+"""
+    )
+    library = tmp_path / "libplugin.so"
+    subprocess.run([cc, "-O2", "-shared", "-fPIC", source, "-o", library, "-lm"], check=True)
+    command = [sys.executable, "-m", "crescent", "check", "--plugin", str(library), "--wo", "45"]
+    assert subprocess.run(command).returncode == 0
+    ended = subprocess.run(command, env={**os.environ, "PLUGIN_ENDS": "1"}, capture_output=True, text=True)
+    assert ended.returncode == 3
+    assert "exit code 3 in crescent_sampler_sample" in " ".join((ended.stdout + ended.stderr).split())
 
 
 def test_domain_hemisphere_needs_no_guard_at_the_horizon():

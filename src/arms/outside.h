@@ -21,17 +21,23 @@ struct OutsideSurface {
     double lobe;     // rho_s
 };
 
-/// A batch of draws at one surface point. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
-struct OutsideBatch {
+/// Rows that follow one another at one surface point.
+struct OutsideRun {
     Vec3<double> wo;
     OutsideSurface surface;
+    std::size_t rows;
+};
+
+/// A batch of draws. Row i has the `numbers` random numbers u[i * numbers ...], each in (0, 1).
+struct OutsideBatch {
+    std::span<const OutsideRun> runs;
     std::span<const double> u;
 };
 
-/// pdf 0: nothing was drawn.
-struct OutsideDraw {
-    Vec3<double> wi;
-    double pdf;
+/// Where a batch is drawn to, an entry a row. pdf 0: nothing was drawn.
+struct OutsideDraws {
+    std::span<Vec3<double>> wi;
+    std::span<double> pdf;
 };
 
 class OutsideSampler {
@@ -41,8 +47,8 @@ public:
     virtual std::string name() const = 0;
     /// Random numbers that a sample takes, 1 to 8.
     virtual int numbers() const = 0;
-    /// One draw a row of u. May be called by many threads at once. Throws OutputError where it does not answer.
-    virtual void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const = 0;
+    /// One draw a row of u. May be called by many threads at once. Throws OutputError if it does not answer.
+    virtual void draw(const OutsideBatch& batch, const OutsideDraws& out) const = 0;
     /// Whether it can be asked for the density of any direction.
     virtual bool has_density() const { return false; }
     /// The density of each wi, 0 where it is never drawn. As draw() for threads and what it throws.

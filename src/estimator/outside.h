@@ -7,7 +7,8 @@
 
 namespace crescent::inline estimator {
 
-/// As a kernel of the table. A direction that is not unit to 1e-4, or a pdf below 0, makes a bad sample.
+/// As a kernel of the table. A direction that is not of unit length to 1e-4 makes a bad sample, and so does a pdf that
+/// cannot be used: NaN, negative, or in single precision infinite, or 0 though it is not 0 in double.
 void estimate_outside(const OutsideSampler& sampler, const KernelCall& call);
 
 }  // namespace crescent::inline estimator

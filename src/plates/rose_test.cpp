@@ -27,7 +27,7 @@ struct CosineFromOutside : OutsideSampler {
     bool asked = true;
     std::string name() const override { return "cosine"; }
     int numbers() const override { return 2; }
-    void draw(const OutsideBatch&, std::span<OutsideDraw>) const override {}
+    void draw(const OutsideBatch&, const OutsideDraws&) const override {}
     bool has_density() const override { return asked; }
     void density(Vec3d, const OutsideSurface&, std::span<const Vec3d> wi, std::span<double> out) const override {
         for (std::size_t i = 0; i < wi.size(); ++i) out[i] = std::max(wi[i].z, 0.0) / pi;

@@ -118,8 +118,8 @@ PageSection results(Page& page) {
     if (pair && !page.in.experiment.regions.empty()) out += failures_not_seen(page, pair);
     if (const std::uint64_t bad = page.find.bad_samples())
         out += html::p(
-            fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative. The figures above are not to be "
-                        "trusted until that is understood.",
+            fmt::format("<b class=\"bad\">{}</b> came out NaN, infinite or negative, or with a pdf or a direction that "
+                        "cannot be used. The figures above are not to be trusted until that is understood.",
                 plural(bad, "sample")));
     return {"results", "Results", out + page.figures.plates(PlateKind::heat) + frame_footnote(page, n)};
 }

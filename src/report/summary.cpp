@@ -162,8 +162,10 @@ std::string terminal_summary(
             in.provenance.series, ranges_text(missing));
     out += table(in, paint) + films(hashes_shown(in), paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
-        out += fmt::format(
-            "\n{}\n", paint(red, fmt::format("  {}: NaN, infinite or negative", plural(bad, "bad sample"))));
+        out += fmt::format("\n{}\n",
+            paint(red,
+                fmt::format(
+                    "  {}: NaN, infinite or negative, or a pdf that cannot be used", plural(bad, "bad sample"))));
     for (const std::string& warning : warnings_of(in.experiment))
         out += "\n" + clip("  warning: " + warning, columns) + "\n";
     return out + "\n" + speed(timing) + where(in, out_dir, parts);

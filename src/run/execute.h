@@ -28,6 +28,7 @@ struct Engine {
     int threads = 0;                           // 0: usable_threads()
     std::string isa{};                         // a name of isas(); "": the best of this machine
     std::shared_ptr<Instrument> instrument{};  // null: the CPU
+    double timeout_s = 0;                      // for one answer of a program or plugin; 0: 10 and 60 s
 };
 /// With nothing left open. Throws InputError where the instruction set is not known or not here.
 Engine settled(Engine engine);

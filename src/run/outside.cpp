@@ -22,15 +22,22 @@ public:
     explicit Program(std::shared_ptr<const JudgedSampler> program) : program_(std::move(program)) {}
     std::string name() const override { return program_->name(); }
     int numbers() const override { return program_->traits().numbers; }
-    void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const override {
+    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
         const auto count = static_cast<std::size_t>(numbers());
-        std::vector<Numbers> u(out.size());
-        for (std::size_t i = 0; i < u.size(); ++i)
-            for (std::size_t k = 0; k < count; ++k) u[i][static_cast<int>(k)] = batch.u[i * count + k];
-        std::vector<Draw> draws(out.size());
-        const std::lock_guard<std::mutex> one_at_a_time(lock_);
-        program_->sample(0, batch.wo, u, draws);
-        std::ranges::transform(draws, out.begin(), [](const Draw& d) { return OutsideDraw{d.wi, d.pdf}; });
+        std::size_t first = 0;
+        for (const OutsideRun& run : batch.runs) {
+            std::vector<Numbers> u(run.rows);
+            for (std::size_t i = 0; i < run.rows; ++i)
+                for (std::size_t k = 0; k < count; ++k) u[i][static_cast<int>(k)] = batch.u[(first + i) * count + k];
+            std::vector<Draw> draws(run.rows);
+            {
+                const std::lock_guard<std::mutex> one_at_a_time(lock_);
+                program_->sample(0, run.wo, u, draws);
+            }
+            for (std::size_t i = 0; i < run.rows; ++i)
+                out.wi[first + i] = draws[i].wi, out.pdf[first + i] = draws[i].pdf;
+            first += run.rows;
+        }
     }
     bool has_density() const override { return program_->traits().has_pdf; }
     void density(
@@ -52,7 +59,7 @@ public:
     Named(std::string arm, std::shared_ptr<const OutsideSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
     std::string name() const override { return of_->name(); }
     int numbers() const override { return of_->numbers(); }
-    void draw(const OutsideBatch& batch, std::span<OutsideDraw> out) const override {
+    void draw(const OutsideBatch& batch, const OutsideDraws& out) const override {
         named([&] { of_->draw(batch, out); });
     }
     bool has_density() const override { return of_->has_density(); }
@@ -74,22 +81,16 @@ private:
     std::shared_ptr<const OutsideSampler> of_;
 };
 
-std::shared_ptr<const JudgedSampler> program_of(const std::string& command) {
-    PipeLimits limits;
-    limits.total_seconds = std::numeric_limits<double>::infinity();
-    return start_pipe(command, limits);
-}
-
 /// An estimate divides f cos by the density of the draw: what has none cannot be an arm.
 void refuse(const Traits& traits) {
     if (traits.delta) throw OutputError("it has delta parts, which have no density to divide by");
     if (!traits.has_pdf) throw OutputError("it has no pdf to divide by");
 }
 
-std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm, const Experiment& experiment) {
+std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
-        if (arm.plugin) return open_plugin(*arm.plugin);
-        std::shared_ptr<const JudgedSampler> program = program_of(*arm.exec);
+        if (arm.plugin) return open_plugin(*arm.plugin, limits);
+        std::shared_ptr<const JudgedSampler> program = start_pipe(*arm.exec, limits);
         refuse(program->traits());
         return std::make_shared<Program>(std::move(program));
     } catch (const InputError&) {
@@ -103,10 +104,13 @@ std::shared_ptr<const OutsideSampler> open(const ArmPlan& arm, const Experiment&
 
 }  // namespace
 
-OutsideSamplers open_outside(const Experiment& experiment) {
+OutsideSamplers open_outside(const Experiment& experiment, double timeout_s) {
+    PipeLimits limits;
+    limits.total_seconds = std::numeric_limits<double>::infinity();
+    limits.limit_answers(timeout_s);
     OutsideSamplers all;
     for (const ArmPlan& arm : experiment.arms)
-        if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment));
+        if (arm.exec || arm.plugin) all[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment, limits));
     return all;
 }
 

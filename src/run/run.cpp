@@ -73,7 +73,9 @@ std::string checkpoint_key(const RunPlan& plan, const Engine& engine) {
     return fmt::format("{} {:016x} {}:{}", engine.instrument->name(), plan.hash, plan.range.first, plan.range.last);
 }
 
-Engine engine_of(const RunOptions& options) { return settled({options.threads, options.isa, options.instrument}); }
+Engine engine_of(const RunOptions& options) {
+    return settled({options.threads, options.isa, options.instrument, options.timeout_s});
+}
 
 }  // namespace
 

@@ -11,13 +11,18 @@
 
 namespace crescent::inline subjects {
 
-/// What a program behind a pipe may take.
+/// What a program behind a pipe, or a plugin, may take.
 struct PipeLimits {
     double hello_seconds = 60;   // until the first answer: a sky of millions of texels is read first
     double quiet_seconds = 10;   // without a byte while an answer is due
+    double call_seconds = 60;    // of a plugin: for one call of a function
     double total_seconds = 120;  // for everything; beyond it the program is too slow to judge
     std::size_t longest_line = 4096;
     const std::atomic<bool>* stop = nullptr;  // when set, the program is ended and Interrupted thrown
+    /// The same limit for each answer of either kind; 0: as it is.
+    void limit_answers(double seconds) {
+        if (seconds > 0) hello_seconds = quiet_seconds = call_seconds = seconds;
+    }
 };
 
 /// Starts `command` with /bin/sh -c. Throws SubjectFault that says at which request, what came and what was expected.

@@ -6,9 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "base/errors.h"
 #include "base/progress_monitor.h"
@@ -20,18 +17,19 @@ namespace crescent::inline subjects {
 static_assert(std::endian::native == std::endian::little, "blocks are little-endian, and are copied as they are");
 
 void Talk::fault(const std::string& request, std::size_t i, const std::string& what, std::string_view expected) {
+    program_.wait_ready(false, false, 0);  // what it printed comes before the error
     broken_ = fmt::format("request {} ({}): expected {}, {}", requests_ + i + 1, shown(request), expected, what);
     throw SubjectFault(broken_);
 }
 
 /// "" while it runs.
 std::string Talk::how_it_ended(int milliseconds) const {
-    const std::optional<int> status = child_.status(milliseconds);
-    if (!status) return "";
-    if (WIFSIGNALED(*status)) return fmt::format("the program was killed by signal {}", WTERMSIG(*status));
-    const int code = WEXITSTATUS(*status);
-    return fmt::format("the program ended with exit code {}", code) +
-        (code > 128 && code < 160 ? fmt::format(" (signal {})", code - 128) : "");
+    const std::optional<ProcessEnd> end = program_.ended(milliseconds);
+    if (!end) return "";
+    if (end->signal != 0) return "the program was killed by " + end->text();
+    // The shell reports a signal of the program as 128 + its number.
+    const bool by_signal = end->code > 128 && end->code < 160;
+    return "the program ended with " + end->text() + (by_signal ? ": " + ProcessEnd{0, end->code - 128}.text() : "");
 }
 
 std::string Talk::why_closed() const {
@@ -56,17 +54,16 @@ bool Talk::fill() {
     incoming_.erase(0, read_from_);
     read_from_ = 0;
     char buffer[1 << 16];
-    const ssize_t n = ::read(child_.output(), buffer, sizeof buffer);
+    const ssize_t n = program_.read(buffer, sizeof buffer);
     if (n < 0) return errno == EAGAIN || errno == EINTR;
     incoming_.append(buffer, static_cast<std::size_t>(n));
     return n > 0;
 }
 
-void Talk::send(Exchange& x, short events_in) {
-    const ssize_t n = child_.write(std::string_view(x.outgoing).substr(x.sent));
+void Talk::send(Exchange& x, bool answers_wait) {
+    const ssize_t n = program_.write(std::string_view(x.outgoing).substr(x.sent));
     if (n > 0) x.sent += static_cast<std::size_t>(n);
-    else if (n < 0 && errno == EPIPE && (events_in & POLLIN) == 0)
-        fault(x, x.answered, "but it closed its input: " + why_closed());
+    else if (n < 0 && errno == EPIPE && !answers_wait) fault(x, x.answered, "but it closed its input: " + why_closed());
 }
 
 void Talk::mind_the_time(Exchange& x, Clock::time_point last) {
@@ -98,10 +95,9 @@ void Talk::run(Exchange& x) {
             while (x.written < x.count && x.outgoing.size() < ahead) x.produce();
         }
         const bool more = x.sent < x.outgoing.size();
-        pollfd ends[2] = {{child_.output(), POLLIN, 0}, {child_.input(), static_cast<short>(more ? POLLOUT : 0), 0}};
-        const int ready = poll(ends, more ? 2 : 1, 50);
-        if (ready > 0 && more && (ends[1].revents & (POLLOUT | POLLERR)) != 0) send(x, ends[0].revents);
-        if (ready > 0 && (ends[0].revents & (POLLIN | POLLHUP)) != 0) {
+        const Process::Ready ready = program_.wait_ready(more, true, 50);
+        if (ready.input) send(x, ready.output);
+        if (ready.output) {
             if (!fill()) fault(x, x.answered, end_of_output());
             last = Clock::now();
             x.take();

@@ -9,14 +9,16 @@
 #include <string>
 #include <string_view>
 
-#include "subjects/child.h"
+#include "base/process.h"
 #include "subjects/pipe.h"
 
 namespace crescent::inline subjects {
 
 class Talk {
 public:
-    Talk(const std::string& command, const PipeLimits& limits) : limits_(limits), child_(command) {}
+    /// Starts `command` by the shell.
+    Talk(const std::string& command, const PipeLimits& limits)
+        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = command}) {}
     Talk(const Talk&) = delete;
     Talk& operator=(const Talk&) = delete;
 
@@ -41,7 +43,7 @@ public:
     const std::string& broken() const { return broken_; }
     Spending spending() const { return {requests_, seconds_since(began_), limits_.total_seconds}; }
     /// What it had time to say is read no more; half a second to end by itself, unless it was given up.
-    void stop() { child_.end(broken_.empty() ? 500 : 0); }
+    void stop() { program_.end(broken_.empty() ? 500 : 0); }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -55,7 +57,7 @@ private:
         std::string outgoing{};
     };
     PipeLimits limits_;
-    Child child_;
+    mutable Process program_;  // asked how it ended where a message says so
     std::string incoming_;
     std::size_t read_from_ = 0;
     std::uint64_t requests_ = 0;
@@ -67,7 +69,7 @@ private:
         return std::chrono::duration<double>(Clock::now() - then).count();
     }
     void run(Exchange& x);
-    void send(Exchange& x, short events_in);
+    void send(Exchange& x, bool answers_wait);
     void mind_the_time(Exchange& x, Clock::time_point last);
     void take_lines(Exchange& x, const Read& read);
     void take_blocks(Exchange& x, const Rows& rows, std::deque<std::size_t>& due);
