@@ -8,6 +8,9 @@
 f in 1/sr without the cosine.
 """
 
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from ._check import check
 from ._crescent import commit
 from ._crescent import version as __version__
@@ -15,6 +18,9 @@ from ._judgement import Judgement, Verdict
 from ._sampler import Sampler
 from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from .experiments import Experiment, Film, Measured, join, load, parse, run
+
+if TYPE_CHECKING:
+    from . import adapters, testing
 
 __all__ = [
     "Experiment",
@@ -25,6 +31,7 @@ __all__ = [
     "Tail",
     "Verdict",
     "__version__",
+    "adapters",
     "arm",
     "arm_names",
     "brdf",
@@ -37,4 +44,16 @@ __all__ = [
     "pdf_of",
     "run",
     "tail",
+    "testing",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """The modules of the package that are loaded when they are first used."""
+    if name in ("adapters", "testing"):
+        return importlib.import_module(f".{name}", __name__)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

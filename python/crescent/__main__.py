@@ -12,48 +12,13 @@ Exit codes: 0 right, 1 wrong, 2 bad input, 3 error, 4 inconclusive, 130 interrup
 from __future__ import annotations
 
 import argparse
-import importlib
-import importlib.util
 import sys
-from pathlib import Path
-from types import ModuleType
-from typing import Any
 
-from . import Judgement, Sampler, __version__, _crescent, commit
+from . import Judgement, __version__, _crescent, commit
 from ._check import _grid, _judge, _trials
+from ._files import names_a_file, sampler_at
 
 EXIT = {"right": 0, "wrong": 1, "error": 3, "inconclusive": 4}
-
-
-def _module(name: str) -> ModuleType:
-    path = Path(name)
-    if path.suffix != ".py":
-        return importlib.import_module(name)
-    if not path.is_file():
-        raise ValueError(f"{name}: no such file")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-def sampler_at(where: str) -> Sampler:
-    """The sampler that "FILE.py:NAME", "module:NAME" or "FILE.py" means."""
-    name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
-    found: Any = _module(name)
-    if colon:
-        if not hasattr(found, inside):
-            raise ValueError(f"{name} has no '{inside}'")
-        found = getattr(found, inside)
-    if isinstance(found, Sampler):
-        return found
-    found = found() if isinstance(found, type) else found
-    if not hasattr(found, "sample"):
-        raise ValueError(f"{where} has no sample(wo, u)")
-    title = inside or Path(name).stem
-    return Sampler(found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=title)
 
 
 def _number(flag: str, word: str) -> float:
@@ -91,7 +56,7 @@ def _trials_of(args: argparse.Namespace) -> tuple[_crescent.Trials, bool]:
     wo = [(_number(f"--wo {w}", theta), _number(f"--wo {w}", azimuth or "0")) for w, theta, azimuth in at] or None
     grid = _grid(wo)
     arm = args.sampler or ""
-    of_python = ":" in arm or arm.endswith(".py")
+    of_python = names_a_file(arm)
     _one_subject(args, bool(of_python or args.exec or args.plugin))
     if args.exec:
         return _crescent.trials_of_program(args.exec, args.patience, args.full, grid), False

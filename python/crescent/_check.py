@@ -12,6 +12,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from . import _arrays, _crescent
+from ._files import names_a_file, sampler_at
 from ._judgement import Judgement
 from ._libraries import library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
@@ -186,8 +187,9 @@ def check(
 ) -> Judgement:
     """Judges a sampler over a grid of w_o.
 
-    `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`), or `sample` is a :class:`Sampler`, or the
-    name of a built-in arm, whose parameters `settings` gives: ``check("phong", settings={"s": 32})``. What is known
+    `sample`, `pdf` and `f` are vectorised callables (see :class:`Sampler`), or `sample` is a :class:`Sampler`, or
+    where one is, "mine.py:sampler", whose folder is added to the path as pytest adds that of a test; or it is the name
+    of a built-in arm, whose parameters `settings` gives: ``check("phong", settings={"s": 32})``. What is known
     of a sampler of callables is given by the fields of :class:`Sampler` as keywords: name, u, domain, wo, channels,
     delta, eta, ...
 
@@ -196,6 +198,8 @@ def check(
     `progress(what, done, total)` is called some times a second.
     """
     _must_be_known(known)
+    if isinstance(sample, str) and names_a_file(sample):
+        sample = sampler_at(sample)
     if isinstance(sample, str):
         if pdf is not None or f is not None or known:
             raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")

@@ -11,6 +11,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -42,15 +43,72 @@ def _toml(value: Any) -> str:
     )
 
 
+def _quoted(key: str) -> str:
+    """A key as a step of a path: quoted where it is more than a bare word."""
+    return key if re.fullmatch(r"[\w-]+", key) else f"'{key}'" if '"' in key else f'"{key}"'
+
+
 def _overrides(changes: Mapping[str, Any]) -> list[str]:
     """KEY=VALUE of each; a table gives one for each of its keys."""
     out: list[str] = []
     for path, value in changes.items():
         if isinstance(value, Mapping) and value:
-            out += _overrides({f"{path}.{key}": v for key, v in value.items()})
+            out += _overrides({f"{path}.{_quoted(key)}": v for key, v in value.items()})
         else:
             out.append(f"{path}={_toml(value)}")
     return out
+
+
+def _steps(path: str) -> list[str]:
+    """shapes.'a ball'.center[1] -> shapes, a ball, center, 1: as --set reads a path."""
+    found = [next(filter(None, step)) for step in re.findall(r"\"([^\"]*)\"|'([^']*)'|([^.\[\]\"']+)", path)]
+    if not found:
+        raise KeyError(f"{path!r}: expected a path such as sphere.s or shapes.sphere.s")
+    return found
+
+
+def _inside(at: Any, step: str) -> Any:
+    """The value under a key of a table or at an index of a list; KeyError names what there is, and the nearest."""
+    if isinstance(at, Mapping):
+        if step in at:
+            return at[step]
+        near = _crescent.nearest(step, list(at))
+        raise KeyError(f"has {', '.join(at)}" + (f"; did you mean '{near}'?" if near else ""))
+    if isinstance(at, list) and at:
+        if step.isdecimal() and int(step) < len(at):
+            return at[int(step)]
+        raise KeyError(f"has items 0 to {len(at) - 1}")
+    raise KeyError("has no keys")
+
+
+def _found(tree: Mapping[str, Any], path: str) -> tuple[list[str], Any]:
+    """The steps from the top to a value, and the value. A path may begin at a name, as --set takes it: lamp.radius."""
+    steps = _steps(path)
+    families = [key for key, value in tree.items() if isinstance(value, Mapping) and steps[0] in value]
+    starts = [steps] if steps[0] in tree else []
+    starts += [[family, *steps] for family in families if isinstance(tree[family][steps[0]], Mapping)]
+    found, problem = [], ""
+    for start in starts:
+        at: Any = tree
+        for i, step in enumerate(start):
+            try:
+                at = _inside(at, step)
+            except KeyError as e:
+                problem = problem or f"{path}: {'.'.join(start[:i])} {e.args[0]}"
+                break
+        else:
+            found.append((start, at))
+    if len(found) > 1 and found[0][0] is not steps:
+        raise KeyError(f"{path} is ambiguous: expected {' or '.join('.'.join(start) for start, _ in found)}")
+    if found:
+        return found[0]
+    if problem:
+        raise KeyError(problem)
+    tables = [value for value in tree.values() if isinstance(value, Mapping)]
+    names = [name for table in tables for name, inside in table.items() if isinstance(inside, Mapping)]
+    near = _crescent.nearest(steps[0], [*tree, *names])
+    hint = f"; did you mean '{near}'?" if near else ""
+    raise KeyError(f"{path}: the experiment has {', '.join(tree)}, and the names {', '.join(names)}{hint}")
 
 
 def _lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
@@ -65,33 +123,31 @@ def _lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
 class Experiment:
     """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. A change is checked as a whole.
 
-    A table is set by a dictionary, ``e["arms.phong"] = {"n": [4]}``, and taken out by ``del e["arms.phong"]``.
+    Keys are those of ``crescent run --set``: a whole path, ``shapes.sphere.s``, or one that begins at a name,
+    ``sphere.s``; an item of a list is ``camera.eye[1]``. A table is set by a dictionary, ``e["arms.phong"] = {"n":
+    [4]}``, and taken out by ``del e["arms.phong"]``. What is read is a copy.
     """
 
     def __init__(self, core: _crescent.Experiment) -> None:
         self._core = core
 
+    def _tree(self) -> dict[str, Any]:
+        """Every value, with those that a shape inherits."""
+        return tomllib.loads(re.sub(r"(?m)^# inherited: ", "", self._core.text))
+
     def __getitem__(self, path: str) -> Any:
-        at: Any = tomllib.loads(self._core.text)
-        for i, word in enumerate(path.split(".")):
-            if not isinstance(at, Mapping) or word not in at:
-                inside = ".".join(path.split(".")[:i])
-                has = ", ".join(at) if isinstance(at, Mapping) else "no keys"
-                raise KeyError(f"{path}: {inside or 'the experiment'} has {has}")
-            at = at[word]
-        return at
+        return _found(self._tree(), path)[1]
 
     def __setitem__(self, path: str, value: Any) -> None:
-        self._core = _crescent.parse(self._core.text, self._core.file, _overrides({path: value}))
+        self._core = self.with_({path: value})._core
 
     def __delitem__(self, path: str) -> None:
-        _ = self[path]  # KeyError where it is not there
         whole = tomllib.loads(self._core.text)
-        above, _, word = path.rpartition(".")
+        steps, _ = _found(whole, path)
         at: Any = whole
-        for step in above.split(".") if above else ():
-            at = at[step]
-        del at[word]
+        for step in steps[:-1]:
+            at = _inside(at, step)
+        del at[int(steps[-1]) if isinstance(at, list) else steps[-1]]
         self._core = _crescent.parse("\n".join(_lines(whole)), self._core.file, [])
 
     def __contains__(self, path: object) -> bool:
@@ -103,7 +159,7 @@ class Experiment:
 
     def __iter__(self) -> Iterator[str]:
         """The keys and tables of the file."""
-        return iter(tomllib.loads(self._core.text))
+        return iter(self._tree())
 
     def with_(self, changes: Mapping[str, Any]) -> Experiment:
         """Another experiment, with these keys changed all at once."""
@@ -186,17 +242,17 @@ class Films(Mapping[tuple[str, int], Film]):
 
 
 class Measured:
-    """A run: films as arrays without a copy, and every number."""
+    """A run: films as arrays without a copy, and every number. It can be pickled and copied."""
 
-    def __init__(self, core: _crescent.Measured, s: float) -> None:
+    def __init__(self, core: _crescent.RunResult) -> None:
         self._core = core
-        self.films = Films([Film(*film) for film in core.films], s)
+        self.films = Films([Film(*film) for film in core.films], core.s)
         self.references = {s: planes for s, planes in core.references}  #: by s: r, g, b, y, error
 
     @property
     def metrics(self) -> dict[str, Any]:
         """metrics.json as data: bands over seeds, ladders, furnaces, assertions, provenance."""
-        numbers: dict[str, Any] = json.loads(self._core.json())
+        numbers: dict[str, Any] = json.loads(self._core.json)
         return numbers
 
     @property
@@ -204,11 +260,17 @@ class Measured:
         """No assertion of the experiment fails; those on plates, or on seeds that were not run, are skipped."""
         return bool(self._core.holds)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Measured, (self._core,)
+
     def records(self) -> list[dict[str, Any]]:
-        """One row a number: arm, n, s, seed, meter, region, value; a data frame takes it as it is."""
-        rows = csv.DictReader(io.StringIO(self._core.csv(), newline=""))
-        kinds: dict[str, Callable[[str], Any]] = {"n": int, "s": float, "seed": int, "value": _number}
-        return [{k: kinds.get(k, str)(v) for k, v in row.items()} for row in rows]
+        """One row a number: arm, n, s, seed, meter, region, value; a data frame takes it as it is.
+
+        Counts are int, other numbers float, None where there is none; region is "" for the whole frame. Keys that were
+        changed have a column each, whose values are those of the file.
+        """
+        rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
+        return [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset: a variable a meter over (arm, n, s, seed), and region where it has one; NaN: not run."""
@@ -224,7 +286,7 @@ class Measured:
             coords = {**axes, "region": regions} if any(r["region"] for r in mine) else axes
             values = xarray.DataArray(np.full([len(c) for c in coords.values()], np.nan), coords, list(coords))
             for r in mine:
-                values.loc[{axis: r[axis] for axis in coords}] = r["value"]
+                values.loc[{axis: r[axis] for axis in coords}] = np.nan if r["value"] is None else r["value"]
             out[meter] = values
         return xarray.Dataset(out)
 
@@ -236,8 +298,22 @@ class Measured:
         return f"<Measured: {len(self.films)} films; assertions {'hold' if self.holds else 'fail'}>"
 
 
-def _number(text: str) -> float:
-    return float(text) if text else float("nan")
+_COUNTS = frozenset(_crescent.counting_meters())
+
+
+def _field(column: str, text: str, meter: str) -> Any:
+    """A field of metrics.csv: a number by its column, None where there is none; a key's value as the file has it."""
+    if column in ("arm", "meter", "region"):
+        return text
+    if column in ("n", "seed") or (column == "value" and meter in _COUNTS):
+        return int(text) if text else None
+    if column in ("s", "value"):
+        number = float(text) if text else np.nan
+        return None if np.isnan(number) else number
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text or None
 
 
 def run(
@@ -261,7 +337,7 @@ def run(
         raise ValueError(f"seeds is {seeds!r}: expected the first and the last of the series, (1, 0) for all")
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     core = _crescent.run(e._core, seeds[0], seeds[1], threads=threads, isa=isa, studies=studies, progress=progress)
-    measured = Measured(core, e._core.s())
+    measured = Measured(core)
     if folder is not None:
         measured.write(folder)
     return measured
@@ -273,8 +349,8 @@ def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None =
     `parts`: folders of runs, or their metrics.json. `out`: a folder for the metrics. There are no films.
     """
     folder = None if out is None else abspath(out)
-    core, s = _crescent.join([fspath(part) for part in parts])
-    measured = Measured(core, s)
+    core = _crescent.join([fspath(part) for part in parts])
+    measured = Measured(core)
     if folder is not None:
         measured.write(folder)
     return measured

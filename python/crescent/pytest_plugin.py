@@ -1,7 +1,7 @@
 """pytest: one alpha over a whole session, and at its end how often a right suite fails.
 
     def test_mine(assert_sampler):          # or crescent.testing.assert_sampler itself
-        assert_sampler(sample, pdf, f)
+        assert_sampler(sample, pdf, f)      # or "samplers/mine.py:sampler", from pytest's rootdir
 
 `pytest --crescent-alpha 1e-4` changes alpha. Under pytest-xdist every worker collects the whole suite, and has the
 same shares.
@@ -34,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
     alpha = config.getoption("--crescent-alpha")
     if not 0 < alpha < 1:
         raise pytest.UsageError(f"--crescent-alpha {alpha:g}: expected a number between 0 and 1")
-    config.stash[_KEY] = testing.Session(alpha)
+    config.stash[_KEY] = testing.Session(alpha, root=config.rootpath)
     testing.begin_session(config.stash[_KEY])
 
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import _arrays
 from ._check import _of_library, check
+from ._files import names_a_file, sampler_at
 from ._judgement import Judgement
 from ._sampler import Sampler
 
@@ -30,6 +32,7 @@ class Session:
     spent: float = 0.0  #: of alpha, so far
     calls: dict[str, int] = field(default_factory=dict)
     test: str = ""  #: that is running
+    root: Path | None = None  #: where files of samplers are looked for; None: the current folder
 
     def share(self) -> float:
         """The alpha of the next call; the shares of all calls come to `alpha` at most (Sidak over tests)."""
@@ -51,7 +54,7 @@ def begin_session(session: Session | None) -> None:
 
 
 def assert_sampler(
-    sample: Callable[..., Any] | Sampler,
+    sample: Callable[..., Any] | Sampler | str,
     pdf: Callable[..., Any] | None = None,
     f: Callable[..., Any] | None = None,
     *,
@@ -61,9 +64,12 @@ def assert_sampler(
 ) -> Judgement:
     """Raises AssertionError unless the sampler is right; arguments as of :func:`crescent.check`.
 
+    A file, "mine.py:sampler", is looked for from pytest's rootdir.
     `allow`: names of verdicts that may be inconclusive, as ("tail", "mean") of a sampler known to be heavy-tailed.
     """
     share = alpha if alpha is not None else _session.share() if _session else ALPHA
+    if isinstance(sample, str) and names_a_file(sample):
+        sample = sampler_at(sample, _session.root if _session else None)
     judgement = check(sample, pdf, f, alpha=share, **known)
     allowed = set(allow)
     bad = [

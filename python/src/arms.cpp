@@ -72,7 +72,7 @@ nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const 
     alike(n, u.shape(0));
     std::vector<double> wi(3 * n), pdf(n);
     {
-        const nb::gil_scoped_release free;
+        const Work here;
         each_row(arm, wo, [&](const JudgedSampler& subject, std::size_t i) {
             const Numbers numbers(u(i, 0), u(i, 1));
             Draw d;
@@ -89,7 +89,7 @@ Out pdf(const ListedArm& arm, const In& wo, const In& wi) {
     alike(n, wi.shape(0));
     std::vector<double> p(n);
     {
-        const nb::gil_scoped_release free;
+        const Work here;
         each_row(arm, wo, [&](const JudgedSampler& subject, std::size_t i) {
             const Pair at{row(wo, i), row(wi, i)};
             subject.pdf(0, {&at, 1}, {&p[i], 1});

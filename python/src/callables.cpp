@@ -17,7 +17,7 @@ template <class Fill> nb::object matrix(std::size_t n, std::size_t k, Fill&& fil
     auto* data = new double[n * k];
     const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
     {
-        const nb::gil_scoped_release free;
+        const Unlocked free;
         for (std::size_t j = 0; j < k; ++j)
             for (std::size_t i = 0; i < n; ++i) data[j * n + i] = fill(i, j);
     }
@@ -39,7 +39,7 @@ void must_be(std::size_t n, std::size_t wanted) {
 /// The callables are asked with the lock held; what they raise stops the judgement and is raised again at its end.
 template <class Ask> void CallableSampler::ask(Ask&& ask) const {
     if (raised_) raised_->check();
-    const nb::gil_scoped_acquire held;
+    const Locked held;
     try {
         ask();
         if (c_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -56,7 +56,7 @@ void CallableSampler::sample(int, Vec3d wo, std::span<const Numbers> u, std::spa
         const nb::object from = matrix(u.size(), 3, [&](std::size_t, std::size_t j) { return component(wo, j); });
         const nb::object numbers = matrix(u.size(), static_cast<std::size_t>(c_.traits.numbers),
             [&](std::size_t i, std::size_t j) { return u[i][static_cast<int>(j)]; });
-        const nb::tuple answer = nb::cast<nb::tuple>(c_.sample(from, numbers));
+        const nb::tuple answer = nb::cast<nb::tuple>(call_python(c_.sample, from, numbers));
         const Rows wi = nb::cast<Rows>(answer[0]);
         const Column pdf = nb::cast<Column>(answer[1]);
         Rows weight;
@@ -64,7 +64,7 @@ void CallableSampler::sample(int, Vec3d wo, std::span<const Numbers> u, std::spa
         if (!answer[2].is_none()) weight = nb::cast<Rows>(answer[2]);
         if (!answer[3].is_none()) delta = nb::cast<Column>(answer[3]);
         must_be(wi.shape(0), u.size());
-        const nb::gil_scoped_release free;
+        const Unlocked free;
         for (std::size_t i = 0; i < u.size(); ++i) {
             Draw& d = out[i] = Draw{{wi(i, 0), wi(i, 1), wi(i, 2)}, pdf(i)};
             if (weight.is_valid()) {
@@ -85,9 +85,9 @@ void CallableSampler::pdf(int, std::span<const Pair> at, std::span<double> out) 
     if (c_.pdf.is_none()) return std::fill(out.begin(), out.end(), 1.0);
     if (at.empty()) return;
     ask([&] {
-        const Column p = nb::cast<Column>(c_.pdf(directions(at, &Pair::wo), directions(at, &Pair::wi)));
+        const Column p = nb::cast<Column>(call_python(c_.pdf, directions(at, &Pair::wo), directions(at, &Pair::wi)));
         must_be(p.shape(0), at.size());
-        const nb::gil_scoped_release free;
+        const Unlocked free;
         for (std::size_t i = 0; i < at.size(); ++i) out[i] = c_.upper_only && at[i].wi.z <= 0 ? 0 : p(i);
     });
     count(at.size());
@@ -96,10 +96,10 @@ void CallableSampler::pdf(int, std::span<const Pair> at, std::span<double> out) 
 void CallableSampler::f_channels(std::span<const Pair> at, std::span<Vec3d> out) const {
     if (at.empty() || c_.f.is_none()) return;
     ask([&] {
-        const Rows f = nb::cast<Rows>(c_.f(directions(at, &Pair::wo), directions(at, &Pair::wi)));
+        const Rows f = nb::cast<Rows>(call_python(c_.f, directions(at, &Pair::wo), directions(at, &Pair::wi)));
         must_be(f.shape(0), at.size());
         const bool three = f.shape(1) == 3;
-        const nb::gil_scoped_release free;
+        const Unlocked free;
         for (std::size_t i = 0; i < at.size(); ++i) {
             out[i] = three ? Vec3d{f(i, 0), f(i, 1), f(i, 2)} : Vec3d{f(i, 0), f(i, 0), f(i, 0)};
             if (c_.upper_only && at[i].wi.z <= 0) out[i] = {};

@@ -1,9 +1,12 @@
-// Experiments and runs, for crescent/_run.py: an experiment file or text in, films and numbers out, all in memory.
+// Experiments and runs, for crescent/experiments.py: an experiment file or text in, films and numbers out, all in
+// memory.
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+
+#include <filesystem>
 
 #include "doors.h"
 #include "watched.h"
@@ -18,21 +21,54 @@ template <class T> nb::object plane(const std::vector<T>& values, int width, int
     return nb::cast(nb::ndarray<nb::numpy, const T>(values.data(), 2, shape, owner));
 }
 
+constexpr std::pair<const char*, std::vector<float> Film::*> film_planes[] = {{"r", &Film::r}, {"g", &Film::g},
+    {"b", &Film::b}, {"y", &Film::y}, {"y2", &Film::second_moment}, {"var", &Film::var}, {"largest", &Film::largest}};
+constexpr std::pair<const char*, std::vector<std::uint32_t> Film::*> film_counts[] = {
+    {"horizon", &Film::horizon}, {"hits", &Film::light_hits}};
+constexpr std::pair<const char*, std::vector<float> ReferenceFilm::*> reference_planes[] = {{"r", &ReferenceFilm::r},
+    {"g", &ReferenceFilm::g}, {"b", &ReferenceFilm::b}, {"y", &ReferenceFilm::y}, {"error", &ReferenceFilm::error}};
+
 nb::dict planes_of(const Film& f, nb::handle owner) {
     nb::dict out;
-    const std::pair<const char*, const std::vector<float>*> all[] = {{"r", &f.r}, {"g", &f.g}, {"b", &f.b}, {"y", &f.y},
-        {"y2", &f.second_moment}, {"var", &f.var}, {"largest", &f.largest}};
-    for (const auto& [name, values] : all) out[name] = plane(*values, f.width, f.height, owner);
-    out["horizon"] = plane(f.horizon, f.width, f.height, owner);
-    out["hits"] = plane(f.light_hits, f.width, f.height, owner);
+    for (const auto& [name, values] : film_planes) out[name] = plane(f.*values, f.width, f.height, owner);
+    for (const auto& [name, values] : film_counts) out[name] = plane(f.*values, f.width, f.height, owner);
     return out;
 }
 
 nb::dict planes_of(const ReferenceFilm& f, nb::handle owner) {
     nb::dict out;
-    const std::pair<const char*, const std::vector<float>*> all[] = {
-        {"r", &f.r}, {"g", &f.g}, {"b", &f.b}, {"y", &f.y}, {"error", &f.error}};
-    for (const auto& [name, values] : all) out[name] = plane(*values, f.width, f.height, owner);
+    for (const auto& [name, values] : reference_planes) out[name] = plane(f.*values, f.width, f.height, owner);
+    return out;
+}
+
+/// Copies a plane of `planes`, and sets the size of its film.
+template <class T, class F>
+void restore_plane(const nb::dict& planes, const char* name, std::vector<T> F::* values, F& film) {
+    using Plane = nb::ndarray<const T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+    const Plane from = nb::cast<Plane>(planes[name]);
+    film.height = static_cast<int>(from.shape(0)), film.width = static_cast<int>(from.shape(1));
+    (film.*values).assign(from.data(), from.data() + from.size());
+}
+
+/// What a run found, as plain data: texts, films and references.
+struct RunResult {
+    double s = 0;  // the experiment's own
+    bool holds = false;
+    std::string json, csv, junit;
+    Attributes attributes;  // of the films' files
+    std::vector<std::pair<RunKey, Film>> films;
+    std::vector<ReferenceFilm> references;
+};
+
+RunResult result_of(Measured&& m) {
+    const ReportInputs in{m.experiment, m.metrics, m.evidence, m.provenance, m.plates};
+    const Provenance& p = m.provenance;
+    RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
+        {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
+            {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.instrument}},
+        {}, {}};
+    for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
+    for (ReferenceFilm& film : m.quadrature) out.references.push_back(std::move(film));
     return out;
 }
 
@@ -42,26 +78,55 @@ using ReferenceList = nb::typed<nb::list, nb::typed<nb::tuple, double, Planes>>;
 
 /// Every film of the run with its key, (arm, n, s, seed, planes).
 FilmList films_of(nb::handle self) {
-    const Measured& m = nb::cast<const Measured&>(self);
     nb::list out;
-    for (const auto& [key, film] : m.films)
+    for (const auto& [key, film] : nb::cast<const RunResult&>(self).films)
         out.append(nb::make_tuple(key.arm, key.n, key.s, key.seed, planes_of(film, self)));
     return out;
 }
 
 /// The references that the meters use, (s, planes).
 ReferenceList references_of(nb::handle self) {
-    const Measured& m = nb::cast<const Measured&>(self);
     nb::list out;
-    for (const ReferenceFilm& film : m.quadrature) out.append(nb::make_tuple(film.s, planes_of(film, self)));
+    for (const ReferenceFilm& film : nb::cast<const RunResult&>(self).references)
+        out.append(nb::make_tuple(film.s, planes_of(film, self)));
     return out;
 }
 
-std::shared_ptr<Measured> measured(const Experiment& experiment, int first, int last, int threads,
-    const std::string& isa, bool studies, const nb::object& progress) {
+using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, nb::object, nb::object>;
+
+State state_of(nb::handle self) {
+    const RunResult& r = nb::cast<const RunResult&>(self);
+    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, films_of(self), references_of(self)};
+}
+
+void restore(RunResult& into, const State& state) {
+    RunResult* const r = new (&into) RunResult;
+    nb::object films, references;
+    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, films, references) = state;
+    for (const nb::handle entry : films) {
+        const nb::tuple at = nb::cast<nb::tuple>(entry);
+        const nb::dict planes = nb::cast<nb::dict>(at[4]);
+        auto& [key, film] = r->films.emplace_back();
+        key = {nb::cast<std::string>(at[0]), nb::cast<std::uint64_t>(at[1]), nb::cast<double>(at[2]),
+            nb::cast<std::uint32_t>(at[3])};
+        film.n = key.n;
+        for (const auto& [name, values] : film_planes) restore_plane(planes, name, values, film);
+        for (const auto& [name, values] : film_counts) restore_plane(planes, name, values, film);
+    }
+    for (const nb::handle entry : references) {
+        const nb::tuple at = nb::cast<nb::tuple>(entry);
+        ReferenceFilm& film = r->references.emplace_back();
+        film.s = nb::cast<double>(at[0]);
+        for (const auto& [name, values] : reference_planes)
+            restore_plane(nb::cast<nb::dict>(at[1]), name, values, film);
+    }
+}
+
+RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
+    bool studies, const nb::object& progress) {
     PolledMonitor monitor;
     Raised raised(monitor);
-    const auto out = std::make_shared<Measured>();
+    RunResult out;
     watched(monitor, raised, progress, false, [&] {
         const RunPlan what = plan(experiment, {first, last});
         const Engine engine = settled({.threads = threads, .isa = isa, .instrument = nullptr});
@@ -72,30 +137,50 @@ std::shared_ptr<Measured> measured(const Experiment& experiment, int first, int 
             results.push_back(execute(what, prepared, job, engine, monitor, job.seed == what.seeds.front()));
         }
         monitor.check();
-        *out = collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent.run", studies});
+        Measured all =
+            collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent.run", studies});
         monitor.check();
+        out = result_of(std::move(all));
     });
     return out;
 }
 
-ReportInputs inputs_of(const Measured& m) { return {m.experiment, m.metrics, m.evidence, m.provenance, m.plates}; }
-
 /// metrics.json, metrics.csv, junit.xml and films/*.exr appear as one; plates and report are the program's.
-void write_folder(const Measured& m, const std::string& folder) {
-    const nb::gil_scoped_release free;
+void write_folder(const RunResult& r, const std::string& folder) {
     ProgressMonitor monitor;
+    const Work here(&monitor);
     Staging staging(folder);
-    staging.write("metrics.json", metrics_json(inputs_of(m)));
-    staging.write("metrics.csv", metrics_csv(inputs_of(m)));
-    staging.write("junit.xml", junit_xml(inputs_of(m)));
-    const Provenance& p = m.provenance;
-    const Attributes attributes = {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
-        {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.instrument}};
+    staging.write("metrics.json", r.json);
+    staging.write("metrics.csv", r.csv);
+    staging.write("junit.xml", r.junit);
     std::map<std::string, std::vector<std::pair<std::string, const Film*>>> files;
-    for (const auto& [key, film] : m.films)
-        files[film_file(key.arm, key.s, m.experiment.s())].emplace_back(fmt::format("n={}", key.n), &film);
-    for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, attributes);
+    for (const auto& [key, film] : r.films)
+        files[film_file(key.arm, key.s, r.s)].emplace_back(fmt::format("n={}", key.n), &film);
+    for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, r.attributes);
     staging.commit(monitor);
+}
+
+/// The meters whose values are whole numbers.
+std::vector<std::string> counting_meters() {
+    std::vector<std::string> out{"pixels", "tail_exceedances"};
+    const auto add = [&](std::string_view name, const MeterInfo&, auto value) {
+        if constexpr (std::is_same_v<decltype(value), std::uint64_t>) out.emplace_back(name);
+    };
+    for_each_meter(RegionMeter{}, add);
+    for_each_meter(RunMeter{}, add);
+    return out;
+}
+
+/// With the figures that it names, and with paths that hold in any working folder: Python changes an experiment by
+/// reading its text again.
+Experiment settled_paths(Experiment e) {
+    const auto absolute = [](std::optional<std::string>& path) {
+        if (path) path = std::filesystem::absolute(*path).lexically_normal().string();
+    };
+    e = with_figures(std::move(e));
+    absolute(e.published);
+    for (ArmPlan& arm : e.arms) absolute(arm.plugin);
+    return e;
 }
 
 }  // namespace
@@ -108,33 +193,41 @@ void add_experiments(nb::module_& m) {
         .def_prop_ro("file", [](const Experiment& e) { return e.file; })
         .def_prop_ro("hash", [](const Experiment& e) { return fmt::format("{:016x}", crescent::hash(e)); })
         .def("s", [](const Experiment& e) { return e.s(); });
-    m.def("load", &load, "path"_a, "overrides"_a = Overrides{});
+    m.def(
+        "load",
+        [](const std::string& path, const Overrides& overrides) { return settled_paths(load(path, overrides)); },
+        "path"_a, "overrides"_a = Overrides{});
     m.def(
         "parse",
         [](const std::string& text, const std::string& name, const Overrides& overrides) {
-            return parse(text, name, overrides);
+            return settled_paths(parse(text, name, overrides));
         },
         "text"_a, "name"_a, "overrides"_a = Overrides{});
+    m.def(
+        "nearest", [](const std::string& word, const std::vector<std::string>& valid) { return nearest(word, valid); },
+        "word"_a, "valid"_a, "The word of `valid` nearest to `word`; empty where none is near.");
     m.def("schema_text", &schema_text, "The manual of an experiment file.");
-    nb::class_<Measured>(m, "Measured", "Everything that a run measured.")
+    nb::class_<RunResult>(m, "RunResult", "What a run found: texts, films and references.")
+        .def_ro("s", &RunResult::s)
+        .def_ro("holds", &RunResult::holds)
+        .def_ro("json", &RunResult::json)
+        .def_ro("csv", &RunResult::csv)
+        .def_ro("junit", &RunResult::junit)
         .def_prop_ro("films", [](nb::handle self) { return films_of(self); })
         .def_prop_ro("references", [](nb::handle self) { return references_of(self); })
-        .def_prop_ro("holds", [](const Measured& x) { return x.metrics.all_hold(); })
-        .def("json", [](const Measured& x) { return metrics_json(inputs_of(x)); })
-        .def("csv", [](const Measured& x) { return metrics_csv(inputs_of(x)); })
-        .def("junit", [](const Measured& x) { return junit_xml(inputs_of(x)); })
-        .def("write", &write_folder, "folder"_a);
+        .def("write", &write_folder, "folder"_a)
+        .def("__getstate__", [](nb::handle self) { return state_of(self); })
+        .def("__setstate__", &restore);
+    m.def("counting_meters", &counting_meters, "The meters whose values are whole numbers.");
     m.def(
         "join",
         [](const std::vector<std::string>& parts) {
             const nb::gil_scoped_release free;
-            auto joined = std::make_shared<Measured>(join(parts, "crescent.join"));
-            const double s = joined->experiment.s();
-            return std::pair(std::move(joined), s);
+            return result_of(join(parts, "crescent.join"));
         },
         "parts"_a);
-    m.def(
-        "run", &measured, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a, "progress"_a.none());
+    m.def("run", &run_experiment, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a,
+        "progress"_a.none());
 }
 
 }  // namespace crescent::python

@@ -3,8 +3,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
-#include "crescent.h"
 #include "doors.h"
+#include "interpreter.h"
 
 NB_MODULE(_crescent, m) {
     namespace nb = nanobind;
@@ -23,6 +23,7 @@ NB_MODULE(_crescent, m) {
     m.doc() = "The C++ core of crescent; use the package `crescent`.";
     m.attr("version") = crescent::version();
     m.attr("commit") = crescent::commit();
+    crescent::python::prepare_exit(m);
     crescent::python::add_judging(m);
     crescent::python::add_experiments(m);
     crescent::python::add_arms(m);

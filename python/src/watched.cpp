@@ -18,7 +18,7 @@ void look_around(PolledMonitor& monitor, Raised& raised, const nb::object& progr
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (progress.is_none() || monitor.stop) return;
         const PolledMonitor::State state = monitor.state();
-        progress(state.what, state.done, state.total);
+        call_python(progress, state.what, state.done, state.total);
     } catch (...) { raised.keep(); }
 }
 
@@ -33,7 +33,7 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
     };
     if (on_this_thread) {
         {
-            const nb::gil_scoped_release free;
+            const Work here(&monitor);
             guarded();
         }
         look_around(monitor, raised, progress);
@@ -43,7 +43,7 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
     std::condition_variable over;
     bool done = false;
     {
-        const nb::gil_scoped_release free;
+        const Work here(&monitor);
         std::thread worker([&] {
             guarded();
             const std::lock_guard guard(lock);
@@ -54,7 +54,7 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
         while (!over.wait_for(guard, std::chrono::milliseconds(50), [&] { return done; })) {
             guard.unlock();
             {
-                const nb::gil_scoped_acquire held;
+                const Locked held;
                 look_around(monitor, raised, progress);
             }
             guard.lock();

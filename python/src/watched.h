@@ -1,17 +1,13 @@
 // Long work under Python: the interpreter's lock is free, Ctrl-C ends the work, and the caller hears how far it is.
 #pragma once
 
-#include <nanobind/nanobind.h>
-
 #include <exception>
 #include <functional>
 #include <mutex>
 
-#include "crescent.h"
+#include "interpreter.h"
 
 namespace crescent::python {
-
-namespace nb = nanobind;
 
 /// What a Python callable raised while C++ was asking it: the first one counts, and asks the work to stop.
 class Raised {

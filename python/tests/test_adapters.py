@@ -1,5 +1,7 @@
 """Samplers of other libraries: triples of NumPy, JAX and PyTorch, and Mitsuba's own."""
 
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -203,6 +205,22 @@ def test_any_module_with_asarray_is_a_library():
 
 def known_of(known):
     return {key: value for key, value in known.items() if key != "wo_deg"}
+
+
+def test_adapters_load_on_first_use_and_their_libraries_when_they_are_called():
+    script = """
+import sys
+import crescent
+assert "crescent.adapters" not in sys.modules and {"adapters", "testing"} <= set(dir(crescent))
+assert callable(crescent.adapters.mitsuba) and callable(crescent.testing.mutants)
+assert not {"mitsuba", "drjit", "torch", "jax"} & set(sys.modules)
+try:
+    crescent.adapter
+except AttributeError as e:
+    assert "adapter" in str(e)
+"""
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
 
 
 @pytest.fixture(scope="module")

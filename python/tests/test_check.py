@@ -1,5 +1,6 @@
 """check: right samplers are right, faults are found, and what does not fit is told with its first bad row."""
 
+import copy
 import dataclasses
 import inspect
 import json
@@ -38,6 +39,7 @@ def test_a_judgement_is_data_files_and_no_truth_value(tmp_path):
     other = pickle.loads(pickle.dumps(j))  # as from another process
     assert other.verdicts == j.verdicts and other.json() == j.json() and str(other) == str(j)
     assert other._repr_html_() == j._repr_html_() and repr(other) == repr(j)
+    assert copy.deepcopy(j).verdicts == copy.copy(j).verdicts == pickle.loads(pickle.dumps(j.verdicts)) == j.verdicts
     with pytest.raises(TypeError, match="compare .state"):
         bool(j)
     with pytest.raises(OSError):

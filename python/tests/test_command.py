@@ -1,6 +1,7 @@
 """The command of the wheel: what it judges, and its exit codes."""
 
 import json
+import sys
 
 import pytest
 
@@ -25,6 +26,8 @@ off = crescent.Sampler(sample, lambda wo, wi: 1.1 * pdf(wo, wi))
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.delitem(sys.modules, "mine", raising=False)
     (tmp_path / "mine.py").write_text(MINE)
     return tmp_path
 

@@ -1,5 +1,7 @@
 """load, parse and run: films without a copy, records, and the file's own checks; arms, BRDFs and tails as functions."""
 
+import copy
+import json
 import os
 import pickle
 import signal
@@ -71,6 +73,84 @@ def test_an_experiment_is_read_and_changed_with_the_files_own_checks(tmp_path):
         crescent.parse("x = ", "t.toml")
 
 
+def test_an_experiment_of_a_relative_path_works_in_any_folder(tmp_path, monkeypatch):
+    figures = {"source": "a note", "runs": []}
+    (tmp_path / "files").mkdir()
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "files" / "tiny.toml").write_text('published = "figures.json"\n' + TINY)
+    (tmp_path / "files" / "figures.json").write_text(json.dumps(figures))
+    monkeypatch.chdir(tmp_path)
+    e = crescent.load("files/tiny.toml")
+    first = e.hash
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert e["published"] == str(tmp_path / "files" / "figures.json")
+    e["image.width"] = 47
+    assert e["image.width"] == 47 and e.hash != first
+    e["image.width"] = 48
+    del e["arms.cosine"]
+    e["arms.cosine.n"] = [4, 16]
+    assert e.with_({}) == e == pickle.loads(pickle.dumps(e)) == copy.deepcopy(e)
+    with pytest.raises(ValueError, match="^--set image.width=-1"):
+        e["image.width"] = -1
+    assert crescent.run(e, seeds=(1, 1)).holds
+
+
+def test_what_can_be_set_can_be_read_by_the_same_path():
+    e = crescent.parse(TINY)
+    values = {
+        "title": "a ball beside 'it'",
+        "ball.radius": 0.6,  # begins at a name, as --set takes it
+        "shapes.ball.center": [0, 0.7, 0.1],
+        "ball.center[1]": 0.68,
+        "camera.eye.2": 3.1,
+        "key.radiance": [80, 70, 60],
+        "assertions.'the lobe is better'.check": "rmse.ball(phong, n=4) < 90",
+        "cosine.n": [4, 8],
+        "cosine.n[1]": 16,
+        "seeds": 3,
+    }
+    for path, value in values.items():
+        e[path] = value
+        assert e[path] == value and path in e, path
+    assert e["ball.center"] == [0, 0.68, 0.1] and e["key"] == e["disks.key"] and e["cosine"]["n"] == [4, 16]
+    e["assertions"] = {'a = b. "x"': {"check": "rmse.ball(phong, n=4) < 80"}}
+    assert e["assertions"]['a = b. "x"']["check"].endswith("< 80")
+    del e["the lobe is better"]
+    assert list(e["assertions"]) == ['a = b. "x"']
+
+
+def test_values_that_a_shape_inherits_can_be_read():
+    e = crescent.parse(TINY)
+    e["shapes.floor"] = {"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0], "rho_d": [0.5] * 3}
+    assert e["floor.s"] == e["ball.s"] == 32
+    e["ball.s"] = 8
+    assert e["floor.s"] == 8
+
+
+@pytest.mark.parametrize(
+    "path, said",
+    [
+        ("image.widht", "image has .*did you mean 'width'"),
+        ("imag.width", "did you mean 'image'"),
+        ("bal.radius", "the names .*did you mean 'ball'"),
+        ("ball.radus", "shapes.ball has .*did you mean 'radius'"),
+        ("camera.eye[3]", "camera.eye has items 0 to 2"),
+        ("camera.eye.x", "camera.eye has items 0 to 2"),
+        ("seed.x", "seed has no keys"),
+        ("ball", None),  # a shape and a region
+        ("", "expected a path"),
+    ],
+)
+def test_a_wrong_key_is_an_error_with_the_nearest_valid_word(path, said):
+    e = crescent.parse(TINY)
+    with pytest.raises(KeyError, match=said or "ambiguous: expected shapes.ball or regions.ball"):
+        e[path]
+    assert path not in e
+    if said:
+        with pytest.raises(ValueError, match="did you mean|expected"):
+            e[path] = 3
+
+
 def test_tables_are_set_and_taken_out():
     e = crescent.parse(TINY)
     assert "arms.phong" in e and "arms.uniform" not in e and "image" in list(e)
@@ -123,6 +203,41 @@ def test_metrics_are_records_json_and_xarray(measured):
     data = measured.to_xarray()
     assert isinstance(data, xarray.Dataset) and data.rmse.dims == ("arm", "n", "s", "seed", "region")
     assert np.isnan(data.rmse.sel(arm="phong", n=16)).all() and (data.rmse.sel(arm="phong", n=4) > 0).all()
+
+
+def test_records_have_numbers_as_numbers(measured):
+    kinds = {"arm": str, "n": int, "s": float, "seed": int, "meter": str, "region": str}
+    for row in measured.records():
+        assert {key: type(row[key]) for key in kinds} == kinds
+        whole = row["meter"] in ("fireflies", "pixels", "tail_exceedances", "bad")
+        assert row["value"] is None or type(row["value"]) is (int if whole else float), row
+    changed = crescent.parse(TINY).with_({"fill.radiance": [1, 2, 3], "image.width": 40, "title": "x", "n": 16})
+    row = crescent.run(changed, seeds=(1, 1)).records()[0]
+    assert row["fill.radiance"] == [1, 2, 3] and row["image.width"] == 40 and row["title"] == "x"
+    assert row["set.n"] == 16
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+def test_what_a_run_found_can_be_pickled_and_copied(measured, again, tmp_path):
+    other = again(measured)
+    assert other.metrics == measured.metrics and other.records() == measured.records()
+    assert other.holds == measured.holds and repr(other) == repr(measured)
+    assert set(other.films) == set(measured.films) and set(other.references) == set(measured.references)
+    for key, film in measured.films.items():
+        for name, plane in film.planes.items():
+            same = other.films[key].planes[name]
+            assert np.array_equal(same, plane) and same.dtype == plane.dtype
+    for s, planes in measured.references.items():
+        assert all(np.array_equal(other.references[s][name], plane) for name, plane in planes.items())
+    film = again(measured.films["cosine", 16])
+    assert np.array_equal(film.y, measured.films["cosine", 16].y) and film.n == 16
+    for folder, run in (("first", measured), ("second", other)):
+        run.write(tmp_path / folder)
+    written = [p.relative_to(tmp_path / "first") for p in (tmp_path / "first").rglob("*.*") if p.is_file()]
+    films = [p for p in written if p.suffix == ".exr"]
+    assert len(films) == 2
+    for p in films:
+        assert (tmp_path / "first" / p).read_bytes() == (tmp_path / "second" / p).read_bytes()
 
 
 def test_a_folder_is_written_as_one(measured, tmp_path):

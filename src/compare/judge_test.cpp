@@ -156,7 +156,9 @@ TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
             ++heavy, numbered += a.renders_needed.has_value();
             if (a.renders_needed) EXPECT_GE(*a.renders_needed, 6);
             EXPECT_FALSE(a.meter("rmse").interval);
-            EXPECT_TRUE(a.meter("fireflies").interval);
+            ASSERT_TRUE(a.meter("fireflies").interval);
+            EXPECT_GE(a.meter("fireflies").interval->first, 0);
+            EXPECT_LE(a.meter("fireflies").interval->second, static_cast<double>(a.pixels));
         }
     }
     EXPECT_GE(heavy, 15);

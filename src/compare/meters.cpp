@@ -1,5 +1,6 @@
-// Readings -> meters with their doubt. Intervals are t intervals over renders, 95 %; of the squared bias by the
-// jackknife. docs/compare.md has the coverage that was measured.
+// Readings -> meters with their doubt. Intervals are t intervals over renders, 95 %, cut at 0 where the meter cannot be
+// below it; of the squared bias by the jackknife, of counts by count_interval(). docs/compare.md has the coverage that
+// was measured.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,17 +24,22 @@ template <class Read> Values over_renders(const ArmReadings& arm, std::size_t re
     return out;
 }
 
-/// A mean over renders; `transform` rises (sqrt for RMSE).
-template <class Transform> MeterValue mean_of(const Values& values, bool heavy, Transform transform) {
-    const MeanInterval m = mean_interval(values, confidence);
+/// What is said of a mean over renders; `transform` rises (sqrt for RMSE).
+template <class Transform> MeterValue value_of(const MeanInterval& m, bool heavy, Transform transform) {
     MeterValue out{transform(m.mean), {}, ""};
-    if (values.size() < 2) out.why = "one render has no interval";
+    if (m.n < 2) out.why = "one render has no interval";
     else if (heavy) out.why = "heavy tail";
     else out.interval = {transform(m.low), transform(m.high)};
     return out;
 }
 
-double root_of(double v) { return std::sqrt(std::max(0.0, v)); }
+template <class Transform> MeterValue mean_of(const Values& values, bool heavy, Transform transform) {
+    return value_of(mean_interval(values, confidence), heavy, transform);
+}
+
+double same(double v) { return v; }
+double at_least_0(double v) { return std::max(0.0, v); }
+double root_of(double v) { return std::sqrt(at_least_0(v)); }
 
 MeterValue missing(std::string why) { return {{}, {}, std::move(why)}; }
 
@@ -47,7 +53,7 @@ MeterValue variance(const ArmReadings& arm, const PixelSet& set, std::size_t reg
     const double k = static_cast<double>(arm.files.size());
     if (arm.files.size() >= 2) {
         Values each = over_renders(arm, region, [&](const RegionReading& r) { return r.spread * k / (k - 1); });
-        MeterValue out = mean_of(each, heavy, [](double v) { return v; });
+        MeterValue out = mean_of(each, heavy, at_least_0);
         if (arm.files.size() == 2) out.interval.reset(), out.why = "two renders spread alike: no interval";
         return out;
     }
@@ -185,7 +191,6 @@ RegionResult measure_region(
     out.region = set.name, out.pixels = set.pixels.size();
     tail_of(arm, region, out);
     const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = all.reference.has_value();
-    const auto same = [](double v) { return v; };
     const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
         out.meters.emplace_back(name,
             referred ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
@@ -195,9 +200,12 @@ RegionResult measure_region(
     out.meters.emplace_back("var", var);
     out.meters.emplace_back("bias2",
         referred ? squared_bias(arm, set, region, reference_variance(all, region), heavy) : missing("no reference"));
-    against("relmse", [](const RegionReading& r) { return r.relmse; }, same, heavy);
-    against("mape", [](const RegionReading& r) { return r.mape; }, same, mean_heavy);
-    against("fireflies", [](const RegionReading& r) { return r.fireflies; }, same, false);
+    against("relmse", [](const RegionReading& r) { return r.relmse; }, at_least_0, heavy);
+    against("mape", [](const RegionReading& r) { return r.mape; }, at_least_0, mean_heavy);
+    const Values fireflies = over_renders(arm, region, [](const RegionReading& r) { return r.fireflies; });
+    out.meters.emplace_back("fireflies",
+        referred ? value_of(count_interval(fireflies, static_cast<double>(out.pixels), confidence), false, same)
+                 : missing("no reference"));
     out.meters.emplace_back(
         "y_mean", mean_of(over_renders(arm, region, [](const RegionReading& r) { return r.y; }), mean_heavy, same));
     const auto picture = [&](const char* name, const std::optional<double>& flip) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "experiment/override_text.h"
 #include "experiment/parse_context.h"
 
 namespace crescent::inline experiment {
@@ -76,7 +77,7 @@ public:
         : draft_(context), root_(root), place_{"--set " + text, 0, 0} {}
 
     void apply(const std::string& text) {
-        const std::size_t equals = text.find('=');
+        const std::size_t equals = end_of_path(text);
         if (equals == std::string::npos) return fail("expected path=value, e.g. sphere.s=64");
         written_ = std::string(trim(std::string_view(text).substr(0, equals)));
         Node value;

@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "experiment/override_text.h"
 #include "pages/csv.h"
 #include "pages/numbers.h"
 #include "report/report.h"
@@ -42,7 +43,7 @@ void add_region(Rows& rows, const RegionMeter& r) {
 std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& experiment) {
     std::vector<std::pair<std::string, std::string>> out;
     for (const std::string& text : experiment.overrides) {
-        const std::size_t equals = text.find('=');
+        const std::size_t equals = end_of_path(text);
         const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
         if (path == "seeds") continue;
         const auto known = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);

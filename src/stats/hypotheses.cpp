@@ -59,6 +59,24 @@ MeanInterval mean_interval(std::span<const double> values, double confidence) {
     return out;
 }
 
+MeanInterval count_interval(std::span<const double> counts, double of, double confidence) {
+    MeanInterval out = mean_interval(counts, confidence);
+    if (out.n < 2) return out;
+    const double trials = static_cast<double>(out.n) * of, p = out.mean / of;
+    const ShareInterval independent = binomial_interval(trials, std::round(p * trials), (1 - confidence) / 2);
+    // |p' - p| = t se' at both ends, where the standard error of p' is that of p scaled as a binomial's, p' (1 - p').
+    double low = p, high = p;
+    if (p > 0 && p < 1) {
+        const double t_se = student_quantile(0.5 + confidence / 2, static_cast<double>(out.n - 1)) * out.se / of;
+        const double c = t_se * t_se / (p * (1 - p));
+        const double middle = (p + c / 2) / (1 + c), half = std::sqrt(t_se * t_se + c * c / 4) / (1 + c);
+        low = middle - half, high = middle + half;
+    }
+    out.low = std::max(0.0, of * std::min(low, independent.low));
+    out.high = std::min(of, of * std::max(high, independent.high));
+    return out;
+}
+
 Welch welch_test(const MeanInterval& a, const MeanInterval& b) {
     const double va = a.se * a.se, vb = b.se * b.se, sum = va + vb;
     const double denominator = va * va / static_cast<double>(a.n - 1) + vb * vb / static_cast<double>(b.n - 1);

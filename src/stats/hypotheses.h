@@ -20,6 +20,12 @@ struct MeanInterval {
 /// t interval of the mean; `confidence` in (0, 1), e.g. 0.95.
 MeanInterval mean_interval(std::span<const double> values, double confidence);
 
+/// Interval of a mean of counts, each of `of` events that may or may not happen; it lies in [0, of]. Clopper & Pearson
+/// 1934 of their sum, as of independent events, which holds too where these are not equally probable (Hoeffding 1956);
+/// where the counts spread more than such events would, as those of correlated pixels, the wider score interval
+/// (Wilson 1927) with their own spread and Student's t.
+MeanInterval count_interval(std::span<const double> counts, double of, double confidence);
+
 /// Welch 1947: two means with unequal variances. `p` is two-sided; equal constants have p = 1, unequal ones p = 0.
 struct Welch {
     double difference = 0, se = 0, df = 0, p = 1;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace crescent::inline stats {
 namespace {
@@ -16,6 +17,48 @@ TEST(Hypotheses, KnowStudentsT) {
     const MeanInterval m = mean_interval(values, 0.95);
     EXPECT_DOUBLE_EQ(m.mean, 2.5);
     EXPECT_NEAR(m.high - m.mean, 3.182446 * std::sqrt(5.0 / 3 / 4), 1e-6);
+}
+
+TEST(Hypotheses, AnIntervalOfCountsLiesBetween0AndAll) {
+    // Clopper & Pearson of 0 and of 4 in 400 (tables: 0 to 0.0092, 0.0027 to 0.0254), as counts a 100.
+    const MeanInterval none = count_interval(std::vector<double>{0, 0, 0, 0}, 100, 0.95);
+    EXPECT_EQ(none.low, 0);
+    EXPECT_NEAR(none.high, 0.918, 1e-3);
+    const MeanInterval few = count_interval(std::vector<double>{1, 1, 1, 1}, 100, 0.95);
+    EXPECT_NEAR(few.low, 0.273, 1e-3);
+    EXPECT_NEAR(few.high, 2.541, 1e-3);
+    for (const std::vector<double>& counts : {std::vector<double>{0, 0, 0, 5}, {100, 100, 2}, {0, 1}, {100, 100}}) {
+        const MeanInterval m = count_interval(counts, 100, 0.95);
+        EXPECT_GE(m.low, 0);
+        EXPECT_LE(m.low, m.mean);
+        EXPECT_GE(m.high, m.mean);
+        EXPECT_LE(m.high, 100);
+    }
+    EXPECT_LT(mean_interval(std::vector<double>{0, 0, 0, 5}, 0.95).low, 0);
+}
+
+/// How often the interval of counts holds their expectation.
+template <class Count> double counts_covered(Count count, double expected) {
+    std::mt19937_64 random(1);
+    int held = 0;
+    constexpr int repeats = 2000;
+    for (int i = 0; i < repeats; ++i) {
+        std::vector<double> counts(6);
+        for (double& c : counts) c = count(random);
+        const MeanInterval m = count_interval(counts, 1024, 0.95);
+        held += m.low <= expected && expected <= m.high;
+    }
+    return held / static_cast<double>(repeats);
+}
+
+TEST(Hypotheses, AnIntervalOfCountsHoldsTheirExpectation) {
+    const double least = 0.95 - 3 * std::sqrt(0.95 * 0.05 / 2000);
+    for (const double p : {1e-4, 1e-3, 0.02, 0.5, 0.999})  // pixels by themselves
+        EXPECT_GE(counts_covered([&](auto& r) { return std::binomial_distribution(1024, p)(r); }, 1024 * p), least)
+            << p;
+    for (const double p : {0.02, 0.2, 0.5})  // pixels that are fireflies sixteen at once
+        EXPECT_GE(counts_covered([&](auto& r) { return 16 * std::binomial_distribution(64, p)(r); }, 1024 * p), least)
+            << p;
 }
 
 TEST(Hypotheses, AgreeWithWelchsOwnExample) {

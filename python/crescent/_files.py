@@ -1,0 +1,59 @@
+"""Samplers in files: "mine.py:sampler" finds what pytest would, with the imports that pytest would allow.
+
+As in pytest's import mode "prepend": the first folder upward from the file that is no package (has no ``__init__.py``)
+goes to the front of ``sys.path``, and the file is imported by its name below that folder. So a sampler's file may
+import the files beside it, and a test that imports it too has the same module.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from . import _crescent
+from ._sampler import Sampler
+
+
+def names_a_file(text: str) -> bool:
+    """Whether it is "FILE.py", "FILE.py:NAME" or "module:NAME"."""
+    return ":" in text or text.endswith(".py")
+
+
+def _module_in(path: Path) -> ModuleType:
+    """The module that a file is."""
+    if not path.is_file():
+        near = _crescent.nearest(path.name, [at.name for at in path.parent.glob("*.py")])
+        raise ValueError(f"{path}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else ""))
+    at = path.resolve()
+    folder = at.parent
+    while (folder / "__init__.py").is_file():
+        folder = folder.parent
+    if sys.path[:1] != [str(folder)]:
+        sys.path.insert(0, str(folder))
+    name = ".".join(part for part in at.relative_to(folder).with_suffix("").parts if part != "__init__")
+    module = importlib.import_module(name)
+    if Path(module.__file__ or "").resolve() != at:
+        raise ValueError(f"{path}: the module '{name}' is {module.__file__} already; expected a name of its own")
+    return module
+
+
+def sampler_at(where: str, root: Path | None = None) -> Sampler:
+    """The sampler that "FILE.py:NAME", "module:NAME" or "FILE.py" means; a file is looked for from `root`."""
+    name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
+    found: Any = _module_in((root or Path()) / name) if name.endswith(".py") else importlib.import_module(name)
+    if colon:
+        if not hasattr(found, inside):
+            near = _crescent.nearest(inside, [n for n in vars(found) if not n.startswith("_")])
+            raise ValueError(f"{name} has no '{inside}'" + (f"; did you mean '{near}'?" if near else ""))
+        found = getattr(found, inside)
+    if isinstance(found, Sampler):
+        return found
+    found = found() if isinstance(found, type) else found
+    if not hasattr(found, "sample"):
+        raise ValueError(f"{where} has no sample(wo, u)")
+    return Sampler(
+        found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=inside or Path(name).stem
+    )

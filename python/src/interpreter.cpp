@@ -1,0 +1,132 @@
+// Two flags in order: `ending`, from which no work begins and what runs is asked to stop; `closed`, from which no
+// thread asks for the lock. Between them the threads that wait for the lock get it, since this one has released it.
+#include "interpreter.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <vector>
+
+namespace crescent::python {
+
+namespace {
+
+/// Never destroyed: threads that sleep may outlive what is.
+struct Gate {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool ending = false, closed = false;
+    unsigned waiting = 0;  // threads between the gate and the lock
+    unsigned works = 0;
+    std::vector<ProgressMonitor*> monitors;
+    const pid_t process = getpid();
+};
+
+Gate& gate() {
+    static Gate& only = *new Gate;
+    return only;
+}
+
+/// take() takes the lock, unless the gate is closed.
+template <class Take> void through_the_gate(Take&& take) {
+    std::unique_lock lock(gate().mutex);
+    const bool closed = gate().closed;
+    if (!closed) ++gate().waiting;
+    lock.unlock();
+    if (closed) sleep_until_exit();
+    take();
+    lock.lock();
+    --gate().waiting;
+    gate().changed.notify_all();
+}
+
+/// With the lock held: counts work that begins.
+ProgressMonitor* registered(ProgressMonitor* monitor) {
+    const std::lock_guard guard(gate().mutex);
+    if (gate().ending) {
+        PyErr_SetString(PyExc_RuntimeError, "crescent cannot begin work while the interpreter is ending");
+        throw nb::python_error();
+    }
+    ++gate().works;
+    if (monitor) gate().monitors.push_back(monitor);
+    return monitor;
+}
+
+/// Waits until all work has ended, at most 5 s: work looks at its monitor several times a second. Work that is inside
+/// callables, which enter and leave none for 0.2 s, is not waited for: nothing can stop a callable.
+void wait_for_work(std::unique_lock<std::mutex>& lock) {
+    constexpr std::chrono::milliseconds step{20};
+    constexpr int longest = 250, longest_in_callables = 10;
+    unsigned entered = 0;
+    int still = 0;
+    for (int i = 0; i < longest && gate().works > 0 && still < longest_in_callables; ++i) {
+        gate().changed.wait_for(lock, step);
+        const bool same = callbacks().entered == std::exchange(entered, callbacks().entered);
+        still = same && callbacks().inside >= gate().works ? still + 1 : 0;
+    }
+}
+
+void before_exit() {
+    std::unique_lock lock(gate().mutex);
+    gate().ending = true;
+    for (ProgressMonitor* monitor : gate().monitors) monitor->stop = true;
+    if (getpid() == gate().process) {  // a child of fork() has none of the threads that are counted
+        PyThreadState* const state = PyEval_SaveThread();
+        wait_for_work(lock);
+        gate().closed = true;
+        gate().changed.wait(lock, [] { return gate().waiting == 0; });
+        lock.unlock();
+        PyEval_RestoreThread(state);
+        return;
+    }
+    gate().closed = true;
+}
+
+}  // namespace
+
+void sleep_until_exit() {
+    for (;;) pause();
+}
+
+Callbacks& callbacks() {
+    static Callbacks& only = *new Callbacks;
+    return only;
+}
+
+Locked::Locked() : state_{} {
+    through_the_gate([&] { state_ = PyGILState_Ensure(); });
+}
+
+Locked::~Locked() { PyGILState_Release(state_); }
+
+Unlocked::Unlocked() : state_(PyEval_SaveThread()) {}
+
+Unlocked::~Unlocked() {
+    through_the_gate([&] { PyEval_RestoreThread(state_); });
+}
+
+Work::Work(ProgressMonitor* monitor) : monitor_(registered(monitor)) {}
+
+Work::~Work() {
+    Gate& g = gate();
+    {
+        const std::lock_guard guard(g.mutex);
+        --g.works;
+        if (monitor_) std::erase(g.monitors, monitor_);
+        g.changed.notify_all();
+        if (!g.ending) return;
+    }
+    sleep_until_exit();
+}
+
+void prepare_exit(nb::module_& m) {
+    gate();
+    callbacks();
+    m.def("_before_exit", &before_exit, "Ends what runs, before the interpreter finalizes.");
+    nb::module_::import_("atexit").attr("register")(m.attr("_before_exit"));
+}
+
+}  // namespace crescent::python

@@ -1,0 +1,86 @@
+// The interpreter's lock, for threads that may outlive the interpreter: a daemon thread in a call of ours, and the
+// threads that such a call works with.
+//
+// Once Python finalizes, it ends a thread that asks for its lock by pthread_exit (3.11 to 3.13), which must not unwind
+// C++ frames, or lets it sleep (3.14). Here no thread gets that far: a function registered with atexit, which runs
+// before Python finalizes, asks all work to stop, waits for it and closes a gate in front of the lock. A thread that is
+// stopped by it sleeps until the process ends, as a daemon thread of Python does.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <cxxabi.h>
+
+#include <atomic>
+#include <utility>
+
+#include "crescent.h"
+
+namespace crescent::python {
+
+namespace nb = nanobind;
+
+/// Holds the lock; on a thread that may have no Python state.
+class Locked {
+public:
+    Locked();
+    ~Locked();
+    Locked(const Locked&) = delete;
+    Locked& operator=(const Locked&) = delete;
+
+private:
+    PyGILState_STATE state_;
+};
+
+/// Releases the lock that this thread holds, and takes it again.
+class Unlocked {
+public:
+    Unlocked();
+    ~Unlocked();
+    Unlocked(const Unlocked&) = delete;
+    Unlocked& operator=(const Unlocked&) = delete;
+
+private:
+    PyThreadState* state_;
+};
+
+/// A call of ours from Python while it works without the lock. At exit it is asked to stop, where it has a monitor, and
+/// waited for; then it does not return. nb::python_error (RuntimeError) where the interpreter is ending already.
+class Work {
+public:
+    explicit Work(ProgressMonitor* monitor = nullptr);
+    ~Work();
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+
+private:
+    ProgressMonitor* monitor_;
+    Unlocked free_;
+};
+
+/// How many threads are inside a callable of Python, and how often one was entered.
+struct Callbacks {
+    std::atomic<unsigned> inside{0}, entered{0};
+};
+Callbacks& callbacks();
+
+/// Sleeps until the process ends.
+[[noreturn]] void sleep_until_exit();
+
+/// callable(arguments...), with the lock held. Where Python ends this thread inside the callable, it sleeps instead.
+template <class... Arguments> nb::object call_python(const nb::object& callable, Arguments&&... arguments) {
+    ++callbacks().inside, ++callbacks().entered;
+    try {
+        nb::object out = callable(std::forward<Arguments>(arguments)...);
+        --callbacks().inside;
+        return out;
+    } catch (abi::__forced_unwind&) { sleep_until_exit(); } catch (...) {
+        --callbacks().inside;
+        throw;
+    }
+}
+
+/// Registers what has to be done before Python finalizes.
+void prepare_exit(nb::module_& m);
+
+}  // namespace crescent::python
