@@ -80,7 +80,9 @@ FalseAlarms measure_false_alarms(std::uint64_t seeds, const TestSettings& given,
 std::string error_rates_text(const FalseAlarms& a, const std::string& law, std::span<const Caught> caught,
     const std::string& command, const std::string& version) {
     std::string out = "# The bench's own error rates\n\n";
-    out += fmt::format("Written by the program on {:%Y-%m-%d} ({}); made again with\n\n    {}\n\n",
+    out += fmt::format(
+        "Written by the program on {:%Y-%m-%d} ({}); made again with\n\n```sh\n{}\n```\n\nNot run in the tests: needs "
+        "hours.\n\n",
         fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())), version, command);
     out += fmt::format(
         "## How often a right arm is accused\n\nEvery right arm of the list on every surface and light, w_o at 0, 45 "

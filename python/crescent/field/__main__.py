@@ -84,7 +84,7 @@ def _section(finding: Finding) -> Iterator[str]:
     if own or (finding.it.kind == "bsdf" and first.name != "identity"):
         corner = _corner(first.say) if first.name == "valid" else None
         script = own or script_for(finding.it, first.name, _wo_of(first.case), corner)
-        yield f"```python\n{script}\n```\n```\n{output_of(script)}\n```"
+        yield f"```python\n{script}\n```\n```text\n{output_of(script)}\n```"
 
 
 def _shipped_text(only: list[str]) -> Iterator[str]:
