@@ -165,7 +165,7 @@ std::string terminal_summary(
         out += fmt::format("\n{}\n",
             paint(red,
                 fmt::format(
-                    "  {}: NaN, infinite or negative, or a pdf that cannot be used", plural(bad, "bad sample"))));
+                    "  {}: NaN, infinite or negative,\n  or a pdf that cannot be used", plural(bad, "bad sample"))));
     for (const std::string& warning : warnings_of(in.experiment))
         out += "\n" + clip("  warning: " + warning, columns) + "\n";
     return out + "\n" + speed(timing) + where(in, out_dir, parts);
