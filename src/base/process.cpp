@@ -144,7 +144,7 @@ void reset_signals() {
 struct Start {
     const char* file;
     char* const* argv;
-    int in, out, err, shared, tell;
+    int in, out, err, shared, failure;
     pid_t parent;
     bool dies_with_thread;
 };
@@ -158,7 +158,7 @@ struct Start {
         if (::getppid() != start.parent) ::_exit(127);
     }
 #endif
-    for (int* fd : {&start.in, &start.out, &start.err, &start.shared, &start.tell})
+    for (int* fd : {&start.in, &start.out, &start.err, &start.shared, &start.failure})
         if (*fd >= 0 && *fd < 4) *fd = ::fcntl(*fd, F_DUPFD_CLOEXEC, 4);
     close_at_exec_from(3);
     ::dup2(start.in, 0), ::dup2(start.out, 1), ::dup2(start.err, 2);
@@ -166,7 +166,7 @@ struct Start {
     reset_signals();
     ::execvp(start.file, start.argv);
     const int why = errno;
-    static_cast<void>(!::write(start.tell, &why, sizeof why));
+    static_cast<void>(!::write(start.failure, &why, sizeof why));
     ::_exit(127);
 }
 
@@ -209,14 +209,14 @@ Process::Process(const ProcessPlan& plan) : label_(printable(plan.label, 60)), o
     std::vector<char*> argv;
     for (const std::string& word : plan.argv) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
-    Stream in, out, err, tell;
+    Stream in, out, err, failure;
     in.open(plan.stdin_file, true);
     out.open(plan.stdout_file, false);
     err.open(plan.stderr_file, false);
-    tell.make_pipe(false);
+    failure.make_pipe(false);
     const char* file = plan.file.empty() ? argv[0] : plan.file.c_str();
     const Start start{
-        file, argv.data(), in.theirs, out.theirs, err.theirs, plan.shared, tell.theirs, owner_, in_main_thread()};
+        file, argv.data(), in.theirs, out.theirs, err.theirs, plan.shared, failure.theirs, owner_, in_main_thread()};
     int why = 0;
     {
         const AllBlocked blocked;
@@ -228,8 +228,8 @@ Process::Process(const ProcessPlan& plan) : label_(printable(plan.label, 60)), o
             slot_ = registered(pid_);
         }
     }
-    close_one(tell.theirs);
-    if (pid_ > 0 && ::read(tell.ours, &why, sizeof why) != static_cast<ssize_t>(sizeof why)) why = 0;
+    close_one(failure.theirs);
+    if (pid_ > 0 && ::read(failure.ours, &why, sizeof why) != static_cast<ssize_t>(sizeof why)) why = 0;
     if (why != 0) {
         end(0);
         throw OutputError(fmt::format("cannot start {}: {}", printable(file), std::strerror(why)));

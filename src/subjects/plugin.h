@@ -1,6 +1,6 @@
 // A sampler in a shared library with the C interface of sampler_plugin.h: checked by itself, or an arm of an
-// experiment. The library is loaded by a process of its own (plugin_host.h), one for each thread that calls, which
-// whatever it does to its process cannot leave.
+// experiment. The library is loaded by a process of its own (plugin_host.h), one for each thread that calls,
+// where all that it does to its process stays.
 #pragma once
 
 #include <cstdint>

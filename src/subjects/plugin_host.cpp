@@ -1,6 +1,6 @@
 // dlopen() and dlsym(); the functions of sampler_plugin.h are called by one thread, block by block. The pipes are moved
 // to descriptors of our own before the plugin is loaded, and its stdout goes to stderr. A second thread ends the group
-// when crescent is gone, whatever the plugin is doing. Needs nothing of crescent, so that it is a small program too.
+// when crescent is gone, also in the middle of a call. Needs nothing of crescent, so that it is a small program too.
 #include "subjects/plugin_host.h"
 
 #include <dlfcn.h>
