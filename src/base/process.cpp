@@ -34,15 +34,17 @@ namespace {
 /// A program whose output stays in one line is passed on in pieces of so many bytes.
 constexpr std::size_t longest_line = 4096;
 
-/// The groups that live, for kill_all(): 0 is a free place. A process beyond these is killed by its object alone.
-std::array<std::atomic<pid_t>, 4096> groups{};
+/// The process groups that live, for kill_all(): 0 is a free place. A process beyond these is killed by its object
+/// alone.
+std::array<std::atomic<pid_t>, 4096> live_groups{};
 
 std::size_t registered(pid_t group) {
-    for (std::size_t k = 0; k < groups.size(); ++k) {
+    for (std::size_t k = 0; k < live_groups.size(); ++k) {
         pid_t free = 0;
-        if (groups[k].load(std::memory_order_relaxed) == 0 && groups[k].compare_exchange_strong(free, group)) return k;
+        if (live_groups[k].load(std::memory_order_relaxed) == 0 && live_groups[k].compare_exchange_strong(free, group))
+            return k;
     }
-    return groups.size();
+    return live_groups.size();
 }
 
 void close_one(int& fd) {
@@ -291,7 +293,7 @@ void Process::end(int milliseconds) {
     if (pid_ > 0 && ::getpid() == owner_) {
         if (milliseconds > 0) ended(milliseconds);
         for (const pid_t which : {-pid_, pid_}) ::kill(which, SIGKILL);
-        if (slot_ < groups.size()) groups[slot_] = 0;
+        if (slot_ < live_groups.size()) live_groups[slot_] = 0;
         while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {}
         pass_on_stderr();
         finish_line();
@@ -301,7 +303,7 @@ void Process::end(int milliseconds) {
 }
 
 void Process::kill_all() noexcept {
-    for (const std::atomic<pid_t>& place : groups)
+    for (const std::atomic<pid_t>& place : live_groups)
         if (const pid_t group = place.load(std::memory_order_relaxed); group > 0)
             for (const pid_t which : {-group, group}) ::kill(which, SIGKILL);
     if (!adopting.load(std::memory_order_relaxed)) return;
