@@ -6,7 +6,7 @@ render() { # SEED N FILE
 }
 mkdir old new
 for k in 1 2 3 4; do
-    render $k 16 old/seed0$k.exr
-    render 1$k 16 new/seed0$k.exr
+    render $k 64 old/seed0$k.exr
+    render 1$k 64 new/seed0$k.exr
 done
 render 99 1024 truth.exr
