@@ -1,0 +1,105 @@
+// The list of engines, and how a run of one is measured: CPU time of this process and of its children, calls of the
+// sampler counted on their way.
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+
+#include "base/errors.h"
+#include "base/hint.h"
+#include "subjects/forwarded.h"
+#include "tests/calibration/engine.h"
+
+#define CRESCENT_ENGINES(engine) engine(engine_0_1)
+
+namespace crescent::calibration {
+
+#define CRESCENT_DECLARED(engine) std::unique_ptr<Engine> engine();
+CRESCENT_ENGINES(CRESCENT_DECLARED)
+#undef CRESCENT_DECLARED
+
+namespace {
+
+class Counted : public ForwardedSampler {
+public:
+    using Count = std::shared_ptr<std::atomic<std::uint64_t>>;
+    Counted(std::shared_ptr<const JudgedSampler> inner, Count count)
+        : ForwardedSampler(std::move(inner)), count_(std::move(count)) {}
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        *count_ += u.size();
+        inner().sample(t, wo, u, out);
+    }
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        *count_ += at.size();
+        inner().pdf(t, at, out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        *count_ += at.size();
+        inner().exact_pdf(t, at, out);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        *count_ += at.size();
+        inner().f(at, out);
+    }
+    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+        *count_ += at.size();
+        inner().f_channels(at, out);
+    }
+
+private:
+    Count count_;
+};
+
+double cpu_seconds() {
+    double out = 0;
+    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage used{};
+        getrusage(who, &used);
+        for (const timeval& t : {used.ru_utime, used.ru_stime})
+            out += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    }
+    return out;
+}
+
+}  // namespace
+
+const std::vector<std::unique_ptr<Engine>>& engines() {
+    static const std::vector<std::unique_ptr<Engine>> all = [] {
+        std::vector<std::unique_ptr<Engine>> out;
+#define CRESCENT_ADDED(engine) out.push_back(engine());
+        CRESCENT_ENGINES(CRESCENT_ADDED)
+#undef CRESCENT_ADDED
+        return out;
+    }();
+    return all;
+}
+
+const Engine& engine_named(std::string_view name) {
+    std::vector<std::string> names;
+    for (const auto& e : engines()) {
+        if (e->name() == name) return *e;
+        names.emplace_back(e->name());
+    }
+    throw InputError({"--engine", 0, 0}, fmt::format("no engine '{}'{}", name, did_you_mean(name, names)));
+}
+
+Result measured(const Engine& engine, std::span<const Trial> trials, const Request& request) {
+    const auto count = std::make_shared<std::atomic<std::uint64_t>>(0);
+    std::map<const JudgedSampler*, std::shared_ptr<const JudgedSampler>> counted;
+    std::vector<Trial> all(trials.begin(), trials.end());
+    int wo = 0;
+    for (Trial& t : all) {
+        wo += !t.baseline;
+        if (t.baseline) continue;  // it asks for f alone, of a sampler whose calls are counted elsewhere
+        auto& one = counted[t.subject.get()];
+        if (!one) one = std::make_shared<Counted>(t.subject, count);
+        t.subject = one;
+    }
+    const double start = cpu_seconds();
+    Result out = engine.run(all, request);
+    out.cpu_seconds = cpu_seconds() - start;
+    out.evaluations = *count;
+    out.wo = wo;
+    return out;
+}
+
+}  // namespace crescent::calibration

@@ -1,0 +1,66 @@
+// Faults that any sampler can have, by size, and faults with a cause that can be named. The right sampler comes from a
+// member of a family; the fault is applied to its functions.
+#pragma once
+
+#include <array>
+
+#include "tests/calibration/sampler.h"
+#include "tests/calibration/streams.h"
+
+namespace crescent::calibration {
+
+/// The kinds of a fault; `size` is what the comment says.
+enum class FaultKind {
+    none,
+    constant,          // the pdf is 1 + size times what is drawn
+    leak,              // share of the draws that are uniform over the domain; pdf unaware
+    hole,              // mass of a cap that is never drawn, pdf positive there; its draws go elsewhere by p
+    blind,             // mass of a cap that is drawn, pdf(w) 0 there
+    rotation,          // draws turned by so many rad about an axis at right angles to their mean
+    mismatch,          // draws made with the family's parameter 1 + size times what pdf has
+    nan,               // share of the draws whose pdf is NaN
+    negative,          // share of the draws whose pdf is negative
+    length,            // share of the draws that are 1 % too long
+    factor,            // the pdf is `size` times what is drawn
+    cos_missing,       // pdf / |cos theta_i|
+    cos_twice,         // pdf * |cos theta_i|
+    sin_missing,       // pdf * sin theta_i
+    jacobian_missing,  // pdf * 4 w_o.m
+    normal_missing,    // pdf / n.m
+    one_number,        // u[1] is u[0]
+    no_azimuth,        // u[1] is not used
+    frame_mirrored,    // draws made for w_o with y negated
+    nan_in_plane,      // NaN directions for w_o with z = 0
+    nan_near_pole,     // NaN directions for w_o within 1e-3 rad of n, but not at n
+    nan_at_horizon,    // pdf(w) is NaN for w_i with z = 0
+    nan_at_zero,       // NaN directions where u[0] is 0
+    broken             // inside of the family: Fault::inner
+};
+
+struct Fault {
+    FaultKind kind = FaultKind::none;
+    double size = 0;
+    Broken inner = Broken::none;
+};
+
+/// The word of a fault in records and tables: "leak", "transposed table".
+std::string_view word(const Fault& fault);
+/// Its cause, a key of cause_words(); "" where it has none that can be named.
+std::string_view cause_of(const Fault& fault);
+/// Whether one of the texts that an engine gave as causes names `cause`.
+bool names_cause(std::string_view cause, const std::vector<std::string>& texts);
+
+/// A member of a family with a fault in it. `wo`: those at which it will be tested; caps and axes are chosen for each.
+/// What is random in the fault follows from `key`.
+Sampler faulty(const Family& family, const Member& member, Real real, const Fault& fault, std::span<const Vec3d> wo,
+    const StreamKey& key);
+
+/// What was chosen for one w_o: the axis of the rotation, and the cap with its 1 - cos.
+struct PlaceOfFault {
+    Vec3d wo, turn, cap;
+    double gap;
+};
+std::vector<PlaceOfFault> places_of(
+    const Sampler& right, const Fault& fault, std::span<const Vec3d> wo, const StreamKey& key);
+
+}  // namespace crescent::calibration

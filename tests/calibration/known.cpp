@@ -1,0 +1,35 @@
+// Planted faults whose verdict is known: all of laws/planted, those held out included.
+#include "laws/planted/planted.h"
+#include "tests/calibration/cases.h"
+
+namespace crescent::calibration {
+
+namespace {
+
+const std::vector<PlantedFault>& all_known() {
+    static const std::vector<PlantedFault> all = [] {
+        std::vector<PlantedFault> out = planted_faults(false);
+        for (auto& some : {held_out_faults(), held_out_lobe_faults()}) out.insert(out.end(), some.begin(), some.end());
+        return out;
+    }();
+    return all;
+}
+
+}  // namespace
+
+std::uint64_t count_known() { return all_known().size(); }
+
+Case make_known(const CaseKey& key) {
+    const PlantedFault& fault = all_known().at(key.index);
+    Case c;
+    c.family = fault.breaks;
+    c.kind = fault.name;
+    c.cause = fault.cause;
+    c.expected = State::wrong;
+    c.trials = fault.trials;
+    if (key.wo > 0 && c.trials.size() > static_cast<std::size_t>(key.wo))
+        c.trials.resize(static_cast<std::size_t>(key.wo));
+    return c;
+}
+
+}  // namespace crescent::calibration
