@@ -2,6 +2,7 @@
 // in the list in engines.cpp.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -45,7 +46,7 @@ const std::vector<std::unique_ptr<Engine>>& engines();
 /// Throws InputError for an unknown name.
 const Engine& engine_named(std::string_view name);
 
-/// Runs it, with CPU time and evaluations counted.
-Result measured(const Engine& engine, std::span<const Trial> trials, const Request& request);
+/// Runs it on what `trials` makes, with CPU time and evaluations counted; programs behind pipes end before that.
+Result measured(const Engine& engine, const std::function<std::vector<Trial>()>& trials, const Request& request);
 
 }  // namespace crescent::calibration

@@ -82,20 +82,23 @@ const Engine& engine_named(std::string_view name) {
     throw InputError({"--engine", 0, 0}, fmt::format("no engine '{}'{}", name, did_you_mean(name, names)));
 }
 
-Result measured(const Engine& engine, std::span<const Trial> trials, const Request& request) {
+Result measured(const Engine& engine, const std::function<std::vector<Trial>()>& trials, const Request& request) {
     const auto count = std::make_shared<std::atomic<std::uint64_t>>(0);
-    std::map<const JudgedSampler*, std::shared_ptr<const JudgedSampler>> counted;
-    std::vector<Trial> all(trials.begin(), trials.end());
-    int wo = 0;
-    for (Trial& t : all) {
-        wo += !t.baseline;
-        if (t.baseline) continue;  // it asks for f alone, of a sampler whose calls are counted elsewhere
-        auto& one = counted[t.subject.get()];
-        if (!one) one = std::make_shared<Counted>(t.subject, count);
-        t.subject = one;
-    }
     const double start = cpu_seconds();
-    Result out = engine.run(all, request);
+    Result out;
+    int wo = 0;
+    {
+        std::vector<Trial> all = trials();
+        std::map<const JudgedSampler*, std::shared_ptr<const JudgedSampler>> counted;
+        for (Trial& t : all) {
+            if (t.baseline) continue;  // it asks for f alone, of a sampler whose calls are counted elsewhere
+            ++wo;
+            auto& one = counted[t.subject.get()];
+            if (!one) one = std::make_shared<Counted>(t.subject, count);
+            t.subject = one;
+        }
+        out = engine.run(all, request);
+    }
     out.cpu_seconds = cpu_seconds() - start;
     out.evaluations = *count;
     out.wo = wo;

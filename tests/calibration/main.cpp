@@ -22,7 +22,7 @@ using namespace crescent::calibration;
 
 struct Options {
     std::vector<std::string> words;
-    std::string engine = "0.1", cases = "0:60", mode = "quick", out, say_state;
+    std::string engine = "0.1", cases = "0:60", mode = "quick", out;
     std::uint64_t seed = 1, draws = 0, evaluations = 0;
     int wo = -1;
     bool pipe = false, serve = false, list = false;
@@ -58,7 +58,7 @@ std::vector<Trial> piped(const CaseKey& key, const Case& c) {
 Result run_case(const Engine& engine, const CaseKey& key, const Case& c, const Request& request, bool pipe) {
     try {
         if (pipe && !c.sampler) throw std::invalid_argument("this case has no sampler that can be served");
-        return measured(engine, pipe ? piped(key, c) : c.trials, request);
+        return measured(engine, [&] { return pipe ? piped(key, c) : c.trials; }, request);
     } catch (const SubjectFault& fault) {
         Result broken;
         broken.state = State::error;

@@ -39,13 +39,13 @@ Sampler away(bool faulty) {
 Sampler cone_in_float(bool faulty) {
     const float r = 0.002f, s2 = r * r, cos = std::sqrt(1 - s2), gap = faulty ? 1 - cos : s2 / (1 + cos);
     const float density = 1 / (2 * pi_of<float> * gap);
-    Functions<float> f;
     const Vec3f axis = unit(Vec3f{0.3f, -0.5f, 0.81f});
-    f.pdf = [=](Vec3f, Vec3f w) { return versine(axis, w) <= s2 / (1 + cos) * 1.0003f ? density : 0.0f; };
+    const double rim = double(s2 / (1 + cos)) * (1 + 6e-5);  // directions are rounded by 3e-5 of the cone's angle
+    Functions<float> f;
+    f.pdf = [=](Vec3f, Vec3f w) { return versine(widened(axis), widened(w)) <= rim ? density : 0.0f; };
     f.sample = [=](Vec3f, const float* u) {
-        if (!faulty) return Drawn<float>{off_axis(axis, gap * u[0], u[1]), density};
         const float c = (1 - u[0]) + u[0] * cos;
-        return Drawn<float>{off_axis(axis, 1 - c, u[1]), density};
+        return Drawn<float>{off_axis(axis, faulty ? 1 - c : gap * u[0], u[1]), density};
     };
     return sampler(2, Wo::none, f);
 }
@@ -81,7 +81,7 @@ Sampler border_texels(bool faulty) {
         if (!std::ranges::binary_search(in, k)) return 0.0;
         return n * n / 4.0 / static_cast<double>(in.size()) * h * h / (w.z * w.z * w.z);
     };
-    f.f = [=](Vec3d, Vec3d w) { return meets(w) ? 1 / w.z : 0.0; };
+    f.f = [=](Vec3d, Vec3d w) { return meets(w) ? 0.5 / w.z : 0.0; };
     f.sample = [=, pdf = f.pdf](Vec3d o, const double* u) {
         const double at = u[0] * static_cast<double>(in.size());
         const std::size_t k = std::min(std::size_t(at), in.size() - 1);
@@ -135,14 +135,14 @@ Sampler azimuth(bool faulty) {
     return sampler(2, Wo::both, f);
 }
 
-/// 512 x 256 texels, smooth but for a sun of one texel 10^4 times as bright.
+/// 512 x 256 texels, smooth but for a sun of one texel 10^4 times as bright; `normalised` of 0.1 reads .998 here.
 Sampler sun_of_a_texel(bool alias, Real real) {
     std::vector<double> radiance;
     for (int i = 0; i < 256; ++i)
-        for (int j = 0; j < 512; ++j)
-            radiance.push_back(
-                (1 + 0.5 * std::sin(2 * pi_of<double> * j / 512) + 0.5 * std::cos(pi_of<double> * i / 256)) *
-                (i == 90 && j == 200 ? 1e4 : 1));
+        for (int j = 0; j < 512; ++j) {
+            const double x = 2 * pi_of<double> * (j + 0.5) / 512, y = pi_of<double> * (i + 0.5) / 256;
+            radiance.push_back(std::exp(2 * std::cos(y) + std::sin(x)) * (i == 30 && j == 130 ? 1e4 : 1));
+        }
     return sky_sampler("", 256, 512, radiance, alias, real);
 }
 template <bool alias, Real real> Sampler sun(bool) { return sun_of_a_texel(alias, real); }
@@ -163,7 +163,7 @@ Sampler rough_glass(bool) {
 }
 Sampler sphere_in_float(bool) {
     const float s2 = 0.09f, gap = s2 / (1 + std::sqrt(1 - s2)), density = 1 / (2 * pi_of<float> * gap);
-    Functions<float> f = single<float>(fixed<float>({-0.512, 0.384, 0.768}),
+    Functions<float> f = single<float>(fixed<float>(unit(Vec3d{-0.512, 0.384, 0.768})),
         {[gap](float u) { return gap * u; }, [gap, density](float t) { return t <= gap ? density : 0.0f; }});
     f.sample = [sample = f.sample, density](Vec3f o, const float* u) { return Drawn<float>{sample(o, u).wi, density}; };
     return sampler(2, Wo::none, f);

@@ -144,7 +144,9 @@ struct TexturedDisk {
             return mass[std::size_t(i * n + j)] / texel * h * h / (w.z * w.z * w.z);
         };
         out.f = [h](Vec3<F>, Vec3<F> w) {
-            return w.z > 0 && sqr(w.x / w.z * h) + sqr(w.y / w.z * h) < 1 ? F(1) : F(0);
+            return w.z > 0 && sqr(w.x / w.z * h) + sqr(w.y / w.z * h) < 1
+                ? F(0.3)
+                : F(0);  // so that no more than all is reflected
         };
         out.sample = [=, pdf = out.pdf](Vec3<F> o, const F* u) {
             const auto at = std::upper_bound(upto.begin(), upto.end(), u[2]) - upto.begin() - 1;
