@@ -240,10 +240,11 @@ bool names_cause(std::string_view cause, const std::vector<std::string>& texts) 
         {"curve", {"curve", "on a line", "u2", "no effect"}},
         {"chooser", {"chooser", "weight of a lobe", "lobe weight"}}, {"transposed", {"transposed", "rows and columns"}},
         {"shifted", {"shift", "rotat", "turned", "texel"}}};
+    if (cause.empty()) return false;
     const auto at = words.find(cause);
-    if (at == words.end()) return false;
+    const std::vector<std::string_view> itself = {cause};
     for (const std::string& text : texts)
-        for (const std::string_view w : at->second)
+        for (const std::string_view w : at == words.end() ? itself : at->second)
             if (text.find(w) != std::string::npos) return true;
     return false;
 }

@@ -45,9 +45,9 @@ struct Fault {
 
 /// The word of a fault in records and tables: "leak", "transposed table".
 std::string_view word(const Fault& fault);
-/// Its cause, a key of cause_words(); "" where it has none that can be named.
+/// Its cause, for names_cause(); "" where it has none that can be named.
 std::string_view cause_of(const Fault& fault);
-/// Whether one of the texts that an engine gave as causes names `cause`.
+/// Whether one of the texts that an engine gave as causes names `cause`: has one of its words in it, or itself.
 bool names_cause(std::string_view cause, const std::vector<std::string>& texts);
 
 /// A member of a family with a fault in it. `wo`: those at which it will be tested; caps and axes are chosen for each.

@@ -26,39 +26,58 @@ struct Plane {
     Plane scaled(double by) const { return {centre, a * by, b * by, area}; }
 };
 
-/// p = r^2 / (A cos) of what is met at r, and the place on the light in units of a and b.
-template <class F> struct FlatLight {
-    Vec3<F> c, a, b, n;
-    F area;
-    FlatLight(const Plane& p, double area_over_ab)
-        : c(cast<F>(p.centre)),
-          a(cast<F>(p.a)),
-          b(cast<F>(p.b)),
+/// p = r^2 / (A cos) of what is met at r, and the place on the light in units of a and b. In double; in single
+/// precision directions and densities are rounded at the end, and edges are widened by no more than that takes.
+struct FlatLight {
+    Vec3d c, a, b, n;
+    double area, rounding;
+    FlatLight(const Plane& p, double area_over_ab, double round)
+        : c(p.centre),
+          a(p.a),
+          b(p.b),
           n(unit(cross(a, b))),
-          area(F(area_over_ab) * std::sqrt(dot(a, a) * dot(b, b))) {}
+          area(area_over_ab * std::sqrt(dot(a, a) * dot(b, b))),
+          rounding(round) {}
     /// x and y in units of a and b, and the distance; distance 0: the plane is not met.
     struct Met {
-        F x, y, r;
+        double x, y, r;
     };
-    Met met(Vec3<F> w) const {
-        const F t = dot(c, n) / dot(w, n);
+    Met met(Vec3d w) const {
+        const double t = dot(c, n) / dot(w, n);
         if (!(t > 0) || !std::isfinite(t)) return {0, 0, 0};
-        const Vec3<F> off = w * t - c;
+        const Vec3d off = w * t - c;
         return {dot(off, a) / dot(a, a), dot(off, b) / dot(b, b), t};
     }
-    F density(Vec3<F> w, F r) const { return r * r / (area * std::max(std::fabs(dot(w, n)), F(1e-12))); }
-    /// How far an edge at 1 is widened by: rounding of the direction, seen at r.
-    F edge(F r, Vec3<F> w) const {
-        const F side = std::sqrt(std::min(dot(a, a), dot(b, b)));
-        return 1 + 2 * slack<F> * r / (side * std::max(std::fabs(dot(w, n)), F(1e-3)));
+    double density(Vec3d w, double r) const { return r * r / (area * std::fabs(dot(w, n))); }
+    /// How far an edge at 1 is widened by.
+    double edge(double r, Vec3d w) const {
+        return rounding * r / (std::sqrt(std::min(dot(a, a), dot(b, b))) * std::fabs(dot(w, n)));
     }
-    Drawn<F> at(F x, F y) const {
-        const Vec3<F> point = c + a * x + b * y;
-        const F r = std::sqrt(dot(point, point));
-        const Vec3<F> w = point * (1 / r);
+    Drawn<double> at(double x, double y) const {
+        const Vec3d point = c + a * x + b * y;
+        const double r = std::sqrt(dot(point, point));
+        const Vec3d w = point * (1 / r);
         return {w, density(w, r)};
     }
 };
+
+/// A flat light of a shape: whether (x, y) is on it but for an edge of width e, and the place of u.
+template <class F> Functions<F> flat(const Plane& plane, double area_over_ab,
+    bool (*inside)(double x, double y, double e), std::pair<double, double> (*place)(const double* u)) {
+    // Each coordinate of a direction in single precision is rounded by 2^-25 at most.
+    const FlatLight light(plane, area_over_ab, sizeof(F) == 4 ? 0x1p-24 : 1e-14);
+    Functions<double> out;
+    out.pdf = [light, inside](Vec3d, Vec3d w) {
+        const auto [x, y, r] = light.met(w);
+        return r > 0 && inside(x, y, light.edge(r, w)) ? light.density(w, r) : 0.0;
+    };
+    out.sample = [light, place](Vec3d, const double* u) {
+        const auto [x, y] = place(u);
+        return light.at(x, y);
+    };
+    if constexpr (sizeof(F) == 8) return out;
+    else return rounded(std::move(out));
+}
 
 struct Rectangle {
     static constexpr auto name = "rectangle light by area", parameter = "size";
@@ -72,15 +91,9 @@ struct Rectangle {
     }
     Rectangle stretched(double by) const { return {plane.scaled(by)}; }
     template <class F> Functions<F> in(Broken) const {
-        const FlatLight<F> light(plane, 4);
-        Functions<F> out;
-        out.pdf = [light](Vec3<F>, Vec3<F> w) {
-            const auto [x, y, r] = light.met(w);
-            const F e = r > 0 ? light.edge(r, w) : F(0);
-            return r > 0 && std::fabs(x) <= e && std::fabs(y) <= e ? light.density(w, r) : F(0);
-        };
-        out.sample = [light](Vec3<F>, const F* u) { return light.at(2 * u[0] - 1, 2 * u[1] - 1); };
-        return out;
+        return flat<F>(
+            plane, 4, [](double x, double y, double e) { return std::fabs(x) <= 1 + e && std::fabs(y) <= 1 + e; },
+            [](const double* u) { return std::pair{2 * u[0] - 1, 2 * u[1] - 1}; });
     }
 };
 
@@ -97,21 +110,16 @@ struct Disk {
     std::string text() const { return fmt::format("radius {:.3f}", std::sqrt(dot(plane.a, plane.a))); }
     Disk stretched(double by) const { return {plane.scaled(by)}; }
     template <class F> Functions<F> in(Broken) const {
-        const FlatLight<F> light(plane, pi_of<double>);
-        Functions<F> out;
-        out.pdf = [light](Vec3<F>, Vec3<F> w) {
-            const auto [x, y, r] = light.met(w);
-            return r > 0 && x * x + y * y <= sqr(light.edge(r, w)) ? light.density(w, r) : F(0);
-        };
-        out.sample = [light](Vec3<F>, const F* u) {
-            const F s = std::sqrt(u[0]), phi = 2 * pi_of<F> * u[1];
-            return light.at(s * std::cos(phi), s * std::sin(phi));
-        };
-        return out;
+        return flat<F>(
+            plane, pi_of<double>, [](double x, double y, double e) { return x * x + y * y <= sqr(1 + e); },
+            [](const double* u) {
+                const double r = std::sqrt(u[0]), phi = 2 * pi_of<double> * u[1];
+                return std::pair{r * std::cos(phi), r * std::sin(phi)};
+            });
     }
 };
 
-/// Corners at the origin of a, b; barycentric by the square root.
+/// Edges a and b from the centre; barycentric by the square root.
 struct Triangle {
     static constexpr auto name = "triangle light by area", parameter = "size";
     static constexpr Wo wo = Wo::none;
@@ -119,22 +127,16 @@ struct Triangle {
     Plane plane;
     static Triangle drawn(Dice& d) { return {Plane::rectangle(d)}; }
     std::string text() const {
-        return fmt::format("area {:.3g} m^2", 0.5 * std::sqrt(dot(cross(plane.a, plane.b), cross(plane.a, plane.b))));
+        return fmt::format("edges {:.3f}, {:.3f}", std::sqrt(dot(plane.a, plane.a)), std::sqrt(dot(plane.b, plane.b)));
     }
     Triangle stretched(double by) const { return {plane.scaled(by)}; }
     template <class F> Functions<F> in(Broken) const {
-        const FlatLight<F> light(plane, 0.5);
-        Functions<F> out;
-        out.pdf = [light](Vec3<F>, Vec3<F> w) {
-            const auto [x, y, r] = light.met(w);
-            const F e = r > 0 ? light.edge(r, w) - 1 : F(0);
-            return r > 0 && x >= -e && y >= -e && x + y <= 1 + 2 * e ? light.density(w, r) : F(0);
-        };
-        out.sample = [light](Vec3<F>, const F* u) {
-            const F s = std::sqrt(u[0]);
-            return light.at(1 - s, u[1] * s);
-        };
-        return out;
+        return flat<F>(
+            plane, 0.5, [](double x, double y, double e) { return x >= -e && y >= -e && x + y <= 1 + 1.5 * e; },
+            [](const double* u) {
+                const double s = std::sqrt(u[0]);
+                return std::pair{1 - s, u[1] * s};
+            });
     }
 };
 
@@ -147,7 +149,7 @@ struct SphereByAngle {
     double ratio;  // radius over distance
     static SphereByAngle drawn(Dice& d) {
         const Vec3d axis = d.direction(-0.3, 1);
-        return {axis, d.log(0.01, 0.95)};
+        return {axis, d.log(0.02, 0.95)};
     }
     std::string text() const { return fmt::format("radius / distance {:.4g}", ratio); }
     SphereByAngle stretched(double by) const { return {axis, std::min(ratio * by, 0.9999)}; }

@@ -128,11 +128,11 @@ struct Ring {
     static constexpr Domain domain = Domain::sphere;
     double low, width;  // of t = 1 - cos
     Vec3d axis;
-    static Ring drawn(Dice& d) { return {d.uniform(0.05, 1.2), d.log(5e-3, 0.4), d.direction(-1, 1)}; }
+    static Ring drawn(Dice& d) { return {d.uniform(0.05, 1.2), d.log(0.02, 0.4), d.direction(-1, 1)}; }
     std::string text() const { return fmt::format("1 - cos {:.3f}, width {:.4g}", low, width); }
     Ring stretched(double by) const { return {low, width * by, axis}; }
     template <class F> Functions<F> in(Broken) const {
-        const F a = F(low), w = F(width), e = 4 * slack<F>;
+        const F a = F(low), w = F(width), e = F(1.5) * slack<F>;
         return single<F>(fixed<F>(axis),
             {[a, w](F u) { return a + w * u; },
                 [a, w, e](F t) { return t >= a - e && t <= a + w + e ? 1 / (2 * pi_of<F> * w) : F(0); }});

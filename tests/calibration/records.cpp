@@ -33,7 +33,7 @@ Json record_of(const CaseKey& key, const RunOf& run, const Case& c, const Result
     r["held_out"] = c.held_out, r["kind"] = c.kind, r["size"] = c.size;
     r["expected"] = word(c.expected), r["state"] = word(result.state);
     r["wrong"] = result.wrong, r["open"] = result.open;
-    r["cause"] = c.cause, r["causes"] = result.causes, r["named"] = names_cause(c.cause, result.causes);
+    r["cause"] = c.cause, r["causes"] = result.causes;
     r["stated"] = result.stated, r["p"] = result.p;
     r["cpu"] = std::round(result.cpu_seconds * 1e4) / 1e4, r["evaluations"] = result.evaluations;
     r["directions"] = result.wo, r["say"] = result.say.substr(0, 300);
@@ -79,13 +79,14 @@ std::string csv_of(const std::vector<Json>& records) {
         return s.find(',') == s.npos ? s : '"' + s + '"';
     };
     for (const Json& r : records)
-        out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:g},{},{},{},{},{},{:.3f},{},{}\n",
-            r["set"].get<std::string>(), r["seed"].get<std::uint64_t>(), r["index"].get<std::uint64_t>(),
-            r["wo"].get<int>(), r["engine"].get<std::string>(), r["mode"].get<std::string>(),
-            r["by"].get<std::string>(), quoted(r["family"]), r["real"].get<std::string>(), quoted(r["kind"]),
-            r["size"].get<double>(), r["expected"].get<std::string>(), r["state"].get<std::string>(),
-            joined(r["wrong"]), joined(r["open"]), r["named"].get<bool>() ? 1 : 0, r["cpu"].get<double>(),
-            r["evaluations"].get<std::uint64_t>(), r["directions"].get<int>());
+        out +=
+            fmt::format("{},{},{},{},{},{},{},{},{},{},{:g},{},{},{},{},{},{:.3f},{},{}\n", r["set"].get<std::string>(),
+                r["seed"].get<std::uint64_t>(), r["index"].get<std::uint64_t>(), r["wo"].get<int>(),
+                r["engine"].get<std::string>(), r["mode"].get<std::string>(), r["by"].get<std::string>(),
+                quoted(r["family"]), r["real"].get<std::string>(), quoted(r["kind"]), r["size"].get<double>(),
+                r["expected"].get<std::string>(), r["state"].get<std::string>(), joined(r["wrong"]), joined(r["open"]),
+                names_cause(r["cause"].get<std::string>(), r["causes"].get<std::vector<std::string>>()) ? 1 : 0,
+                r["cpu"].get<double>(), r["evaluations"].get<std::uint64_t>(), r["directions"].get<int>());
     return out;
 }
 

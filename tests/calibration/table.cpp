@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "tests/calibration/faults.h"
+
 namespace crescent::calibration {
 
 using Json = nlohmann::ordered_json;
@@ -30,6 +32,7 @@ using Groups = std::map<std::string, Records>;
 
 std::string text(const Json& r, const char* key) { return r.at(key).get<std::string>(); }
 bool found(const Json& r) { return r.at("state") == "wrong"; }
+bool names(const Json& r) { return names_cause(text(r, "cause"), r.at("causes").get<std::vector<std::string>>()); }
 bool right(const Json& r) { return r.at("expected") == "right"; }
 
 Groups grouped(const Records& all, const std::function<std::string(const Json&)>& key) {
@@ -153,7 +156,7 @@ std::string causes(const Records& all) {
     for (const auto& [run, of_run] : grouped(only(all, found), run_of))
         for (const auto& [set, r] : grouped(of_run, [](const Json& j) { return text(j, "set"); })) {
             const Records with = only(r, [](const Json& j) { return text(j, "cause") != ""; });
-            const std::uint64_t named = count(with, [](const Json& j) { return j["named"].get<bool>(); }),
+            const std::uint64_t named = count(with, names),
                                 none = count(with, [](const Json& j) { return j["causes"].empty(); });
             if (!with.empty())
                 out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} |\n", run, set, with.size(), named,

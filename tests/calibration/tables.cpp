@@ -76,15 +76,15 @@ struct Portal {
     double a, b, da, db;
     Vec3d normal;
     static Portal drawn(Dice& d) {
-        const double a = d.uniform(-1.2, 0.6), b = d.uniform(-1.2, 0.6), da = d.uniform(0.05, 0.7);
-        const double db = d.uniform(0.05, 0.7);
+        const double a = d.uniform(-1.2, 0.6), b = d.uniform(-1.2, 0.6), da = d.uniform(0.1, 0.7);
+        const double db = d.uniform(0.1, 0.7);
         return {a, b, da, db, d.direction(-1, 1)};
     }
     std::string text() const { return fmt::format("angles {:.3f} + {:.3f}, {:.3f} + {:.3f}", a, da, b, db); }
     Portal stretched(double by) const { return {a, b, std::min(da * by, 1.5 - a), std::min(db * by, 1.5 - b), normal}; }
     template <class F> Functions<F> in(Broken) const {
         const Frame<F> frame = frame_about(cast<F>(normal));
-        const F a0 = F(a), b0 = F(b), wa = F(da), wb = F(db), e = 8 * slack<F>;
+        const F a0 = F(a), b0 = F(b), wa = F(da), wb = F(db), e = 3 * slack<F>;
         Functions<F> out;
         out.pdf = [=](Vec3<F>, Vec3<F> world) {
             const Vec3<F> w = frame.to_local(world);
