@@ -11,7 +11,7 @@ formatted() { "$formatter" --assume-filename="$CRESCENT_SOURCE/src/x.cpp" --dry-
 printf 'int  twice(int x)\n{ return 2*x; }\n' >"$work/planted"
 formatted "$work/planted" && die "an unformatted function is not found"
 
-for folder in src cli gl explainer python web laws bench examples tools; do
+for folder in src cli gl explainer python web laws tests bench examples tools; do
     [ -d "$folder" ] && find "$folder" \( -name '*.h' -o -name '*.cpp' \) -print0
 done | xargs -0 -P 2 -n 40 "$formatter" --dry-run -Werror >"$work/found" 2>&1 ||
     die "$(grep -m 20 'error:' "$work/found")

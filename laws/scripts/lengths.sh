@@ -26,7 +26,8 @@ sed "s|$work/||" "$work/found" | diff - <(
     echo 'file.cpp: 601 lines, at most 600'
 ) || die "found is not what was planted"
 
-for folder in src cli gl explainer python web film laws bench examples tools cmake CMakeLists.txt run test wheel; do
+for folder in src cli gl explainer python web film laws tests bench examples tools cmake CMakeLists.txt run test \
+    wheel; do
     [ -d "$folder" ] || [ -f "$folder" ] && find "$folder" -type f \( -name '*.cpp' -o -name '*.h' -o -name '*.c' \
         -o -name '*.glsl' -o -name '*.in' -o -name '*.sh' -o -name '*.py' -o -name '*.cmake' -o -name CMakeLists.txt \
         -o -name run -o -name test -o -name film -o -name wheel \)

@@ -41,7 +41,9 @@ Groups grouped(const Records& all, const std::function<std::string(const Json&)>
     return out;
 }
 std::string run_of(const Json& r) {
-    return fmt::format("{} {}{}", text(r, "engine"), text(r, "mode"), text(r, "by") == "pipe" ? " by pipe" : "");
+    const int wo = r.at("wo").get<int>();
+    return fmt::format("{} {}{}{}", text(r, "engine"), text(r, "mode"), text(r, "by") == "pipe" ? " by pipe" : "",
+        wo == 0 ? "" : fmt::format(", {} w_o", wo));
 }
 Records only(const Records& all, const std::function<bool(const Json&)>& keep) {
     Records out;
@@ -74,18 +76,31 @@ std::string false_positives(const Records& all) {
     return out;
 }
 
-std::string not_right(const Records& all) {
+/// Families with a case that is not called right.
+std::string by_family(const Records& all) {
     std::string out;
-    for (const Json* r : only(all, [](const Json& j) { return right(j) && j["state"] != "right"; }))
-        if (!text(*r, "set").starts_with("stated"))
-            out += fmt::format("| {} | {} {} {} | {} ({}), {} | {}: {} {} |\n", run_of(*r), text(*r, "set"),
-                r->at("seed").get<std::uint64_t>(), r->at("index").get<std::uint64_t>(), text(*r, "family"),
-                text(*r, "parameters"), text(*r, "real"), text(*r, "state"), r->at("wrong").dump(),
-                r->at("open").dump());
+    for (const auto& [run, of_run] : grouped(only(all, right), run_of))
+        for (const auto& [family, r] : grouped(of_run, [](const Json& j) { return text(j, "family"); })) {
+            const std::uint64_t wrong = count(r, found),
+                                calls_right = count(r, [](const Json& j) { return j["state"] == "right"; });
+            if (calls_right < r.size())
+                out += fmt::format(
+                    "| {} | {} | {} | {} | {} |\n", run, family, r.size(), wrong, r.size() - calls_right - wrong);
+        }
+    const char* head = "| run | family | right cases | called wrong | inconclusive |\n|---|---|---|---|---|\n";
+    return out.empty() ? "" : head + out;
+}
+
+std::string called_wrong(const Records& all) {
+    std::string out;
+    for (const Json* r : only(all, [](const Json& j) { return right(j) && (found(j) || j["state"] == "error"); }))
+        out += fmt::format("| {} | {} {} {} | {} ({}), {} | {} by {} |\n", run_of(*r), text(*r, "set"),
+            r->at("seed").get<std::uint64_t>(), r->at("index").get<std::uint64_t>(), text(*r, "family"),
+            text(*r, "parameters"), text(*r, "real"), text(*r, "state"), r->at("wrong").dump());
     return out.empty() ? "" : "| run | case | sampler | called |\n|---|---|---|---|\n" + out;
 }
 
-/// "9 of 10" of each run, by kind and size; runs are columns.
+/// "9 of 10" of each run, by kind and size; runs are columns. From 100 cases on with the lower bound of the rate.
 std::string found_by_size(const Records& all, const std::set<std::string>& runs) {
     std::string out = "| set | fault | size |";
     for (const std::string& run : runs) out += " " + run + " |";
@@ -96,7 +111,10 @@ std::string found_by_size(const Records& all, const std::set<std::string>& runs)
         out += head;
         for (const auto& run : runs) {
             const Records of = only(r, [&](const Json& j) { return run_of(j) == run; });
-            out += of.empty() ? " |" : fmt::format(" {} of {} |", count(of, found), of.size());
+            const std::uint64_t hits = count(of, found);
+            if (of.empty()) out += " |";
+            else if (of.size() < 100) out += fmt::format(" {} of {} |", hits, of.size());
+            else out += fmt::format(" {} of {}, over {:.3f} |", hits, of.size(), lower_bound(hits, of.size()));
         }
         out += "\n";
     };
@@ -150,18 +168,26 @@ std::string paired(const Records& all, const std::set<std::string>& runs) {
         : "| A | B | found by both | by A alone | by B alone | by none |\n|---|---|---|---|---|---|\n" + out;
 }
 
+/// Of the faults that are found: what is named where the cause is known, and where it has no name.
 std::string causes(const Records& all) {
     std::string out =
-        "| run | set | found faults with a cause | named | another named | none |\n|---|---|---|---|---|---|\n";
+        "| run | set | found, with a cause | it is named | and others beside it | another alone | none | "
+        "found, without a cause | something is named |\n|---|---|---|---|---|---|---|---|---|\n";
+    const auto silent = [](const Json& j) { return j["causes"].empty(); };
+    const auto others = [](const Json& j) {
+        return names(j) && std::ranges::any_of(j["causes"], [&](const Json& one) {
+            return !names_cause(text(j, "cause"), {one.get<std::string>()});
+        });
+    };
     for (const auto& [run, of_run] : grouped(only(all, found), run_of))
         for (const auto& [set, r] : grouped(of_run, [](const Json& j) { return text(j, "set"); })) {
             const Records with = only(r, [](const Json& j) { return text(j, "cause") != ""; });
-            const std::uint64_t named = count(with, names),
-                                none = count(with, [](const Json& j) { return j["causes"].empty(); });
-            if (!with.empty())
-                out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} |\n", run, set, with.size(), named,
-                    100.0 * static_cast<double>(named) / static_cast<double>(with.size()), with.size() - named - none,
-                    none);
+            const Records without = only(r, [](const Json& j) { return text(j, "cause") == ""; });
+            const std::uint64_t named = count(with, names), none = count(with, silent);
+            const double share = with.empty() ? 0 : static_cast<double>(named) / static_cast<double>(with.size());
+            out += fmt::format("| {} | {} | {} | {} = {:.1f} % | {} | {} | {} | {} | {} |\n", run, set, with.size(),
+                named, 100 * share, count(with, others), with.size() - named - none, none, without.size(),
+                without.size() - count(without, silent));
         }
     return out;
 }
@@ -234,7 +260,8 @@ std::string table_of(const std::vector<Json>& records) {
         if (!body.empty()) out += fmt::format("### {}\n\n{}\n", title, body);
     };
     section("Right samplers", false_positives(all));
-    section("Right samplers that are not called right", not_right(all));
+    section("Right samplers by family", by_family(all));
+    section("Right samplers called wrong", called_wrong(all));
     section("Faults found", found_by_size(wrong, runs));
     section("Faults found, paired", paired(wrong, runs));
     section("Faults missed", missed(wrong));
