@@ -56,7 +56,7 @@ printf '// What it holds.\n#pragma once\n' >"$work/opened.h"
 printf '\n// Too late.\n' >"$work/late.h"
 [ "$(unopened "$work"/{opened,late,planted}.h | wc -l)" -eq 2 ] || die "files that open without a comment are not found"
 cd "$CRESCENT_SOURCE" || exit 1
-folders=(src cli gl explainer python web laws bench examples)
+folders=(src cli gl explainer python web laws tests bench examples)
 mapfile -t files < <(find "${folders[@]}" -name '*.cpp' -o -name '*.h' -o -name '*.c')
 [ "${#files[@]}" -gt 500 ] || die "too few files: ${#files[@]}"
 unopened "${files[@]}" >"$work/found"

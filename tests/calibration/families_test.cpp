@@ -39,6 +39,27 @@ TEST_P(EveryFamily, ADrawCarriesTheDensityAtIt) {
 INSTANTIATE_TEST_SUITE_P(
     All, EveryFamily, testing::Combine(testing::Range<std::size_t>(0, families().size()), testing::Values(0, 1)));
 
+// The integral of p in single precision over the support in double is the mean of their ratio over draws in double.
+TEST(Families, SinglePrecisionKeepsTheIntegralBelowTheDetectionFloor) {
+    for (const Family& f : families()) {
+        const Vec3d wo = f.wo == Traits::Asked::none ? Vec3d{0, 0, 1} : unit(Vec3d{0.5, -0.3, 0.6});
+        for (std::uint64_t k = 0; k < 3; ++k) {
+            Dice d = dice_of({"families_test", 100 + k, 0, f.name});
+            const Member member = f.member(d);
+            const Sampler in_double = sampler_of(f, member, Real::f64), in_float = sampler_of(f, member, Real::f32);
+            const Draws draws = draws_of(in_double, wo, 1 << 13, k);
+            double sum = 0, squares = 0, count = 0;
+            for (std::size_t i = 0; i < draws.wi.size(); ++i) {
+                if (!(draws.pdf[i] > 0)) continue;
+                const double off = pdf_at(in_float, wo, draws.wi[i]) / pdf_at(in_double, wo, draws.wi[i]) - 1;
+                sum += off, squares += off * off, ++count;
+            }
+            const double mean = sum / count, error = std::sqrt(squares) / count;
+            EXPECT_LT(std::fabs(mean), 1e-4 + 4 * error) << f.name << " (" << member.text << "): " << error;
+        }
+    }
+}
+
 TEST(Families, AtLeastTwelveForTuningAndSixHeldOut) {
     const auto held_out = std::ranges::count_if(families(), [](const Family& f) { return f.held_out; });
     EXPECT_GE(held_out, 6);
