@@ -1,6 +1,8 @@
 // Each fault has the size that it claims, and streams of numbers are independent.
 #include "tests/calibration/faults.h"
 
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <unordered_set>
 
@@ -196,6 +198,27 @@ TEST(Cases, PowerHasTenOfEachKindAndSizeInTwoHundred) {
     }
     EXPECT_EQ(cells.size(), 20u);
     for (const auto& [cell, count] : cells) EXPECT_EQ(count, 10) << cell;
+}
+
+TEST(Records, CsvKeepsWhatTablesOfFaultsAreMadeOf) {
+    Case c;
+    c.family = "glass, rough", c.kind = "leak", c.size = 0.01, c.expected = State::wrong, c.cause = "constant";
+    Result result;
+    result.state = State::wrong, result.wrong = {"density", "mean"}, result.causes = {"a constant", "cos theta_i"};
+    result.cpu_seconds = 0.25, result.evaluations = 1234, result.wo = 3;
+    const auto r = record_of({"power", 1, 2, 3, false}, {"0.1", false, true}, c, result);
+    const std::string path = testing::TempDir() + "calibration_records.csv";
+    std::ofstream(path) << csv_of({r});
+    const auto back = read_csv(path);
+    std::filesystem::remove(path);
+    ASSERT_EQ(back.size(), 1u);
+    for (const char* key : {"set", "seed", "index", "wo", "engine", "mode", "by", "family", "kind", "size", "state",
+             "expected", "wrong", "open", "cpu", "evaluations", "directions", "cause"})
+        EXPECT_EQ(back[0].at(key), r.at(key)) << key;
+    EXPECT_EQ(identity_of(back[0]), identity_of(r));
+    EXPECT_TRUE(causes_of(back[0]).named && causes_of(back[0]).others);
+    EXPECT_EQ(csv_of(back), csv_of({r}));
+    EXPECT_EQ(table_of(back), table_of({r}));
 }
 
 TEST(Table, BoundsAreThoseOfClopperAndPearson) {

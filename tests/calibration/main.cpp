@@ -140,7 +140,7 @@ void list() {
 int run(int argc, char** argv) {
     CLI::App app{"Measures engines of `crescent check` on samplers whose verdict is known."};
     Options o;
-    app.add_option("what", o.words, "SET, or table FILE..., or csv FILE...");
+    app.add_option("what", o.words, "SET, or table FILE..., or csv FILE... (JSON lines, or .csv)");
     app.add_option("--engine", o.engine, "which engine")->capture_default_str();
     app.add_option("--seed", o.seed, "of the cases")->capture_default_str();
     app.add_option("--cases", o.cases, "A:B, or all")->capture_default_str();
@@ -164,7 +164,8 @@ int run(int argc, char** argv) {
     if (o.words[0] != "table" && o.words[0] != "csv") return run_set(o), 0;
     std::vector<nlohmann::ordered_json> records;
     for (std::size_t k = 1; k < o.words.size(); ++k)
-        for (auto& r : read_records(o.words[k], false)) records.push_back(std::move(r));
+        for (auto& r : o.words[k].ends_with(".csv") ? read_csv(o.words[k]) : read_records(o.words[k], false))
+            records.push_back(std::move(r));
     std::cout << (o.words[0] == "csv" ? csv_of(records) : table_of(records));
     return 0;
 }

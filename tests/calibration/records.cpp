@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
+#include <sstream>
 #include <unistd.h>
 
 #include "base/errors.h"
@@ -66,27 +67,93 @@ void append_record(const std::string& path, const Json& record) {
     if (!done) throw std::runtime_error("cannot write to " + path);
 }
 
+Causes causes_of(const Json& r) {
+    if (r.contains("given")) return {r["given"].get<int>(), r["named"].get<bool>(), r["others"].get<bool>()};
+    const auto cause = r.at("cause").get<std::string>();
+    const auto all = r.at("causes").get<std::vector<std::string>>();
+    Causes out{static_cast<int>(all.size()), names_cause(cause, all), false};
+    for (const std::string& one : all) out.others = out.others || (out.named && !names_cause(cause, {one}));
+    return out;
+}
+
+namespace {
+
+/// Columns of the CSV: texts, words in a list, numbers, yes or no.
+struct Column {
+    const char* name;
+    enum Kind { text, list, number, flag } kind;
+};
+constexpr Column columns[] = {{"set", Column::text}, {"seed", Column::number}, {"index", Column::number},
+    {"wo", Column::number}, {"engine", Column::text}, {"mode", Column::text}, {"by", Column::text},
+    {"family", Column::text}, {"real", Column::text}, {"kind", Column::text}, {"size", Column::number},
+    {"expected", Column::text}, {"state", Column::text}, {"wrong", Column::list}, {"open", Column::list},
+    {"cause", Column::text}, {"given", Column::number}, {"named", Column::flag}, {"others", Column::flag},
+    {"stated_size", Column::number}, {"cpu", Column::number}, {"evaluations", Column::number},
+    {"directions", Column::number}};
+
+std::string cell_of(const Column& c, const Json& r) {
+    if (!r.contains(c.name)) return "";
+    const Json& v = r[c.name];
+    if (c.kind == Column::list) return fmt::format("{}", fmt::join(v.get<std::vector<std::string>>(), " "));
+    if (c.kind == Column::flag) return v.get<bool>() ? "1" : "0";
+    if (c.kind == Column::number)
+        return v.is_null() ? "none" : v.is_number_float() ? fmt::format("{:.4g}", v.get<double>()) : v.dump();
+    std::string s = v.get<std::string>();
+    std::ranges::replace(s, '"', '\'');
+    return s.find(',') == s.npos ? s : '"' + s + '"';
+}
+
+/// The cells of a line; one in quotes may hold commas.
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> out(1);
+    bool quoted = false;
+    for (const char c : line)
+        if (c == '"') quoted = !quoted;
+        else if (c == ',' && !quoted) out.emplace_back();
+        else out.back() += c;
+    return out;
+}
+
+Json value_of(const Column& c, const std::string& cell) {
+    if (c.kind == Column::text) return cell;
+    if (c.kind == Column::flag) return cell == "1";
+    if (c.kind == Column::number) return cell == "none" ? Json() : Json::parse(cell);
+    std::vector<std::string> words;
+    std::istringstream in(cell);
+    for (std::string word; in >> word;) words.push_back(word);
+    return words;
+}
+
+}  // namespace
+
 std::string csv_of(const std::vector<Json>& records) {
-    std::string out =
-        "set,seed,index,wo,engine,mode,by,family,real,kind,size,expected,state,wrong,open,named,cpu,"
-        "evaluations,directions\n";
-    const auto joined = [](const Json& list) {
-        return fmt::format("{}", fmt::join(list.get<std::vector<std::string>>(), " "));
-    };
-    const auto quoted = [](const Json& text) {
-        std::string s = text.get<std::string>();
-        std::ranges::replace(s, '"', '\'');
-        return s.find(',') == s.npos ? s : '"' + s + '"';
-    };
-    for (const Json& r : records)
-        out +=
-            fmt::format("{},{},{},{},{},{},{},{},{},{},{:g},{},{},{},{},{},{:.3f},{},{}\n", r["set"].get<std::string>(),
-                r["seed"].get<std::uint64_t>(), r["index"].get<std::uint64_t>(), r["wo"].get<int>(),
-                r["engine"].get<std::string>(), r["mode"].get<std::string>(), r["by"].get<std::string>(),
-                quoted(r["family"]), r["real"].get<std::string>(), quoted(r["kind"]), r["size"].get<double>(),
-                r["expected"].get<std::string>(), r["state"].get<std::string>(), joined(r["wrong"]), joined(r["open"]),
-                names_cause(r["cause"].get<std::string>(), r["causes"].get<std::vector<std::string>>()) ? 1 : 0,
-                r["cpu"].get<double>(), r["evaluations"].get<std::uint64_t>(), r["directions"].get<int>());
+    std::string out;
+    for (const Column& c : columns) out += fmt::format("{}{}", out.empty() ? "" : ",", c.name);
+    for (Json r : records) {
+        const Causes causes = causes_of(r);
+        r["given"] = causes.given, r["named"] = causes.named, r["others"] = causes.others;
+        out += "\n";
+        for (const Column& c : columns) out += (&c == columns ? "" : ",") + cell_of(c, r);
+    }
+    return out + "\n";
+}
+
+std::vector<Json> read_csv(const std::string& path) {
+    std::ifstream file(path);
+    std::string line;
+    std::vector<Json> out;
+    for (unsigned number = 1; std::getline(file, line); ++number) {
+        if (number == 1) continue;
+        const std::vector<std::string> cells = cells_of(line);
+        if (cells.size() != std::size(columns))
+            throw InputError({path, number, 1}, fmt::format("{} cells, expected {}", cells.size(), std::size(columns)));
+        Json r;
+        for (std::size_t k = 0; k < cells.size(); ++k)
+            if (!cells[k].empty() || columns[k].kind == Column::text || columns[k].kind == Column::list)
+                r[columns[k].name] = value_of(columns[k], cells[k]);
+        r["parameters"] = "", r["p"] = Json::object();
+        out.push_back(std::move(r));
+    }
     return out;
 }
 

@@ -30,7 +30,15 @@ std::string identity_of(const nlohmann::ordered_json& record);
 /// Appends one line by one write.
 void append_record(const std::string& path, const nlohmann::ordered_json& record);
 
-/// The same as CSV, a line a case, without texts: what is committed.
+/// What an engine gave as causes of a case: how many texts, whether one names the cause, and others beside it do not.
+struct Causes {
+    int given = 0;
+    bool named = false, others = false;
+};
+Causes causes_of(const nlohmann::ordered_json& record);
+
+/// The same as CSV, a line a case, without texts: what is committed. It is read back for tables.
 std::string csv_of(const std::vector<nlohmann::ordered_json>& records);
+std::vector<nlohmann::ordered_json> read_csv(const std::string& path);
 
 }  // namespace crescent::calibration

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "tests/calibration/faults.h"
+#include "tests/calibration/records.h"
 
 namespace crescent::calibration {
 
@@ -32,7 +32,6 @@ using Groups = std::map<std::string, Records>;
 
 std::string text(const Json& r, const char* key) { return r.at(key).get<std::string>(); }
 bool found(const Json& r) { return r.at("state") == "wrong"; }
-bool names(const Json& r) { return names_cause(text(r, "cause"), r.at("causes").get<std::vector<std::string>>()); }
 bool right(const Json& r) { return r.at("expected") == "right"; }
 
 Groups grouped(const Records& all, const std::function<std::string(const Json&)>& key) {
@@ -173,12 +172,9 @@ std::string causes(const Records& all) {
     std::string out =
         "| run | set | found, with a cause | it is named | and others beside it | another alone | none | "
         "found, without a cause | something is named |\n|---|---|---|---|---|---|---|---|---|\n";
-    const auto silent = [](const Json& j) { return j["causes"].empty(); };
-    const auto others = [](const Json& j) {
-        return names(j) && std::ranges::any_of(j["causes"], [&](const Json& one) {
-            return !names_cause(text(j, "cause"), {one.get<std::string>()});
-        });
-    };
+    const auto names = [](const Json& j) { return causes_of(j).named; };
+    const auto silent = [](const Json& j) { return causes_of(j).given == 0; };
+    const auto others = [](const Json& j) { return causes_of(j).others; };
     for (const auto& [run, of_run] : grouped(only(all, found), run_of))
         for (const auto& [set, r] : grouped(of_run, [](const Json& j) { return text(j, "set"); })) {
             const Records with = only(r, [](const Json& j) { return text(j, "cause") != ""; });
@@ -226,10 +222,11 @@ std::string cost(const Records& all) {
     return out;
 }
 
-/// Shares of p-values of right samplers below 10^-k; a test that is exact has 10^-k of them.
+/// Shares of p-values of right samplers at random parameters below each level; a test that is exact has as many there.
 std::string p_values(const Records& all) {
     std::string out;
-    for (const auto& [run, r] : grouped(only(all, right), run_of)) {
+    const Records at_random = only(all, [](const Json& j) { return text(j, "set").starts_with("right"); });
+    for (const auto& [run, r] : grouped(at_random, run_of)) {
         std::map<std::string, std::vector<double>> by;
         for (const Json* j : r)
             for (const auto& [name, p] : j->at("p").items()) by[name].push_back(p.get<double>());
