@@ -1,4 +1,4 @@
-// Lobes of revolution about an axis, given by the law of t = 1 - cos(theta), and mixtures of them.
+// Lobes of revolution about an axis, given by the distribution of t = 1 - cos(theta), and mixtures of them.
 #pragma once
 
 #include "tests/calibration/geometry.h"

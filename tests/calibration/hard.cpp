@@ -73,7 +73,7 @@ Sampler forward_scattering(Dice& d) {
     const double g = 1 - d.log(1e-3, 2e-2);
     return lobe(d, "forward scattering", fmt::format("g {:.5f}", g), greenstein_profile<double>(g));
 }
-/// A great circle's neighbourhood: a normal law of the height above a tilted plane, cut at 1.
+/// A great circle's neighbourhood: a normal distribution of the height above a tilted plane, cut at 1.
 Sampler band(Dice& d) {
     const double sd = d.log(1e-4, 1e-2);
     const Vec3d axis = d.direction(-1, 1);

@@ -106,7 +106,7 @@ struct Tabulated {
     }
 };
 
-/// A logistic law cut to [-half, half]: its value and its inverse. d'Eon 2013, "Importance Sampling for
+/// A logistic distribution cut to [-half, half]: its value and its inverse. d'Eon 2013, "Importance Sampling for
 /// Physically-Based Hair Fiber Models".
 template <class F> struct CutLogistic {
     F s, half;

@@ -17,7 +17,7 @@ struct RunOf {
     bool full = false, pipe = false;
 };
 
-/// What tells one line from another: set, seed, index, w_o, engine, mode, pipe.
+/// What distinguishes one line from another: set, seed, index, w_o, engine, mode, pipe.
 std::string identity_of(const CaseKey& key, const RunOf& run);
 
 nlohmann::ordered_json record_of(const CaseKey& key, const RunOf& run, const Case& c, const Result& result);

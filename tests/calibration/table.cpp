@@ -1,4 +1,4 @@
-// Records of one engine, mode, number of w_o and way (process or pipe) are one group; sets are told apart within it.
+// Records of one engine, mode, number of w_o and way (process or pipe) are one group; sets are separated within it.
 #include "tests/calibration/table.h"
 
 #include <algorithm>
