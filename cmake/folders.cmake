@@ -12,7 +12,7 @@ function(crescent_library target)
   endif()
 endfunction()
 
-# crescent_folder(NAME LIBS...): src/NAME/*.cpp is the target crescent_NAME; it may use every folder named before it.
+# crescent_folder(NAME LIBS...): src/NAME/*.cpp and src/NAME/*/*.cpp are the target crescent_NAME; it may use every folder named before it.
 # Headers in crescent_read_in_NAME are precompiled for it. *_test.cpp stand beside their sources and are collected for
 # laws/CMakeLists.txt. Of crescent::check alone all folders are one target, which is compiled in a few files: who builds
 # it builds it once and edits none of it.
@@ -22,7 +22,8 @@ set(crescent_libraries "")
 set(crescent_draws plates compare)
 set(crescent_test_sources "")
 macro(crescent_folder name)
-  file(GLOB folder_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  file(GLOB folder_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp
+    ${PROJECT_SOURCE_DIR}/src/${name}/*/*.cpp)
   set(folder_tests ${folder_sources})
   list(FILTER folder_sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER folder_tests INCLUDE REGEX "_test\\.cpp$")
@@ -36,7 +37,9 @@ macro(crescent_folder name)
     set_source_files_properties(${folder_sources} PROPERTIES UNITY_GROUP ${crescent_in_one_file_with_${name}})
   elseif(folder_sources)
     crescent_library(crescent_${name} ${folder_sources})
-    add_library(crescent::${name} ALIAS crescent_${name})
+    if(NOT TARGET crescent::${name})  # crescent::check is the public one
+      add_library(crescent::${name} ALIAS crescent_${name})
+    endif()
     target_link_libraries(crescent_${name} PUBLIC ${crescent_folders} ${ARGN})
     if(${name} IN_LIST crescent_fuzzed)
       target_compile_options(crescent_${name} PRIVATE -fsanitize=fuzzer-no-link)

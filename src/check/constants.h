@@ -1,0 +1,93 @@
+// Every constant of the engine that can change a verdict, with its derivation, or with what it costs where it is a
+// choice. Constants that only move effort are in estimate/budget.h.
+#pragma once
+
+namespace crescent::check {
+
+// ---- decision
+
+/// A family of questions is suspected below this p-value (its members counted) and reported if the same member, on
+/// fresh draws and fresh points, is below `alpha2` with the same sign. Chosen: alpha1 alpha2 = 1e-8. With
+/// `questions_covered` families in one call, a right suite is reported with probability at most 1e-3; a call that puts
+/// more questions divides alpha2 by the excess. Cost: a fault is found if it exceeds about 4.4 + 1.3 standard errors;
+/// ten times smaller levels would raise that by 5 %.
+inline constexpr double alpha1 = 1e-5, alpha2 = 1e-3;
+inline constexpr double questions_covered = 1e5;  // 1e-3 / (alpha1 alpha2)
+
+/// How alpha1 is shared among the looks of a staged budget, the last look having what is left. Chosen: an early look
+/// may only stop for a clear fault, and 1/8 of alpha1 costs it 3 % in the size found.
+inline constexpr double early_look = 1.0 / 8;
+
+/// A deviation below this share of the quantity is not reported. Chosen: below every fault of the public reports (the
+/// smallest, sin(theta) taken at a texel's centre, is 4e-4), and four times the error the integrals are built for.
+inline constexpr double detection_floor = 2e-4;
+
+/// Expected draws below which a node is not tested: 1 / sqrt(20) = 22 %, and fewer cannot reach alpha1.
+inline constexpr double least_count = 20;
+
+/// A replicate's sum has at least this standard deviation, in draws. Derived: if a share f of 32 replicates has one
+/// draw more than the others, none of them shows it with probability (1 - f)^32, and their mean is then off by f draws.
+/// With 0.3 that passes alpha1 from f = 0.28 on, where both stages together have a probability below 1e-9.
+inline constexpr double least_jumps = 0.3;
+
+// ---- arithmetic of the sampler
+
+inline constexpr double ulp = 0x1p-24;  // of single precision, relative to 1
+/// No leaf is narrower, in radians, whatever the sampler says of its arithmetic. Derived: float inside double
+/// interfaces moves a direction by up to 8 ulp (an azimuth near 2 pi), which is then at most 1/8 of a leaf.
+inline constexpr double least_width = 64 * ulp;
+/// Lattices coarser than this are no arithmetic but a fault (u of few bits, texel centres). Derived: single precision
+/// gives coordinates in [-1, 1] a step of at most 2^-23 and the azimuths behind them 8 ulp; 16 covers their sum.
+inline constexpr double coarsest_step = 16 * ulp;
+/// Of an angle over that of a coordinate: an azimuth in (4, 2 pi) held in float has a step of 2^-21 = 8 ulp.
+inline constexpr double angle_per_step = 8;
+
+// ---- counted checks: tolerances of single precision
+
+/// Relative difference of two statements of one number: pdf with a draw and pdf(w), weight and f cos / p. Derived: a
+/// float expression of ten operations errs by 10 ulp = 6e-7 times its conditioning, which up to 100 is covered; worse
+/// conditioned ones are looked at over moves of w.
+inline constexpr double same_number = 1e-4;
+/// Share of the draws that may break `pointwise` or `weight`, and the share at which p may be 0 (`zero`): chosen. A
+/// draw on the edge of the support is rounded to the other side once in 1e5.
+inline constexpr double tolerated_share = 1e-4, tolerated_zeros = 1e-5;
+/// Breaks that are tolerated whatever the number of draws: 3, so that one odd draw is no finding.
+inline constexpr double tolerated_breaks = 3;
+/// |w| may differ from 1 by this much: 84 ulp of float, more than any normalisation leaves.
+inline constexpr double unit_length = 1e-5;
+/// A weight may be below 0 by this much: 1 - F in single precision.
+inline constexpr double negative_weight = 1e-6;
+
+/// Equal directions beyond what the lattice of the sampler's arithmetic explains, times this, plus that: chosen.
+/// A lattice is not even (float steps halve towards 0), which the factor 4 covers; 8 pairs are no fault for anyone.
+inline constexpr double repeats_factor = 4, repeats_floor = 8;
+
+/// p |dw/du| may fall below the probability of its branch by this much: chosen, ten times what central differences with
+/// an error estimate below `jacobian_error` leave.
+inline constexpr double jacobian_tolerance = 2e-3, jacobian_error = 2e-4;
+/// How many of the points looked at must break it, of those whose error estimate is small enough.
+inline constexpr double jacobian_breaks = 3;
+
+// ---- f
+
+/// Albedo above 1 by this much is reported: chosen, 10 times what float BRDFs sum to above 1.
+inline constexpr double albedo_excess = 1e-3;
+/// Relative difference of f(a, b) and f(b, a): as same_number, times 10 because both directions are rounded.
+inline constexpr double reciprocity_tolerance = 1e-3;
+/// Share of f cos where p = 0 that is reported: below what a float estimate of the mean can show.
+inline constexpr double lost_light = 1e-6;
+
+// ---- tail
+
+/// The variance is infinite from this Pareto index on (Vehtari et al. 2024).
+inline constexpr double heavy_index = 0.5;
+
+// ---- targets of a quick check: a right verdict whose size exceeds ten times its target is inconclusive. Chosen by
+// what matters in a render: less is not seen in an image of a few thousand samples a pixel.
+
+inline constexpr double target_constant = 1e-3, target_leak = 5e-3, target_cap = 3e-3, target_rotation = 5e-3,
+                        target_parameter = 2e-2;
+inline constexpr double inconclusive_at = 10;  // times the target
+inline constexpr double stated_power = 0.9;
+
+}  // namespace crescent::check

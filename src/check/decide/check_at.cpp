@@ -1,0 +1,167 @@
+// Stage 1 looks at 2^14, 2^16, ... draws; a family below its level is put again, the same member with the same sign, to
+// fresh draws and fresh points on the same tree. Streams differ by stage, so no number is used twice.
+#include "check/decide/check_at.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/stopwatch.h"
+#include "check/constants.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// Both sides of (1) for one stage.
+struct Stage {
+    Integrals integrals;
+    Observations observations;
+    std::uint32_t points = 0;
+
+    void extend(Source& source, const Plan& plan, const Look& to, std::uint32_t of_f, StreamKey key, int look) {
+        key.purpose = Purpose::points;
+        key.part = static_cast<std::uint16_t>(look);
+        integrate(source, plan, to.points - points, points == 0, key, integrals);  // f in the first pass alone
+        points = to.points;
+        key.part = 0;
+        observe(source, plan, to, of_f, key, integrals, observations);
+    }
+    Evidence evidence(const Source& source, const Plan& plan) const { return {source, plan, integrals, observations}; }
+};
+
+void ask_all(const Evidence& e, const Visit& visit) {
+    ask_sums(e, visit);
+    ask_nodes(e, visit);
+    ask_light(e, visit);
+    ask_counts(e, visit);
+}
+
+/// By family, the member with the least p, and how many there are.
+struct Best {
+    Answer answer;
+    double members = 0;
+    double p() const { return std::min(1.0, answer.p * members); }
+};
+
+std::map<Family, Best> best_of(const Evidence& e) {
+    std::map<Family, Best> out;
+    ask_all(e, [&](const Answer& a) {
+        Best& b = out[a.family];
+        if (b.members++ == 0 || a.p < b.answer.p) b.answer = a;
+    });
+    return out;
+}
+
+/// A count that has failed is not a matter of chance for numbers that cannot be used.
+bool needs_no_second(Family f) { return f == Family::values || f == Family::corners; }
+
+/// The same member again, one-sided in the direction of the first.
+Answer same_member(const Evidence& e, const Answer& first) {
+    Answer out;
+    ask_all(e, [&](const Answer& a) {
+        if (a.family == first.family && a.member == first.member) out = a;
+    });
+    const bool two_sided = out.p > 0 && first.family != Family::depth;
+    if (two_sided) out.p = (out.difference > 0) == (first.difference > 0) ? out.p / 2 : 1;
+    return out;
+}
+
+class Check {
+public:
+    Check(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
+        std::uint32_t seed)
+        : source_(subject, technique, wo, data.light), budget_(budget) {
+        key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
+        alpha2_ = alpha2 / std::max(1.0, data.questions / questions_covered);
+        out_.wo = wo, out_.technique = technique;
+    }
+
+    CheckAt run() {
+        const Stopwatch watch;
+        source_.estimates = answers_are_estimates(source_);
+        out_.small = small_tests(source_, key_);
+        out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
+        for (int look = 0; look < budget_.look_count; ++look)
+            if (decided_by(look)) break;
+        finish();
+        out_.evaluations = source_.evaluations();
+        out_.seconds = watch.seconds();
+        return std::move(out_);
+    }
+
+private:
+    Source source_;
+    const CheckBudget& budget_;
+    StreamKey key_;
+    double alpha2_;
+    CheckAt out_;
+    Stage first_;
+
+    double level_of(int look) const {
+        const int last = budget_.look_count - 1;
+        return look == last ? alpha1 * (1 - last * early_look) : alpha1 * early_look;
+    }
+
+    bool decided_by(int look) {
+        const Look& to = budget_.looks[static_cast<std::size_t>(look)];
+        first_.extend(source_, *out_.plan, to, budget_.of_f, key_, look);
+        out_.looks = look + 1;
+        const Evidence e = first_.evidence(source_, *out_.plan);
+        std::vector<Best> suspects;
+        for (const auto& [family, best] : best_of(e))
+            if (best.p() < level_of(look)) suspects.push_back(best);
+        if (!suspects.empty()) confirm(suspects, to, look);
+        if (!out_.findings.empty()) return true;
+        return budget_.stop_when_targets_met && worst_ratio(sizes(e, level_of(look))) <= 1;
+    }
+
+    Sizes sizes(const Evidence& e, double level) {
+        double nodes = 0;
+        ask_nodes(e, [&](const Answer& a) { nodes += a.family == Family::node; });
+        StreamKey key = key_;
+        key.purpose = Purpose::pairs;
+        return sizes_of(source_, e, level, nodes, key);
+    }
+
+    void confirm(const std::vector<Best>& suspects, const Look& to, int look) {
+        Stage second;
+        StreamKey key = key_;
+        key.stage = static_cast<std::uint8_t>(2 + look);
+        const Look& most = budget_.again;
+        second.extend(source_, *out_.plan,
+            {std::max(to.points, most.points), std::max(to.independent, most.independent),
+                std::max(to.scrambled, most.scrambled)},
+            budget_.of_f, key, 0);
+        const Evidence e = second.evidence(source_, *out_.plan);
+        for (const Best& b : suspects) {
+            const Answer again = needs_no_second(b.answer.family) ? b.answer : same_member(e, b.answer);
+            if (again.p < alpha2_) out_.findings.push_back({b.answer, again, b.members});
+            else out_.suspected.push_back(b.answer);
+        }
+        if (!out_.findings.empty() && second.points > first_.points)
+            first_ = std::move(second);  // more to explain it by
+    }
+
+    void finish() {
+        const Evidence e = first_.evidence(source_, *out_.plan);
+        for (const auto& [family, best] : best_of(e)) {
+            out_.answers.push_back(best.answer);
+            out_.answers.back().p = best.p();
+        }
+        if (!out_.wrong()) {
+            out_.sizes = sizes(e, level_of(budget_.look_count - 1));
+            out_.inconclusive = worst_ratio(out_.sizes) > inconclusive_at;
+        }
+        out_.integrals = std::move(first_.integrals);
+        out_.observations = std::move(first_.observations);
+    }
+};
+
+}  // namespace
+
+CheckAt check_sampler_at(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data,
+    const CheckBudget& budget, std::uint32_t seed) {
+    return Check(subject, technique, wo, data, budget, seed).run();
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,28 @@
+// What a right verdict could hide: the size of each kind of fault that would have been found with probability
+// `stated_power`, from the variances of the estimates in hand.
+#pragma once
+
+#include <optional>
+
+#include "check/verdicts/questions.h"
+
+namespace crescent::check {
+
+/// Empty: this kind of fault changes nothing here (a rotation of an even density), or was not looked for.
+struct Sizes {
+    std::optional<double> constant;   // relative: p is (1 + e) times what is drawn
+    std::optional<double> leak;       // share of the draws that is spread evenly, unknown to p
+    std::optional<double> cap;        // mass of a cap that is never drawn
+    std::optional<double> rotation;   // radians, about an axis across the mean direction
+    std::optional<double> parameter;  // relative error of an exponent: draws by p^(1 + e)
+    /// Total variation between p and an even density: a leak of e changes what is drawn by e times this.
+    double distance_from_even = 1;
+};
+
+/// node_tests: how many members share alpha1 in the family `node`. Evaluates p at a few thousand directions.
+Sizes sizes_of(Source& source, const Evidence& e, double level, double node_tests, const StreamKey& key);
+
+/// The largest ratio of a size to its target, and whether it passes `inconclusive_at`.
+double worst_ratio(const Sizes& sizes);
+
+}  // namespace crescent::check

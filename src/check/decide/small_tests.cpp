@@ -1,0 +1,147 @@
+#include "check/decide/small_tests.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+std::optional<const char*> fault_of(const Draw& d) {
+    if (std::isnan(d.pdf)) return "pdf is NaN";
+    if (d.pdf < 0) return "pdf is negative";
+    if (std::isinf(d.pdf)) return "pdf is infinite";
+    if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
+    if (d.pdf == 0 && d.delta == 0) return {};
+    if (!(d.delta >= 0 && d.delta <= 1)) return "a delta part is chosen with a probability outside (0, 1]";
+    if (d.delta > 0 && !d.weight) return "a draw of a delta part comes without its weight";
+    if (!(std::fabs(std::sqrt(dot(d.wi, d.wi)) - 1) <= unit_length)) return "the direction is not of length 1";
+    if (!d.weight) return {};
+    if (!std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z)) return "the weight is not finite";
+    if (std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight)
+        return "the weight is negative";
+    return {};
+}
+
+bool answers_are_estimates(Source& source) {
+    if (!source.has_density() || !source.subject.draws_at_will()) return false;
+    constexpr double golden = 2.399963229728653;  // radians
+    std::vector<Vec3d> w;
+    for (int i = 0; i < 64; ++i) w.push_back(from_chart({(i + 0.5) / 32, std::fmod(golden * i, two_pi)}));
+    std::vector<double> a(w.size()), b(w.size());
+    source.stated_pdf(w, a);
+    source.stated_pdf(w, b);
+    int differ = 0;
+    for (std::size_t i = 0; i < w.size(); ++i) differ += std::fabs(a[i] - b[i]) > same_number * std::max(a[i], b[i]);
+    return differ >= 3;
+}
+
+namespace {
+
+std::vector<Numbers> corner_numbers(int count) {
+    constexpr double ends[] = {0, ulp, 0.25, 0.5, 0.75, 1 - ulp}, elsewhere = 95.0 / 256;
+    const int n = std::max(count, 2);
+    Numbers middle;
+    for (int k = 0; k < n; ++k) middle[k] = elsewhere;
+    std::vector<Numbers> out;
+    for (int i = 0; i < n; ++i)
+        for (int j = i + 1; j < n; ++j)
+            for (double x : ends)
+                for (double y : ends) {
+                    out.push_back(middle);
+                    out.back()[i] = x, out.back()[j] = y;
+                }
+    for (int bits = 0; n > 2 && bits < 1 << n; ++bits) {
+        out.push_back(middle);
+        for (int k = 0; k < n; ++k) out.back()[k] = bits >> k & 1 ? 1 - ulp : 0;
+    }
+    return out;
+}
+
+std::vector<Numbers> some_numbers(const Source& source, StreamKey key, std::uint32_t count) {
+    std::vector<Numbers> u;
+    for (std::uint32_t i = 0; i < count; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    return u;
+}
+
+/// The same draw, to the rounding of a text format of seven digits.
+bool same_draw(const Draw& a, const Draw& b) {
+    constexpr double near = 1e-6;
+    if ((a.pdf > 0) != (b.pdf > 0) || (a.delta != 0) != (b.delta != 0)) return false;
+    if (!(a.pdf > 0) && a.delta == 0) return true;
+    return std::fabs(a.wi.x - b.wi.x) + std::fabs(a.wi.y - b.wi.y) + std::fabs(a.wi.z - b.wi.z) <= near &&
+        std::fabs(a.pdf - b.pdf) <= same_number * std::max(a.pdf, b.pdf);
+}
+
+}  // namespace
+
+std::optional<SmallFault> corners_of_u(Source& source) {
+    if (!source.subject.draws_at_will()) return {};
+    const std::vector<Numbers> u = corner_numbers(source.traits.numbers);
+    std::vector<Draw> draws(u.size());
+    source.draw(u, draws);
+    SmallFault out{Family::corners, 0, static_cast<double>(u.size())};
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        std::optional<const char*> fault = fault_of(draws[i]);
+        double p = 0;
+        if (!fault && draws[i].pdf > 0) {
+            source.stated_pdf({&draws[i].wi, 1}, {&p, 1});
+            if (!std::isfinite(p) || p < 0) fault = "pdf(w) there is not a number >= 0";
+        }
+        if (fault && out.times++ == 0) out.first = {u[i], draws[i], p, 0}, out.what = *fault;
+    }
+    return out.times > 0 ? std::optional(out) : std::nullopt;
+}
+
+std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
+    if (source.traits.own_random || !source.subject.draws_at_will()) return {};
+    constexpr std::uint32_t count = 64;
+    const std::vector<Numbers> u = some_numbers(source, key, count);
+    std::vector<Draw> together(count), again(count), backwards(count);
+    source.draw(u, together);
+    for (std::size_t first = 0, block = 1; first < count; first += block++) {  // blocks of 1, 2, 3, ...
+        const std::size_t n = std::min<std::size_t>(block, count - first);
+        source.draw(std::span(u).subspan(first, n), std::span(again).subspan(first, n));
+    }
+    std::vector<Numbers> reversed(u.rbegin(), u.rend());
+    source.draw(reversed, backwards);
+    std::reverse(backwards.begin(), backwards.end());
+    SmallFault out{Family::state, 0, count};
+    for (std::size_t i = 0; i < count; ++i)
+        if (!same_draw(together[i], again[i]) || !same_draw(together[i], backwards[i]))
+            if (out.times++ == 0) out.first = {u[i], together[i], 0, 0}, out.what = "the same u gives another draw";
+    return out.times > 0 ? std::optional(out) : std::nullopt;
+}
+
+std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
+    std::vector<int> out;
+    if (source.traits.own_random || !source.subject.draws_at_will()) return out;
+    const std::vector<Numbers> u = some_numbers(source, key, 64);
+    std::vector<Draw> draws(u.size()), others(u.size());
+    source.draw(u, draws);
+    for (int k = 0; k < source.traits.numbers; ++k) {
+        std::vector<Numbers> v = u;
+        for (std::size_t i = 0; i < v.size(); ++i) v[i][k] = u[(i + 1) % u.size()][k];
+        source.draw(v, others);
+        bool same = true;
+        for (std::size_t i = 0; i < v.size(); ++i) same = same && same_draw(draws[i], others[i]);
+        if (same) out.push_back(k);
+    }
+    return out;
+}
+
+std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
+    StreamKey key = given;
+    std::vector<SmallFault> out;
+    const auto add = [&](std::optional<SmallFault> fault) {
+        if (fault) out.push_back(*fault);
+    };
+    add(corners_of_u(source));
+    key.purpose = Purpose::corners;
+    add(same_u_again(source, key));
+    key.purpose = Purpose::jacobian;
+    if (!source.estimates) add(jacobian(source, key));
+    return out;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,39 @@
+// Tests beside the principle, at one w_o: numbers at the corners of u, the same u again, p against the derivatives of
+// sample(u). Nothing in them is left to chance but where they look.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "check/verdicts/questions.h"
+
+namespace crescent::check {
+
+/// What is wrong with a draw, in words; none where it can be used.
+std::optional<const char*> fault_of(const Draw& d);
+
+/// A small test that failed.
+struct SmallFault {
+    Family family = Family::corners;
+    double times = 0, of = 0;  // how often, of how many
+    double size = 0;           // relative, where it has one
+    Example first{};
+    const char* what = "";
+};
+
+/// Whether p at one direction differs from call to call: then it is a random estimate, and only its mean is tested.
+bool answers_are_estimates(Source& source);
+
+/// u at 0, next to 0, at quarters and next to 1, in every two numbers and in every corner: samplers divide by 0 there.
+std::optional<SmallFault> corners_of_u(Source& source);
+/// The same u in another order, in other batches and alone.
+std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key);
+/// p |dw/du| of the branch that a draw takes is at least the probability of that branch.
+std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
+/// Random numbers that change no draw.
+std::vector<int> numbers_without_effect(Source& source, const StreamKey& key);
+
+/// All of them.
+std::vector<SmallFault> small_tests(Source& source, const StreamKey& key);
+
+}  // namespace crescent::check

@@ -1,0 +1,206 @@
+// Points go through the sampler in batches of whole cells.
+#include "check/estimate/integrals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+void LightIntegrals::scale(double by) {
+    for (auto* by_channel : {&all, &mean, &albedo})
+        for (Estimate& e : *by_channel) e.scale(by);
+    lost.scale(by), lit.scale(by);
+}
+
+void LightIntegrals::add(const LightIntegrals& o) {
+    for (std::size_t c = 0; c < 3; ++c) all[c].add(o.all[c]), mean[c].add(o.mean[c]), albedo[c].add(o.albedo[c]);
+    lost.add(o.lost), lit.add(o.lit);
+}
+
+double flux_factor(const Source& source, Vec3d wi, int channel) {
+    if (source.wo.z * wi.z >= 0 || source.traits.importance) return 1;
+    if (!source.traits.eta) return 0;  // not known: what is reflected alone is compared with 1
+    const double eta = channel_of(*source.traits.eta, channel);
+    return source.wo.z > 0 ? eta * eta : 1 / (eta * eta);
+}
+
+namespace {
+
+/// The grid of one leaf: rows x columns cells of two points each.
+struct Grid {
+    std::uint32_t leaf = 0;
+    int rows = 1, columns = 1;
+    double per_point = 0;
+    int cells() const { return rows * columns; }
+};
+
+/// How the points of a pass are shared out: a part evenly, the rest by the spread of p, edges worth more.
+std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
+    const std::vector<Leaf>& leaves = plan.tree.leaves();
+    const auto worth = [&](const Leaf& leaf) {
+        return leaf.spread + worth_of_score * leaf.score + (leaf.edge ? plan.tree.rect(leaf).area() * leaf.q / 4 : 0);
+    };
+    double sum = 1e-300;
+    for (const Leaf& leaf : leaves) sum += worth(leaf);
+    const int least = points < 4 * leaves.size() ? 1 : 2;  // pairs a leaf
+    std::vector<Grid> out(leaves.size());
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+        const ChartRect& rect = plan.tree.rect(leaves[l]);
+        const double share =
+            even_points / static_cast<double>(leaves.size()) + (1 - even_points) * worth(leaves[l]) / sum;
+        const int pairs = std::max(least, static_cast<int>(points * share / 2));
+        Grid& g = out[l];
+        g.leaf = static_cast<std::uint32_t>(l);
+        const double square = std::sqrt(pairs * rect.theta_width() / (rect.phi_width() + 1e-300));
+        g.rows = static_cast<int>(std::clamp(square + 0.5, 1.0, static_cast<double>(pairs)));
+        g.columns = std::max(1, pairs / g.rows);
+        g.per_point = rect.area() / (2.0 * g.cells());
+    }
+    return out;
+}
+
+class Pass {
+public:
+    Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key)
+        : source_(source), plan_(plan), of_f_(of_f && source.has_f()), stream_(key) {
+        out_.leaves.resize(plan.tree.leaves().size());
+    }
+
+    Integrals run(const std::vector<Grid>& grids) {
+        std::size_t first = 0;
+        while (first < grids.size()) {
+            w_.clear();
+            std::size_t last = first;
+            for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place(grids[last]);
+            p_.resize(w_.size()), f_.assign(w_.size(), {});
+            source_.density(w_, p_);
+            if (of_f_) source_.f_cos(w_, f_, source_.subject.has_true_f());
+            std::size_t at = 0;
+            for (std::size_t g = first; g < last; ++g) take(grids[g], at);
+            first = last;
+        }
+        return std::move(out_);
+    }
+
+private:
+    Source& source_;
+    const Plan& plan_;
+    bool of_f_;
+    Stream stream_;
+    Integrals out_;
+    std::vector<Vec3d> w_, f_;
+    std::vector<double> p_;
+
+    void place(const Grid& g) {
+        const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[g.leaf]);
+        for (int j = 0; j < g.cells(); ++j)
+            for (int pair = 0; pair < 2; ++pair) {
+                const double x = (j % g.rows + stream_.number()) / g.rows,
+                             y = (j / g.rows + stream_.number()) / g.columns;
+                w_.push_back(from_chart(rect.at(x, y)));
+            }
+    }
+
+    void take(const Grid& g, std::size_t& at) {
+        const Leaf& leaf = plan_.tree.leaves()[g.leaf];
+        LeafIntegral& to = out_.leaves[g.leaf];
+        const double k = to.per_point = g.per_point;
+        double least = 1e300, most = 0;
+        for (int j = 0; j < g.cells(); ++j, at += 2) {
+            Values h[2];
+            for (std::size_t a = 0; a < 2; ++a) {
+                const double p = p_[at + a];
+                h[a] = plan_.values(leaf, w_[at + a], p);
+                least = std::min(least, p), most = std::max(most, p);
+                to.second += k * h[a][bridge] * h[a][bridge] * p;
+                if (w_[at + a].z > 0 || p > 0) to.solid_angle += k * h[a][bridge], out_.domain += k;
+                for (double& v : h[a]) v *= p;
+            }
+            for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
+            to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
+            if (of_f_) take_light(at, k);
+        }
+        to.top = most;
+        out_.points += 2 * g.cells();
+        if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
+    }
+
+    /// Where the points of a leaf look alike beside another density, their pairs cannot show a strip of it; one point
+    /// in K_l may be of it and not have been met (the rule of succession).
+    void allow_strip(const Leaf& leaf, LeafIntegral& to) {
+        const double k = to.per_point, v = k * k * leaf.q * leaf.q / 2;
+        const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), off = middle - plan_.middle;
+        const double log_q = math::log(leaf.q) - plan_.median_log_p;
+        to.bridge.variance += v;
+        const double times[integrands] = {4, 1, log_q * log_q, off.x * off.x, off.y * off.y, off.z * off.z};
+        for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].variance += v * times[q];
+    }
+
+    void take_light(std::size_t at, double k) {
+        LightIntegrals& l = out_.light;
+        for (int c = 0; c < source_.channels(); ++c) {
+            const auto channel = static_cast<std::size_t>(c);
+            double f[2], mean[2], flux[2];
+            for (std::size_t a = 0; a < 2; ++a) {
+                f[a] = channel_of(f_[at + a], c);
+                mean[a] = f[a] * mean_bridge(f[a], p_[at + a], plan_.usual[channel], source_.has_density());
+                flux[a] = f[a] * flux_factor(source_, w_[at + a], c);
+            }
+            l.all[channel].add_pair(f[0], f[1], k);
+            l.mean[channel].add_pair(mean[0], mean[1], k);
+            l.albedo[channel].add_pair(flux[0], flux[1], k);
+        }
+        double lit[2], lost[2];
+        for (std::size_t a = 0; a < 2; ++a) {
+            const Vec3d f = f_[at + a];
+            const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
+            lit[a] = y > 0 ? y * radiance(w_[at + a]) : 0;
+            lost[a] = p_[at + a] > 0 ? 0 : lit[a];
+        }
+        l.lit.add_pair(lit[0], lit[1], k);
+        l.lost.add_pair(lost[0], lost[1], k);
+        l.points += 2;
+    }
+
+    double radiance(Vec3d w) const { return source_.light.even() || w.z <= 0 ? source_.light.fill : source_.light(w); }
+};
+
+void scale(Integrals& x, double by) {
+    for (Estimate& e : x.sums) e.scale(by);
+    x.domain *= by;
+    for (LeafIntegral& leaf : x.leaves) {
+        leaf.bridge.scale(by);
+        leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by;
+    }
+}
+
+}  // namespace
+
+void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to) {
+    Integrals pass = Pass(source, plan, of_f, key).run(grids_of(plan, points));
+    if (to.points == 0) {
+        to = std::move(pass);
+        return;
+    }
+    const double total = to.points + pass.points;
+    if (pass.light.points > 0) {
+        const double lit = to.light.points + pass.light.points;
+        to.light.scale(to.light.points / lit), pass.light.scale(pass.light.points / lit);
+        to.light.add(pass.light);
+        to.light.points = lit;
+    }
+    scale(to, to.points / total), scale(pass, pass.points / total);
+    for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(pass.sums[q]);
+    for (std::size_t l = 0; l < to.leaves.size(); ++l) {
+        LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
+        a.bridge.add(b.bridge);
+        a.second += b.second, a.solid_angle += b.solid_angle;
+        a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);
+    }
+    to.domain += pass.domain;
+    to.points = total;
+}
+
+}  // namespace crescent::check

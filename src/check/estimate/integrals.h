@@ -1,0 +1,66 @@
+// The right side of E[h(draw)] = integral of h p: stratified points in the leaves, two in each cell of a grid, so that
+// every cell tells its own variance. Passes of a staged budget are merged by their numbers of points.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "check/estimate/plan.h"
+
+namespace crescent::check {
+
+/// An estimate of an integral: its value, its variance, and the variance of that variance.
+struct Estimate {
+    double value = 0, variance = 0, doubt = 0;
+
+    /// Two points of one cell, each of weight k.
+    void add_pair(double a, double b, double k) {
+        value += k * (a + b);
+        const double v = k * k * (a - b) * (a - b);
+        variance += v;
+        doubt += 2.0 / 3 * v * v;  // of v = x^2, x normal: var(v) = 2 E[v]^2, of which v^2 2/3 is an unbiased estimate
+    }
+    void scale(double by) { value *= by, variance *= by * by, doubt *= by * by * by * by; }
+    void add(const Estimate& other) { value += other.value, variance += other.variance, doubt += other.doubt; }
+};
+
+/// Of one leaf.
+struct LeafIntegral {
+    Estimate bridge;         // of h p
+    double second = 0;       // integral of h^2 p: what one draw counts for
+    double solid_angle = 0;  // integral of h where a draw would count: what draws spread evenly would give
+    double top = 0;          // the largest p that its points have met
+    double per_point = 0;    // weight of one point
+};
+
+/// Integrals of f |cos| by channel.
+struct LightIntegrals {
+    std::array<Estimate, 3> all, mean, albedo;  // as it is; bridged with p for `mean`; as flux
+    Estimate lost;                              // times the light, where p is 0
+    Estimate lit;                               // times the light
+    double points = 0;
+    void scale(double by);
+    void add(const LightIntegrals& other);
+};
+
+struct Integrals {
+    std::array<Estimate, integrands> sums;
+    std::vector<LeafIntegral> leaves;
+    LightIntegrals light;
+    double domain = 0;  // solid angle in which a draw would count
+    double points = 0;
+};
+
+/// Adds a pass of about `points` points. of_f: evaluate f at them too.
+void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to);
+
+/// h of the mean: f cos bridged with p, so that no weight counts for more than the usual one. 1 where there is no
+/// density.
+inline double mean_bridge(double f_cos, double p, double usual, bool has_density) {
+    if (!has_density) return 1;
+    return p > 0 && usual > 0 ? usual * p / (usual * p + f_cos) : 0;
+}
+/// What turns f across the surface from radiance into power; 0 where the index is not known.
+double flux_factor(const Source& source, Vec3d wi, int channel);
+
+}  // namespace crescent::check

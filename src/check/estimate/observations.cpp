@@ -1,0 +1,242 @@
+// In batches: draws, then p at the directions, then f where weights are looked at, then what does not agree once more
+// at neighbouring directions.
+#include "check/estimate/observations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// A direction moved by a few roundings: eight of them, by 2 and by 8 ulp.
+std::array<Vec3d, 8> neighbours(Vec3d w) {
+    std::array<Vec3d, 8> out;
+    for (int k = 0; k < 8; ++k) {
+        const double a = (k < 4 ? 2 : 8) * ulp;
+        const Vec3d v{w.x + (k & 1 ? a : -a), w.y + (k & 2 ? a : -a), w.z + ((k ^ k / 2) & 1 ? a : -a)};
+        out[static_cast<std::size_t>(k)] = v * (1 / std::sqrt(dot(v, v)));
+    }
+    return out;
+}
+
+std::uint64_t key_of(Vec3d w) {
+    std::uint64_t a, b;
+    std::memcpy(&a, &w.x, 8), std::memcpy(&b, &w.y, 8);
+    std::uint64_t h = a * 0x9e3779b97f4a7c15u ^ (b * 0xbf58476d1ce4e5b9u >> 3) ^ b << 32;
+    return (h ^ h >> 31) * 0x94d049bb133111ebu ^ (w.z < 0);
+}
+
+class Observer {
+public:
+    Observer(Source& source, const Plan& plan, Integrals& integrals, Observations& to)
+        : source_(source), plan_(plan), integrals_(integrals), to_(to) {}
+
+    /// set: -1 for independent draws.
+    void batch(std::span<const Numbers> u, int set, bool with_f) {
+        draws_.assign(u.size(), {});
+        source_.draw(u, draws_);
+        w_.clear(), at_.clear();
+        for (std::size_t i = 0; i < u.size(); ++i)
+            if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
+        p_.resize(w_.size());
+        source_.density(w_, p_);
+        compare_pdf(u);
+        if (with_f) compare_weights(u, set);
+        for (std::size_t k = 0; k < w_.size(); ++k)
+            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set);
+            else if (set < 0) ++to_.checks.nothing;
+    }
+
+private:
+    Source& source_;
+    const Plan& plan_;
+    Integrals& integrals_;
+    Observations& to_;
+    std::vector<Draw> draws_;
+    std::vector<Vec3d> w_, f_, true_f_;
+    std::vector<std::size_t> at_;  // of the draws that w_ are of
+    std::vector<double> p_;
+
+    /// A draw of the density with finite numbers; others are counted.
+    bool usable(const Numbers& u, const Draw& d, int set) {
+        DrawChecks& c = to_.checks;
+        ++c.looked_at;
+        if (d.delta != 0) {
+            if (set < 0) ++c.deltas, take_delta(d);
+            const bool chosen = d.delta > 0 && d.delta <= 1;
+            const double squared = dot(d.wi, d.wi);
+            if (!chosen || !d.weight || !std::isfinite(*d.weight) || *d.weight < -negative_weight ||
+                !(std::fabs(squared - 1) <= 2 * unit_length))
+                c.invalid.add({u, d, 0, 0});
+            return false;
+        }
+        const double squared = dot(d.wi, d.wi);
+        if (std::isnan(d.pdf) || d.pdf < 0 || std::isinf(d.pdf) || (d.pdf > 0 && !std::isfinite(squared)) ||
+            std::isnan(squared)) {
+            c.invalid.add({u, d, 0, 0});
+            return false;
+        }
+        if (!(d.pdf > 0)) {
+            if (set < 0) ++c.nothing;
+            return false;
+        }
+        const bool bad_weight = d.weight &&
+            !(std::isfinite(*d.weight) && std::isfinite(d.weights.x + d.weights.y + d.weights.z) &&
+                std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) >= -negative_weight);
+        if (!(std::fabs(squared - 1) <= 2 * unit_length) || bad_weight) c.invalid.add({u, d, 0, 0});
+        return squared > 0;
+    }
+
+    void take_delta(const Draw& d) {
+        for (int c = 0; c < source_.channels(); ++c) {
+            const double w = source_.channels() == 3 ? channel_of(d.weights, c) : d.weight.value_or(0);
+            to_.delta[static_cast<std::size_t>(c)].add(w * std::max(flux_factor(source_, d.wi, c), 0.0));
+        }
+    }
+
+    /// The draw's own pdf must lie in the range of p over a few roundings of w; p must not be 0 all around.
+    void compare_pdf(std::span<const Numbers> u) {
+        if (!source_.has_density() || plan_.estimates) return;
+        std::vector<std::size_t> odd;
+        for (std::size_t k = 0; k < w_.size(); ++k)
+            if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <= same_number * p_[k])) odd.push_back(k);
+        if (odd.empty()) return;
+        std::vector<Vec3d> around, here;
+        for (std::size_t k : odd) {
+            here.push_back(w_[k]);
+            for (Vec3d v : neighbours(w_[k])) around.push_back(v);
+        }
+        std::vector<double> q(around.size()), stated(here.size());
+        source_.density(around, q);
+        source_.stated_pdf(here, stated);
+        for (std::size_t j = 0; j < odd.size(); ++j) {
+            const std::size_t k = odd[j];
+            const Draw& d = draws_[at_[k]];
+            const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
+            const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
+            const double high = std::max({*std::max_element(first, last), p_[k], stated[j]});
+            const bool null_below = d.wi.z <= 0 && high == 0;  // nothing is drawn there
+            if (null_below) continue;
+            if (d.pdf < low * (1 - same_number) || d.pdf > high * (1 + same_number))
+                to_.checks.pointwise.add({u[at_[k]], d, p_[k], 0});
+            if (p_[k] > 0) continue;
+            if (high == 0) to_.checks.zero.add({u[at_[k]], d, 0, 0});
+            else if (d.wi.z > 0) p_[k] = d.pdf;
+        }
+    }
+
+    void compare_weights(std::span<const Numbers> u, int set) {
+        const bool truth = source_.subject.has_true_f();
+        f_.assign(w_.size(), {});
+        source_.f_cos(w_, f_);
+        if (truth) {
+            true_f_.assign(w_.size(), {});
+            source_.f_cos(w_, true_f_, true);
+        }
+        if (set < 0) to_.weighed += static_cast<double>(u.size());
+        for (std::size_t k = 0; k < w_.size(); ++k) {
+            const Draw& d = draws_[at_[k]];
+            if (!is_direction(d, p_[k])) continue;
+            const Vec3d f = f_[k], due = truth ? true_f_[k] : f;
+            bool wrong = false, untrue = false;
+            for (int c = 0; c < source_.channels(); ++c) {
+                const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(due, c);
+                const double w = !d.weight ? own : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
+                wrong = wrong || std::fabs(own - w) > same_number * std::max(own, 1e-6) + 1e-9;
+                untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
+                if (set < 0)
+                    to_.mean[static_cast<std::size_t>(c)].add(
+                        w * mean_bridge(y, p_[k], plan_.usual[static_cast<std::size_t>(c)], source_.has_density()));
+            }
+            ++to_.checks.weights;
+            if (wrong) to_.checks.weight.add({u[at_[k]], d, p_[k], f.x / d.pdf});
+            if (untrue) to_.checks.true_f.add({u[at_[k]], d, f.x, due.x});
+            if (set < 0) to_.weights.push_back(luminance_of(d, f));
+        }
+    }
+
+    double luminance_of(const Draw& d, Vec3d f) const {
+        if (d.weight) return *d.weight;
+        return (source_.channels() == 3 ? luminance(f) : f.x) / d.pdf;
+    }
+
+    void take(Vec3d w, double p, int set) {
+        const std::size_t l = plan_.tree.find(to_chart(w));
+        const Leaf& leaf = plan_.tree.leaves()[l];
+        const Values v = plan_.values(leaf, w, p);
+        if (set >= 0) {
+            for (std::size_t q = 0; q < integrands; ++q) to_.by_set[q][static_cast<std::size_t>(set)] += v[q];
+            to_.node_by_set[static_cast<std::size_t>(leaf.coarse)][static_cast<std::size_t>(set)] += v[bridge];
+            return;
+        }
+        ++to_.checks.directions;
+        for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
+        to_.leaves[l] += v[bridge];
+        ++to_.counts[l];
+        to_.mean_p += p;
+        if (p > 0) {
+            const double log_p = v[bridge] > 0 ? v[slope] / v[bridge] : 0;
+            to_.log_p.add(log_p), to_.slope_log_p += v[slope] * log_p;
+        }
+        to_.keys.push_back(key_of(w));
+        LeafIntegral& integral = integrals_.leaves[l];
+        if (p > alike * integral.top) complete(integral, v, p);
+    }
+
+    /// The variance of C for points at random is k integral of g^2 = k E[g^2 / p].
+    void complete(LeafIntegral& leaf, const Values& v, double p) {
+        ++to_.unmet;
+        const double draws = to_.independent;
+        const auto add = [&](Estimate& e, double h) {
+            const double x = leaf.per_point * p * h * h / draws;
+            e.variance += x, e.doubt += x * x;
+        };
+        leaf.second += v[bridge] * v[bridge] / draws;
+        add(leaf.bridge, v[bridge]);
+        for (std::size_t q = 0; q < integrands; ++q) add(integrals_.sums[q], v[q]);
+    }
+};
+
+}  // namespace
+
+void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
+    Integrals& integrals, Observations& to) {
+    if (to.leaves.empty()) {
+        to.leaves.resize(plan.tree.leaves().size()), to.counts.resize(plan.tree.leaves().size());
+        to.node_by_set.resize(plan.tree.rows());
+    }
+    Observer observer(source, plan, integrals, to);
+    const bool weighs = source.has_f();
+    std::vector<Numbers> u;
+    StreamKey draws = key;
+    draws.purpose = Purpose::draws;
+    const auto before = static_cast<std::uint32_t>(to.independent);
+    to.independent = std::max(look.independent, before);
+    for (std::uint32_t from = before; from < look.independent; from += batch_size) {
+        u.resize(std::min(batch_size, look.independent - from));
+        for (std::uint32_t i = 0; i < u.size(); ++i)
+            u[i] = numbers_at(draws, from + i, source.numbers(), source.single());
+        observer.batch(u, -1, weighs && from < of_f);
+    }
+    if (source.traits.own_random || !source.subject.draws_at_will()) return;
+    const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
+                        last = look.scrambled / replicate_sets;
+    for (int set = 0; set < replicate_sets; ++set) {
+        StreamKey scramble = key;
+        scramble.purpose = Purpose::scrambles;
+        scramble.part = static_cast<std::uint16_t>(set);
+        const ScrambledSobol points(scramble, source.numbers(), source.single());
+        for (std::uint32_t from = first; from < last; from += batch_size) {
+            u.resize(std::min(batch_size, last - from));
+            for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = points.at(from + i);
+            observer.batch(u, set, false);
+        }
+    }
+    to.scrambled = static_cast<double>(last) * replicate_sets;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,72 @@
+// The left side of E[h(draw)] = integral of h p: independent draws, and replicates of scrambled Sobol points. Checks
+// that look at one draw at a time are counted on the way.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "check/estimate/integrals.h"
+#include "check/estimate/sobol.h"
+
+namespace crescent::check {
+
+/// A draw that shows a fault, for the report.
+struct Example {
+    Numbers u;
+    Draw draw;
+    double p = 0, due = 0;  // density there; what was expected in place of what came
+};
+
+/// How often something happened, and the first time.
+struct Count {
+    std::uint64_t times = 0;
+    Example first{};
+    void add(const Example& e) {
+        if (times++ == 0) first = e;
+    }
+};
+
+/// Per-draw checks.
+struct DrawChecks {
+    std::uint64_t looked_at = 0, directions = 0, deltas = 0, nothing = 0;
+    Count invalid;    // not finite, negative, not unit
+    Count pointwise;  // pdf with the draw against pdf(w)
+    Count zero;       // p is 0 at and around a draw
+    Count weight;     // weight against f cos / pdf
+    Count true_f;     // f against what it ought to be
+    std::uint64_t weights = 0;
+};
+
+/// Sum and sum of squares of a value per draw.
+struct Sums {
+    double sum = 0, square = 0;
+    void add(double x) { sum += x, square += x * x; }
+};
+
+using Replicates = std::array<double, replicate_sets>;
+
+struct Observations {
+    double independent = 0, scrambled = 0;  // draws of each kind; scrambled: in all sets together
+    std::array<Sums, integrands> sums;
+    std::vector<double> leaves;  // sum of h over independent draws, by leaf
+    std::vector<float> counts;   // independent draws by leaf, for maps
+    std::array<Replicates, integrands> by_set{};
+    std::vector<Replicates> node_by_set;  // sum of h, by row of the coarse node that a leaf is in
+    DrawChecks checks;
+    std::vector<std::uint64_t> keys;  // hashes of the directions
+    double mean_p = 0;                // sum of p over the independent draws
+    Sums log_p;                       // of ln p less its median
+    double slope_log_p = 0;           // sum of the slope's h times that
+    std::vector<double> weights;      // luminance of the weights f cos / p of independent draws, 0 for nothing
+    std::array<Sums, 3> mean, delta;  // bridged weights by channel; power of delta draws
+    double weighed = 0;               // draws that `mean` and `weights` are of
+    std::uint64_t unmet = 0;          // draws at which p is more than any point of the leaf has met
+};
+
+/// Draws from the look before up to this one are added. Integrals are completed by what their points have not
+/// met: a draw with p > 2 top shows a part of its leaf without points, whose share of both variances (1) itself gives.
+void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
+    Integrals& integrals, Observations& to);
+
+}  // namespace crescent::check

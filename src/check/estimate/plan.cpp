@@ -1,0 +1,93 @@
+// The pilot draws shape the tree and are used for nothing else, so that no bias comes from its choice.
+#include "check/estimate/plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+double step_of(std::vector<double> v) {
+    if (v.size() < 64) return 0;
+    std::sort(v.begin(), v.end());
+    for (std::size_t k = 0; k + 1 < v.size(); ++k) v[k] = v[k + 1] - v[k];
+    v.pop_back();
+    std::sort(v.begin(), v.end());
+    const auto equal = static_cast<std::size_t>(std::upper_bound(v.begin(), v.end(), 0.0) - v.begin());
+    const std::size_t n = v.size(), within = std::min(n - 1, 2 * equal + n / 16);
+    if (equal < 3 || equal == n) return 0;
+    return std::min(2 * v[within] * static_cast<double>(equal) / static_cast<double>(within), v[(equal + n) / 2]);
+}
+
+namespace {
+
+struct Pilot {
+    std::vector<DensityPoint> points;
+    std::vector<Vec3d> directions;
+    std::array<double, 3> weight{};
+};
+
+Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key) {
+    Pilot out;
+    std::vector<Numbers> u;
+    std::vector<Draw> draws;
+    std::vector<Vec3d> w;
+    std::vector<double> p;
+    for (std::uint32_t from = 0; from < budget.pilot; from += batch_size) {
+        const std::uint32_t n = std::min(batch_size, budget.pilot - from);
+        u.resize(n), draws.assign(n, {});
+        for (std::uint32_t i = 0; i < n; ++i) u[i] = numbers_at(key, from + i, source.numbers(), source.single());
+        source.draw(u, draws);
+        w.clear();
+        std::vector<const Draw*> of;
+        for (const Draw& d : draws) {
+            if (d.delta != 0 || !(d.pdf > 0) || !std::isfinite(d.wi.x + d.wi.y + d.wi.z) || !std::isfinite(d.pdf))
+                continue;
+            if (!(dot(d.wi, d.wi) > 0)) continue;
+            w.push_back(d.wi), of.push_back(&d);
+        }
+        p.resize(w.size());
+        source.density(w, p);
+        for (std::size_t i = 0; i < w.size(); ++i) {
+            if (!is_direction(*of[i], p[i])) continue;
+            out.points.push_back({to_chart(w[i]), p[i]});
+            out.directions.push_back(w[i]);
+            if (!of[i]->weight) continue;
+            const Vec3d x =
+                source.channels() == 3 ? of[i]->weights : Vec3d{*of[i]->weight, *of[i]->weight, *of[i]->weight};
+            for (int c = 0; c < 3; ++c)
+                if (std::isfinite(channel_of(x, c)))
+                    out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / budget.pilot;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key) {
+    key.purpose = Purpose::pilot;
+    Pilot pilot = draw_pilot(source, budget, key);
+    std::vector<double> log_p, xyz[3];
+    for (const DensityPoint& e : pilot.points)
+        if (e.p > 0) log_p.push_back(e.p);
+    for (Vec3d w : pilot.directions) xyz[0].push_back(w.x), xyz[1].push_back(w.y), xyz[2].push_back(w.z);
+    const auto drawn = static_cast<std::uint32_t>(pilot.points.size());
+    Vec3d middle{};
+    for (Vec3d w : pilot.directions) middle = middle + w * (1.0 / drawn);
+    double step = 0;
+    for (auto& v : xyz) step = std::max(step, step_of(std::move(v)));
+    step = angle_per_step * std::min(step, coarsest_step);
+    double median = 0;
+    if (!log_p.empty()) {
+        const auto at = log_p.begin() + static_cast<std::ptrdiff_t>(log_p.size() / 2);
+        std::nth_element(log_p.begin(), at, log_p.end());
+        median = math::log(*at);
+    }
+    key.purpose = Purpose::tree;
+    return {Tree(source, std::move(pilot.points), budget.pilot, step, budget, key), step, median, middle, pilot.weight,
+        source.estimates, drawn, budget.pilot};
+}
+
+}  // namespace crescent::check

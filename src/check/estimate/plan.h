@@ -1,0 +1,45 @@
+// What is fixed before anything is tested: the tree and its densities, the step of the sampler's arithmetic, and the
+// constants of the test functions. Both stages use the same plan, so that stage 2 tests the hypothesis that stage 1
+// raised.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "check/estimate/tree.h"
+
+namespace crescent::check {
+
+/// The test functions h of whole sums, in the order of their integrals.
+enum Integrand : int { mass, bridge, slope, centre_x, centre_y, centre_z, integrands };
+
+/// Values of all h at one direction.
+using Values = std::array<double, integrands>;
+
+struct Plan {
+    Tree tree;
+    double step = 0;                  // of the sampler's arithmetic, as an angle; 0: none was seen
+    double median_log_p = 0;          // over the pilot draws
+    Vec3d middle{};                   // their mean direction
+    std::array<double, 3> usual{};    // their mean weight by channel
+    bool estimates = false;           // p is a random estimate, and h does not depend on it
+    std::uint32_t drawn = 0, of = 0;  // pilot draws that are directions; in all
+
+    /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times what the other sums look at.
+    Values values(const Leaf& leaf, Vec3d w, double p) const {
+        const double known = estimates ? leaf.q : p;
+        const double h = leaf.q / (known + leaf.q);
+        return {1, h, known > 0 ? h * (log_of(known) - median_log_p) : 0, h * (w.x - middle.x), h * (w.y - middle.y),
+            h * (w.z - middle.z)};
+    }
+    static double log_of(double p) { return math::log(p); }
+};
+
+/// Draws the pilot and grows the tree.
+Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key);
+
+/// The step of the lattice on which n values lie; 0 where none shows. Few equal pairs: (equal pairs) / (pairs within g)
+/// = step / (2 g). Many: the median gap between distinct values.
+double step_of(std::vector<double> values);
+
+}  // namespace crescent::check

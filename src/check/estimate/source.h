@@ -1,0 +1,62 @@
+// One technique of a sampler at one w_o: draws, densities and f in batches, each evaluation counted.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "subjects/subject.h"
+
+namespace crescent::check {
+
+/// Calls are for one thread. `subject` and `light` outlive it.
+class Source {
+public:
+    Source(const JudgedSampler& subject, int technique, Vec3d wo, const TrialLight& light)
+        : subject(subject), technique(technique), wo(wo), light(light), traits(subject.traits()) {}
+
+    const JudgedSampler& subject;
+    const int technique;
+    const Vec3d wo;
+    const TrialLight& light;
+    const Traits traits;
+    /// p is a random estimate, right in the mean alone: h must not depend on it.
+    bool estimates = false;
+
+    int numbers() const { return std::max(traits.numbers, 1); }
+    bool single() const { return traits.bits == 24; }
+    bool has_density() const { return traits.has_pdf; }
+    bool has_f() const { return subject.has_f(); }
+    int channels() const { return traits.channels == 3 ? 3 : 1; }
+
+    void draw(std::span<const Numbers> u, std::span<Draw> out);
+    /// 1/sr, in double where the sampler has it; 0 and counted where it is not finite or negative.
+    void density(std::span<const Vec3d> wi, std::span<double> out);
+    double density(Vec3d wi);
+    /// 1/sr, by the sampler's own arithmetic, as it comes.
+    void stated_pdf(std::span<const Vec3d> wi, std::span<double> out);
+    /// f |cos| by channel, without the light; 1/sr. truth: of the BRDF itself, where that is known apart from f.
+    void f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth = false);
+
+    std::uint64_t evaluations() const { return evaluations_; }
+    /// Answers of density() and f_cos() that were not finite or negative, and where the first was.
+    std::uint64_t invalid() const { return invalid_; }
+    Vec3d first_invalid() const { return first_invalid_; }
+    double first_invalid_value() const { return first_invalid_value_; }
+
+private:
+    std::uint64_t evaluations_ = 0, invalid_ = 0;
+    Vec3d first_invalid_{};
+    double first_invalid_value_ = 0;
+    std::vector<Pair> pairs_;
+    std::span<const Pair> pairs_of(std::span<const Vec3d> wi);
+    double checked(double value, Vec3d at);
+};
+
+/// A direction of the density that is tested: not a delta part, not nothing. p: the density there. Below the surface a
+/// draw counts where p is positive; else it is what the estimator takes for nothing.
+inline bool is_direction(const Draw& d, double p) {
+    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && (d.wi.z > 0 || p > 0);
+}
+
+}  // namespace crescent::check

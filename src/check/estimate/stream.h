@@ -1,0 +1,68 @@
+// Random numbers of the engine. A stream is one column of pcg4d (simd/random.h), which maps 128 bits to 128 bits one to
+// one: the key fills three words, the position the fourth. Two streams whose keys differ in any field therefore share
+// no block, and stage 2 cannot reuse the numbers of stage 1.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "simd/random.h"
+#include "subjects/subject.h"
+
+namespace crescent::check {
+
+/// What the numbers of a stream are used for.
+enum class Purpose : std::uint8_t { pilot, tree, points, draws, scrambles, pairs, corners, jacobian, light };
+
+/// Fields, not a hash: distinct by construction. `place` counts the cases of a call; `stage` is 1 or 2; `part` counts
+/// looks or replicates.
+struct StreamKey {
+    std::uint32_t seed = 1;
+    std::uint16_t place = 0;
+    std::uint8_t technique = 0, stage = 1;
+    Purpose purpose = Purpose::pilot;
+    std::uint16_t part = 0;
+
+    Vec4u<std::uint32_t> block(std::uint32_t index) const {
+        const std::uint32_t where = std::uint32_t{place} | std::uint32_t{technique} << 16 | std::uint32_t{stage} << 24;
+        return pcg4d(Vec4u<std::uint32_t>{index, where, static_cast<std::uint32_t>(purpose) << 16 | part, seed});
+    }
+};
+
+/// (k + 1/2) / 2^32, at most 1 - 2^-24, so that no float made of it is 1.
+inline double unit_number(std::uint32_t k) { return std::min((k + 0.5) * 0x1p-32, 1 - 0x1p-24); }
+/// The number as a sampler in single precision takes it: an odd multiple of 2^-24, as the estimator draws them.
+inline double single_number(double u) {
+    return static_cast<double>(static_cast<std::uint32_t>(u * 0x1p24) | 1u) * 0x1p-24;
+}
+
+/// Numbers in order.
+class Stream {
+public:
+    explicit Stream(StreamKey key) : key_(key) {}
+    std::uint32_t bits() {
+        if (at_ % 4 == 0) block_ = key_.block(at_ / 4);
+        const std::uint32_t lane = at_++ % 4;
+        return lane == 0 ? block_.x : lane == 1 ? block_.y : lane == 2 ? block_.z : block_.w;
+    }
+    double number() { return unit_number(bits()); }
+
+private:
+    StreamKey key_;
+    std::uint32_t at_ = 0;
+    Vec4u<std::uint32_t> block_{};
+};
+
+/// The random numbers of sample i of a stream, by position: blocks 2 i and 2 i + 1.
+inline Numbers numbers_at(const StreamKey& key, std::uint32_t i, int count, bool single) {
+    Numbers out;
+    for (int half = 0; half < (count > 4 ? 2 : 1); ++half) {
+        const Vec4u<std::uint32_t> b = key.block(2 * i + static_cast<std::uint32_t>(half));
+        const std::uint32_t lanes[4] = {b.x, b.y, b.z, b.w};
+        for (int k = 0; k < 4; ++k)
+            out[4 * half + k] = single ? single_number(unit_number(lanes[k])) : unit_number(lanes[k]);
+    }
+    return out;
+}
+
+}  // namespace crescent::check

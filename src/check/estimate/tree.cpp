@@ -1,0 +1,233 @@
+// Grown in rounds, so that p is evaluated in batches: all nodes to `even_depth`, then in each round the eighth of the
+// leaves with the highest score.
+#include "check/estimate/tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::size_t round_share = 8;  // a round cuts one leaf in eight
+constexpr double worthless = 1e-7;      // a score that no cut can use: 1/2000 of the detection floor
+
+/// What is known of a leaf while the tree grows.
+struct Growing {
+    std::vector<DensityPoint> points;
+    std::size_t first = 0, last = 0;  // its pilot draws
+    double spread = 0, score = 0, q = 0;
+    bool met = false;
+};
+
+}  // namespace
+
+class TreeGrowth {
+public:
+    TreeGrowth(Tree& tree, Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step,
+        const CheckBudget& budget, const StreamKey& key)
+        : tree_(tree),
+          source_(source),
+          pilots_(std::move(pilots)),
+          of_(of),
+          least_(std::max(least_width, 4 * step)),
+          budget_(budget),
+          stream_(key) {}
+
+    void grow() {
+        tree_.nodes_.push_back({});
+        growing_.push_back({});
+        growing_[0].last = pilots_.size();
+        rate({0});
+        std::vector<int> front = {0};
+        for (int depth = 0; depth < even_depth; ++depth) front = cut(front);
+        std::vector<int> open;
+        for (std::size_t i = 0; i < tree_.nodes_.size(); ++i)
+            if (tree_.nodes_[i].child < 0) open.push_back(static_cast<int>(i));
+        while (grow_round(open)) {}
+        tree_.number_leaves();
+        for (Leaf& leaf : tree_.leaves_) {
+            const Growing& g = growing_[static_cast<std::size_t>(leaf.node)];
+            leaf.q = g.q, leaf.spread = g.spread, leaf.score = g.score, leaf.met = g.met;
+        }
+    }
+
+private:
+    Tree& tree_;
+    Source& source_;
+    std::vector<DensityPoint> pilots_;
+    std::uint32_t of_;
+    double least_;
+    const CheckBudget& budget_;
+    Stream stream_;
+    std::vector<Growing> growing_;  // by node
+
+    /// One round of best-first growth; false where it has ended.
+    bool grow_round(std::vector<int>& open) {
+        double spread = 0;
+        for (int i : open) spread += at(i).spread;
+        const auto limit = static_cast<std::size_t>(
+            spread / std::sqrt(static_cast<double>(budget_.last().points)) > detection_floor / 4 ? budget_.most_leaves
+                                                                                                 : budget_.leaves);
+        if (open.size() >= limit) return false;
+        std::size_t count = std::min(std::max(open.size() / round_share, std::size_t{16}), limit - open.size());
+        count = std::min(count, open.size());
+        std::partial_sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count), open.end(),
+            [&](int a, int b) { return at(a).score != at(b).score ? at(a).score > at(b).score : a < b; });
+        std::vector<int> chosen(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
+        std::erase_if(chosen, [&](int i) { return at(i).score <= worthless; });
+        if (chosen.empty()) return false;
+        const std::vector<int> fresh = cut(chosen);
+        for (int i : chosen)
+            if (tree_.nodes_[static_cast<std::size_t>(i)].child < 0) at(i).score = 0;  // too narrow
+        std::erase_if(open, [&](int i) { return tree_.nodes_[static_cast<std::size_t>(i)].child >= 0; });
+        open.insert(open.end(), fresh.begin(), fresh.end());
+        return true;
+    }
+
+    Growing& at(int node) { return growing_[static_cast<std::size_t>(node)]; }
+
+    /// Which side to cut, by what the halves differ in; none where both are too narrow.
+    std::optional<bool> side_to_cut(const ChartRect& rect, const Growing& g) const {
+        double gain[2];
+        for (bool along_phi : {false, true}) {
+            const double middle = rect.middle(along_phi);
+            const auto left = [&](ChartPoint at) { return (along_phi ? at.phi : at.t) < middle; };
+            double sum[2] = {}, count[2] = {}, drawn = 0;
+            for (const DensityPoint& e : g.points) sum[!left(e.at)] += e.p, ++count[!left(e.at)];
+            for (std::size_t k = g.first; k < g.last; ++k) drawn += left(pilots_[k].at);
+            double& to = gain[along_phi];
+            to = std::fabs(2 * drawn - static_cast<double>(g.last - g.first)) / of_ + 1e-12;
+            if (count[0] > 0 && count[1] > 0) to += rect.area() * std::fabs(sum[0] / count[0] - sum[1] / count[1]) / 2;
+            if (rect.width(along_phi) > rect.width(!along_phi)) to *= wider_side;
+            if (rect.width(along_phi) < least_) to = 0;
+        }
+        if (gain[0] == 0 && gain[1] == 0) return {};
+        return gain[1] > gain[0];
+    }
+
+    /// Cuts these leaves in two where that is possible, and rates the halves.
+    std::vector<int> cut(const std::vector<int>& which) {
+        std::vector<int> fresh;
+        for (int i : which) {
+            const std::optional<bool> side = side_to_cut(tree_.nodes_[static_cast<std::size_t>(i)].rect, at(i));
+            if (!side) continue;
+            TreeNode& parent = tree_.nodes_[static_cast<std::size_t>(i)];
+            const double middle = parent.rect.middle(*side);
+            parent.along_phi = *side;
+            parent.child = static_cast<int>(tree_.nodes_.size());
+            TreeNode halves[2] = {
+                {parent.rect, -1, parent.depth + 1, -1, false}, {parent.rect, -1, parent.depth + 1, -1, false}};
+            (*side ? halves[0].rect.phi1 : halves[0].rect.t1) = middle;
+            (*side ? halves[1].rect.phi0 : halves[1].rect.t0) = middle;
+            const auto left = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
+            Growing parts[2];
+            Growing whole = std::move(at(i));
+            for (const DensityPoint& e : whole.points) parts[!left(e)].points.push_back(e);
+            const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.first);
+            const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.last);
+            const auto split = static_cast<std::size_t>(std::partition(begin, end, left) - pilots_.begin());
+            parts[0].first = whole.first, parts[0].last = parts[1].first = split, parts[1].last = whole.last;
+            for (int k : {0, 1}) {
+                fresh.push_back(static_cast<int>(tree_.nodes_.size()));
+                tree_.nodes_.push_back(halves[k]);
+                growing_.push_back(std::move(parts[k]));
+            }
+            tree_.depth_ = std::max(tree_.depth_, halves[0].depth);
+        }
+        rate(fresh);
+        return fresh;
+    }
+
+    /// Evaluates p until each has its points, in one batch, and scores them.
+    void rate(const std::vector<int>& which) {
+        std::vector<ChartPoint> places;
+        std::vector<Vec3d> w;
+        for (int i : which)
+            for (int k = static_cast<int>(at(i).points.size()); k < points_per_leaf; ++k) {
+                const double x = stream_.number(), y = stream_.number();
+                places.push_back(tree_.nodes_[static_cast<std::size_t>(i)].rect.at(x, (k + y) / points_per_leaf));
+                w.push_back(from_chart(places.back()));
+            }
+        std::vector<double> p(w.size());
+        source_.density(w, p);
+        std::size_t next = 0;
+        for (int i : which) {
+            Growing& g = at(i);
+            while (static_cast<int>(g.points.size()) < points_per_leaf) {
+                g.points.push_back({places[next], p[next]});
+                ++next;
+            }
+            score(tree_.nodes_[static_cast<std::size_t>(i)].rect.area(), g);
+        }
+    }
+
+    void score(double area, Growing& g) const {
+        const double n = static_cast<double>(g.points.size());
+        double mean = 0, square = 0, top = 0, seen = 0;
+        for (const DensityPoint& e : g.points) mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
+        for (std::size_t k = g.first; k < g.last; ++k) seen = std::max(seen, pilots_[k].p);
+        const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
+        const bool missed = seen > alike * top;
+        g.spread = area * std::sqrt(std::max(0.0, square - mean * mean));
+        g.score =
+            g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + (missed ? drawn : 0);
+        // Not of the draws alone: their noise would make h rough from leaf to leaf, and replicates would gain nothing.
+        g.q = missed ? (mean + drawn / area) / 2 : mean;
+        g.met = g.q > 0;
+        if (!g.met) g.q = std::max(drawn, 0.5 / of_) / area;
+    }
+};
+
+Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step, const CheckBudget& budget,
+    const StreamKey& key) {
+    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow();
+    find_edges();
+}
+
+void Tree::number_leaves() {
+    std::vector<int> up(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        TreeNode& x = nodes_[i];
+        if (x.depth <= replicated_depth) up[i] = x.row = static_cast<int>(rows_++);
+        if (x.child >= 0) {
+            const TreeNode& c = nodes_[static_cast<std::size_t>(x.child)];
+            up[static_cast<std::size_t>(x.child)] = up[static_cast<std::size_t>(x.child) + 1] = up[i];
+            cuts_.push_back({x.along_phi ? c.rect.phi1 : c.rect.t1, x.child, -1, x.along_phi});
+            continue;
+        }
+        x.leaf = static_cast<int>(leaves_.size());
+        cuts_.push_back({0, -1, x.leaf, false});
+        Leaf leaf;
+        leaf.node = static_cast<int>(i);
+        leaf.coarse = up[i];
+        leaves_.push_back(leaf);
+    }
+}
+
+/// A leaf beside one of another density may hide a strip of it that none of its points has met.
+bool Tree::at_edge(const Leaf& leaf) const {
+    constexpr double beside = 1e-12, places[2] = {0.25, 0.75};
+    const ChartRect& r = rect(leaf);
+    for (int face = 0; face < 4; ++face)
+        for (double x : places) {
+            ChartPoint at = r.at(x, x);
+            if (face == 0) at.t = r.t0 - beside;
+            if (face == 1) at.t = r.t1 + beside;
+            if (face == 2) at.phi = r.phi0 - beside < 0 ? r.phi0 - beside + two_pi : r.phi0 - beside;
+            if (face == 3) at.phi = r.phi1 + beside >= two_pi ? r.phi1 + beside - two_pi : r.phi1 + beside;
+            if (at.t < 0 || at.t > 2) continue;
+            const Leaf& neighbour = leaves_[find(at)];
+            const double q = neighbour.met ? neighbour.q : 0;
+            if (std::max(q, leaf.q) > alike * std::min(q, leaf.q)) return true;
+        }
+    return false;
+}
+
+void Tree::find_edges() {
+    for (Leaf& leaf : leaves_) leaf.edge = leaf.met && at_edge(leaf);
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,77 @@
+// A tree of the sphere for one density, fixed before anything is tested: dyadic cuts of the chart where p varies, where
+// the pilot draws disagree with it and where mass is. Each leaf has a density q_l, from which the test functions are
+// made.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "check/estimate/budget.h"
+#include "check/estimate/chart.h"
+#include "check/estimate/source.h"
+#include "check/estimate/stream.h"
+
+namespace crescent::check {
+
+/// A place with p there.
+struct DensityPoint {
+    ChartPoint at;
+    double p = 0;
+};
+
+struct TreeNode {
+    ChartRect rect;
+    int child = -1;  // the second child is the next one; -1: a leaf
+    int depth = 0, leaf = -1;
+    int row = -1;            // its number among nodes down to `replicated_depth`
+    bool along_phi = false;  // of its cut
+};
+
+struct Leaf {
+    int node = 0;
+    int coarse = 0;     // row of its ancestor at `replicated_depth`, or of itself where it is higher
+    double q = 0;       // 1/sr; positive
+    double spread = 0;  // area times the standard deviation of p over its points
+    double score = 0;   // how much more leaves would help here
+    bool met = false;   // p > 0 was met here while the tree grew; else q is what one draw in two pilots would show
+    bool edge = false;  // it is met, and a neighbour has a q that differs by more than `alike`
+};
+
+class Tree {
+public:
+    /// `pilots`: directions that were drawn, of `of` draws in all. step: of the sampler's arithmetic, as an angle.
+    Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step, const CheckBudget& budget,
+        const StreamKey& key);
+
+    const std::vector<TreeNode>& nodes() const { return nodes_; }
+    const std::vector<Leaf>& leaves() const { return leaves_; }
+    std::size_t find(ChartPoint at) const {
+        std::size_t i = 0;
+        while (cuts_[i].child >= 0)
+            i = static_cast<std::size_t>(cuts_[i].child) + ((cuts_[i].along_phi ? at.phi : at.t) >= cuts_[i].at);
+        return static_cast<std::size_t>(cuts_[i].leaf);
+    }
+    const ChartRect& rect(const Leaf& leaf) const { return nodes_[static_cast<std::size_t>(leaf.node)].rect; }
+    int depth() const { return depth_; }
+    std::size_t rows() const { return rows_; }
+
+private:
+    struct Cut {
+        double at;
+        int child, leaf;
+        bool along_phi;
+    };
+    std::vector<TreeNode> nodes_;
+    std::vector<Leaf> leaves_;
+    std::vector<Cut> cuts_;
+    int depth_ = 0;
+    std::size_t rows_ = 0;
+    void number_leaves();
+    void find_edges();
+    bool at_edge(const Leaf& leaf) const;
+    friend class TreeGrowth;
+};
+
+}  // namespace crescent::check

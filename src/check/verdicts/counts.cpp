@@ -1,0 +1,47 @@
+// identity and valid, by draws counted one at a time: values, pointwise, zero, weight, and directions that come again.
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+#include "check/verdicts/questions.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// More than a share of the draws, and more than a few.
+void ask_share(Family family, const Count& count, double of, double tolerated, const Visit& visit) {
+    const double times = static_cast<double>(count.times);
+    visit({family, 0, of > 0 ? times / of : 0, 0, tolerated, times > tolerated * of + tolerated_breaks ? 0.0 : 1.0, 0});
+}
+
+/// Pairs of equal directions, against those that the lattice of the arithmetic makes: N^2 / 2 pairs, of which a step^2
+/// of the sphere holds the integral of p^2 = E[p].
+void ask_repeats(const Evidence& e, const Visit& visit) {
+    const Observations& o = e.observations;
+    std::vector<std::uint64_t> keys = o.keys;
+    std::sort(keys.begin(), keys.end());
+    double equal = 0;
+    for (std::size_t k = 1; k < keys.size(); ++k) equal += keys[k] == keys[k - 1];
+    const double least = e.source.traits.bits == 53 ? 0x1p-53 : ulp;
+    const double step = std::max(e.plan.step / angle_per_step, least);
+    const double expected = o.independent * step * step * o.mean_p / 2;
+    visit({Family::repeats, 0, equal, std::sqrt(expected), repeats_floor,
+        equal > repeats_floor + repeats_factor * expected ? 0.0 : 1.0, expected});
+}
+
+}  // namespace
+
+void ask_counts(const Evidence& e, const Visit& visit) {
+    const DrawChecks& c = e.observations.checks;
+    const double draws = static_cast<double>(c.looked_at);
+    const double invalid = static_cast<double>(c.invalid.times + e.source.invalid());
+    visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
+    ask_share(Family::pointwise, c.pointwise, draws, tolerated_share, visit);
+    ask_share(Family::zero, c.zero, draws, tolerated_zeros, visit);
+    ask_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
+    ask_share(Family::true_f, c.true_f, static_cast<double>(c.weights), tolerated_share, visit);
+    if (e.source.has_density() && !e.source.traits.delta) ask_repeats(e, visit);
+}
+
+}  // namespace crescent::check

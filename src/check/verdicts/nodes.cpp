@@ -1,0 +1,117 @@
+// density, at every scale: how h divides between the halves of each node, given its whole; and all nodes of one depth
+// together, for many small faults. The variance is predicted from the claim, so that draws in a half that should be
+// empty show fully.
+#include <cmath>
+
+#include "check/constants.h"
+#include "check/verdicts/questions.h"
+#include "check/verdicts/statistics.h"
+#include "stats/p_values.h"
+
+namespace crescent::check {
+
+std::vector<NodeSums> node_sums(const Evidence& e) {
+    const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+    const Observations& o = e.observations;
+    std::vector<NodeSums> out(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        NodeSums& s = out[i];
+        if (nodes[i].child < 0) {
+            const auto l = static_cast<std::size_t>(nodes[i].leaf);
+            const LeafIntegral& c = e.integrals.leaves[l];
+            s = {o.leaves[l] / o.independent, c.bridge.value, c.second, c.solid_angle, c.bridge.variance,
+                c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q)};
+            continue;
+        }
+        for (int half : {0, 1}) {
+            const NodeSums& h = out[static_cast<std::size_t>(nodes[i].child + half)];
+            s.drawn += h.drawn, s.claimed += h.claimed, s.second += h.second, s.solid_angle += h.solid_angle;
+            s.variance += h.variance, s.doubt += h.doubt, s.largest = std::max(s.largest, h.largest);
+        }
+    }
+    return out;
+}
+
+NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node) {
+    const TreeNode& x = e.plan.tree.nodes()[node];
+    const NodeSums &all = sums[node], &a = sums[static_cast<std::size_t>(x.child)],
+                   &b = sums[static_cast<std::size_t>(x.child) + 1];
+    NodeSplit out;
+    const double r = out.share = a.claimed / all.claimed, less = std::min(r, 1 - r), n = e.observations.independent;
+    // Share of the draws that rounding moves over the cut, and over the node's other edges.
+    const double moved =
+        e.plan.step / x.rect.width(x.along_phi) + less * e.plan.step / (x.rect.width(!x.along_phi) + 1e-300);
+    out.difference = a.drawn - r * all.drawn;
+    out.floor = all.drawn * (detection_floor * less + moved);
+    const double c2 = all.claimed * all.claimed, to_variance = all.drawn * all.drawn / (c2 * c2);
+    out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
+    const auto fourth = [](double v) { return v * v * v * v; };
+    out.doubt = to_variance * to_variance * (fourth(b.claimed) * a.doubt + fourth(a.claimed) * b.doubt);
+    out.variance = all.drawn / all.claimed * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n + out.claim_variance;
+    out.one_draw = all.second / all.claimed;
+    out.smaller_half = less * n * c2 / (all.second + 1e-300);
+    return out;
+}
+
+namespace {
+
+/// Sum of h by node and replicate, down to the replicated depth; by row.
+std::vector<Replicates> node_replicates(const Evidence& e) {
+    std::vector<Replicates> out = e.observations.node_by_set;
+    const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const TreeNode& x = nodes[i];
+        if (x.child < 0 || x.depth >= replicated_depth) continue;
+        const auto row = [&](int n) { return static_cast<std::size_t>(nodes[static_cast<std::size_t>(n)].row); };
+        for (std::size_t k = 0; k < replicate_sets; ++k)
+            out[static_cast<std::size_t>(x.row)][k] = out[row(x.child)][k] + out[row(x.child + 1)][k];
+    }
+    return out;
+}
+
+Answer by_replicates(const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s) {
+    const TreeNode& x = e.plan.tree.nodes()[node];
+    const Replicates &whole = sets[static_cast<std::size_t>(x.row)],
+                     &half = sets[static_cast<std::size_t>(e.plan.tree.nodes()[static_cast<std::size_t>(x.child)].row)];
+    const double draw = replicate_sets / e.observations.scrambled;
+    Replicates y;
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half[k] - s.share * whole[k]) * draw;
+    const ReplicateMean of_sets(y, s.one_draw * draw);
+    const double v = of_sets.variance + s.claim_variance;
+    Answer a{Family::node_sets, static_cast<int>(node), of_sets.mean, std::sqrt(v), s.floor, 1, s.share};
+    a.p = student_p_of(std::fabs(of_sets.mean) - s.floor, v,
+        freedom(v, s.doubt + 2 * of_sets.variance * of_sets.variance / (replicate_sets - 1)));
+    return a;
+}
+
+}  // namespace
+
+void ask_nodes(const Evidence& e, const Visit& visit) {
+    if (!e.source.has_density()) return;
+    const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+    const std::vector<NodeSums> sums = node_sums(e);
+    const double n = e.observations.independent;
+    const bool by_sets = e.observations.scrambled > 0;
+    const std::vector<Replicates> sets = by_sets ? node_replicates(e) : std::vector<Replicates>();
+    std::vector<double> chi(static_cast<std::size_t>(e.plan.tree.depth()) + 1), degrees(chi.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].child < 0 || std::min(sums[i].drawn, sums[i].claimed) * n < least_count) continue;
+        const NodeSplit s = split_of(e, sums, i);
+        const double z2 =
+            bennett_z2(std::fabs(s.difference) - s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt));
+        visit({Family::node, static_cast<int>(i), s.difference, std::sqrt(s.variance), s.floor, bennett_p(z2),
+            s.share * sums[i].drawn});
+        if (s.smaller_half < least_count) continue;
+        const auto depth = static_cast<std::size_t>(nodes[i].depth);
+        chi[depth] += std::min(z2, 1e6), ++degrees[depth];
+        // A replicate's mean must be near normal: with fewer draws Student's t errs by orders of magnitude in its tail.
+        if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= least_count)
+            visit(by_replicates(e, sets, i, s));
+    }
+    for (std::size_t d = 0; d < chi.size(); ++d)
+        if (degrees[d] > 0)
+            visit({Family::depth, static_cast<int>(d), chi[d] - degrees[d], std::sqrt(2 * degrees[d]), 0,
+                stats::chi_squared_p(chi[d], degrees[d]), degrees[d]});
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,92 @@
+// The list of questions. Each is E[h(draw)] = integral of h p for one h, or a small test beside it; questions of one
+// kind are a family, whose p-value is the least of its members' times their number.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "check/estimate/observations.h"
+#include "check/verdicts/statistics.h"
+
+namespace crescent::check {
+
+enum class Family {
+    values,     // numbers that cannot be used
+    corners,    // the same at corners of u, w_o and w_i
+    mass,       // h = 1
+    mass_sets,  // the same by replicates; likewise below
+    bridge,     // h = q / (p + q)
+    bridge_sets,
+    slope,  // h (ln p - median)
+    slope_sets,
+    centre,  // h (x - mean), y and z likewise
+    centre_sets,
+    node,  // how h divides between the halves of a node
+    node_sets,
+    depth,      // sum of squares over all nodes of one depth
+    pointwise,  // pdf with the draw against pdf(w)
+    zero,       // p = 0 where something is drawn
+    weight,     // weight with the draw against f cos / pdf
+    jacobian,   // p against the derivatives of sample(u)
+    repeats,    // directions that come again
+    state,      // the same u gives another draw, alone or in another batch
+    support,    // f cos where p is 0
+    mean,       // bridged weights against the integral of f cos
+    true_f,     // f against what it ought to be
+    mis,        // weights of combined techniques sum to 1
+    albedo,     // more light comes back than arrives
+    reciprocity,
+    families
+};
+
+/// Name in reports and JSON, and the verdict that a failure makes wrong.
+struct FamilyInfo {
+    std::string_view name, verdict;
+};
+const FamilyInfo& info(Family family);
+
+/// One question with its result at some stage.
+struct Answer {
+    Family family = Family::values;
+    int member = 0;         // channel, axis, node or depth
+    double difference = 0;  // left side less right side
+    double sd = 0, floor = 0;
+    double p = 1;         // two-sided
+    double expected = 0;  // right side
+};
+
+using Visit = std::function<void(const Answer&)>;
+
+/// What questions are put to: the plan and both sides of (1).
+struct Evidence {
+    const Source& source;
+    const Plan& plan;
+    const Integrals& integrals;
+    const Observations& observations;
+};
+
+// Each visits every member of its families.
+void ask_sums(const Evidence& e, const Visit& visit);
+void ask_nodes(const Evidence& e, const Visit& visit);
+void ask_light(const Evidence& e, const Visit& visit);
+void ask_counts(const Evidence& e, const Visit& visit);
+
+/// Mean of a whole sum over the replicates.
+ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
+
+/// O and C of every node, from its leaves, and how its h splits between its halves.
+struct NodeSums {
+    double drawn = 0, claimed = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0;
+};
+std::vector<NodeSums> node_sums(const Evidence& e);
+/// What a node's test compares.
+struct NodeSplit {
+    double share = 0;       // of h p in the first half
+    double difference = 0;  // of the first half, given the whole
+    double floor = 0, variance = 0, doubt = 0, claim_variance = 0;
+    double smaller_half = 0;  // expected draws
+    double one_draw = 0;      // what one counts for: E[h^2] / E[h]
+};
+NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node);
+
+}  // namespace crescent::check

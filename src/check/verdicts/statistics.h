@@ -1,0 +1,56 @@
+// p-values of differences whose variance is partly an estimate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+#include "math/functions.h"
+#include "stats/distributions.h"
+
+namespace crescent::check {
+
+/// Degrees of freedom of an estimated variance v that itself has variance w (Satterthwaite 1946).
+inline double freedom(double v, double w) {
+    if (!(w > 0)) return 1e12;
+    const double ratio = v / std::sqrt(w);  // squares of a density's peak may overflow
+    return std::isfinite(ratio) ? std::clamp(2 * ratio * ratio, 0.5, 1e12) : 0.5;
+}
+
+/// Twice the exponent of Bennett's inequality (1962): a sum of independent terms of variance v in all, none more than b
+/// above its mean, exceeds its expectation by d with probability at most exp(-z2 / 2). It holds at every count: it is
+/// Chernoff's bound for a Poisson count and d^2 / v for many terms. Where v has nu degrees of freedom z2 shrinks as
+/// Student's t does.
+inline double bennett_z2(double d, double v, double b, double nu) {
+    if (!(d > 0)) return 0;
+    v = std::max(v, 1e-30);
+    const double x = b * d / v;
+    const double z2 = x < 1e-4 ? d * d / v : 2 * v / (b * b) * ((1 + x) * math::log1p(x) - x);
+    return nu * math::log1p(z2 / nu);
+}
+/// Two-sided.
+inline double bennett_p(double z2) { return std::min(1.0, 2 * math::exp(-z2 / 2)); }
+
+/// Mean and variance of the mean of replicates, of which one draw more or less moves a replicate by `jump`. The
+/// variance is at least `least_jumps`^2 of a jump: a count that is n in most replicates and n + 1 in a few shows no
+/// spread at times, and Student's t would then be infinite.
+template <class Values> struct ReplicateMean {
+    double mean = 0, variance = 0;
+    ReplicateMean(const Values& y, double jump) {
+        const double n = static_cast<double>(y.size());
+        for (double v : y) mean += v / n;
+        for (double v : y) variance += (v - mean) * (v - mean) / (n * (n - 1));
+        variance += least_jumps * least_jumps * jump * jump / n;
+    }
+};
+
+/// Two-sided Student p of a difference d beyond its floor, of variance v with nu degrees of freedom.
+inline double student_p_of(double d, double v, double nu) {
+    return d > 0 ? stats::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
+}
+/// One-sided: the chance that a normal exceeds its mean by d.
+inline double normal_p_of(double d, double v) {
+    return d > 0 ? stats::normal_two_sided(d / std::sqrt(v + 1e-30)) / 2 : 1;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,58 @@
+// normalised and density, by sums over all draws: mass (h = 1), bridge, slope, centre. A deviation is compared with its
+// standard error and the detection floor, relative to the sum itself (mass, bridge) or to the spread of h (slope,
+// centre).
+#include <cmath>
+
+#include "check/constants.h"
+#include "check/verdicts/questions.h"
+#include "check/verdicts/statistics.h"
+
+namespace crescent::check {
+
+namespace {
+
+struct Kind {
+    Family family, by_sets;
+};
+constexpr Kind kinds[integrands] = {{Family::mass, Family::mass_sets}, {Family::bridge, Family::bridge_sets},
+    {Family::slope, Family::slope_sets}, {Family::centre, Family::centre_sets}, {Family::centre, Family::centre_sets},
+    {Family::centre, Family::centre_sets}};
+
+}  // namespace
+
+ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand) {
+    const Observations& o = e.observations;
+    const auto q = static_cast<std::size_t>(integrand);
+    Replicates y;
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = o.by_set[q][k] * replicate_sets / o.scrambled;
+    const double one_draw = std::sqrt(o.sums[q].square / std::max(o.sums[mass].sum, 1.0));
+    return {y, one_draw * replicate_sets / o.scrambled};
+}
+
+void ask_sums(const Evidence& e, const Visit& visit) {
+    if (!e.source.has_density()) return;
+    const Observations& o = e.observations;
+    const double n = o.independent;
+    for (int q = 0; q < integrands; ++q) {
+        const auto at = static_cast<std::size_t>(q);
+        const Estimate& claimed = e.integrals.sums[at];
+        const double mean = o.sums[at].sum / n, square = o.sums[at].square / n;
+        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : std::max(mean, claimed.value));
+        Answer a{kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
+        const double v = std::max(square - mean * mean, 0.0) / n + claimed.variance;
+        a.sd = std::sqrt(v);
+        a.p = bennett_p(bennett_z2(std::fabs(a.difference) - floor, v, 1 / n, freedom(v, claimed.doubt)));
+        visit(a);
+        if (o.scrambled == 0) continue;
+        const ReplicateMean<Replicates> sets = replicate_mean(e, q);
+        a.family = kinds[q].by_sets;
+        a.difference = sets.mean - claimed.value;
+        const double w = sets.variance + claimed.variance;
+        a.sd = std::sqrt(w);
+        a.p = student_p_of(std::fabs(a.difference) - floor, w,
+            freedom(w, claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1)));
+        visit(a);
+    }
+}
+
+}  // namespace crescent::check
