@@ -1,0 +1,173 @@
+#include "check/decide/whole_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+namespace {
+
+bool answers_for(const Traits& traits, Vec3d wo) { return traits.wo != Traits::Asked::upper || wo.z > 0; }
+
+/// Some u at each special w_o: the middle, and spread over the cube.
+std::vector<Numbers> few_numbers(int count) {
+    std::vector<Numbers> out;
+    for (int i = 0; i < 16; ++i) {
+        Numbers u;
+        for (int k = 0; k < std::max(count, 2); ++k) u[k] = std::fmod(0.5 + i * 0.6180339887 * (k + 1), 1.0);
+        out.push_back(u);
+    }
+    return out;
+}
+
+void note(SmallFault& to, const Numbers& u, const Draw& d, double p, const char* what) {
+    if (to.times++ == 0) to.first = {u, d, p, 0}, to.what = what;
+}
+
+}  // namespace
+
+std::vector<Vec3d> special_directions() {
+    std::vector<Vec3d> on, out;
+    constexpr double c = 0.6, s = 0.8;
+    for (double a : {-1.0, 1.0}) {
+        on.insert(on.end(), {{a, 0, 0}, {0, a, 0}, {0, 0, a}});
+        for (double b : {-1.0, 1.0}) on.insert(on.end(), {{c * a, s * b, 0}, {c * a, 0, s * b}, {0, c * a, s * b}});
+    }
+    for (Vec3d w : on) {
+        out.push_back(w);
+        for (double e : {-ulp, ulp}) {
+            if (w.x == 0) out.push_back({e, w.y, w.z});
+            if (w.y == 0) out.push_back({w.x, e, w.z});
+            if (w.z == 0) out.push_back({w.x, w.y, e});
+        }
+    }
+    for (double a : {-1.0, 1.0})
+        for (double tilt : {1e-5, 5e-4}) out.insert(out.end(), {{tilt, 0, a}, {0, -tilt, a}, {c * tilt, s * tilt, a}});
+    for (Vec3d& w : out) w = w * (1 / std::sqrt(dot(w, w)));
+    return out;
+}
+
+std::optional<SmallFault> special_places(const JudgedSampler& subject, int technique, std::span<const Vec3d> ordinary) {
+    if (!subject.draws_at_will()) return {};
+    const Traits traits = subject.traits();
+    const std::vector<Vec3d> special = special_directions();
+    const std::vector<Numbers> u = few_numbers(traits.numbers);
+    SmallFault out{Family::corners};
+    std::vector<Draw> draws(u.size());
+    std::vector<Pair> pairs;
+    for (Vec3d wo : special) {
+        if (!answers_for(traits, wo) || traits.wo == Traits::Asked::none) continue;
+        std::fill(draws.begin(), draws.end(), Draw{});
+        subject.sample(technique, wo, u, draws);
+        out.of += static_cast<double>(u.size());
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            if (const auto fault = fault_of(draws[i])) note(out, u[i], draws[i], 0, *fault);
+            else if (draws[i].pdf > 0) pairs.push_back({wo, draws[i].wi});
+        }
+    }
+    for (Vec3d wo : ordinary)
+        for (Vec3d wi : special) pairs.push_back({wo, wi});
+    std::vector<double> p(pairs.size()), f(pairs.size());
+    if (traits.has_pdf) subject.pdf(technique, pairs, p);
+    if (subject.has_f()) subject.f(pairs, f);
+    out.of += static_cast<double>(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {  // a density may have a pole in a single direction
+        Draw at;
+        at.wi = pairs[i].wi;
+        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0");
+        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f is not a number >= 0");
+    }
+    return out.times > 0 ? std::optional(out) : std::nullopt;
+}
+
+namespace {
+
+/// f |cos|^k by channel for pairs, k = 1 for phase functions.
+std::vector<Vec3d> f_of(const JudgedSampler& subject, std::span<const Pair> pairs) {
+    std::vector<Vec3d> out(pairs.size());
+    if (subject.traits().channels == 3) {
+        subject.f_channels(pairs, out);
+    } else {
+        std::vector<double> y(pairs.size());
+        subject.f(pairs, y);
+        for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
+    }
+    return out;
+}
+
+/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and one
+/// over that for importance (Veach 1997, (5.14)).
+double due_ratio(const Traits& traits, const Pair& p, int channel) {
+    if (p.wo.z * p.wi.z > 0 || !traits.eta) return 1;
+    const double eta2 = sqr(channel_of(*traits.eta, channel));
+    return (p.wo.z > 0) == !traits.importance ? eta2 : 1 / eta2;
+}
+
+bool differ(double a, double b, double tolerance) { return std::fabs(a - b) > tolerance * std::max(a, b) + 1e-30; }
+
+}  // namespace
+
+std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const StreamKey& key) {
+    const Traits traits = subject.traits();
+    if (!subject.has_f() || !traits.reciprocal || traits.wo == Traits::Asked::none) return {};
+    const bool both = traits.wo == Traits::Asked::both;
+    Stream stream(key);
+    const auto direction = [&](bool below) {
+        const double z = 0.02 + 0.98 * stream.number();
+        return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
+    };
+    std::vector<Pair> there, back;
+    for (int i = 0; i < 256; ++i) {
+        const Pair p{direction(both && (i & 1)), direction(both && (i & 2))};
+        there.push_back(p), back.push_back({p.wi, p.wo});
+    }
+    const std::vector<Vec3d> f = f_of(subject, there), g = f_of(subject, back), again = f_of(subject, there);
+    SmallFault as_surface{Family::reciprocity, 0, 256, 0, {}, "f(a, b) differs from f(b, a)"}, as_phase = as_surface;
+    for (std::size_t i = 0; i < there.size(); ++i)
+        for (int c = 0; c < (traits.channels == 3 ? 3 : 1); ++c) {
+            const Pair& p = there[i];
+            const double a = channel_of(f[i], c), b = channel_of(g[i], c);
+            if (differ(a, channel_of(again[i], c), same_number)) return {};  // a random estimate
+            const bool across = p.wo.z * p.wi.z < 0;
+            Draw at;
+            at.wi = p.wi;
+            if (differ(a * std::fabs(p.wi.z), b * std::fabs(p.wo.z), reciprocity_tolerance)) ++as_phase.times;
+            if ((!across || traits.eta) && differ(a * due_ratio(traits, p, c), b, reciprocity_tolerance))
+                note(as_surface, {}, at, a, as_surface.what), as_surface.first.due = b;
+        }
+    const bool phase = both && !traits.eta && as_phase.times == 0;
+    // A pair or two in 256 may be where f ends: a rounding of the half vector.
+    return as_surface.times > tolerated_breaks && !phase ? std::optional(as_surface) : std::nullopt;
+}
+
+std::optional<SmallFault> mis_weights(const JudgedSampler& subject, Vec3d wo, const StreamKey& key) {
+    if (subject.techniques() < 2) return {};
+    const Traits traits = subject.traits();
+    SmallFault out{Family::mis, 0, 0, 0, {}, "weights of the techniques do not sum to 1"};
+    for (int t = 0; t < subject.techniques(); ++t) {
+        std::vector<Numbers> u;
+        for (std::uint32_t i = 0; i < 512; ++i) u.push_back(numbers_at(key, i, traits.numbers, traits.bits == 24));
+        std::vector<Draw> draws(u.size());
+        subject.sample(t, wo, u, draws);
+        std::vector<Pair> at;
+        std::vector<std::size_t> of;
+        for (std::size_t i = 0; i < u.size(); ++i)
+            if (draws[i].pdf > 0 && draws[i].wi.z > 0) at.push_back({wo, draws[i].wi}), of.push_back(i);
+        std::vector<double> sum(at.size()), w(at.size());
+        for (int k = 0; k < subject.techniques(); ++k) {
+            subject.mis_weight(k, at, w);
+            for (std::size_t i = 0; i < at.size(); ++i) sum[i] += w[i];
+        }
+        out.of += static_cast<double>(at.size());
+        for (std::size_t i = 0; i < at.size(); ++i)
+            if (!(std::fabs(sum[i] - 1) <= reciprocity_tolerance)) {
+                note(out, u[of[i]], draws[of[i]], sum[i], out.what);
+                if (std::fabs(sum[i] - 1) > std::fabs(out.size)) out.size = sum[i] - 1;
+            }
+    }
+    return out.times > tolerated_breaks ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace crescent::check

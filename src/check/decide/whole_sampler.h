@@ -1,0 +1,20 @@
+// Tests of a sampler that belong to no single w_o: w_o and w_i exactly on axes, planes and the horizon and next to them;
+// f in both directions; weights of combined techniques.
+#pragma once
+
+#include <vector>
+
+#include "check/decide/small_tests.h"
+
+namespace crescent::check {
+
+/// Directions on axes and planes, and one rounding of single precision beside them.
+std::vector<Vec3d> special_directions();
+/// Draws at special w_o, pdf and f at special w_i; of one technique.
+std::optional<SmallFault> special_places(const JudgedSampler& subject, int technique, std::span<const Vec3d> ordinary);
+/// f(a, b) against f(b, a), with eta^2 across the surface.
+std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const StreamKey& key);
+/// Weights of two techniques that are combined sum to 1 wherever one of them draws.
+std::optional<SmallFault> mis_weights(const JudgedSampler& subject, Vec3d wo, const StreamKey& key);
+
+}  // namespace crescent::check
