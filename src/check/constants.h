@@ -62,6 +62,10 @@ inline constexpr double negative_weight = 1e-6;
 /// A lattice is not even (float steps halve towards 0), which the factor 4 covers; 8 pairs are no fault for anyone.
 inline constexpr double repeats_factor = 4, repeats_floor = 8;
 
+/// Numbers are of few bits if a step of this size moves most draws not at all: up to 18 bits are found. A sampler in
+/// single precision is looked at only where the step moves w by 8 ulp.
+inline constexpr double few_bits_step = 0x1p-19;
+
 /// p |dw/du| may fall below the probability of its branch by this much: chosen, ten times what central differences with
 /// an error estimate below `jacobian_error` leave.
 inline constexpr double jacobian_tolerance = 2e-3, jacobian_error = 2e-4;

@@ -81,8 +81,10 @@ public:
         source_.estimates = answers_are_estimates(source_);
         out_.small = small_tests(source_, key_);
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
-        for (int look = 0; look < budget_.look_count; ++look)
+        for (int look = 0; look < budget_.look_count; ++look) {
             if (decided_by(look)) break;
+            if (look == 0 && regrown()) look = -1;
+        }
         finish();
         out_.evaluations = source_.evaluations();
         out_.seconds = watch.seconds();
@@ -115,6 +117,22 @@ private:
         return budget_.stop_when_targets_met && worst_ratio(sizes(e, level_of(look))) <= 1;
     }
 
+    /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is
+    /// used for nothing else then.
+    bool regrown() {
+        const Estimate& claimed = first_.integrals.sums[mass];
+        if (key_.stage != 1 || !(std::sqrt(claimed.variance) > regrow_from * std::max(claimed.value, 1e-3)))
+            return false;
+        std::vector<DensityPoint> hints = first_.integrals.heavy;
+        const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;
+        hints.insert(hints.end(), drawn.begin(), drawn.end());
+        if (hints.empty()) return false;
+        key_.stage = 9;
+        first_ = {};
+        out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_, std::move(hints)));
+        return true;
+    }
+
     Sizes sizes(const Evidence& e, double level) {
         double nodes = 0;
         ask_nodes(e, [&](const Answer& a) { nodes += a.family == Family::node; });
@@ -126,7 +144,7 @@ private:
     void confirm(const std::vector<Best>& suspects, const Look& to, int look) {
         Stage second;
         StreamKey key = key_;
-        key.stage = static_cast<std::uint8_t>(2 + look);
+        key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
         const Look& most = budget_.again;
         second.extend(source_, *out_.plan,
             {std::max(to.points, most.points), std::max(to.independent, most.independent),

@@ -21,9 +21,9 @@ struct CheckSettings {
 /// Of one sampler.
 struct CheckOutcome {
     std::string arm;
-    std::vector<std::size_t> trials;        // indices into the call's trials
-    std::vector<std::vector<CheckAt>> at;   // by trial and technique
-    std::vector<SmallFault> small;          // of the sampler as a whole
+    std::vector<std::size_t> trials;       // indices into the call's trials
+    std::vector<std::vector<CheckAt>> at;  // by trial and technique
+    std::vector<SmallFault> small;         // of the sampler as a whole
     std::uint64_t evaluations = 0;
     bool wrong() const;
 };

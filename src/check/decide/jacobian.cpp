@@ -13,7 +13,9 @@ namespace crescent::check {
 namespace {
 
 constexpr std::uint32_t points = 64;
-constexpr int halvings = 8;     // steps from 2^-5 to 2^-12
+constexpr int coarsest = 6;  // steps from 2^-6 to 2^-17
+constexpr std::size_t steps = 12;
+constexpr double smooth = 1.1;  // how much the pdf may vary within a difference
 constexpr int bisections = 24;  // of the ends of a branch, to 2^-24
 
 struct Point {
@@ -74,35 +76,43 @@ std::optional<int> chooser(Source& source, const std::vector<Numbers>& u, const 
     return {};
 }
 
-/// Central differences at steps that halve; of two neighbouring steps that agree best, Richardson's limit.
+/// Central differences over all steps. A map in pieces (a table) has differences across its pieces that agree by
+/// chance, so the finest steps count: three in a row must agree, and the pdf with the draws be about the same at all of
+/// them.
 void differentiate(Source& source, std::vector<Point>& all) {
-    std::vector<std::array<double, halvings>> areas(all.size());
-    for (int s = 0; s < halvings; ++s) {
-        const double h = std::ldexp(1.0, -5 - s);
+    struct Step {
+        double area = -1, least_pdf = 0, most_pdf = 0;
+    };
+    std::vector<std::array<Step, steps>> at(all.size());
+    for (std::size_t s = 0; s < steps; ++s) {
+        const double h = std::ldexp(1.0, -coarsest - static_cast<int>(s));
         std::vector<Numbers> u;
         for (const Point& p : all)
             for (int side = 0; side < 4; ++side) {
                 u.push_back(p.u);
-                u.back()[side < 2 ? p.first : p.second] += side % 2 ? -h : h;
+                double& x = u.back()[side < 2 ? p.first : p.second];
+                x = std::clamp(x + (side % 2 ? -h : h), 0.0, 1 - ulp);
             }
-        for (Numbers& v : u)
-            for (int k = 0; k < Numbers::most; ++k) v[k] = std::clamp(v[k], 0.0, 1 - ulp);
         const std::vector<Draw> d = draws_at(source, u);
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Draw* q = &d[4 * i];
             const double x = all[i].u[all[i].first], y = all[i].u[all[i].second];
-            const bool fits =
-                std::min({x, y, 1 - x, 1 - y}) > 2 * h && drawn(q[0]) && drawn(q[1]) && drawn(q[2]) && drawn(q[3]);
+            if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, drawn)) continue;
             const Vec3d n = cross(q[0].wi - q[1].wi, q[2].wi - q[3].wi);
-            areas[i][static_cast<std::size_t>(s)] = fits ? std::sqrt(dot(n, n)) / (4 * h * h) : -1;
+            const auto [least, most] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
+            at[i][s] = {std::sqrt(dot(n, n)) / (4 * h * h), least, most};
         }
     }
     for (std::size_t i = 0; i < all.size(); ++i)
-        for (std::size_t s = 0; s + 1 < halvings; ++s) {
-            const double coarse = areas[i][s], fine = areas[i][s + 1];
-            if (!(coarse > 0 && fine > 0)) continue;
-            const double error = std::fabs(coarse - fine) / fine;
-            if (error < all[i].error) all[i].error = error, all[i].area = (4 * fine - coarse) / 3;
+        for (std::size_t s = steps - 2; s-- > 0;) {  // the finest first
+            const Step *a = &at[i][s], *b = a + 1, *c = a + 2;
+            if (!(a->area > 0 && b->area > 0 && c->area > 0)) continue;
+            const double least = std::min({a->least_pdf, b->least_pdf, c->least_pdf});
+            const double most = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
+            const double error = std::max(std::fabs(a->area - b->area), std::fabs(b->area - c->area)) / b->area;
+            if (!(most <= smooth * least) || !(error < jacobian_error)) continue;
+            all[i].error = error, all[i].area = (4 * b->area - a->area) / 3;
+            break;
         }
 }
 

@@ -62,34 +62,43 @@ void take_less(std::optional<double>& to, double size) {
     if (std::isfinite(size) && (!to || size < *to)) to = size;
 }
 
-/// By nodes: the smallest leak that one of them shows, and the cap that nine in ten places show.
+/// By nodes: the smallest leak that one of them shows, and the cap that shows wherever it lies but for one place in
+/// ten.
 void by_nodes(const Evidence& e, double level, Sizes& out) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const std::vector<NodeSums> sums = node_sums(e);
     const double n = e.observations.independent, domain = e.integrals.domain;
-    std::vector<std::pair<double, double>> caps;  // mass that must be missing, and the mass that this holds of
+    constexpr double spills = 2;                 // a cap lies across cells: half of it in one
+    std::vector<double> cap(nodes.size(), 1.0);  // the mass that shows if it lies in this node
+    std::vector<std::pair<double, double>> leaves;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i].child < 0) continue;
-        const bool tested = std::min(sums[i].drawn, sums[i].claimed) * n >= least_count;
-        const bool lowest = tested && nodes[static_cast<std::size_t>(nodes[i].child)].child < 0 &&
-            nodes[static_cast<std::size_t>(nodes[i].child) + 1].child < 0;
-        if (!tested) continue;
+        if (nodes[i].child < 0) {
+            leaves.push_back({cap[i], sums[i].claimed});
+            continue;
+        }
+        const auto first = static_cast<std::size_t>(nodes[i].child);
+        cap[first] = cap[first + 1] = cap[i];
+        if (std::min(sums[i].drawn, sums[i].claimed) * n < least_count) continue;
         const NodeSplit s = split_of(e, sums, i);
         const double needed =
             needed_by_bennett(s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt), level);
-        const NodeSums& a = sums[static_cast<std::size_t>(nodes[i].child)];
-        const double effect = std::fabs(a.solid_angle - s.share * sums[i].solid_angle) / domain;
-        if (effect > 0) take_less(out.leak, needed / effect);
-        // A cap over one half takes away O_a and moves D by half of that.
-        if (lowest) caps.push_back({std::max(4 * needed, 4 * sums[i].claimed / 2), sums[i].claimed});
+        const double leaked = std::fabs(sums[first].solid_angle - s.share * sums[i].solid_angle) / domain;
+        if (leaked > 0) take_less(out.leak, needed / leaked);
+        for (std::size_t half : {first, first + 1}) {
+            const double share = half == first ? s.share : 1 - s.share;
+            const double missing = spills * needed / ((1 - share) * s.one_draw + 1e-300);
+            const double mass_here = sums[half].claimed / s.one_draw;
+            if (missing <= mass_here) cap[half] = std::min(cap[half], missing);
+            else if (spills * needed <= sums[half].claimed * (1 - share))
+                cap[half] = std::min(cap[half], spills * mass_here);
+        }
     }
-    if (caps.empty()) return;
-    std::sort(caps.begin(), caps.end());
+    std::sort(leaves.begin(), leaves.end());
     double all = 0, below = 0;
-    for (const auto& [size, mass_here] : caps) all += mass_here;
-    for (const auto& [size, mass_here] : caps)
+    for (const auto& [size, mass_here] : leaves) all += mass_here;
+    for (const auto& [size, mass_here] : leaves)
         if ((below += mass_here) >= stated_power * all) {
-            out.cap = size * 2;  // a cap covers cells of half its mass
+            out.cap = size;
             return;
         }
 }
@@ -148,7 +157,7 @@ void by_turning(
             const double effect = (std::fabs(mean) - power_quantile * se) * n / sample.of;
             if (effect > 0) take_less(size, angle * needed[q] / effect);
         }
-        if (size && (!worst || *size > *worst)) worst = size;
+        if (size && (!worst || *size > *worst)) worst = size, out.by_rotation = distance / angle;
     }
     out.rotation = worst;
 }
@@ -162,28 +171,28 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, double node_test
     const double n = e.observations.independent;
     for (std::size_t q : {std::size_t{mass}, std::size_t{bridge}})
         if (const double c = e.integrals.sums[q].value; c > 0) take_less(out.constant, needed[q] / c);
-    double solid_angle = 0;
-    for (const LeafIntegral& leaf : e.integrals.leaves) solid_angle += leaf.solid_angle;
-    const double effect = std::fabs(solid_angle / e.integrals.domain - e.observations.sums[bridge].sum / n);
-    if (effect > 0) take_less(out.leak, needed[bridge] / effect);
+    for (std::size_t q = bridge; q < integrands; ++q) {
+        const double effect = std::fabs(e.integrals.even[q] / e.integrals.domain - e.observations.sums[q].sum / n);
+        if (effect > 0) take_less(out.leak, needed[q] / effect);
+    }
     by_nodes(e, level / std::max(node_tests, 1.0), out);
-    out.distance_from_even = distance_from_even(e);
+    out.by_leak = distance_from_even(e);
     const Observations& o = e.observations;
     const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
     const double spread = o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
-    if (spread > 1e-4 && covariance > 0) out.parameter = needed[slope] / covariance;
+    if (spread > 1e-4 && covariance > 0)
+        out.parameter = needed[slope] / covariance, out.by_parameter = std::sqrt(spread) / 2;
     by_turning(source, e, needed, key, out);
     return out;
 }
 
 double worst_ratio(const Sizes& s) {
     double worst = 0;
-    const auto look = [&](const std::optional<double>& size, double target) {
-        if (size) worst = std::max(worst, *size / target);
+    const auto look = [&](const std::optional<double>& size, double target, double changed) {
+        if (size) worst = std::max(worst, std::min(*size / target, *size * changed / target_leak));
     };
-    look(s.constant, target_constant), look(s.cap, target_cap);
-    if (s.leak) look(*s.leak * s.distance_from_even, target_leak);
-    look(s.rotation, target_rotation), look(s.parameter, target_parameter);
+    look(s.constant, target_constant, 1e300), look(s.cap, target_cap, 1e300), look(s.leak, target_leak, s.by_leak);
+    look(s.rotation, target_rotation, s.by_rotation), look(s.parameter, target_parameter, s.by_parameter);
     return worst;
 }
 

@@ -15,14 +15,15 @@ struct Sizes {
     std::optional<double> cap;        // mass of a cap that is never drawn
     std::optional<double> rotation;   // radians, about an axis across the mean direction
     std::optional<double> parameter;  // relative error of an exponent: draws by p^(1 + e)
-    /// Total variation between p and an even density: a leak of e changes what is drawn by e times this.
-    double distance_from_even = 1;
+    // What a fault of size 1 changes of what is drawn, as total variation: an even density has nothing to rotate.
+    double by_leak = 1, by_rotation = 1, by_parameter = 1;
 };
 
 /// node_tests: how many members share alpha1 in the family `node`. Evaluates p at a few thousand directions.
 Sizes sizes_of(Source& source, const Evidence& e, double level, double node_tests, const StreamKey& key);
 
-/// The largest ratio of a size to its target, and whether it passes `inconclusive_at`.
+/// The largest ratio of a size to its target; where a fault of that size changes less of what is drawn than the target
+/// of a leak, that change counts.
 double worst_ratio(const Sizes& sizes);
 
 }  // namespace crescent::check

@@ -130,6 +130,39 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
     return out;
 }
 
+std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
+    // With more numbers than two, one may choose a texel and others the place in it.
+    if (source.traits.numbers > 2 || source.traits.own_random || !source.subject.draws_at_will()) return {};
+    const std::vector<Numbers> u = some_numbers(source, key, 64);
+    const auto draws_beside = [&](int k, double by) {
+        std::vector<Numbers> v = u;
+        for (Numbers& x : v) x[k] += x[k] < 0.5 ? by : -by;
+        std::vector<Draw> out(v.size());
+        source.draw(v, out);
+        return out;
+    };
+    std::vector<Draw> at(u.size());
+    source.draw(u, at);
+    const auto moved = [&](const Draw& a, const Draw& b) {
+        const Vec3d d = a.wi - b.wi;
+        return a.pdf > 0 && b.pdf > 0 ? std::sqrt(dot(d, d)) : -1;
+    };
+    for (int k = 0; k < source.traits.numbers; ++k) {
+        const std::vector<Draw> far = draws_beside(k, 0x1p-10), near = draws_beside(k, 0x1p-11),
+                                least = draws_beside(k, few_bits_step);
+        SmallFault out{Family::repeats, 0, 0, 0, {}, "only the first bits of a random number move the draw"};
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const double a = moved(at[i], far[i]), b = moved(at[i], near[i]);
+            const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;
+            if (!smooth || a * few_bits_step / 0x1p-10 < 8 * ulp) continue;  // less than floats would show
+            ++out.of;
+            if (moved(at[i], least[i]) == 0 && out.times++ == 0) out.first = {u[i], at[i], 0, 0}, out.size = k;
+        }
+        if (out.of >= 16 && out.times > out.of / 2) return out;
+    }
+    return {};
+}
+
 std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
     StreamKey key = given;
     std::vector<SmallFault> out;
@@ -139,6 +172,7 @@ std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
     add(corners_of_u(source));
     key.purpose = Purpose::corners;
     add(same_u_again(source, key));
+    add(few_bits(source, key));
     key.purpose = Purpose::jacobian;
     if (!source.estimates) add(jacobian(source, key));
     return out;

@@ -30,6 +30,8 @@ std::optional<SmallFault> corners_of_u(Source& source);
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key);
 /// p |dw/du| of the branch that a draw takes is at least the probability of that branch.
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
+/// Numbers of which few bits are used: a draw moves with u at large, and does not move at all with its last bits.
+std::optional<SmallFault> few_bits(Source& source, const StreamKey& key);
 /// Random numbers that change no draw.
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key);
 

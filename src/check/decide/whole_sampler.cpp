@@ -97,8 +97,8 @@ std::vector<Vec3d> f_of(const JudgedSampler& subject, std::span<const Pair> pair
     return out;
 }
 
-/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and one
-/// over that for importance (Veach 1997, (5.14)).
+/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and
+/// one over that for importance (Veach 1997, (5.14)).
 double due_ratio(const Traits& traits, const Pair& p, int channel) {
     if (p.wo.z * p.wi.z > 0 || !traits.eta) return 1;
     const double eta2 = sqr(channel_of(*traits.eta, channel));

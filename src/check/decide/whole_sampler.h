@@ -1,5 +1,5 @@
-// Tests of a sampler that belong to no single w_o: w_o and w_i exactly on axes, planes and the horizon and next to them;
-// f in both directions; weights of combined techniques.
+// Tests of a sampler that belong to no single w_o: w_o and w_i exactly on axes, planes and the horizon and next to
+// them; f in both directions; weights of combined techniques.
 #pragma once
 
 #include <vector>

@@ -72,6 +72,11 @@ inline constexpr double worth_of_mass = 0.02, worth_of_score = 0.01;
 inline constexpr double even_points = 0.2;
 /// How much the wider side of a leaf is preferred for its cut.
 inline constexpr double wider_side = 1.5;
+/// A point that holds this much mass is where the tree has missed something: a usual one holds 1 / 2^15.
+inline constexpr double heavy_point = 1e-3;
+/// The tree is grown a second time, from what points and draws have met, where the integral of p is known worse than
+/// this.
+inline constexpr double regrow_from = 2e-3;
 /// p may vary by this factor within a leaf and count as alike: the pairs of points cover the rest.
 inline constexpr double alike = 2;
 

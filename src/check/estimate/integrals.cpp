@@ -114,8 +114,12 @@ private:
                 const double p = p_[at + a];
                 h[a] = plan_.values(leaf, w_[at + a], p);
                 least = std::min(least, p), most = std::max(most, p);
+                if (k * p > heavy_point) out_.heavy.push_back({to_chart(w_[at + a]), p});
                 to.second += k * h[a][bridge] * h[a][bridge] * p;
-                if (w_[at + a].z > 0 || p > 0) to.solid_angle += k * h[a][bridge], out_.domain += k;
+                if (w_[at + a].z > 0 || p > 0) {
+                    to.solid_angle += k * h[a][bridge], out_.domain += k;
+                    for (std::size_t q = 0; q < integrands; ++q) out_.even[q] += k * h[a][q];
+                }
                 for (double& v : h[a]) v *= p;
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
@@ -157,7 +161,7 @@ private:
             const Vec3d f = f_[at + a];
             const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
             lit[a] = y > 0 ? y * radiance(w_[at + a]) : 0;
-            lost[a] = p_[at + a] > 0 ? 0 : lit[a];
+            lost[a] = p_[at + a] > 0 || (lit[a] > 0 && source_.reached_otherwise(w_[at + a])) ? 0 : lit[a];
         }
         l.lit.add_pair(lit[0], lit[1], k);
         l.lost.add_pair(lost[0], lost[1], k);
@@ -170,6 +174,7 @@ private:
 void scale(Integrals& x, double by) {
     for (Estimate& e : x.sums) e.scale(by);
     x.domain *= by;
+    for (double& v : x.even) v *= by;
     for (LeafIntegral& leaf : x.leaves) {
         leaf.bridge.scale(by);
         leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by;
@@ -192,13 +197,14 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
         to.light.points = lit;
     }
     scale(to, to.points / total), scale(pass, pass.points / total);
-    for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(pass.sums[q]);
+    for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(pass.sums[q]), to.even[q] += pass.even[q];
     for (std::size_t l = 0; l < to.leaves.size(); ++l) {
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
         a.bridge.add(b.bridge);
         a.second += b.second, a.solid_angle += b.solid_angle;
         a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);
     }
+    to.heavy.insert(to.heavy.end(), pass.heavy.begin(), pass.heavy.end());
     to.domain += pass.domain;
     to.points = total;
 }

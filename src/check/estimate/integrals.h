@@ -47,8 +47,10 @@ struct Integrals {
     std::array<Estimate, integrands> sums;
     std::vector<LeafIntegral> leaves;
     LightIntegrals light;
-    double domain = 0;  // solid angle in which a draw would count
+    std::array<double, integrands> even{};  // integral of h where a draw would count
+    double domain = 0;                      // solid angle of that
     double points = 0;
+    std::vector<DensityPoint> heavy;  // points that hold much of the mass each: the tree has missed something there
 };
 
 /// Adds a pass of about `points` points. of_f: evaluate f at them too.

@@ -184,12 +184,12 @@ private:
         }
         to_.keys.push_back(key_of(w));
         LeafIntegral& integral = integrals_.leaves[l];
-        if (p > alike * integral.top) complete(integral, v, p);
+        if (p > alike * integral.top) complete(integral, w, v, p);
     }
 
     /// The variance of C for points at random is k integral of g^2 = k E[g^2 / p].
-    void complete(LeafIntegral& leaf, const Values& v, double p) {
-        ++to_.unmet;
+    void complete(LeafIntegral& leaf, Vec3d w, const Values& v, double p) {
+        if (to_.unmet++ < batch_size) to_.unmet_at.push_back({to_chart(w), p});
         const double draws = to_.independent;
         const auto add = [&](Estimate& e, double h) {
             const double x = leaf.per_point * p * h * h / draws;

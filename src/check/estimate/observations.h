@@ -54,14 +54,15 @@ struct Observations {
     std::array<Replicates, integrands> by_set{};
     std::vector<Replicates> node_by_set;  // sum of h, by row of the coarse node that a leaf is in
     DrawChecks checks;
-    std::vector<std::uint64_t> keys;  // hashes of the directions
-    double mean_p = 0;                // sum of p over the independent draws
-    Sums log_p;                       // of ln p less its median
-    double slope_log_p = 0;           // sum of the slope's h times that
-    std::vector<double> weights;      // luminance of the weights f cos / p of independent draws, 0 for nothing
-    std::array<Sums, 3> mean, delta;  // bridged weights by channel; power of delta draws
-    double weighed = 0;               // draws that `mean` and `weights` are of
-    std::uint64_t unmet = 0;          // draws at which p is more than any point of the leaf has met
+    std::vector<std::uint64_t> keys;     // hashes of the directions
+    double mean_p = 0;                   // sum of p over the independent draws
+    Sums log_p;                          // of ln p less its median
+    double slope_log_p = 0;              // sum of the slope's h times that
+    std::vector<double> weights;         // luminance of the weights f cos / p of independent draws, 0 for nothing
+    std::array<Sums, 3> mean, delta;     // bridged weights by channel; power of delta draws
+    double weighed = 0;                  // draws that `mean` and `weights` are of
+    std::uint64_t unmet = 0;             // draws at which p is more than any point of the leaf has met
+    std::vector<DensityPoint> unmet_at;  // the first of them
 };
 
 /// Draws from the look before up to this one are added. Integrals are completed by what their points have not

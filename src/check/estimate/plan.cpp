@@ -66,7 +66,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
 
 }  // namespace
 
-Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key) {
+Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::vector<DensityPoint> hints) {
     key.purpose = Purpose::pilot;
     Pilot pilot = draw_pilot(source, budget, key);
     std::vector<double> log_p, xyz[3];
@@ -86,8 +86,8 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key) {
         median = math::log(*at);
     }
     key.purpose = Purpose::tree;
-    return {Tree(source, std::move(pilot.points), budget.pilot, step, budget, key), step, median, middle, pilot.weight,
-        source.estimates, drawn, budget.pilot};
+    return {Tree(source, std::move(pilot.points), budget.pilot, std::move(hints), step, budget, key), step, median,
+        middle, pilot.weight, source.estimates, drawn, budget.pilot};
 }
 
 }  // namespace crescent::check

@@ -36,7 +36,7 @@ struct Plan {
 };
 
 /// Draws the pilot and grows the tree.
-Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key);
+Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::vector<DensityPoint> hints = {});
 
 /// The step of the lattice on which n values lie; 0 where none shows. Few equal pairs: (equal pairs) / (pairs within g)
 /// = step / (2 g). Many: the median gap between distinct values.

@@ -39,6 +39,15 @@ double Source::density(Vec3d wi) {
     return p;
 }
 
+bool Source::reached_otherwise(Vec3d wi) {
+    for (int t = 0; t < subject.techniques(); ++t) {
+        double p = 0;
+        if (t != technique) subject.exact_pdf(t, pairs_of({&wi, 1}), {&p, 1});
+        if (p > 0) return true;
+    }
+    return false;
+}
+
 void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) { subject.pdf(technique, pairs_of(wi), out); }
 
 void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) {

@@ -33,6 +33,8 @@ public:
     /// 1/sr, in double where the sampler has it; 0 and counted where it is not finite or negative.
     void density(std::span<const Vec3d> wi, std::span<double> out);
     double density(Vec3d wi);
+    /// Whether another technique draws there, where this one does not.
+    bool reached_otherwise(Vec3d wi);
     /// 1/sr, by the sampler's own arithmetic, as it comes.
     void stated_pdf(std::span<const Vec3d> wi, std::span<double> out);
     /// f |cos| by channel, without the light; 1/sr. truth: of the BRDF itself, where that is known apart from f.

@@ -36,9 +36,10 @@ public:
           budget_(budget),
           stream_(key) {}
 
-    void grow() {
+    void grow(std::vector<DensityPoint> hints) {
         tree_.nodes_.push_back({});
         growing_.push_back({});
+        growing_[0].points = std::move(hints);
         growing_[0].last = pilots_.size();
         rate({0});
         std::vector<int> front = {0};
@@ -181,9 +182,9 @@ private:
     }
 };
 
-Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step, const CheckBudget& budget,
-    const StreamKey& key) {
-    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow();
+Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
+    double step, const CheckBudget& budget, const StreamKey& key) {
+    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow(std::move(hints));
     find_edges();
 }
 

@@ -41,9 +41,10 @@ struct Leaf {
 
 class Tree {
 public:
-    /// `pilots`: directions that were drawn, of `of` draws in all. step: of the sampler's arithmetic, as an angle.
-    Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step, const CheckBudget& budget,
-        const StreamKey& key);
+    /// `pilots`: directions that were drawn, of `of` draws in all. `hints`: other places at which p was met. step: of
+    /// the sampler's arithmetic, as an angle.
+    Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
+        double step, const CheckBudget& budget, const StreamKey& key);
 
     const std::vector<TreeNode>& nodes() const { return nodes_; }
     const std::vector<Leaf>& leaves() const { return leaves_; }

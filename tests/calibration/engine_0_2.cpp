@@ -1,0 +1,74 @@
+// The engine of src/check.
+#include <fmt/format.h>
+
+#include "check/decide/check_sampler.h"
+#include "tests/calibration/engine.h"
+
+namespace crescent::calibration {
+
+namespace {
+
+void add_once(std::vector<std::string>& to, std::string_view word) {
+    if (std::ranges::find(to, word) == to.end()) to.emplace_back(word);
+}
+
+void take_most(std::map<std::string, double>& to, const char* name, const std::optional<double>& size) {
+    if (size) to[name] = std::max(to[name], *size);
+}
+
+class Engine02 : public Engine {
+public:
+    std::string_view name() const override { return "0.2"; }
+    Result run(std::span<const Trial> trials, const Request& request) const override {
+        check::CheckSettings settings;
+        if (request.full) settings.budget = check::CheckBudget::thorough();
+        if (std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); }))
+            settings.budget = check::CheckBudget::limited();
+        settings.seed = request.seed;
+        ProgressMonitor monitor;
+        Result out;
+        for (const check::CheckOutcome& o : check::check_samplers(trials, settings, monitor)) {
+            for (const check::SmallFault& f : o.small) take(f, out);
+            for (const auto& techniques : o.at)
+                for (const check::CheckAt& c : techniques) collect(c, out);
+        }
+        out.state = !out.wrong.empty() ? State::wrong : !out.open.empty() ? State::inconclusive : State::right;
+        return out;
+    }
+
+private:
+    static void take(const check::SmallFault& f, Result& out) {
+        add_once(out.wrong, check::info(f.family).verdict);
+        out.say += fmt::format("[{} {} of {} {:.3g}: {}]", check::info(f.family).name, f.times, f.of, f.size, f.what);
+    }
+    static void collect(const check::CheckAt& c, Result& out) {
+        for (const check::SmallFault& f : c.small) take(f, out);
+        for (const check::Finding& f : c.findings) {
+            add_once(out.wrong, check::info(f.first.family).verdict);
+            out.say += fmt::format("[{} {:.3g} of {:.4g} p {:.2g} {:.2g}]", check::info(f.first.family).name,
+                f.first.difference, f.first.expected, f.first.p, f.second.p);
+        }
+        if (c.inconclusive) {
+            add_once(out.open, "density");
+            const auto size = [](const std::optional<double>& v) { return v.value_or(-1); };
+            out.say += fmt::format("[constant {:.2g} leak {:.2g} cap {:.2g} rotation {:.2g} parameter {:.2g}]",
+                size(c.sizes.constant), size(c.sizes.leak), size(c.sizes.cap), size(c.sizes.rotation),
+                size(c.sizes.parameter));
+        }
+        for (const check::Answer& a : c.answers) {
+            const auto [at, fresh] = out.p.emplace(check::info(a.family).name, a.p);
+            if (!fresh) at->second = std::min(at->second, a.p);
+        }
+        take_most(out.stated, "constant", c.sizes.constant);
+        take_most(out.stated, "leak", c.sizes.leak);
+        take_most(out.stated, "hole", c.sizes.cap);
+        take_most(out.stated, "rotation", c.sizes.rotation);
+        take_most(out.stated, "mismatch", c.sizes.parameter);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> engine_0_2() { return std::make_unique<Engine02>(); }
+
+}  // namespace crescent::calibration
