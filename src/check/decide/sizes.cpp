@@ -124,42 +124,91 @@ Sample drawn(Source& source, const StreamKey& key) {
     return out;
 }
 
-/// What turning the draws about an axis does to the whole sums: p is evaluated at turned draws. Of two axes the worse.
-void by_turning(
-    Source& source, const Evidence& e, const std::array<double, integrands>& needed, const StreamKey& key, Sizes& out) {
-    const Sample sample = drawn(source, key);
-    const double n = static_cast<double>(sample.w.size());
-    if (n < 256) return;
-    const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
-    const Frame<double> frame = frame_about(axis_of_lobe);
-    constexpr double angle = target_rotation;
-    std::optional<double> worst;
-    for (Vec3d axis : {frame.t, frame.b}) {
+/// The smallest rotation about one axis that a whole sum or a node shows, from draws that are turned by `angle` and p
+/// evaluated there; none where that shows nothing. Effects are taken at the low end of their intervals.
+class Turned {
+public:
+    Turned(Source& source, const Evidence& e, const Sample& sample, Vec3d axis, double angle)
+        : e_(e), angle_(angle), of_(sample.of), nodes_(e.plan.tree.nodes().size()) {
         std::vector<Vec3d> turned;
-        for (Vec3d w : sample.w) turned.push_back(normalize(w + cross(axis, w) * angle));
+        const double c = math::cos(angle), s = math::sin(angle);
+        for (Vec3d w : sample.w)
+            turned.push_back(normalize(w * c + cross(axis, w) * s + axis * (dot(axis, w) * (1 - c))));
         std::vector<double> p(turned.size());
         source.density(turned, p);
-        std::array<Sums, integrands> change;
-        double distance = 0;
+        const double n = static_cast<double>(sample.w.size());
         for (std::size_t i = 0; i < turned.size(); ++i) {
-            const auto values = [&](Vec3d w, double at) {
-                return e.plan.values(e.plan.tree.leaves()[e.plan.tree.find(to_chart(w))], w, at);
-            };
-            const Values before = values(sample.w[i], sample.p[i]), after = values(turned[i], p[i]);
-            for (std::size_t q = 0; q < integrands; ++q) change[q].add(after[q] - before[q]);
+            const Values change = add(turned[i], p[i], 1), before = add(sample.w[i], sample.p[i], -1);
+            for (std::size_t q = 0; q < integrands; ++q) sums_[q].add(change[q] - before[q]);
             if (sample.p[i] > 0) distance += std::min(1.0, std::fabs(p[i] / sample.p[i] - 1)) / n / 2;
         }
-        if (distance < detection_floor) continue;  // it changes nothing
-        std::optional<double> size;
-        for (std::size_t q = 0; q < integrands; ++q) {
-            const double mean = change[q].sum / n;
-            const double se = std::sqrt(std::max(change[q].square / n - mean * mean, 0.0) / n);
-            const double effect = (std::fabs(mean) - power_quantile * se) * n / sample.of;
-            if (effect > 0) take_less(size, angle * needed[q] / effect);
-        }
-        if (size && (!worst || *size > *worst)) worst = size, out.by_rotation = distance / angle;
     }
-    out.rotation = worst;
+
+    /// Total variation between p and p turned.
+    double distance = 0;
+
+    std::optional<double> size(const std::array<double, integrands>& needed, double node_level) const {
+        std::optional<double> out;
+        for (std::size_t q = 0; q < integrands; ++q) take(out, sums_[q], needed[q]);
+        const std::vector<NodeSums> all = node_sums(e_);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const TreeNode& x = e_.plan.tree.nodes()[i];
+            const bool tested = x.child >= 0 && x.depth < depth &&
+                std::min(all[i].drawn, all[i].claimed) * e_.observations.independent >= least_count;
+            if (!tested) continue;
+            const NodeSplit s = split_of(e_, all, i);
+            const Sums &half = nodes_[static_cast<std::size_t>(x.child)], &whole = nodes_[i];
+            const Sums d{half.sum - s.share * whole.sum, half.square + s.share * s.share * whole.square};
+            take(out, d,
+                needed_by_bennett(s.floor, s.variance, all[i].largest, freedom(s.variance, s.doubt), node_level));
+        }
+        return out;
+    }
+
+private:
+    static constexpr int depth = 8;
+    const Evidence& e_;
+    double angle_, of_;
+    std::vector<Sums> nodes_;  // by node: change of h
+    std::array<Sums, integrands> sums_{};
+
+    Values add(Vec3d w, double p, double sign) {
+        const ChartPoint at = to_chart(w);
+        const Values v = e_.plan.values(e_.plan.tree.leaves()[e_.plan.tree.find(at)], w, p);
+        const std::vector<TreeNode>& nodes = e_.plan.tree.nodes();
+        std::size_t i = 0;
+        for (;;) {
+            nodes_[i].add(sign * v[bridge]);
+            if (nodes[i].child < 0 || nodes[i].depth == depth) return v;
+            const bool along_phi = nodes[i].along_phi;
+            i = static_cast<std::size_t>(nodes[i].child) +
+                ((along_phi ? at.phi : at.t) >= nodes[i].rect.middle(along_phi));
+        }
+    }
+    void take(std::optional<double>& to, const Sums& change, double needed) const {
+        const double mean = change.sum / of_;
+        const double se = std::sqrt(std::max(change.square / of_ - mean * mean, 0.0) / of_);
+        const double effect = std::fabs(mean) - 3 * se;
+        if (effect > needed || (effect > 0 && angle_ <= target_rotation)) take_less(to, angle_ * needed / effect);
+    }
+};
+
+/// Of two axes across the mean direction the worse; each at a small and a large angle.
+void by_turning(Source& source, const Evidence& e, const std::array<double, integrands>& needed, double node_level,
+    const StreamKey& key, Sizes& out) {
+    const Sample sample = drawn(source, key);
+    if (sample.w.size() < 256) return;
+    const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
+    const Frame<double> frame = frame_about(axis_of_lobe);
+    for (Vec3d axis : {frame.t, frame.b}) {
+        const Turned little(source, e, sample, axis, target_rotation),
+            much(source, e, sample, axis, 20 * target_rotation);
+        if (little.distance < detection_floor) continue;  // it changes nothing
+        std::optional<double> size = little.size(needed, node_level);
+        if (const std::optional<double> other = much.size(needed, node_level)) take_less(size, *other);
+        if (size && (!out.rotation || *size > *out.rotation))
+            out.rotation = size, out.by_rotation = little.distance / target_rotation;
+    }
 }
 
 }  // namespace
@@ -182,7 +231,7 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, double node_test
     const double spread = o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
     if (spread > 1e-4 && covariance > 0)
         out.parameter = needed[slope] / covariance, out.by_parameter = std::sqrt(spread) / 2;
-    by_turning(source, e, needed, key, out);
+    by_turning(source, e, needed, level / std::max(node_tests, 1.0), key, out);
     return out;
 }
 
