@@ -62,9 +62,10 @@ inline constexpr double negative_weight = 1e-6;
 /// A lattice is not even (float steps halve towards 0), which the factor 4 covers; 8 pairs are no fault for anyone.
 inline constexpr double repeats_factor = 4, repeats_floor = 8;
 
-/// Numbers are of few bits if a step of this size moves most draws not at all: up to 18 bits are found. A sampler in
-/// single precision is looked at only where the step moves w by 8 ulp.
-inline constexpr double few_bits_step = 0x1p-19;
+/// Numbers are of few bits if a step of this size moves most draws not at all where it should move them by
+/// `few_bits_move`: up to 16 bits are found. Derived: a cosine in single precision near 1, drawn as u^(1 / (s + 1)), hides
+/// steps of the direction up to 2^-18 / sqrt(2 (s + 1)), at most half of that.
+inline constexpr double few_bits_step = 0x1p-18, few_bits_move = 128 * ulp, few_bits_share = 0.6;
 
 /// p |dw/du| may fall below the probability of its branch by this much: chosen, ten times what central differences with
 /// an error estimate below `jacobian_error` leave.

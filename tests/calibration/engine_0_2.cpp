@@ -1,7 +1,7 @@
 // The engine of src/check.
 #include <fmt/format.h>
 
-#include "check/decide/check_sampler.h"
+#include "check/explain/causes.h"
 #include "tests/calibration/engine.h"
 
 namespace crescent::calibration {
@@ -31,6 +31,8 @@ public:
             for (const check::SmallFault& f : o.small) take(f, out);
             for (const auto& techniques : o.at)
                 for (const check::CheckAt& c : techniques) collect(c, out);
+            if (!o.wrong()) continue;
+            if (const auto cause = check::cause_of(trials, o)) out.causes.push_back(cause->text);
         }
         out.state = !out.wrong.empty() ? State::wrong : !out.open.empty() ? State::inconclusive : State::right;
         return out;

@@ -13,8 +13,9 @@ namespace crescent::check {
 namespace {
 
 constexpr std::uint32_t points = 64;
-constexpr int coarsest = 6;  // steps from 2^-6 to 2^-17
-constexpr std::size_t steps = 12;
+constexpr int coarsest = 6;  // steps from 2^-6 to 2^-21
+constexpr std::size_t steps = 16;
+constexpr double same_at_finest = 0.05;
 constexpr double smooth = 1.1;  // how much the pdf may vary within a difference
 constexpr int bisections = 24;  // of the ends of a branch, to 2^-24
 
@@ -79,7 +80,7 @@ std::optional<int> chooser(Source& source, const std::vector<Numbers>& u, const 
 /// Central differences over all steps. A map in pieces (a table) has differences across its pieces that agree by
 /// chance, so the finest steps count: three in a row must agree, and the pdf with the draws be about the same at all of
 /// them.
-void differentiate(Source& source, std::vector<Point>& all) {
+void differentiate(Source& source, double rounding, std::vector<Point>& all) {
     struct Step {
         double area = -1, least_pdf = 0, most_pdf = 0;
     };
@@ -111,6 +112,12 @@ void differentiate(Source& source, std::vector<Point>& all) {
             const double most = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
             const double error = std::max(std::fabs(a->area - b->area), std::fabs(b->area - c->area)) / b->area;
             if (!(most <= smooth * least) || !(error < jacobian_error)) continue;
+            std::size_t finest = s + 2;
+            const auto noise = [&](std::size_t k) {
+                return 4 * rounding / (std::ldexp(1.0, -coarsest - static_cast<int>(k)) * std::sqrt(b->area));
+            };
+            while (finest + 1 < steps && at[i][finest + 1].area > 0 && noise(finest + 1) < same_at_finest) ++finest;
+            if (std::fabs(at[i][finest].area / b->area - 1) > same_at_finest) break;
             all[i].error = error, all[i].area = (4 * b->area - a->area) / 3;
             break;
         }
@@ -122,7 +129,7 @@ struct Round {
     Example first{};
 };
 
-Round look(Source& source, const StreamKey& key) {
+Round look(Source& source, double step, const StreamKey& key) {
     std::vector<Numbers> u;
     for (std::uint32_t i = 0; i < points; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
     const std::vector<Draw> at = draws_at(source, u);
@@ -138,7 +145,7 @@ Round look(Source& source, const StreamKey& key) {
     std::vector<Vec3d> w;
     for (std::size_t i = 0; i < u.size(); ++i)
         if (drawn(at[i])) all.push_back({u[i], branch[i], first, second, at[i].wi}), w.push_back(at[i].wi);
-    differentiate(source, all);
+    differentiate(source, step / angle_per_step + 0x1p-50, all);
     std::vector<double> p(w.size());
     source.density(w, p);
     Round out;
@@ -156,15 +163,15 @@ Round look(Source& source, const StreamKey& key) {
 
 }  // namespace
 
-std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
+std::optional<SmallFault> jacobian(Source& source, double step, const StreamKey& given) {
     const int n = source.traits.numbers;
     if (!source.has_density() || source.traits.own_random || !source.subject.draws_at_will() || n < 2 || n > 3)
         return {};
     StreamKey key = given;
-    const Round one = look(source, key);
+    const Round one = look(source, step, key);
     if (one.broken < jacobian_breaks) return {};
     key.part = 1;
-    const Round two = look(source, key);
+    const Round two = look(source, step, key);
     if (two.broken < jacobian_breaks) return {};
     return SmallFault{Family::jacobian, static_cast<double>(one.broken + two.broken),
         static_cast<double>(one.looked + two.looked), std::min(one.worst, two.worst) - 1, one.first,

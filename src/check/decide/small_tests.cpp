@@ -154,16 +154,16 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double a = moved(at[i], far[i]), b = moved(at[i], near[i]);
             const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;
-            if (!smooth || a * few_bits_step / 0x1p-10 < 8 * ulp) continue;  // less than floats would show
+            if (!smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
             ++out.of;
             if (moved(at[i], least[i]) == 0 && out.times++ == 0) out.first = {u[i], at[i], 0, 0}, out.size = k;
         }
-        if (out.of >= 16 && out.times > out.of / 2) return out;
+        if (out.of >= 16 && out.times > few_bits_share * out.of) return out;
     }
     return {};
 }
 
-std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
+std::vector<SmallFault> small_tests(Source& source, double step, const StreamKey& given) {
     StreamKey key = given;
     std::vector<SmallFault> out;
     const auto add = [&](std::optional<SmallFault> fault) {
@@ -174,7 +174,7 @@ std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
     add(same_u_again(source, key));
     add(few_bits(source, key));
     key.purpose = Purpose::jacobian;
-    if (!source.estimates) add(jacobian(source, key));
+    if (!source.estimates) add(jacobian(source, step, key));
     return out;
 }
 

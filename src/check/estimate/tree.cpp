@@ -40,6 +40,7 @@ public:
         tree_.nodes_.push_back({});
         growing_.push_back({});
         growing_[0].points = std::move(hints);
+        for (DensityPoint& e : growing_[0].points) e.hint = true;
         growing_[0].last = pilots_.size();
         rate({0});
         std::vector<int> front = {0};
@@ -142,12 +143,16 @@ private:
         return fresh;
     }
 
+    static int sampled(const Growing& g) {
+        return static_cast<int>(std::ranges::count_if(g.points, [](const DensityPoint& e) { return !e.hint; }));
+    }
+
     /// Evaluates p until each has its points, in one batch, and scores them.
     void rate(const std::vector<int>& which) {
         std::vector<ChartPoint> places;
         std::vector<Vec3d> w;
         for (int i : which)
-            for (int k = static_cast<int>(at(i).points.size()); k < points_per_leaf; ++k) {
+            for (int k = sampled(at(i)); k < points_per_leaf; ++k) {
                 const double x = stream_.number(), y = stream_.number();
                 places.push_back(tree_.nodes_[static_cast<std::size_t>(i)].rect.at(x, (k + y) / points_per_leaf));
                 w.push_back(from_chart(places.back()));
@@ -157,24 +162,27 @@ private:
         std::size_t next = 0;
         for (int i : which) {
             Growing& g = at(i);
-            while (static_cast<int>(g.points.size()) < points_per_leaf) {
-                g.points.push_back({places[next], p[next]});
-                ++next;
-            }
+            for (int k = sampled(g); k < points_per_leaf; ++k, ++next) g.points.push_back({places[next], p[next]});
             score(tree_.nodes_[static_cast<std::size_t>(i)].rect.area(), g);
         }
     }
 
     void score(double area, Growing& g) const {
-        const double n = static_cast<double>(g.points.size());
+        const double n = sampled(g);
         double mean = 0, square = 0, top = 0, seen = 0;
-        for (const DensityPoint& e : g.points) mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
+        for (const DensityPoint& e : g.points) {
+            if (e.hint) {
+                seen = std::max(seen, e.p);
+                continue;
+            }
+            mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
+        }
         for (std::size_t k = g.first; k < g.last; ++k) seen = std::max(seen, pilots_[k].p);
         const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
         const bool missed = seen > alike * top;
+        const double hidden = missed ? std::max(drawn, area * std::min(seen, 1 / area) / n) : 0;
         g.spread = area * std::sqrt(std::max(0.0, square - mean * mean));
-        g.score =
-            g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + (missed ? drawn : 0);
+        g.score = g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + hidden;
         // Not of the draws alone: their noise would make h rough from leaf to leaf, and replicates would gain nothing.
         g.q = missed ? (mean + drawn / area) / 2 : mean;
         g.met = g.q > 0;

@@ -19,6 +19,7 @@ namespace crescent::check {
 struct DensityPoint {
     ChartPoint at;
     double p = 0;
+    bool hint = false;  // met earlier, where p was high: it has no part in averages
 };
 
 struct TreeNode {

@@ -12,7 +12,7 @@ namespace crescent::check {
 
 /// Degrees of freedom of an estimated variance v that itself has variance w (Satterthwaite 1946).
 inline double freedom(double v, double w) {
-    if (!(w > 0)) return 1e12;
+    if (w == 0) return 1e12;
     const double ratio = v / std::sqrt(w);  // squares of a density's peak may overflow
     return std::isfinite(ratio) ? std::clamp(2 * ratio * ratio, 0.5, 1e12) : 0.5;
 }
@@ -22,7 +22,7 @@ inline double freedom(double v, double w) {
 /// Chernoff's bound for a Poisson count and d^2 / v for many terms. Where v has nu degrees of freedom z2 shrinks as
 /// Student's t does.
 inline double bennett_z2(double d, double v, double b, double nu) {
-    if (!(d > 0)) return 0;
+    if (!(d > 0) || !std::isfinite(v)) return 0;  // a variance that overflows allows everything
     v = std::max(v, 1e-30);
     const double x = b * d / v;
     const double z2 = x < 1e-4 ? d * d / v : 2 * v / (b * b) * ((1 + x) * math::log1p(x) - x);
@@ -46,7 +46,7 @@ template <class Values> struct ReplicateMean {
 
 /// Two-sided Student p of a difference d beyond its floor, of variance v with nu degrees of freedom.
 inline double student_p_of(double d, double v, double nu) {
-    return d > 0 ? stats::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
+    return d > 0 && std::isfinite(v) ? stats::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
 }
 /// One-sided: the chance that a normal exceeds its mean by d.
 inline double normal_p_of(double d, double v) {
