@@ -86,6 +86,9 @@ inline constexpr double lost_light = 1e-6;
 
 /// The variance is infinite from this Pareto index on (Vehtari et al. 2024).
 inline constexpr double heavy_index = 0.5;
+/// A largest weight of no more means than this among thousands is no tail: one with index 1/2 has a largest of the order
+/// of sqrt(n) means.
+inline constexpr double bounded_weight = 4;
 
 // ---- targets of a quick check: a right verdict whose size exceeds ten times its target is inconclusive. Chosen by
 // what matters in a render: less is not seen in an image of a few thousand samples a pixel.

@@ -48,6 +48,17 @@ std::array<double, integrands> needed_by_sums(const Evidence& e, double level) {
     return out;
 }
 
+/// The leak whose shift exceeds `needed`, where its draws vary too: their variance is in the test's own, so that the
+/// shift must be as many standard errors of the sum of both. Such a test needs some 6 of them.
+double leak_shown(double needed, double effect, double square, double draws) {
+    constexpr double sigmas =
+        8;  // t at alpha1 of 31 degrees of freedom, and the power's quantile: 5.3 + 1.3, and a floor
+    const double noise = sigmas * sigmas * square / draws;  // of e = 1
+    double e = needed / effect;
+    for (int k = 0; k < 50; ++k) e = std::sqrt(needed * needed + e * noise) / effect;
+    return e;
+}
+
 /// Total variation between p and an even density, by the leaves.
 double distance_from_even(const Evidence& e) {
     double sum = 0;
@@ -62,13 +73,26 @@ void take_less(std::optional<double>& to, double size) {
     if (std::isfinite(size) && (!to || size < *to)) to = size;
 }
 
+/// What each node's test by replicates needs; 0 where there is none. As many of them share the level as of nodes at
+/// most.
+std::vector<double> needed_by_node_sets(const Evidence& e, double level) {
+    std::vector<double> out(e.plan.tree.nodes().size());
+    const double t = stats::student_two_sided_quantile(replicate_sets - 1, level);
+    ask_nodes(e, [&](const Answer& a) {
+        if (a.family == Family::node_sets)
+            out[static_cast<std::size_t>(a.member)] = a.floor + (t + power_quantile) * a.sd;
+    });
+    return out;
+}
+
 /// By nodes: the smallest leak that one of them shows, and the cap that shows wherever it lies but for one place in
 /// ten.
 void by_nodes(const Evidence& e, double level, Sizes& out) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const std::vector<NodeSums> sums = node_sums(e);
     const double n = e.observations.independent, domain = e.integrals.domain;
-    constexpr double spills = 2;                 // a cap lies across cells: half of it in one
+    constexpr double spills = 2;  // a cap lies across cells: half of it in one
+    const std::vector<double> by_sets = needed_by_node_sets(e, level);
     std::vector<double> cap(nodes.size(), 1.0);  // the mass that shows if it lies in this node
     std::vector<std::pair<double, double>> leaves;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -83,7 +107,8 @@ void by_nodes(const Evidence& e, double level, Sizes& out) {
         const double needed =
             needed_by_bennett(s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt), level);
         const double leaked = std::fabs(sums[first].solid_angle - s.share * sums[i].solid_angle) / domain;
-        if (leaked > 0) take_less(out.leak, needed / leaked);
+        const double varies = power_quantile * (std::sqrt(s.variance + needed / n) - std::sqrt(s.variance));
+        if (leaked > 0) take_less(out.leak, (needed + varies) / leaked);
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;
             const double missing = spills * needed / ((1 - share) * s.one_draw + 1e-300);
@@ -91,6 +116,11 @@ void by_nodes(const Evidence& e, double level, Sizes& out) {
             if (missing <= mass_here) cap[half] = std::min(cap[half], missing);
             else if (spills * needed <= sums[half].claimed * (1 - share))
                 cap[half] = std::min(cap[half], spills * mass_here);
+            if (by_sets[i] > 0) {
+                const double h = s.one_draw;
+                const double shown = leak_shown(by_sets[i], h * (1 - share), h * h, e.observations.scrambled);
+                if (shown <= mass_here) cap[half] = std::min(cap[half], spills * shown);
+            }
         }
     }
     std::sort(leaves.begin(), leaves.end());
@@ -222,7 +252,9 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, double node_test
         if (const double c = e.integrals.sums[q].value; c > 0) take_less(out.constant, needed[q] / c);
     for (std::size_t q = bridge; q < integrands; ++q) {
         const double effect = std::fabs(e.integrals.even[q] / e.integrals.domain - e.observations.sums[q].sum / n);
-        if (effect > 0) take_less(out.leak, needed[q] / effect);
+        const double square = e.observations.sums[q].square / n + effect * effect;  // of one leaked draw
+        if (effect > 0)
+            take_less(out.leak, leak_shown(needed[q], effect, square, std::max(n, e.observations.scrambled)));
     }
     by_nodes(e, level / std::max(node_tests, 1.0), out);
     out.by_leak = distance_from_even(e);

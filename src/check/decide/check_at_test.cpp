@@ -1,0 +1,105 @@
+// Whole checks at one w_o of samplers whose verdict is known.
+#include "check/decide/check_at.h"
+
+#include <gtest/gtest.h>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+namespace {
+
+/// A cosine sampler that can be broken in one way.
+struct Cosine : JudgedSampler {
+    double factor = 1, leak = 0, hole = 0;  // of pdf; share of draws that are uniform; mass of a cap never drawn
+    bool nothing = false, elsewhere = false;
+    std::string name() const override { return "cosine"; }
+    Traits traits() const override {
+        Traits t;
+        t.numbers = 3;
+        return t;
+    }
+    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const bool leaks = u[i][2] < leak;
+            const double z = leaks ? u[i].x : std::sqrt(u[i].x), r = std::sqrt(1 - z * z);
+            Vec3d w{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z};
+            if (w.x * 0.48 + w.y * 0.36 + w.z * 0.8 > 1 - hole / 1.6) w.x = -w.x, w.y = -w.y;
+            out[i] = {};
+            if (!nothing) out[i] = {w, elsewhere ? 1.0 : value(w.z)};
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = value(elsewhere ? -at[i].wi.z : at[i].wi.z);
+    }
+    double value(double z) const { return z > 0 ? factor * z / 3.14159265358979323846 : 0; }
+};
+
+CheckAt checked(const Cosine& s, std::uint32_t seed = 1) {
+    return check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), seed);
+}
+bool has(const CheckAt& c, std::string_view verdict) {
+    for (const Finding& f : c.findings)
+        if (info(f.first.family).verdict == verdict) return true;
+    for (const SmallFault& f : c.small)
+        if (info(f.family).verdict == verdict) return true;
+    return false;
+}
+
+TEST(CheckAtOneWo, CallsARightSamplerRightAndStatesSizes) {
+    const CheckAt c = checked({});
+    EXPECT_FALSE(c.wrong());
+    EXPECT_FALSE(c.inconclusive);
+    ASSERT_TRUE(c.sizes.constant && c.sizes.leak && c.sizes.cap && c.sizes.rotation && c.sizes.parameter);
+    EXPECT_LT(*c.sizes.constant, target_constant);
+    EXPECT_LT(*c.sizes.leak, target_leak * 4);
+    EXPECT_LT(c.evaluations, 500000u);
+}
+
+TEST(CheckAtOneWo, GivesTheSameNumbersAgain) {
+    const CheckAt a = checked({}), b = checked({});
+    EXPECT_EQ(a.integrals.sums[mass].value, b.integrals.sums[mass].value);
+    EXPECT_EQ(a.observations.sums[slope].sum, b.observations.sums[slope].sum);
+    EXPECT_NE(a.observations.sums[slope].sum, checked({}, 2).observations.sums[slope].sum);
+}
+
+TEST(CheckAtOneWo, FindsFaultsAndNamesTheirVerdict) {
+    Cosine constant, leak, hole, nothing, elsewhere;
+    constant.factor = 1.003, leak.leak = 0.02, hole.hole = 0.02, nothing.nothing = true, elsewhere.elsewhere = true;
+    EXPECT_TRUE(has(checked(constant), "normalised"));
+    EXPECT_TRUE(has(checked(leak), "density"));
+    EXPECT_FALSE(has(checked(leak), "normalised"));
+    EXPECT_TRUE(has(checked(hole), "density"));
+    EXPECT_TRUE(has(checked(nothing), "normalised"));
+    EXPECT_TRUE(has(checked(elsewhere), "identity"));
+}
+
+/// A fault of a stated size is found in nine of ten checks.
+template <class Break> int found(double size, Break break_by) {
+    int out = 0;
+    for (std::uint32_t seed = 10; seed < 20; ++seed) {
+        Cosine s;
+        break_by(s, size);
+        out += checked(s, seed).wrong();
+    }
+    return out;
+}
+TEST(CheckAtOneWo, FindsWhatARightVerdictSaysItWouldHaveFound) {
+    const Sizes s = checked({}).sizes;
+    EXPECT_GE(found(*s.constant, [](Cosine& c, double e) { c.factor = 1 + e; }), 7);
+    EXPECT_GE(found(*s.leak, [](Cosine& c, double e) { c.leak = e; }), 7);
+    EXPECT_GE(found(*s.cap, [](Cosine& c, double e) { c.hole = e; }), 7);
+}
+
+TEST(CheckAtOneWo, FindsNaNAtACornerOfU) {
+    struct AtZero : Cosine {
+        void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+            Cosine::sample(t, wo, u, out);
+            for (std::size_t i = 0; i < u.size(); ++i)
+                if (u[i].y == 0) out[i].wi.x = std::numeric_limits<double>::quiet_NaN();
+        }
+    };
+    EXPECT_TRUE(has(check_sampler_at(AtZero{}, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1), "valid"));
+}
+
+}  // namespace
+}  // namespace crescent::check

@@ -1,0 +1,58 @@
+// p-values against exact laws.
+#include "check/verdicts/statistics.h"
+
+#include <array>
+#include <gtest/gtest.h>
+
+namespace crescent::check {
+namespace {
+
+/// P(N >= k) and P(N <= k) of a binomial.
+double above(double n, double p, double k) { return k <= 0 ? 1 : stats::beta_i(k, n - k + 1, p, 1 - p); }
+double below(double n, double p, double k) { return k >= n ? 1 : 1 - above(n, p, k + 1); }
+
+TEST(CheckStatistics, BennettIsNeverLessThanTheBinomialTail) {
+    for (double n : {100.0, 1e4, 1e6})
+        for (double mean : {0.1, 3.0, 20.0, 90.0}) {
+            const double p = mean / n;
+            for (double by : {1.0, 3.0, 8.0, 20.0, 40.0}) {
+                const double k = std::ceil(mean + by);
+                if (k > n) continue;
+                const double bound = bennett_p(bennett_z2(k - mean, n * p * (1 - p), 1, 1e12));
+                EXPECT_GE(bound, above(n, p, k)) << n << " " << mean << " " << k;
+                if (mean - by >= 0)
+                    EXPECT_GE(bennett_p(bennett_z2(by, n * p * (1 - p), 1, 1e12)), below(n, p, std::floor(mean - by)));
+            }
+        }
+}
+
+TEST(CheckStatistics, BennettIsNearTheNormalLawForManyTerms) {
+    const double z2 = bennett_z2(5, 1, 1e-6, 1e12);
+    EXPECT_NEAR(z2, 25, 0.01);
+    EXPECT_GT(bennett_p(z2), stats::normal_two_sided(5));
+    EXPECT_LT(bennett_p(z2), 20 * stats::normal_two_sided(5));
+}
+
+TEST(CheckStatistics, VarianceThatIsHardlyKnownWeakensATest) {
+    EXPECT_GT(bennett_p(bennett_z2(6, 1, 1e-3, 2)), 0.01);
+    EXPECT_LT(bennett_p(bennett_z2(6, 1, 1e-3, 1e12)), 1e-6);
+    EXPECT_EQ(freedom(1, 0), 1e12);
+    EXPECT_NEAR(freedom(3, 9), 2, 1e-12);
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(bennett_p(bennett_z2(6, infinity, 1e-3, freedom(infinity, infinity))), 1);
+    EXPECT_EQ(student_p_of(6, infinity, freedom(infinity, infinity)), 1);
+    EXPECT_LE(freedom(1e200, std::numeric_limits<double>::quiet_NaN()), 1);
+}
+
+TEST(CheckStatistics, ReplicatesThatShowNoSpreadKeepThatOfAPartOfAJump) {
+    std::array<double, 32> all;
+    all.fill(7.0);
+    const ReplicateMean alike(all, 1.0);
+    EXPECT_EQ(alike.mean, 7);
+    // One replicate in five has a draw more and none of these 32 shows it: probability 8e-4. It must pass.
+    EXPECT_GT(student_p_of(0.2, alike.variance, 31), alpha2 / 10);
+    EXPECT_GT(student_p_of(0.1, alike.variance, 31), 1e-2);
+}
+
+}  // namespace
+}  // namespace crescent::check
