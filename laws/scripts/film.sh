@@ -62,7 +62,8 @@ grep -q "voice 'false' ended with exit code 1" said || die "a voice that fails i
 
 # An ffmpeg that ends well and leaves no film, or an empty one, or that does not read its frames: an error that says so.
 mkdir fake
-for what in 'cat >/dev/null|not there' 'cat >/dev/null; : >"${!#}"|is empty' 'exit 0|could not encode' 'kill -9 $$|SIGKILL'; do
+for what in 'cat >/dev/null|not there' 'cat >/dev/null; : >"${!#}"|is empty' 'exit 0|could not encode' \
+    'kill -9 $$|SIGKILL'; do
     printf '#!/bin/bash\n[ "$2" = -encoders ] && exec %s "$@"\n%s\n' "$(command -v ffmpeg)" "${what%|*}" >fake/ffmpeg
     chmod +x fake/ffmpeg
     PATH="$work/fake:$PATH" expect 3 "$CRESCENT" film "$small" --size 360p --from 0:08 --to 0:09 --out none --quiet

@@ -152,7 +152,8 @@ expect 0 timeout 60 "$CRESCENT" check --quiet --plugin ./moves.so --wo 45 --json
 bad() {
     odd "$@"
     expect 1 "$CRESCENT" run "$1.toml" --out "$1" --quiet --only metrics
-    grep -q 'bad samples' printed && grep -q 'a pdf that cannot be used' printed || die "$1: nothing of bad samples: $(cat printed)"
+    grep -q 'bad samples' printed && grep -q 'a pdf that cannot be used' printed ||
+        die "$1: nothing of bad samples: $(cat printed)"
     python3 -c "
 import json
 m = json.load(open('$1/metrics.json'))

@@ -63,8 +63,8 @@ inline constexpr double negative_weight = 1e-6;
 inline constexpr double repeats_factor = 4, repeats_floor = 8;
 
 /// Numbers are of few bits if a step of this size moves most draws not at all where it should move them by
-/// `few_bits_move`: up to 16 bits are found. Derived: a cosine in single precision near 1, drawn as u^(1 / (s + 1)), hides
-/// steps of the direction up to 2^-18 / sqrt(2 (s + 1)), at most half of that.
+/// `few_bits_move`: up to 16 bits are found. Derived: a cosine in single precision near 1, drawn as u^(1 / (s + 1)),
+/// hides steps of the direction up to 2^-18 / sqrt(2 (s + 1)), at most half of that.
 inline constexpr double few_bits_step = 0x1p-18, few_bits_move = 128 * ulp, few_bits_share = 0.6;
 
 /// p |dw/du| may fall below the probability of its branch by this much: chosen, ten times what central differences with
@@ -86,8 +86,8 @@ inline constexpr double lost_light = 1e-6;
 
 /// The variance is infinite from this Pareto index on (Vehtari et al. 2024).
 inline constexpr double heavy_index = 0.5;
-/// A largest weight of no more means than this among thousands is no tail: one with index 1/2 has a largest of the order
-/// of sqrt(n) means.
+/// A largest weight of no more means than this among thousands is no tail: one with index 1/2 has a largest of the
+/// order of sqrt(n) means.
 inline constexpr double bounded_weight = 4;
 
 // ---- targets of a quick check: a right verdict whose size exceeds ten times its target is inconclusive. Chosen by
