@@ -13,9 +13,9 @@ function(crescent_library target)
 endfunction()
 
 # crescent_folder(NAME LIBS...): src/NAME/*.cpp and src/NAME/*/*.cpp are the target crescent_NAME; it may use every
-# folder named before it. Headers in crescent_read_in_NAME are precompiled for it. *_test.cpp stand beside their sources and are collected for
-# laws/CMakeLists.txt. Of crescent::check alone all folders are one target, which is compiled in a few files: who builds
-# it builds it once and edits none of it.
+# folder named before it. Headers in crescent_read_in_NAME are precompiled for it. *_test.cpp stand beside their
+# sources and are collected for laws/CMakeLists.txt. Of crescent::check alone all folders are one target, which is
+# compiled in a few files: who builds it builds it once and edits none of it.
 set(crescent_folders "")
 set(crescent_sources "")
 set(crescent_libraries "")

@@ -1,3 +1,5 @@
+// Tests beside the identity E[h(w)] = integral of h p: numbers that cannot be used, corners of u and of w_o, and calls
+// that must agree with each other (the same u twice, in other batches, without one of its numbers).
 #include "check/decide/small_tests.h"
 
 #include <algorithm>

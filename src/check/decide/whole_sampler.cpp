@@ -1,3 +1,5 @@
+// Directions exactly on axes, planes and the horizon, and one ulp next to them, as w_o and as w_i: a few calls at each,
+// whose numbers must be usable.
 #include "check/decide/whole_sampler.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Candidate factors by which a density may be off, as functions of the direction, and their names in a report.
 #include "check/explain/causes.h"
 
 #include <cmath>
