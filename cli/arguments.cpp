@@ -49,7 +49,7 @@ CLI::Validator number(double low, double high) {
 }
 
 void timeout(CLI::App& command, double& to) {
-    command.add_option("--timeout", to, "that one answer of a program or plugin may take; default 10 or 60")
+    command.add_option("--timeout", to, "limit of one answer; programs 10, plugins 60")
         ->type_name("SECONDS")
         ->check(number(0.01, 1e6));
 }
