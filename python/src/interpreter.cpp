@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
 #include <mutex>
 #include <vector>
 
@@ -69,6 +71,18 @@ void wait_for_work(std::unique_lock<std::mutex>& lock) {
     }
 }
 
+/// Work that could not be stopped still runs when exit() destroys the static objects that it uses. Registered last,
+/// this runs first and leaves out the rest; Python has flushed its files by then.
+void leave_beside_work() {
+#ifdef __GLIBC__
+    const auto leave = [](int status, void*) {
+        std::fflush(nullptr);
+        _exit(status);
+    };
+    on_exit(leave, nullptr);
+#endif
+}
+
 void before_exit() {
     std::unique_lock lock(gate().mutex);
     gate().ending = true;
@@ -76,6 +90,7 @@ void before_exit() {
     if (getpid() == gate().process) {  // a child of fork() has none of the threads that are counted
         PyThreadState* const state = PyEval_SaveThread();
         wait_for_work(lock);
+        if (gate().works > 0) leave_beside_work();
         gate().closed = true;
         gate().changed.wait(lock, [] { return gate().waiting == 0; });
         lock.unlock();

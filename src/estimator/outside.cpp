@@ -94,7 +94,7 @@ void estimate_outside(const OutsideSampler& sampler, const KernelCall& call) {
                 const Vec3<double> wo{double(sites.wox[at]), double(sites.woy[at]), double(sites.woz[at])};
                 runs.push_back({wo,
                     {double(sites.s[at]), double(sites.alpha[at]), double(sites.diffuse[at]), sites.rho_s_exact[at]},
-                    count});
+                    static_cast<std::size_t>(count)});
                 add_numbers(sites.pixel[at], call.seed, first, count, numbers, u);
             }
             wi.resize(runs.size() * count), pdf.resize(wi.size());
