@@ -203,6 +203,7 @@ private:
     std::array<Sums, integrands> sums_{};
 
     Values add(Vec3d w, double p, double sign) {
+        if (!(p > 0)) return {};  // the estimator takes it for nothing
         const ChartPoint at = to_chart(w);
         const Values v = e_.plan.values(e_.plan.tree.leaves()[e_.plan.tree.find(at)], w, p);
         const std::vector<TreeNode>& nodes = e_.plan.tree.nodes();
@@ -250,9 +251,9 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, double node_test
     const double n = e.observations.independent;
     for (std::size_t q : {std::size_t{mass}, std::size_t{bridge}})
         if (const double c = e.integrals.sums[q].value; c > 0) take_less(out.constant, needed[q] / c);
-    for (std::size_t q = bridge; q < integrands; ++q) {
+    for (std::size_t q = mass; q < integrands; ++q) {
         const double effect = std::fabs(e.integrals.even[q] / e.integrals.domain - e.observations.sums[q].sum / n);
-        const double square = e.observations.sums[q].square / n + effect * effect;  // of one leaked draw
+        const double square = e.integrals.even_square[q] / e.integrals.domain + effect * effect;  // of one leaked draw
         if (effect > 0)
             take_less(out.leak, leak_shown(needed[q], effect, square, std::max(n, e.observations.scrambled)));
     }

@@ -116,9 +116,11 @@ private:
                 least = std::min(least, p), most = std::max(most, p);
                 if (k * p > heavy_point) out_.heavy.push_back({to_chart(w_[at + a]), p});
                 to.second += k * h[a][bridge] * h[a][bridge] * p;
-                if (w_[at + a].z > 0 || p > 0) {
-                    to.solid_angle += k * h[a][bridge], out_.domain += k;
-                    for (std::size_t q = 0; q < integrands; ++q) out_.even[q] += k * h[a][q];
+                if (w_[at + a].z > 0 || p > 0) out_.domain += k;
+                if (p > 0) {
+                    to.solid_angle += k * h[a][bridge];
+                    for (std::size_t q = 0; q < integrands; ++q)
+                        out_.even[q] += k * h[a][q], out_.even_square[q] += k * h[a][q] * h[a][q];
                 }
                 for (double& v : h[a]) v *= p;
             }
@@ -175,6 +177,7 @@ void scale(Integrals& x, double by) {
     for (Estimate& e : x.sums) e.scale(by);
     x.domain *= by;
     for (double& v : x.even) v *= by;
+    for (double& v : x.even_square) v *= by;
     for (LeafIntegral& leaf : x.leaves) {
         leaf.bridge.scale(by);
         leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by;
@@ -197,7 +200,8 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
         to.light.points = lit;
     }
     scale(to, to.points / total), scale(pass, pass.points / total);
-    for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(pass.sums[q]), to.even[q] += pass.even[q];
+    for (std::size_t q = 0; q < integrands; ++q)
+        to.sums[q].add(pass.sums[q]), to.even[q] += pass.even[q], to.even_square[q] += pass.even_square[q];
     for (std::size_t l = 0; l < to.leaves.size(); ++l) {
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
         a.bridge.add(b.bridge);

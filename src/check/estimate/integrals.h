@@ -28,7 +28,7 @@ struct Estimate {
 struct LeafIntegral {
     Estimate bridge;         // of h p
     double second = 0;       // integral of h^2 p: what one draw counts for
-    double solid_angle = 0;  // integral of h where a draw would count: what draws spread evenly would give
+    double solid_angle = 0;  // integral of h where p > 0: what draws spread evenly would give
     double top = 0;          // the largest p that its points have met
     double per_point = 0;    // weight of one point
 };
@@ -47,8 +47,8 @@ struct Integrals {
     std::array<Estimate, integrands> sums;
     std::vector<LeafIntegral> leaves;
     LightIntegrals light;
-    std::array<double, integrands> even{};  // integral of h where a draw would count
-    double domain = 0;                      // solid angle of that
+    std::array<double, integrands> even{}, even_square{};  // integrals of h and h^2 where p > 0
+    double domain = 0;  // solid angle of the upper half, and of the lower where p > 0
     double points = 0;
     std::vector<DensityPoint> heavy;  // points that hold much of the mass each: the tree has missed something there
 };
