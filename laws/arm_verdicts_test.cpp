@@ -210,7 +210,8 @@ TEST(Verdicts, SayWhatAPipeDidWrongAndWhere) {
     EXPECT_NE(fault_of("sleep 20", 0.5)
                   .find("request 1 ('hello 2'): expected 'hello 2 NAME [KEY=VALUE]...' or 'hello 1 NAME', got nothing"),
         std::string::npos);
-    EXPECT_NE(fault_of("sleep 20 & exit 0", 5).find("the program ended with exit code 0, and what it left running"),
+    EXPECT_NE(fault_of("exec 3<&0; sleep 20 <&3 & exit 0", 5)
+                  .find("the program ended with exit code 0, and what it left running"),
         std::string::npos);
     EXPECT_NE(fault_of("echo hallo").find("got 'hallo'"), std::string::npos);
     EXPECT_NE(fault_of("exit 3").find("exit code 3"), std::string::npos);
