@@ -8,7 +8,7 @@ page=$CRESCENT_SOURCE/docs/extending.md
 tree=$CRESCENT_BUILD/extending/tree build=$CRESCENT_BUILD/extending/build
 
 mkdir -p fresh
-(cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake src cli laws "$work/fresh")
+(cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake src cli laws tests "$work/fresh")
 cp -r fresh plain
 
 # The file of a `<!-- file PATH -->` is the block of code that follows. `<!-- list PATH "HEADER" WORD -->` is two words
