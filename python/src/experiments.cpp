@@ -222,7 +222,7 @@ void add_experiments(nb::module_& m) {
     m.def(
         "join",
         [](const std::vector<std::string>& parts) {
-            const nb::gil_scoped_release free;
+            const Work here;
             return result_of(join(parts, "crescent.join"));
         },
         "parts"_a);

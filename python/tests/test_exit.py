@@ -35,7 +35,11 @@ CALLS = {
     "a run": lambda: crescent.run(crescent.parse(sys.argv[2]), progress=progress),
     "functions": lambda: (began.set(), crescent.arm("ggx-vndf").sample([0, 0, 1], np.full((100000, 2), 0.5))),
     "serial": lambda: crescent.check(sample, pdf, full=True, serial=True),
+    "a join": lambda: (began.set(), crescent.join([sys.argv[4]])),
 }
+if kind == "a join":
+    small = sys.argv[2].replace("n = 65536", "n = 16").replace("seeds = 64", "seeds = 2")
+    crescent.run(crescent.parse(small), seeds=(1, 1), out=sys.argv[4])
 
 def work():
     while True:
@@ -70,13 +74,16 @@ radiance = [1, 1, 1]
 
 
 @pytest.mark.parametrize(
-    "kind", ["callables", "naps", "sleeps", "computes", "serial", "an arm", "a run", "functions"]
+    "kind", ["callables", "naps", "sleeps", "computes", "serial", "an arm", "a run", "functions", "a join"]
 )
-def test_an_interpreter_ends_as_usual_beside_a_daemon_thread(kind):
+def test_an_interpreter_ends_as_usual_beside_a_daemon_thread(kind, tmp_path):
     for wait in ("0", "0.11"):
         start = time.monotonic()
         ended = subprocess.run(
-            [sys.executable, "-c", SCRIPT, kind, SCENE, wait], capture_output=True, text=True, timeout=50
+            [sys.executable, "-c", SCRIPT, kind, SCENE, wait, str(tmp_path / "part")],
+            capture_output=True,
+            text=True,
+            timeout=50,
         )
         assert (ended.returncode, ended.stdout, ended.stderr) == (0, "over\n", "")
         assert time.monotonic() - start < 30
