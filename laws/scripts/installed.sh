@@ -1,6 +1,6 @@
 #!/bin/bash
-# `cmake --install` into an empty prefix, then examples/find_package and examples/in_memory built against it,
-# outside the tree. The README's lines for CMake and its C++ are built by docs.sh.
+# `cmake --install` into an empty prefix, then examples/find_package, examples/in_memory and the README's snippets built
+# against it outside the tree, these without the libraries that the check alone does not need.
 . "$(dirname "$0")/common.sh"
 
 build_example find_package

@@ -33,7 +33,7 @@ inline constexpr double least_jumps = 0.3;
 // ---- arithmetic of the sampler
 
 inline constexpr double ulp = 0x1p-24;  // of single precision, relative to 1
-/// No leaf is narrower, in radians, whatever the sampler says of its arithmetic. Derived: float inside double
+/// No leaf is narrower, in radians, for any arithmetic that the sampler declares. Derived: float inside double
 /// interfaces moves a direction by up to 8 ulp (an azimuth near 2 pi), which is then at most 1/8 of a leaf.
 inline constexpr double least_width = 64 * ulp;
 /// Lattices coarser than this are no arithmetic but a fault (u of few bits, texel centres). Derived: single precision
@@ -51,7 +51,7 @@ inline constexpr double same_number = 1e-4;
 /// Share of the draws that may break `pointwise` or `weight`, and the share at which p may be 0 (`zero`): chosen. A
 /// draw on the edge of the support is rounded to the other side once in 1e5.
 inline constexpr double tolerated_share = 1e-4, tolerated_zeros = 1e-5;
-/// Breaks that are tolerated whatever the number of draws: 3, so that one odd draw is no finding.
+/// Breaks that are tolerated for any number of draws: 3, so that one odd draw is no finding.
 inline constexpr double tolerated_breaks = 3;
 /// |w| may differ from 1 by this much: 84 ulp of float, more than any normalisation leaves.
 inline constexpr double unit_length = 1e-5;

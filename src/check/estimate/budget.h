@@ -61,7 +61,7 @@ inline constexpr std::uint32_t batch_size = 4096;
 inline constexpr int replicate_sets = 32;
 /// Nodes above this depth are tested with replicates; below they have too few draws in each. Storage: 2^11 nodes.
 inline constexpr int replicated_depth = 10;
-/// All nodes of the tree down to this depth exist whatever the pilot says.
+/// All nodes of the tree down to this depth always exist.
 inline constexpr int even_depth = 8;
 /// Points at which p is evaluated to decide on a leaf's cut.
 inline constexpr int points_per_leaf = 8;

@@ -1,5 +1,5 @@
 // The right side of E[h(draw)] = integral of h p: stratified points in the leaves, two in each cell of a grid, so that
-// every cell tells its own variance. Passes of a staged budget are merged by their numbers of points.
+// every cell has a variance of its own. Passes of a staged budget are merged by their numbers of points.
 #pragma once
 
 #include <array>
