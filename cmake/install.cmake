@@ -7,7 +7,7 @@ set(crescent_config ${CMAKE_INSTALL_LIBDIR}/cmake/crescent)
 set(crescent_of_run "")
 if(CRESCENT_RUN)
   set(crescent_of_run ${crescent_folders} crescent_face crescent)
-  list(REMOVE_ITEM crescent_of_run ${crescent_of_check})
+  list(REMOVE_ITEM crescent_of_run ${crescent_of_check} crescent_check)  # the next engine is for the tests alone
 endif()
 foreach(target IN LISTS crescent_of_check crescent_of_run)
   string(REPLACE crescent_ "" short ${target})
