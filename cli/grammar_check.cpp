@@ -13,7 +13,7 @@ constexpr const char* check_footer =
 verdicts expected of it. Else: 0 right, 1 wrong, 3 error (the sampler crashed,
 stopped answering or broke the protocol), 4 inconclusive: something could not be
 decided, or was not examined. Wrong comes before error, error before
-inconclusive. docs/verdicts.md says what each verdict means, and how a program
+inconclusive. docs/check.md says what each verdict means, and how a program
 behind --exec is asked.)";
 
 /// "Verdicts, in order: valid, ...", in lines of at most 80 columns.

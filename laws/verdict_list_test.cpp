@@ -29,7 +29,7 @@ TEST(VerdictList, EachIsGivenOfOneTrialOrAmongTrials) {
 
 /// Every row is of a verdict of the list, in its order; `crescent list verdicts` has those that have no row yet.
 TEST(VerdictList, TheManualTellsItInItsOrderWithItsQuestions) {
-    std::ifstream manual(std::string(CRESCENT_SOURCE_DIR) + "/docs/verdicts.md");
+    std::ifstream manual(std::string(CRESCENT_SOURCE_DIR) + "/docs/check.md");
     std::vector<std::string> rows;
     bool in_table = false;
     for (std::string line; std::getline(manual, line);) {

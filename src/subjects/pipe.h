@@ -1,6 +1,6 @@
 // A sampler in another process, over its stdin and stdout. It is greeted with `hello 2` and says what it is; one that
 // answers `hello 1 NAME` is spoken to in protocol 1, which is protocol 2 without keys. Text lines, or blocks of doubles
-// where it asks for them; docs/verdicts.md has the grammar. Local frame, n = +z; end of input ends it.
+// where it asks for them; docs/samplers.md has the grammar. Local frame, n = +z; end of input ends it.
 #pragma once
 
 #include <atomic>

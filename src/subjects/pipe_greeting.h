@@ -1,4 +1,4 @@
-// What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`; docs/verdicts.md has the keys.
+// What a program says of itself: `hello 1 NAME`, or `hello 2 NAME [KEY=VALUE]...`; docs/samplers.md has the keys.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@
 
 namespace crescent::inline subjects {
 
-/// Draws from a file, with the density of a second file where there is one. See docs/verdicts.md for both formats.
+/// Draws from a file, with the density of a second file where there is one. See docs/samplers.md for both formats.
 class SampleFile : public RecordedSubject {
 public:
     /// Throws InputError with file, line and column of every mistake, at most ten.

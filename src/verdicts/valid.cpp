@@ -26,7 +26,7 @@ std::string told(Vec3d w) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", w.x, 
 std::string fault_of(const Draw& d, double pdf_there) {
     if (std::isnan(d.pdf)) return "pdf is NaN";
     if (d.pdf < 0) return fmt::format("pdf is {:.9g}, negative", d.pdf);
-    if (std::isinf(d.pdf)) return "pdf is infinite (a delta part is told apart: see docs/verdicts.md)";
+    if (std::isinf(d.pdf)) return "pdf is infinite (a delta part is told apart: see docs/check.md)";
     if (std::isnan(d.wi.x + d.wi.y + d.wi.z)) return "the direction is NaN";
     if (d.pdf == 0 && d.delta == 0) return "";
     if (!(d.delta >= 0 && d.delta <= 1))

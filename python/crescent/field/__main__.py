@@ -162,7 +162,7 @@ def main(argv: list[str] | None = None) -> int:
         "# The field, judged",
         "Written by `python -m crescent.field`, which anyone can run again: `pip install crescent[mitsuba]`. Verdicts "
         "are those of "
-        "[verdicts.md](verdicts.md) at four w_o above the surface and three below; levels are shared within a plugin "
+        "[check.md](check.md) at four w_o above the surface and three below; levels are shared within a plugin "
         "at "
         "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; "
         "*no "
