@@ -10,12 +10,11 @@ expect 0 "$work/prefix/bin/crescent" --version
 stray=$(find "$work/prefix" -name '_crescent*')
 [ -z "$stray" ] || die "the Python module belongs into the wheel: $stray"
 
-# What the README says of a renderer of one's own: its lines for CMake, both ways, and its C++, as they stand there.
-snippet() { # LANGUAGE WHICH
-    awk -v mark="\`\`\`$1" -v which="$2" '$0 == mark && ++n == which { inside = 1; next } inside && /^```/ { exit }
-        inside' "$CRESCENT_SOURCE/README.md"
+# CMake of the README and of docs/install.md, and the README's C++, as printed there.
+snippet() { # LANGUAGE PAGE
+    awk -v mark="\`\`\`$1" '$0 == mark { inside = 1; next } inside && /^```/ { exit } inside' "$CRESCENT_SOURCE/$2"
 }
-readme() { # FOLDER WHICH
+readme() { # FOLDER PAGE
     mkdir "$1"
     {
         echo 'cmake_minimum_required(VERSION 3.25)'
@@ -23,12 +22,12 @@ readme() { # FOLDER WHICH
         echo 'find_package(GTest REQUIRED)'
         echo 'add_executable(my_tests my_tests.cpp)'
         snippet cmake "$2"
-        if [ "$2" = 1 ]; then
+        if [ "$2" = README.md ]; then
             echo 'add_executable(plugin ../plugin.cpp)'
             echo 'target_link_libraries(plugin PRIVATE crescent::check)'
         fi
     } >"$1/CMakeLists.txt"
-    snippet cpp 1 >"$1/my_tests.cpp"
+    snippet cpp README.md >"$1/my_tests.cpp"
     expect 0 cmake -S "$1" -B "$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
         -DCMAKE_CXX_COMPILER="${CXX:-g++}" "${@:3}"
 }
@@ -48,11 +47,11 @@ int main(int, char** words) {
     std::printf("%s %.6f\n", plugin->name().c_str(), out[0].pdf);
 }
 END
-readme readme 1 -DCMAKE_PREFIX_PATH="$work/prefix" "${none[@]}"
+readme readme README.md -DCMAKE_PREFIX_PATH="$work/prefix" "${none[@]}"
 expect 0 cmake --build readme/build
 expect 0 readme/build/my_tests
 grep -q '1 test' printed || die "the README's sampler is not judged: $(cat printed)"
-readme fetched 2 -DFETCHCONTENT_SOURCE_DIR_CRESCENT="$CRESCENT_SOURCE"  # subproject.sh compiles it
+readme fetched docs/install.md -DFETCHCONTENT_SOURCE_DIR_CRESCENT="$CRESCENT_SOURCE"  # subproject.sh compiles it
 # Without components: crescent::check where the rest lacks a library; asked for by name, the rest is an error.
 for components in '' 'COMPONENTS verdicts' 'COMPONENTS run'; do
     rm -rf lacking && mkdir lacking
