@@ -5,7 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-#include "against/against.h"
+#include "check/against.h"
 #include "base/sanitized_test.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"

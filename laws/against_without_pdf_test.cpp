@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "against/against.h"
+#include "check/against.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"

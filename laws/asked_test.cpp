@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "against/against.h"
+#include "check/against.h"
 #include "base/parallel.h"
 #include "base/sanitized_test.h"
 #include "cubature/cubature.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "against/against_variance.h"
 #include "laws/judged.h"
 #include "laws/right/right.h"
 #include "math/functions.h"

@@ -20,7 +20,6 @@
 // reader's mistake, OutputError something missing or not writable, Interrupted a stop that was asked for, Bug ours.
 #pragma once
 
-#include "against/against.h"
 #include "arms/all.h"
 #include "base/contents.h"
 #include "base/errors.h"
@@ -33,6 +32,7 @@
 #include "base/progress_monitor.h"
 #include "base/stopwatch.h"
 #include "base/text.h"
+#include "check/against.h"
 #include "color/turbo.h"
 #include "compare/compare.h"
 #include "compare/rates.h"

@@ -10,6 +10,9 @@ namespace crescent::inline subjects {
 class RecordedSubject : public JudgedSampler {
 public:
     bool draws_at_will() const override { return false; }
+    std::size_t rows() const { return draws_.size(); }
+    const Draw& row(std::size_t i) const { return draws_[i]; }
+    const Numbers& row_numbers(std::size_t i) const { return u_[i]; }
     /// Round 0: every other row, from the first; round 1: the rest, which is independent of it.
     void half(int round, std::vector<Numbers>& u, std::vector<Draw>& draws) const {
         for (std::size_t i = static_cast<std::size_t>(round); i < draws_.size(); i += 2) {

@@ -127,7 +127,7 @@ private:
         const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;
         hints.insert(hints.end(), drawn.begin(), drawn.end());
         if (hints.empty()) return false;
-        key_.stage = 9;
+        key_.stage = StreamKey::regrown;
         first_ = {};
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_, std::move(hints)));
         return true;

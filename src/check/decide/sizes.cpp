@@ -12,20 +12,6 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double power_quantile = 1.2816;  // P(Z < 1.2816) = 0.9
-
-/// The difference that Bennett's test finds with the stated power.
-double needed_by_bennett(double floor, double v, double b, double nu, double level) {
-    const double z2 = -2 * math::log(level / 2);
-    double low = 0, high = 1;
-    while (bennett_z2(high, v, b, nu) < z2 && high < 1e6) high *= 2;
-    for (int k = 0; k < 60; ++k) {
-        const double middle = (low + high) / 2;
-        (bennett_z2(middle, v, b, nu) < z2 ? low : high) = middle;
-    }
-    return floor + high + power_quantile * std::sqrt(v);
-}
-
 /// Of the whole sums, what each needs by the better of its two kinds of draws.
 std::array<double, integrands> needed_by_sums(const Evidence& e, double level) {
     std::array<double, integrands> out{};

@@ -35,20 +35,17 @@ public:
     Observer(Source& source, const Plan& plan, Integrals& integrals, Observations& to)
         : source_(source), plan_(plan), integrals_(integrals), to_(to) {}
 
-    /// set: -1 for independent draws.
-    void batch(std::span<const Numbers> u, int set, bool with_f) {
+    /// Independent draws.
+    void batch(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, bool with_f) {
+        draws_.assign(u.size(), {});
+        source_.draw(key, from, u, draws_);
+        look_at(u, -1, with_f);
+    }
+    /// Draws of one scrambled set.
+    void batch(std::span<const Numbers> u, int set) {
         draws_.assign(u.size(), {});
         source_.draw(u, draws_);
-        w_.clear(), at_.clear();
-        for (std::size_t i = 0; i < u.size(); ++i)
-            if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
-        p_.resize(w_.size());
-        source_.density(w_, p_);
-        compare_pdf(u);
-        if (with_f) compare_weights(u, set);
-        for (std::size_t k = 0; k < w_.size(); ++k)
-            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set);
-            else if (set < 0) ++to_.checks.nothing;
+        look_at(u, set, false);
     }
 
 private:
@@ -60,6 +57,19 @@ private:
     std::vector<Vec3d> w_, f_, true_f_;
     std::vector<std::size_t> at_;  // of the draws that w_ are of
     std::vector<double> p_;
+
+    void look_at(std::span<const Numbers> u, int set, bool with_f) {
+        w_.clear(), at_.clear();
+        for (std::size_t i = 0; i < u.size(); ++i)
+            if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
+        p_.resize(w_.size());
+        source_.density(w_, p_);
+        compare_pdf(u);
+        if (with_f) compare_weights(u, set);
+        for (std::size_t k = 0; k < w_.size(); ++k)
+            if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set);
+            else if (set < 0) ++to_.checks.nothing;
+    }
 
     /// A draw of the density with finite numbers; others are counted.
     bool usable(const Numbers& u, const Draw& d, int set) {
@@ -215,12 +225,11 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
     const auto before = static_cast<std::uint32_t>(to.independent);
-    to.independent = std::max(look.independent, before);
-    for (std::uint32_t from = before; from < look.independent; from += batch_size) {
-        u.resize(std::min(batch_size, look.independent - from));
-        for (std::uint32_t i = 0; i < u.size(); ++i)
-            u[i] = numbers_at(draws, from + i, source.numbers(), source.single());
-        observer.batch(u, -1, weighs && from < of_f);
+    const std::uint32_t last_draw = source.available(draws, look.independent);
+    to.independent = std::max(last_draw, before);
+    for (std::uint32_t from = before; from < last_draw; from += batch_size) {
+        u.resize(std::min(batch_size, last_draw - from));
+        observer.batch(draws, from, u, weighs && from < of_f);
     }
     if (source.traits.own_random || !source.subject.draws_at_will()) return;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
@@ -233,7 +242,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         for (std::uint32_t from = first; from < last; from += batch_size) {
             u.resize(std::min(batch_size, last - from));
             for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = points.at(from + i);
-            observer.batch(u, set, false);
+            observer.batch(u, set);
         }
     }
     to.scrambled = static_cast<double>(last) * replicate_sets;

@@ -20,12 +20,21 @@ double step_of(std::vector<double> v) {
     return std::min(2 * v[within] * static_cast<double>(equal) / static_cast<double>(within), v[(equal + n) / 2]);
 }
 
+double step_of_directions(std::span<const Vec3d> directions) {
+    std::vector<double> xyz[3];
+    for (Vec3d w : directions) xyz[0].push_back(w.x), xyz[1].push_back(w.y), xyz[2].push_back(w.z);
+    double step = 0;
+    for (auto& v : xyz) step = std::max(step, step_of(std::move(v)));
+    return angle_per_step * std::min(step, coarsest_step);
+}
+
 namespace {
 
 struct Pilot {
     std::vector<DensityPoint> points;
     std::vector<Vec3d> directions;
     std::array<double, 3> weight{};
+    std::uint32_t of = 0;
 };
 
 Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key) {
@@ -34,11 +43,11 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
     std::vector<Draw> draws;
     std::vector<Vec3d> w;
     std::vector<double> p;
-    for (std::uint32_t from = 0; from < budget.pilot; from += batch_size) {
-        const std::uint32_t n = std::min(batch_size, budget.pilot - from);
+    out.of = source.available(key, budget.pilot);
+    for (std::uint32_t from = 0; from < out.of; from += batch_size) {
+        const std::uint32_t n = std::min(batch_size, out.of - from);
         u.resize(n), draws.assign(n, {});
-        for (std::uint32_t i = 0; i < n; ++i) u[i] = numbers_at(key, from + i, source.numbers(), source.single());
-        source.draw(u, draws);
+        source.draw(key, from, u, draws);
         w.clear();
         std::vector<const Draw*> of;
         for (const Draw& d : draws) {
@@ -58,7 +67,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
                 source.channels() == 3 ? of[i]->weights : Vec3d{*of[i]->weight, *of[i]->weight, *of[i]->weight};
             for (int c = 0; c < 3; ++c)
                 if (std::isfinite(channel_of(x, c)))
-                    out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / budget.pilot;
+                    out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.of;
         }
     }
     return out;
@@ -69,16 +78,13 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
 Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::vector<DensityPoint> hints) {
     key.purpose = Purpose::pilot;
     Pilot pilot = draw_pilot(source, budget, key);
-    std::vector<double> log_p, xyz[3];
+    std::vector<double> log_p;
     for (const DensityPoint& e : pilot.points)
         if (e.p > 0) log_p.push_back(e.p);
-    for (Vec3d w : pilot.directions) xyz[0].push_back(w.x), xyz[1].push_back(w.y), xyz[2].push_back(w.z);
     const auto drawn = static_cast<std::uint32_t>(pilot.points.size());
     Vec3d middle{};
     for (Vec3d w : pilot.directions) middle = middle + w * (1.0 / drawn);
-    double step = 0;
-    for (auto& v : xyz) step = std::max(step, step_of(std::move(v)));
-    step = angle_per_step * std::min(step, coarsest_step);
+    const double step = step_of_directions(pilot.directions);
     double median = 0;
     if (!log_p.empty()) {
         const auto at = log_p.begin() + static_cast<std::ptrdiff_t>(log_p.size() / 2);
@@ -86,8 +92,8 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
         median = math::log(*at);
     }
     key.purpose = Purpose::tree;
-    return {Tree(source, std::move(pilot.points), budget.pilot, std::move(hints), step, budget, key), step, median,
-        middle, pilot.weight, source.estimates, drawn, budget.pilot};
+    return {Tree(source, std::move(pilot.points), pilot.of, std::move(hints), step, budget, key), step, median,
+        middle, pilot.weight, source.estimates, drawn, pilot.of};
 }
 
 }  // namespace crescent::check

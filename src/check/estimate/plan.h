@@ -41,5 +41,7 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
 /// The step of the lattice on which n values lie; 0 where none shows. Few equal pairs: (equal pairs) / (pairs within g)
 /// = step / (2 g). Many: the median gap between distinct values.
 double step_of(std::vector<double> values);
+/// The step of the arithmetic that gave these directions, as an angle.
+double step_of_directions(std::span<const Vec3d> directions);
 
 }  // namespace crescent::check

@@ -24,8 +24,39 @@ void Source::draw(std::span<const Numbers> u, std::span<Draw> out) {
     subject.sample(technique, wo, u, out);
 }
 
+namespace {
+
+/// Which of eight rows serve a stream.
+std::span<const std::uint32_t> rows_for(const StreamKey& key) {
+    static constexpr std::uint32_t pilot[] = {0}, first[] = {1, 3, 5, 7}, second[] = {2, 4, 6};
+    if (key.purpose == Purpose::pilot) return pilot;
+    return key.confirms() ? std::span<const std::uint32_t>(second) : first;
+}
+
+}  // namespace
+
+std::uint32_t Source::available(const StreamKey& key, std::uint32_t wanted) const {
+    if (!recorded_) return wanted;
+    const std::span<const std::uint32_t> rows = rows_for(key);
+    std::size_t count = recorded_->rows() / 8 * rows.size();
+    for (std::uint32_t r : rows) count += r < recorded_->rows() % 8;
+    return static_cast<std::uint32_t>(std::min<std::size_t>(wanted, count));
+}
+
+void Source::draw(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, std::span<Draw> out) {
+    if (!recorded_) {
+        for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = numbers_at(key, from + i, numbers(), single());
+        return draw(u, out);
+    }
+    const std::span<const std::uint32_t> rows = rows_for(key);
+    for (std::uint32_t i = 0; i < u.size(); ++i) {
+        const std::size_t k = from + i, row = k / rows.size() * 8 + rows[k % rows.size()];
+        u[i] = recorded_->row_numbers(row), out[i] = recorded_->row(row);
+    }
+}
+
 void Source::density(std::span<const Vec3d> wi, std::span<double> out) {
-    if (!traits.has_pdf) {
+    if (!has_density()) {
         std::fill(out.begin(), out.end(), 1.0);
         return;
     }

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "subjects/subject.h"
+#include "check/estimate/stream.h"
+#include "subjects/recorded.h"
 
 namespace crescent::check {
 
@@ -22,14 +23,21 @@ public:
     const Traits traits;
     /// p is a random estimate, right in the mean alone: h must not depend on it.
     bool estimates = false;
+    /// The density is left out: what is asked is a matter of the draws alone.
+    bool by_draws = false;
 
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
-    bool has_density() const { return traits.has_pdf; }
+    bool has_density() const { return traits.has_pdf && !by_draws; }
     bool has_f() const { return subject.has_f(); }
     int channels() const { return traits.channels == 3 ? 3 : 1; }
 
     void draw(std::span<const Numbers> u, std::span<Draw> out);
+    /// Draws `from` to `from + u.size()` of a stream, with the numbers that they are of. A file gives its rows in place
+    /// of new draws: of each eight the first to the pilot, four to stage 1, three to stage 2, none of them twice.
+    void draw(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, std::span<Draw> out);
+    /// How many of `wanted` draws of a stream there are.
+    std::uint32_t available(const StreamKey& key, std::uint32_t wanted) const;
     /// 1/sr, in double where the sampler has it; 0 and counted where it is not finite or negative.
     void density(std::span<const Vec3d> wi, std::span<double> out);
     double density(Vec3d wi);
@@ -51,6 +59,7 @@ private:
     Vec3d first_invalid_{};
     double first_invalid_value_ = 0;
     std::vector<Pair> pairs_;
+    const RecordedSubject* recorded_ = dynamic_cast<const RecordedSubject*>(&subject);
     std::span<const Pair> pairs_of(std::span<const Vec3d> wi);
     double checked(double value, Vec3d at);
 };

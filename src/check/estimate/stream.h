@@ -23,6 +23,10 @@ struct StreamKey {
     Purpose purpose = Purpose::pilot;
     std::uint16_t part = 0;
 
+    /// Of a stage that confirms what another one found; `regrown` is the first stage on a second tree.
+    static constexpr std::uint8_t regrown = 9;
+    bool confirms() const { return stage != 1 && stage != regrown; }
+
     Vec4u<std::uint32_t> block(std::uint32_t index) const {
         const std::uint32_t where = std::uint32_t{place} | std::uint32_t{technique} << 16 | std::uint32_t{stage} << 24;
         return pcg4d(Vec4u<std::uint32_t>{index, where, static_cast<std::uint32_t>(purpose) << 16 | part, seed});

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t round_share = 8;  // a round cuts one leaf in eight
 constexpr double worthless = 1e-7;      // a score that no cut can use: 1/2000 of the detection floor
+constexpr double fewest_pilots = 8;     // draws of a leaf that is cut by them alone: its halves then have some
 
 /// What is known of a leaf while the tree grows.
 struct Growing {
@@ -167,7 +168,16 @@ private:
         }
     }
 
+    /// Without a density the draws alone say where leaves are needed.
+    void score_by_draws(double area, Growing& g) const {
+        const double drawn = static_cast<double>(g.last - g.first);
+        g.score = drawn < fewest_pilots ? 0 : drawn / of_;
+        g.met = drawn > 0;
+        g.q = std::max(drawn, 0.5) / of_ / area;
+    }
+
     void score(double area, Growing& g) const {
+        if (!source_.has_density()) return score_by_draws(area, g);
         const double n = sampled(g);
         double mean = 0, square = 0, top = 0, seen = 0;
         for (const DensityPoint& e : g.points) {

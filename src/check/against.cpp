@@ -1,0 +1,318 @@
+// Each w_o by itself: what cannot be used is not compared; then one tree of both, two looks, and what is found is put
+// again to fresh draws of both. A and B draw from different streams.
+#include "check/against.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "base/parallel.h"
+#include "check/against_f.h"
+#include "check/constants.h"
+#include "judgements/all.h"
+#include "subjects/asked_once.h"
+#include "subjects/faults.h"
+#include "subjects/named_side.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::array compared_by = {"same_distribution", "same_f", "variance"};
+constexpr std::uint32_t places_of_b = 1u << 15;  // B draws from streams that no A draws from
+
+/// What a comparison finds of the distributions.
+struct Differences {
+    std::vector<std::pair<AgainstAnswer, AgainstAnswer>> found;  // at both stages
+    std::map<AgainstAnswer::Family, double> p;                   // the least, times their number
+};
+
+struct WorstOf {
+    AgainstAnswer answer{};
+    double members = 0;
+    double p() const { return std::min(1.0, answer.p * members); }
+};
+
+std::map<AgainstAnswer::Family, WorstOf> worst_of(
+    const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b) {
+    std::map<AgainstAnswer::Family, WorstOf> out;
+    ask_against(ground, a, b, [&](const AgainstAnswer& r) {
+        WorstOf& w = out[r.family];
+        if (w.members++ == 0 || r.p < w.answer.p) w.answer = r;
+    });
+    return out;
+}
+
+/// The same member again, one-sided in the direction of the first.
+AgainstAnswer put_again(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b, const AgainstAnswer& r) {
+    AgainstAnswer out = r;
+    out.p = 1;
+    ask_against(ground, a, b, [&](const AgainstAnswer& again) {
+        if (again.family == r.family && again.member == r.member) out = again;
+    });
+    out.p = (out.difference > 0) == (r.difference > 0) ? out.p / 2 : 1;
+    return out;
+}
+
+/// What the comparison of one w_o is made with.
+struct AgainstPlan {
+    CheckBudget budget, own;  // of both together; of each by itself
+    std::uint32_t seed = 1;
+    double level = alpha1, again = alpha2;
+    bool expect_same = false;
+};
+
+AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same, std::size_t cases) {
+    AgainstPlan out;
+    out.budget = settings.full ? CheckBudget::thorough() : limited ? CheckBudget::limited() : CheckBudget::quick();
+    out.own = CheckBudget::limited();
+    if (limited && !settings.full) out.own.look_count = 1;
+    out.seed = settings.seed, out.expect_same = expect_same;
+    constexpr double of_each = static_cast<double>(AgainstAnswer::families) + 2 * static_cast<double>(Family::families);
+    const double questions = static_cast<double>(cases) * of_each;
+    out.again = alpha2 / std::max(1.0, questions / questions_covered);
+    return out;
+}
+
+class Comparison {
+public:
+    Comparison(const Side& one, const Side& other, const AgainstPlan& plan)
+        : plan_(plan),
+          a_{one.trial, *other.trial.subject, key_of(one)},
+          b_{other.trial, *one.trial.subject, key_of(other)} {}
+
+    std::vector<Verdict> run() {
+        std::vector<Verdict> out;
+        for (const char* name : compared_by) {
+            Verdict v;
+            v.arm = a_.trial.arm + " against " + b_.trial.arm, v.trial = a_.trial.text(), v.name = name;
+            out.push_back(std::move(v));
+        }
+        ground_.emplace(common_ground(a_, b_, plan_.budget));
+        const Differences d = differences();
+        if (draws_a_.invalid + draws_b_.invalid > 0) {
+            for (Verdict& v : out) note_unusable(v);
+            return out;
+        }
+        note_distribution(d, out[0]);
+        const CheckAt own_a = own(a_), own_b = own(b_);
+        const AgainstCase c{a_, b_, *ground_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f, plan_.level,
+            plan_.again, plan_.expect_same};
+        compare_f(c, out[1]);
+        compare_variances(c, out[1], out[2]);
+        return out;
+    }
+
+private:
+    const AgainstPlan& plan_;
+    AgainstSide a_, b_;
+    std::optional<CommonGround> ground_;
+    AgainstDraws draws_a_, draws_b_;
+
+    StreamKey key_of(const Side& side) const {
+        StreamKey key;
+        key.seed = plan_.seed, key.place = static_cast<std::uint16_t>(side.stream);
+        return key;
+    }
+
+    CheckAt own(const AgainstSide& side) const {
+        return check_sampler_at(*side.trial.subject, 0, side.trial.wo, {side.trial.light, side.key.place, 1}, plan_.own,
+            plan_.seed);
+    }
+
+    Differences differences() {
+        Differences out;
+        const int last = plan_.budget.look_count - 1;
+        for (int look = 0; look <= last && out.found.empty(); ++look) {
+            const Look& to = plan_.budget.looks[static_cast<std::size_t>(look)];
+            draw_on(a_, *ground_, to, plan_.budget.of_f, draws_a_);
+            draw_on(b_, *ground_, to, plan_.budget.of_f, draws_b_);
+            const double level = plan_.level * (look == last ? 1 - last * early_look : early_look);
+            out.p.clear();
+            std::vector<AgainstAnswer> suspects;
+            for (const auto& [family, worst] : worst_of(*ground_, draws_a_, draws_b_)) {
+                out.p[family] = worst.p();
+                if (worst.p() < level) suspects.push_back(worst.answer);
+            }
+            if (!suspects.empty()) confirm(suspects, to, look, out);
+        }
+        return out;
+    }
+
+    void confirm(const std::vector<AgainstAnswer>& suspects, const Look& to, int look, Differences& out) const {
+        const Look& most = plan_.budget.again;
+        const Look more = {0, std::max(to.independent, most.independent), std::max(to.scrambled, most.scrambled)};
+        AgainstSide a = a_, b = b_;
+        a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look);
+        AgainstDraws of_a, of_b;
+        draw_on(a, *ground_, more, 0, of_a);
+        draw_on(b, *ground_, more, 0, of_b);
+        for (const AgainstAnswer& r : suspects) {
+            const AgainstAnswer again = put_again(*ground_, of_a, of_b, r);
+            if (again.p < plan_.again) out.found.push_back({r, again});
+        }
+    }
+
+    void note_unusable(Verdict& v) const {
+        const bool of_a = draws_a_.invalid > 0;
+        v.state = State::inconclusive;
+        v.say = fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
+            of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B");
+        v.settle = "A sampler that is valid: `crescent check` of it alone says more.";
+    }
+
+    std::string sentence_of(const AgainstAnswer& r) const {
+        const double half = 1.959964 * r.sd;
+        switch (r.family) {
+            case AgainstAnswer::kinds:
+                if (r.member < 2)
+                    return fmt::format("A {} {:+.3g} +- {:.1g} more of its samples than B.",
+                        r.member == 0 ? "draws nothing at" : "draws a direction at", r.difference, half);
+                return fmt::format("The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
+                    text_of(ground_->ways[static_cast<std::size_t>(r.member) - 2]), r.difference, half);
+            case AgainstAnswer::sums:
+            case AgainstAnswer::sums_by_sets:
+                if (r.member == log_density)
+                    return fmt::format("A is {} concentrated than B: the mean logarithm of their density differs by "
+                                       "{:.3g} +- {:.1g}.",
+                        r.difference > 0 ? "more" : "less", std::fabs(r.difference), half);
+                return fmt::format("The mean direction of A is off that of B in {} by {:+.3g} +- {:.1g}.",
+                    "xyz"[r.member - mean_x], r.difference, half);
+            default: break;
+        }
+        const ChartRect& rect = ground_->tree.nodes()[static_cast<std::size_t>(r.member)].rect;
+        return fmt::format("About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
+                           "of those there.",
+            text_of(from_chart(rect.at(0.5, 0.5))), std::max(rect.theta_width(), rect.phi_width()), r.difference, half);
+    }
+    static std::string text_of(Vec3d w) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z); }
+
+    void note_distribution(const Differences& d, Verdict& v) const {
+        const bool differ = !d.found.empty();
+        v.evidence["same"] = !differ;
+        v.evidence["draws"] = {draws_a_.independent + draws_a_.scrambled, draws_b_.independent + draws_b_.scrambled};
+        for (const auto& [family, p] : d.p) v.evidence["p"][std::string(name_of(family))] = p;
+        for (const auto& [first, again] : d.found)
+            v.evidence["tests"][std::string(name_of(first.family))] = {{"difference", again.difference},
+                {"sd", again.sd}, {"p_first", first.p}, {"p_again", again.p}};
+        v.state = differ && plan_.expect_same ? State::wrong : State::right;
+        if (differ) {
+            const auto clearest = std::ranges::min_element(
+                d.found, {}, [](const auto& f) { return std::fabs(f.second.sd / f.second.difference); });
+            v.say = "They draw from different distributions. " + sentence_of(clearest->second);
+            return;
+        }
+        const AgainstSizes sizes = sizes_against(*ground_, draws_a_, draws_b_, plan_.level);
+        v.say = "No difference between their distributions is seen.";
+        if (!sizes.part) return;
+        v.evidence["would_have_found"]["part"] = *sizes.part;
+        v.say += fmt::format(" A part of {:.2g} of the draws that one of them lacks would have been found", *sizes.part);
+        if (sizes.distance) {
+            v.evidence["would_have_found"]["distance"] = *sizes.distance;
+            v.say += fmt::format(", and mean directions {:.2g} apart", *sizes.distance);
+        }
+        v.say += ".";
+    }
+};
+
+/// Trials of the same w_o one after the other.
+std::vector<std::size_t> by_direction(std::span<const Trial> trials) {
+    std::vector<std::size_t> order(trials.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+        const Trial &x = trials[i], &y = trials[k];
+        return std::tuple(x.theta_deg, x.azimuth_deg, i) < std::tuple(y.theta_deg, y.azimuth_deg, k);
+    });
+    return order;
+}
+
+/// The three verdicts of a w_o at which a sampler broke off.
+std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFault& fault) {
+    const bool slow = dynamic_cast<const SubjectTooSlow*>(&fault);
+    std::vector<Verdict> out;
+    for (const char* name : compared_by) {
+        Verdict v;
+        v.arm = a.arm + " against " + b.arm, v.trial = a.text(), v.name = name;
+        v.state = slow ? State::inconclusive : State::error;
+        v.say = slow ? std::string(fault.what())
+            : dynamic_cast<const SubjectGone*>(&fault)
+            ? fmt::format("It could not be evaluated: {}.", fault.what())
+            : fmt::format("The sampler broke off: {}.", fault.what());
+        if (slow) v.settle = "More time (--patience), or a program that answers faster.";
+        out.push_back(std::move(v));
+    }
+    return out;
+}
+
+/// What breaks off says which side it was. A subject stays one for all of its trials.
+std::vector<Trial> named_trials(std::span<const Trial> trials, const std::string& side) {
+    std::vector<Trial> out(trials.begin(), trials.end());
+    std::map<std::shared_ptr<const JudgedSampler>, std::shared_ptr<const JudgedSampler>> named;
+    for (Trial& t : out) {
+        std::shared_ptr<const JudgedSampler>& one = named[t.subject];
+        if (!one) one = named_side(t.subject, side);
+        t.subject = one;
+    }
+    return out;
+}
+
+/// That of all: the worst of them.
+State worst_state(const std::vector<Verdict>& verdicts) {
+    for (State s : {State::wrong, State::error, State::inconclusive})
+        if (std::ranges::any_of(verdicts, [s](const Verdict& v) { return v.state == s; })) return s;
+    return State::right;
+}
+
+}  // namespace
+
+Judgement judge_against(std::span<const Trial> a, std::span<const Trial> b, const TestSettings& settings,
+    bool expect_same, ProgressMonitor& monitor) {
+    monitor.begin("two samplers", static_cast<double>(a.size()));
+    std::vector<std::vector<Verdict>> all(a.size());
+    const std::vector<Trial> of_a = named_trials(a, "A"), of_b = named_trials(b, "B");
+    const auto either = [&](auto is) { return std::ranges::any_of(a, is) || std::ranges::any_of(b, is); };
+    const bool serial = either([](const Trial& t) { return t.subject->serial(); });
+    const bool limited = either([](const Trial& t) { return t.subject->limited(); });
+    const AgainstPlan plan = plan_of(settings, limited, expect_same, a.size());
+    AskedByDirection asked_a, asked_b;  // kept by one thread, where either is serial
+    const auto one = [&](std::size_t i) {
+        monitor.check();
+        try {
+            const auto stream = static_cast<std::uint32_t>(i);
+            const Side side_a = asked_a.of(of_a[i], stream), side_b = asked_b.of(of_b[i], stream + places_of_b);
+            all[i] = Comparison(side_a, side_b, plan).run();
+        } catch (const SubjectFault& fault) { all[i] = broken_off(a[i], b[i], fault); }
+        monitor.advance(1);
+    };
+    if (serial)
+        for (std::size_t i : by_direction(a)) one(i);
+    else parallel_for(std::size_t{0}, a.size(), one);
+    Judgement out;
+    out.alpha = settings.alpha;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        out.questions = std::max(out.questions,
+            a[i].subject->spending().answers + (a[i].subject == b[i].subject ? 0 : b[i].subject->spending().answers));
+        for (Verdict& v : all[i]) out.verdicts.push_back(std::move(v));
+    }
+    out.state = worst_state(out.verdicts);
+    out.as_expected = out.state == State::right;
+    return out;
+}
+
+std::string against_text(const Judgement& j) {
+    std::string out, last;
+    for (const Verdict& v : j.verdicts) {
+        if (v.trial != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.trial);
+        last = v.trial;
+        out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.say,
+            v.settle.empty() ? "" : " What would settle it: " + v.settle);
+    }
+    return out +
+        fmt::format("\n{}{}\n", word(j.state),
+            j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "");
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,431 @@
+// Given how many draws of both fall into a node, those of A in its first half follow a hypergeometric law if both are
+// of one distribution, which is that of a sum of independent indicators (Vatutin and Mikhailov 1982): Bennett's
+// inequality holds with its variance at every count.
+#include "check/against_draws.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::size_t most_ways = 16, kinds_before_ways = 2;  // nothing, directions
+constexpr double same_way = 1e-4;                              // distance of unit vectors
+constexpr std::size_t drawn_kept = 256;
+
+/// What one draw is: -1 nothing, 0 a direction, 1 + k the k-th way.
+class Sorter {
+public:
+    Sorter(const AgainstSide& side, int technique)
+        : source_(*side.trial.subject, technique, side.trial.wo, side.trial.light),
+          other_(side.other, 0, side.trial.wo, side.trial.light) {}
+    Source& source() { return source_; }
+
+    static bool usable(const Draw& d) {
+        return std::isfinite(d.pdf) && d.pdf >= 0 && (!(d.pdf > 0) || std::isfinite(d.wi.x + d.wi.y + d.wi.z)) &&
+            (!(d.pdf > 0) || dot(d.wi, d.wi) > 0) && d.delta >= 0 && d.delta <= 1;
+    }
+    bool is_drawn(const Draw& d) {
+        if (!usable(d) || d.delta != 0 || !(d.pdf > 0)) return false;
+        if (d.wi.z > 0) return true;
+        return (source_.has_density() || !other_.has_density() ? source_ : other_).density(d.wi) > 0;
+    }
+
+private:
+    Source source_, other_;
+};
+
+Vec3d weight_of(const Draw& d, int channels) {
+    const double w = d.weight.value_or(0);
+    return channels == 3 ? d.weights : Vec3d{w, w, w};
+}
+
+void add_delta(std::vector<DeltaPart>& parts, const Draw& d, int channels, double share) {
+    const Vec3d w = weight_of(d, channels);
+    for (DeltaPart& p : parts)
+        if (length(p.wi - d.wi) < same_way && std::fabs(p.q - d.delta) <= same_number * p.q &&
+            length(p.weight - w) <= same_number * length(w)) {
+            p.drawn += share;
+            return;
+        }
+    if (parts.size() <= most_ways) parts.push_back({d.wi, w, d.delta, share});
+}
+
+std::size_t nearest_way(std::span<const Vec3d> ways, Vec3d w) {
+    const auto off = [w](Vec3d way) { return length(w - way); };
+    return static_cast<std::size_t>(std::ranges::min_element(ways, {}, off) - ways.begin());
+}
+
+/// Pilot draws of all techniques.
+std::uint32_t draw_pilots(const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out,
+    std::vector<DeltaPart>& parts) {
+    std::uint32_t of = 0;
+    for (int t = 0; t < side.trial.subject->techniques(); ++t) {
+        Sorter sorter(side, t);
+        StreamKey key = side.key;
+        key.purpose = Purpose::pilot, key.technique = static_cast<std::uint8_t>(t);
+        const std::uint32_t count = sorter.source().available(key, budget.pilot);
+        std::vector<Numbers> u;
+        std::vector<Draw> draws;
+        for (std::uint32_t from = 0; from < count; from += batch_size) {
+            u.resize(std::min(batch_size, count - from)), draws.assign(u.size(), {});
+            sorter.source().draw(key, from, u, draws);
+            for (const Draw& d : draws)
+                if (sorter.is_drawn(d)) out.push_back(normalize(d.wi));
+                else if (d.delta > 0 && d.delta <= 1) add_delta(parts, d, sorter.source().channels(), 1.0 / count);
+        }
+        of += count;
+    }
+    return of;
+}
+
+}  // namespace
+
+CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
+    std::vector<Vec3d> of_a, of_b, drawn, ways;
+    std::vector<DeltaPart> delta_a, delta_b;
+    const std::uint32_t of = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
+    for (const auto* parts : {&delta_a, &delta_b})
+        for (const DeltaPart& p : *parts)
+            if (std::ranges::none_of(ways, [&](Vec3d w) { return length(w - p.wi) < same_way; }))
+                ways.push_back(p.wi);
+    const double step = std::max(step_of_directions(of_a), step_of_directions(of_b));
+    std::vector<DensityPoint> pilots;
+    Vec3d middle{};
+    for (const auto* directions : {&of_a, &of_b}) {
+        for (std::size_t i = 0; i < directions->size(); ++i) {
+            const Vec3d w = (*directions)[i];
+            pilots.push_back({to_chart(w), 1});
+            middle = middle + w * (1.0 / static_cast<double>(of_a.size() + of_b.size()));
+            if (i < drawn_kept) drawn.push_back(w);
+        }
+    }
+    Source source(*a.trial.subject, 0, a.trial.wo, a.trial.light);
+    source.by_draws = true;
+    StreamKey key = a.key;
+    key.purpose = Purpose::tree;
+    CommonGround out{Tree(source, std::move(pilots), of, {}, step, budget, key), step, middle, 0, std::move(ways),
+        std::move(delta_a), std::move(delta_b), std::move(drawn)};
+    double all = 0;
+    for (const Leaf& leaf : out.tree.leaves()) {
+        const double m = leaf.q * out.tree.rect(leaf).area();
+        out.log_q += m * math::log(leaf.q), all += m;
+    }
+    out.log_q /= all;
+    return out;
+}
+
+namespace {
+
+/// Draws of one technique of one side.
+class AgainstTechnique {
+public:
+    AgainstTechnique(const AgainstSide& side, const CommonGround& ground, int technique, AgainstDraws& to)
+        : side_(side), ground_(ground), sorter_(side, technique), source_(sorter_.source()), to_(to) {
+        mis_ = side.trial.subject->techniques() > 1;
+    }
+
+    void independent(StreamKey key, std::uint32_t from, std::uint32_t last, std::uint32_t of_f) {
+        key.purpose = Purpose::draws, key.technique = static_cast<std::uint8_t>(source_.technique);
+        last = source_.available(key, last);
+        for (; from < last; from += batch_size) {
+            u_.resize(std::min(batch_size, last - from)), draws_.assign(u_.size(), {});
+            source_.draw(key, from, u_, draws_);
+            to_.independent += static_cast<double>(u_.size());
+            for (const Draw& d : draws_) take(d, -1);
+            if (from < of_f) weigh(from);
+        }
+    }
+    void scrambled(StreamKey key, std::uint32_t first, std::uint32_t last) {
+        if (source_.traits.own_random || !source_.subject.draws_at_will()) return;
+        key.purpose = Purpose::scrambles, key.technique = static_cast<std::uint8_t>(source_.technique);
+        for (int set = 0; set < replicate_sets; ++set) {
+            key.part = static_cast<std::uint16_t>(set);
+            const ScrambledSobol points(key, source_.numbers(), source_.single());
+            for (std::uint32_t from = first; from < last; from += batch_size) {
+                u_.resize(std::min(batch_size, last - from)), draws_.assign(u_.size(), {});
+                for (std::uint32_t i = 0; i < u_.size(); ++i) u_[i] = points.at(from + i);
+                source_.draw(u_, draws_);
+                for (const Draw& d : draws_) take(d, set);
+            }
+        }
+        to_.scrambled += static_cast<double>(last - first) * replicate_sets;
+    }
+
+private:
+    const AgainstSide& side_;
+    const CommonGround& ground_;
+    Sorter sorter_;
+    Source& source_;
+    AgainstDraws& to_;
+    bool mis_ = false;
+    std::vector<Numbers> u_;
+    std::vector<Draw> draws_;
+
+    void take(const Draw& d, int set) {
+        to_.invalid += !Sorter::usable(d);
+        const bool drawn = sorter_.is_drawn(d);
+        if (set < 0) {
+            const bool way = d.delta > 0 && !ground_.ways.empty();
+            ++to_.kinds[drawn ? 1 : way ? kinds_before_ways + nearest_way(ground_.ways, d.wi) : 0];
+        }
+        if (!drawn) return;
+        const Vec3d w = normalize(d.wi);
+        const std::size_t l = ground_.tree.find(to_chart(w));
+        const Leaf& leaf = ground_.tree.leaves()[l];
+        const std::array<double, against_sums> h = {math::log(leaf.q) - ground_.log_q, w.x - ground_.middle.x,
+            w.y - ground_.middle.y, w.z - ground_.middle.z};
+        if (set < 0) {
+            ++to_.leaves[l];
+            for (std::size_t q = 0; q < h.size(); ++q) to_.sums[q].add(h[q]);
+            return;
+        }
+        for (std::size_t q = 0; q < h.size(); ++q) to_.by_set[q][static_cast<std::size_t>(set)] += h[q];
+        ++to_.node_by_set[static_cast<std::size_t>(leaf.coarse)][static_cast<std::size_t>(set)];
+    }
+
+    /// f L cos / p of the draws in hand, or the weight that comes with them; of a pair of techniques their sum by MIS.
+    void weigh(std::uint32_t from) {
+        std::vector<Vec3d> w;
+        std::vector<std::size_t> of;
+        std::vector<double> x(draws_.size());
+        const TrialLight& light = side_.trial.light;
+        const auto radiance = [&](Vec3d wi) { return light.even() || wi.z <= 0 ? light.fill : light(wi); };
+        for (std::size_t i = 0; i < draws_.size(); ++i) {
+            const Draw& d = draws_[i];
+            const bool drawn = sorter_.is_drawn(d);
+            if (!drawn && !(d.delta > 0)) continue;
+            if (d.weight) x[i] = *d.weight * radiance(d.wi);
+            else if (d.f) x[i] = *d.f * std::fabs(d.wi.z) / d.pdf * radiance(d.wi);
+            else if (drawn && source_.has_f() && source_.has_density()) w.push_back(d.wi), of.push_back(i);
+            else to_.weighs = false;
+        }
+        std::vector<Vec3d> f(w.size());
+        std::vector<double> share(w.size(), 1.0);
+        source_.f_cos(w, f);
+        if (mis_) {
+            std::vector<Pair> at;
+            for (Vec3d v : w) at.push_back({source_.wo, v});
+            source_.subject.mis_weight(source_.technique, at, share);
+        }
+        for (std::size_t k = 0; k < w.size(); ++k) {
+            const double y = source_.channels() == 3 ? luminance(f[k]) : f[k].x;
+            x[of[k]] = share[k] * y * radiance(w[k]) / draws_[of[k]].pdf;
+        }
+        if (to_.x.size() < from + x.size()) to_.x.resize(from + x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) to_.x[from + i] += x[i];
+    }
+};
+
+}  // namespace
+
+void draw_on(const AgainstSide& side, const CommonGround& ground, const Look& to, std::uint32_t of_f, AgainstDraws& d) {
+    const auto techniques = static_cast<std::uint32_t>(side.trial.subject->techniques());
+    const auto before = static_cast<std::uint32_t>(d.independent) / techniques,
+               set_before = static_cast<std::uint32_t>(d.scrambled) / replicate_sets / techniques;
+    d.leaves.resize(ground.tree.leaves().size()), d.node_by_set.resize(ground.tree.rows());
+    d.kinds.resize(kinds_before_ways + ground.ways.size());
+    for (std::uint32_t t = 0; t < techniques; ++t) {
+        AgainstTechnique one(side, ground, static_cast<int>(t), d);
+        one.independent(side.key, before, to.independent, of_f);
+        one.scrambled(side.key, set_before, to.scrambled / replicate_sets);
+    }
+}
+
+std::string_view name_of(AgainstAnswer::Family family) {
+    static constexpr std::array<std::string_view, AgainstAnswer::families> names = {
+        "kinds", "sums", "sums, replicates", "node", "node, replicates"};
+    return names[family];
+}
+
+namespace {
+
+/// Counts of one node by side: in its first half, and in all.
+struct NodeCounts {
+    double a = 0, b = 0;
+};
+
+std::vector<NodeCounts> counts_of(const Tree& tree, const AgainstDraws& a, const AgainstDraws& b) {
+    std::vector<NodeCounts> out(tree.nodes().size());
+    for (std::size_t i = out.size(); i-- > 0;) {
+        const TreeNode& x = tree.nodes()[i];
+        if (x.child < 0) {
+            out[i] = {a.leaves[static_cast<std::size_t>(x.leaf)], b.leaves[static_cast<std::size_t>(x.leaf)]};
+            continue;
+        }
+        const auto c = static_cast<std::size_t>(x.child);
+        out[i] = {out[c].a + out[c + 1].a, out[c].b + out[c + 1].b};
+    }
+    return out;
+}
+
+/// Two counts, each of so many: the difference of their shares, in draws of A given the sum of both.
+struct TwoShares {
+    double difference = 0, variance = 0;  // of k_a
+    double per_share = 0;                 // what one of difference is in shares
+    double share = 0;                     // in both together
+    TwoShares(double ka, double na, double kb, double nb) {
+        const double n = na + nb, k = ka + kb;
+        share = k / n;
+        difference = ka - na * share;
+        variance = na * nb / n * share * (1 - share) * n / std::max(n - 1, 1.0);
+        per_share = n / (na * nb);
+    }
+};
+
+AgainstAnswer answer_of(AgainstAnswer::Family family, int member, const TwoShares& s, double floor) {
+    AgainstAnswer out{family, member, s.difference * s.per_share, std::sqrt(s.variance) * s.per_share, floor};
+    out.p = bennett_p(bennett_z2(std::fabs(s.difference) - floor / s.per_share, s.variance, 1, 1e12));
+    return out;
+}
+
+double node_floor(const CommonGround& g, const TreeNode& x, double share) {
+    const double less = std::min(share, 1 - share);
+    return detection_floor * less + g.step / x.rect.width(x.along_phi) +
+        less * g.step / (x.rect.width(!x.along_phi) + 1e-300);
+}
+
+/// Sum over replicates of what falls into each node down to the replicated depth, by row.
+std::vector<Replicates> rows_of(const Tree& tree, std::vector<Replicates> out) {
+    for (std::size_t i = tree.nodes().size(); i-- > 0;) {
+        const TreeNode& x = tree.nodes()[i];
+        if (x.child < 0 || x.depth >= replicated_depth) continue;
+        const auto row = [&](int n) { return static_cast<std::size_t>(tree.nodes()[static_cast<std::size_t>(n)].row); };
+        for (std::size_t k = 0; k < replicate_sets; ++k)
+            out[static_cast<std::size_t>(x.row)][k] = out[row(x.child)][k] + out[row(x.child + 1)][k];
+    }
+    return out;
+}
+
+/// Means of replicates of both sides, by Welch's t-test.
+AgainstAnswer by_sets(AgainstAnswer::Family family, int member, const ReplicateMean<Replicates>& a,
+    const ReplicateMean<Replicates>& b, double floor) {
+    const double v = a.variance + b.variance;
+    const double nu = (replicate_sets - 1) * v * v / (a.variance * a.variance + b.variance * b.variance + 1e-300);
+    AgainstAnswer out{family, member, a.mean - b.mean, std::sqrt(v), floor};
+    out.p = student_p_of(std::fabs(out.difference) - floor, v, nu);
+    return out;
+}
+
+void ask_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::function<void(const AgainstAnswer&)>& visit) {
+    for (std::size_t k = 0; k < a.kinds.size(); ++k) {
+        if (a.kinds[k] + b.kinds[k] == 0) continue;
+        const TwoShares s(a.kinds[k], a.independent, b.kinds[k], b.independent);
+        visit(answer_of(AgainstAnswer::kinds, static_cast<int>(k), s, detection_floor * std::min(s.share, 1 - s.share)));
+    }
+}
+
+void ask_sums_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
+    const std::function<void(const AgainstAnswer&)>& visit) {
+    double low = 1e300, high = -1e300;  // of ln q
+    for (const Leaf& leaf : g.tree.leaves()) low = std::min(low, leaf.q), high = std::max(high, leaf.q);
+    const double ranges[against_sums] = {math::log(high / low), 2, 2, 2};
+    for (int q = 0; q < against_sums; ++q) {
+        const auto at = static_cast<std::size_t>(q);
+        const auto mean = [&](const AgainstDraws& d) { return d.sums[at].sum / d.independent; };
+        const auto square = [&](const AgainstDraws& d) { return d.sums[at].square / d.independent; };
+        const double floor = detection_floor * std::sqrt((square(a) + square(b)) / 2) + g.step;
+        const double v = std::max(square(a) - sqr(mean(a)), 0.0) / a.independent +
+            std::max(square(b) - sqr(mean(b)), 0.0) / b.independent;
+        AgainstAnswer out{AgainstAnswer::sums, q, mean(a) - mean(b), std::sqrt(v), floor};
+        out.p = bennett_p(bennett_z2(
+            std::fabs(out.difference) - floor, v, ranges[q] / std::min(a.independent, b.independent), 1e12));
+        visit(out);
+        if (a.scrambled == 0 || b.scrambled == 0) continue;
+        const auto sets = [&](const AgainstDraws& d) {
+            Replicates y = d.by_set[at];
+            for (double& e : y) e *= replicate_sets / d.scrambled;
+            return ReplicateMean<Replicates>(y, std::sqrt(square(d)) * replicate_sets / d.scrambled);
+        };
+        visit(by_sets(AgainstAnswer::sums_by_sets, q, sets(a), sets(b), floor));
+    }
+}
+
+}  // namespace
+
+void ask_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b,
+    const std::function<void(const AgainstAnswer&)>& visit) {
+    ask_kinds(a, b, visit);
+    ask_sums_against(g, a, b, visit);
+    const std::vector<NodeCounts> counts = counts_of(g.tree, a, b);
+    const bool both = a.scrambled > 0 && b.scrambled > 0;
+    const std::vector<Replicates> sets_a = both ? rows_of(g.tree, a.node_by_set) : std::vector<Replicates>(),
+                                  sets_b = both ? rows_of(g.tree, b.node_by_set) : std::vector<Replicates>();
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const TreeNode& x = g.tree.nodes()[i];
+        const NodeCounts& all = counts[i];
+        if (x.child < 0 || std::min(all.a, all.b) < least_count) continue;
+        const NodeCounts& half = counts[static_cast<std::size_t>(x.child)];
+        const TwoShares s(half.a, all.a, half.b, all.b);
+        const double floor = node_floor(g, x, s.share);
+        visit(answer_of(AgainstAnswer::nodes, static_cast<int>(i), s, floor));
+        const auto in_each = [&](const AgainstDraws& d, double n) {
+            return std::min(s.share, 1 - s.share) * n * d.scrambled / d.independent / replicate_sets;
+        };
+        // As for one sampler: a replicate's mean must be near normal.
+        if (!both || x.depth >= replicated_depth || std::min(in_each(a, all.a), in_each(b, all.b)) < least_count)
+            continue;
+        const auto row = static_cast<std::size_t>(x.row),
+                   first = static_cast<std::size_t>(g.tree.nodes()[static_cast<std::size_t>(x.child)].row);
+        const auto mean = [&](const std::vector<Replicates>& sets, const AgainstDraws& d) {
+            const double draw = replicate_sets / d.scrambled;
+            Replicates y;
+            for (std::size_t k = 0; k < y.size(); ++k) y[k] = (sets[first][k] - s.share * sets[row][k]) * draw;
+            return ReplicateMean<Replicates>(y, draw);
+        };
+        visit(by_sets(AgainstAnswer::nodes_by_sets, static_cast<int>(i), mean(sets_a, a), mean(sets_b, b),
+            floor * (all.a / a.independent + all.b / b.independent) / 2));
+    }
+}
+
+AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraws& b, double level) {
+    AgainstSizes out;
+    double tests = 0;
+    ask_against(g, a, b, [&](const AgainstAnswer& r) {
+        tests += r.family == AgainstAnswer::nodes;
+        if (r.family == AgainstAnswer::sums_by_sets || (b.scrambled * a.scrambled == 0 && r.family == AgainstAnswer::sums)) {
+            constexpr double sums = against_sums;
+            const double z = std::sqrt(-2 * math::log(level / sums / 2)) + power_quantile;
+            const double needed = r.floor + z * r.sd;
+            if (r.member >= mean_x && !(out.distance > needed)) out.distance = needed;
+        }
+    });
+    const std::vector<NodeCounts> counts = counts_of(g.tree, a, b);
+    std::vector<double> part(counts.size(), 1.0);  // what shows if it lies in this node
+    std::vector<std::pair<double, double>> leaves;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const TreeNode& x = g.tree.nodes()[i];
+        const NodeCounts& all = counts[i];
+        if (x.child < 0) {
+            leaves.push_back({part[i], all.a / a.independent + all.b / b.independent});
+            continue;
+        }
+        const auto first = static_cast<std::size_t>(x.child);
+        part[first] = part[first + 1] = part[i];
+        if (std::min(all.a, all.b) < least_count) continue;
+        const TwoShares s(counts[first].a, all.a, counts[first].b, all.b);
+        const double needed =
+            needed_by_bennett(node_floor(g, x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) * s.per_share;
+        for (std::size_t half : {first, first + 1}) {
+            const double share = half == first ? s.share : 1 - s.share;
+            // Of the node's draws; it lies across cells, half of it in one.
+            const double missing = needed / (1 - share + 1e-300);
+            const double of_all = std::max(all.a / a.independent, all.b / b.independent);
+            if (missing <= share) part[half] = std::min(part[half], 2 * missing * of_all);
+        }
+    }
+    std::sort(leaves.begin(), leaves.end());
+    double all = 0, below = 0;
+    for (const auto& [size, m] : leaves) all += m;
+    for (const auto& [size, m] : leaves)
+        if ((below += m) >= stated_power * all) {
+            if (all > 0) out.part = size;
+            break;
+        }
+    return out;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,367 @@
+// f is compared within what a few roundings of the directions move it by. Variances are ranked by a test of their
+// difference that fails at both stages; where f is known at A's draws alone, B's variance follows from them by p_A / p_B.
+#include "check/against_f.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "check/constants.h"
+#include "check/estimate/scatter.h"
+#include "stats/moments.h"
+#include "stats/tail.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// Where f of both is known. Of a file A it is known at its draws.
+struct SharedF {
+    std::vector<Vec3d> wi;
+    std::vector<double> a, b;
+};
+
+std::vector<double> f_at(const JudgedSampler& subject, std::span<const Pair> at) {
+    std::vector<double> out(at.size());
+    subject.f(at, out);
+    return out;
+}
+
+bool only_at_draws(const JudgedSampler& s) { return !s.has_f() && s.has_drawn_f() && !s.draws_at_will(); }
+
+SharedF f_of_both(const AgainstCase& c) {
+    SharedF out;
+    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    if (only_at_draws(a)) {
+        Source source(a, 0, c.a.trial.wo, c.a.trial.light);
+        StreamKey key = c.a.key;
+        key.purpose = Purpose::draws;
+        std::vector<Numbers> u(source.available(key, c.of_f));
+        std::vector<Draw> draws(u.size());
+        source.draw(key, 0, u, draws);
+        for (const Draw& d : draws)
+            if (d.pdf > 0 && d.f && d.wi.z != 0) out.wi.push_back(normalize(d.wi)), out.a.push_back(*d.f);
+    } else {
+        const bool whole = std::ranges::any_of(c.ground.drawn, [](Vec3d w) { return w.z < 0; });
+        StreamKey key = c.a.key;
+        key.purpose = Purpose::pairs;
+        Stream stream(key);
+        for (int i = 0; i < 256; ++i) {
+            const double t = 0.98 * stream.number();
+            out.wi.push_back(from_chart({whole && i % 2 ? 2 - t : t, two_pi * stream.number()}));
+        }
+        out.wi.insert(out.wi.end(), c.ground.drawn.begin(), c.ground.drawn.end());
+    }
+    std::vector<Pair> at;
+    for (Vec3d w : out.wi) at.push_back({c.a.trial.wo, w});
+    if (out.a.empty()) out.a = f_at(a, at);
+    out.b = f_at(b, at);
+    return out;
+}
+
+/// What roundings of single precision move f by there.
+double moved_f(const JudgedSampler& s, Vec3d wo, Vec3d wi, double f) {
+    std::vector<Pair> at;
+    for (int k = 0; k < 6; ++k) {
+        const double by = (k % 2 ? 4 : -4) * ulp;
+        const Vec3d off{k / 2 == 0 ? by : 0, k / 2 == 1 ? by : 0, k / 2 == 2 ? by : 0};
+        at.push_back({wo, wi + off}), at.push_back({wo + off, wi});
+    }
+    double most = 0;
+    for (double v : f_at(s, at))
+        if (std::isfinite(v)) most = std::max(most, std::fabs(v - f));
+    return 2 * most;
+}
+
+void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
+    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    std::size_t count = 0, worst = 0;
+    double most = 0, sum_a = 0, sum_b = 0;
+    for (std::size_t i = 0; i < both.wi.size(); ++i) {
+        const double fa = both.a[i], fb = both.b[i], off = std::fabs(fa - fb),
+                     size = std::max(std::fabs(fa), std::fabs(fb));
+        sum_a += fa, sum_b += fb;
+        if (off <= same_number * size + 1e-30) continue;
+        const double of_file = only_at_draws(a) ? 4 * ulp * size / std::max(std::fabs(both.wi[i].z), 1e-9)
+                                                : moved_f(a, c.a.trial.wo, both.wi[i], fa);
+        if (off <= same_number * size + of_file + moved_f(b, c.b.trial.wo, both.wi[i], fb)) continue;
+        ++count;
+        if (off / size > most) most = off / size, worst = i;
+    }
+    v.evidence["same"] = count == 0;
+    v.evidence["directions"] = both.wi.size();
+    v.evidence["differ"] = count;
+    if (count == 0) {
+        v.say = fmt::format(
+            "f is the same at {} directions{}.", both.wi.size(), only_at_draws(a) ? ", the draws of A" : "");
+        return;
+    }
+    const Vec3d w = both.wi[worst];
+    v.evidence["largest_relative"] = most;
+    v.evidence["worst_wi"] = {w.x, w.y, w.z};
+    v.evidence["f"] = {both.a[worst], both.b[worst]};
+    v.say = fmt::format("f differs at {} of {} directions, most at ({:.4g}, {:.4g}, {:.4g}): {:.6g} and {:.6g}", count,
+        both.wi.size(), w.x, w.y, w.z, both.a[worst], both.b[worst]);
+    v.say += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
+}
+
+/// The first delta part whose q times weight differs. A part that is drawn less than once in a pilot may be missing.
+std::string differing_delta(const AgainstCase& c) {
+    const auto power = [](const std::vector<DeltaPart>& parts, Vec3d w) {
+        Vec3d sum{};
+        for (const DeltaPart& p : parts)
+            if (length(p.wi - w) < same_number) sum = sum + p.weight * p.q;
+        return sum;
+    };
+    for (Vec3d w : c.ground.ways) {
+        const Vec3d a = power(c.ground.delta_a, w), b = power(c.ground.delta_b, w);
+        if (length(a - b) <= same_number * std::max({length(a), length(b), 1e-30})) continue;
+        return fmt::format("The delta part towards ({:.4g}, {:.4g}, {:.4g}) differs: q times weight is {:.6g} and {:.6g}.",
+            w.x, w.y, w.z, luminance(a), luminance(b));
+    }
+    return "";
+}
+
+}  // namespace
+
+void compare_f(const AgainstCase& c, Verdict& v) {
+    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    const auto is_estimate = [](const AgainstSide& side) {
+        Source source(*side.trial.subject, 0, side.trial.wo, side.trial.light);
+        return look_for_scatter(source, side.key).f();
+    };
+    if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
+        v.state = State::skipped;
+        v.say = only_at_draws(a)   ? "f of A is known at its draws alone, and B has no f to compare with it."
+            : a.draws_at_will() ? "There is no f to compare."
+                                : "The file of A has no column f: there is nothing to compare.";
+    } else if (is_estimate(c.a) || is_estimate(c.b)) {
+        v.state = State::skipped;
+        v.say = "f is a random estimate: only its mean could be the same.";
+    } else {
+        note_difference(c, f_of_both(c), v);
+    }
+    if (const std::string delta = differing_delta(c); !delta.empty()) {
+        v.evidence["same"] = false;
+        v.say += (v.say.empty() ? "" : " ") + delta;
+        v.state = State::right;
+    }
+    if (c.expect_same && v.evidence.contains("same") && !v.evidence["same"].get<bool>()) v.state = State::wrong;
+}
+
+namespace {
+
+constexpr double alike_variances = 0.01;  // relative: less does not decide between samplers
+constexpr double interval_95 = 1.959964;
+constexpr const char* settles_tail = "A sampler whose p falls off no faster than f L cos, or more draws (--full).";
+
+/// Moments of weights with their standard errors.
+struct WeightMoments {
+    double n = 0, mean = 0, variance = 0, variance_se = 0;
+    bool heavy = false;
+    explicit WeightMoments(std::span<const double> x) {
+        const stats::Spread s = stats::spread(x);
+        n = s.n, mean = s.mean, variance = sqr(s.sd);
+        double m4 = 0;
+        for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
+        // The second term is what the mean costs: alone where two values come equally often.
+        variance_se = std::sqrt(std::max(m4 - sqr(variance), 0.0) / n + 2 * sqr(variance / std::max(n - 1, 1.0)));
+        heavy = is_heavy(x, s);
+    }
+    /// No more than the rounding of p is left.
+    bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
+
+private:
+    static bool is_heavy(std::span<const double> x, const stats::Spread& s) {
+        if (s.largest <= bounded_weight * s.mean) return false;
+        std::vector<double> w(x.begin(), x.end());
+        const std::size_t m = std::min(stats::tail_length(w.size()) + 1, w.size());
+        std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
+        const std::optional<stats::Tail> tail = stats::fit_tail(std::span<const double>(w).first(m));
+        return tail && tail->k + 2 * tail->se >= heavy_index;
+    }
+};
+
+void skip(Verdict& v, std::string say) { v.state = State::skipped, v.say = std::move(say); }
+
+/// The ratio with its interval, and which is smaller where both stages say so.
+void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
+    const double low = ratio * math::exp(-interval_95 * log_se), high = ratio * math::exp(interval_95 * log_se);
+    v.evidence["ratio"] = ratio;
+    v.evidence["interval"] = {low, high};
+    const bool alike = low > 1 - alike_variances && high < 1 + alike_variances;
+    const bool ranked = differ && !alike && std::fabs(ratio - 1) > alike_variances;
+    v.evidence["better"] = !ranked ? "none" : ratio > 1 ? "B" : "A";
+    v.say = fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
+        alike        ? "The variances are alike to 1 %"
+            : !ranked ? "Neither is shown to be better here"
+            : ratio > 1 ? "B is better here"
+                        : "A is better here",
+        ratio, low, high);
+}
+
+/// Weights of fresh draws.
+std::vector<double> fresh_weights(const AgainstSide& side, const AgainstCase& c) {
+    AgainstSide again = side;
+    again.key.stage = 2;
+    AgainstDraws d;
+    draw_on(again, c.ground, {0, c.of_f, 0}, c.of_f, d);
+    return d.x;
+}
+
+double variances_p(const WeightMoments& a, const WeightMoments& b) {
+    const double se = math::hypot(a.variance_se, b.variance_se);
+    return student_p_of(std::fabs(a.variance - b.variance), se * se, 1e6);
+}
+double means_p(const WeightMoments& a, const WeightMoments& b) {
+    const double floor = 2 * same_number * std::max(std::fabs(a.mean), std::fabs(b.mean));
+    return student_p_of(std::fabs(a.mean - b.mean) - floor, a.variance / a.n + b.variance / b.n, 1e6);
+}
+
+void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, Verdict& v) {
+    const auto differ = [&](auto p) {
+        return p(a, b) < c.level &&
+            p(WeightMoments(fresh_weights(c.a, c)), WeightMoments(fresh_weights(c.b, c))) < c.again;
+    };
+    if (differ(means_p))
+        return skip(v,
+            fmt::format("The means of their weights differ ({:.6g} and {:.6g}): variances of two integrals are not "
+                        "ranked.",
+                a.mean, b.mean));
+    const bool none_a = a.none(1), none_b = b.none(1);
+    if (a.none(2) && b.none(2)) {
+        v.evidence["better"] = "none";
+        v.say = "Neither has a variance: the weights of each are all alike.";
+    } else if (none_a || none_b) {
+        v.evidence["better"] = none_a ? "A" : "B";
+        v.say = fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
+            none_a ? "A" : "B", none_a ? "B" : "A", none_a ? b.variance : a.variance);
+    } else {
+        note_ratio(v, a.variance / b.variance,
+            math::hypot(a.variance_se / a.variance, b.variance_se / b.variance), differ(variances_p));
+    }
+}
+
+/// Draws of A in twenty groups, with what they say of B by p_A / p_B: E_B[X_B^2] = E_A[X_A^2 p_A / p_B].
+struct ReweighedDraws {
+    static constexpr std::size_t groups = 20;
+    struct Group {
+        double n = 0, x = 0, square = 0, other = 0;
+        double variance() const { return square / n - sqr(x / n); }
+        double of_other() const { return other / n - sqr(x / n); }
+        double log_ratio() const { return math::log(variance() / of_other()); }
+        bool varies() const {
+            const double least = 1e-9 * square / n;
+            return variance() > least && of_other() > least;
+        }
+    };
+    std::array<Group, groups> of{};
+    Group all{};
+    std::vector<double> x, others;
+    double lost = 0;  // draws with light at which p of B is 0
+
+    ReweighedDraws(const AgainstCase& c, int stage) {
+        Source a(*c.a.trial.subject, 0, c.a.trial.wo, c.a.trial.light),
+            b(*c.b.trial.subject, 0, c.b.trial.wo, c.b.trial.light);
+        StreamKey key = c.a.key;
+        key.purpose = Purpose::draws, key.stage = static_cast<std::uint8_t>(stage);
+        std::vector<Numbers> u(a.available(key, c.of_f));
+        std::vector<Draw> draws(u.size());
+        a.draw(key, 0, u, draws);
+        for (std::size_t i = 0; i < draws.size(); ++i) {
+            const Draw& d = draws[i];
+            const bool drawn = d.pdf > 0 && d.f && d.wi.z > 0;
+            x.push_back(drawn ? *d.f * d.wi.z / d.pdf * c.a.trial.light(d.wi) : 0);
+            const double p = x[i] > 0 ? b.density(d.wi) : 0;
+            lost += x[i] > 0 && !(p > 0);
+            others.push_back(p > 0 ? sqr(x[i]) * d.pdf / p : 0);
+            for (Group* g : {&of[i % groups], &all}) ++g->n, g->x += x[i], g->square += sqr(x[i]), g->other += others[i];
+        }
+    }
+    /// Of the log ratio, by the jackknife (Quenouille 1956).
+    double log_se() const {
+        double square = 0;
+        for (const Group& g : of) {
+            const Group rest{all.n - g.n, all.x - g.x, all.square - g.square, all.other - g.other};
+            square += sqr(rest.log_ratio() - all.log_ratio());
+        }
+        return std::sqrt(square * (groups - 1) / groups);
+    }
+    double p() const {
+        return all.varies() ? student_p_of(std::fabs(all.log_ratio()), sqr(std::max(log_se(), 1e-9)), groups - 1) : 1;
+    }
+};
+
+void over_draws_of_a(const AgainstCase& c, Verdict& v) {
+    const JudgedSampler& b = *c.b.trial.subject;
+    if (!b.traits().has_pdf) return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
+    if (b.techniques() > 1)
+        return skip(v, "f is known at the draws of A alone: the variance of a pair of techniques does not follow.");
+    const ReweighedDraws first(c, 1);
+    if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.others).heavy) {
+        v.state = State::inconclusive;
+        v.say = first.lost > 0
+            ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A that carry light: B never finds that.",
+                  first.lost, first.x.size())
+            : "A or B has a heavy tail: the variance is not known.";
+        v.settle = settles_tail;
+        return;
+    }
+    v.evidence["variance_a"] = first.all.variance();
+    v.evidence["variance_b"] = first.all.of_other();
+    if (!first.all.varies()) {
+        v.say = fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.all.variance(), 0.0),
+            std::max(first.all.of_other(), 0.0));
+        return;
+    }
+    note_ratio(v, math::exp(first.all.log_ratio()), first.log_se(),
+        first.p() < c.level && ReweighedDraws(c, 2).p() < c.again);
+    v.say += " B's follows from the draws of A by p_A / p_B.";
+}
+
+/// What each sampler's own check says against a ratio of its variance.
+bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
+    static constexpr std::array<std::string_view, 6> counts = {
+        "support", "normalised", "density", "identity", "mean", "valid"};
+    const auto look = [&](Family family) {
+        const std::string_view name = info(family).verdict;
+        if (std::ranges::find(counts, name) == counts.end()) return false;
+        skip(v,
+            fmt::format("{} is wrong itself, by {}: the variance of a wrong sampler is not ranked. `crescent check` of "
+                        "it alone says more.",
+                who, name));
+        return true;
+    };
+    return std::ranges::any_of(own.findings, [&](const Finding& f) { return look(f.first.family); }) ||
+        std::ranges::any_of(own.small, [&](const SmallFault& f) { return look(f.family); });
+}
+
+}  // namespace
+
+void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
+    const JudgedSampler &a = *c.a.trial.subject, &b = *c.b.trial.subject;
+    if (of_f.evidence.contains("same") && !of_f.evidence["same"].get<bool>())
+        return skip(v, "Their f differ: variances of two integrals are not ranked.");
+    if (!a.has_drawn_f())
+        return skip(v, a.draws_at_will() ? "There is no f, hence no variance of f L cos / p."
+                                         : "The file of A has no column f, hence there are no weights f L cos / p.");
+    if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, hence no variance of f L cos / p.");
+    for (const auto& [draws, subject, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
+        if (subject->has_drawn_f() && !draws->weighs)
+            return skip(v,
+                fmt::format("{} has neither a pdf(w) nor a weight with its draws (weight=yes), hence no variance.", who));
+    if (is_wrong_itself(c.own_a, "A", v) || is_wrong_itself(c.own_b, "B", v)) return;
+    if (!b.has_drawn_f()) return over_draws_of_a(c, v);
+    const WeightMoments of_a(c.draws_a.x), of_b(c.draws_b.x);
+    v.evidence["variance_a"] = of_a.variance;
+    v.evidence["variance_b"] = of_b.variance;
+    for (const auto& [m, who] : {std::pair(&of_a, "A"), {&of_b, "B"}})
+        if (m->heavy) {
+            v.state = State::inconclusive;
+            v.say += fmt::format("{}{} has a heavy tail: its variance is not known.", v.say.empty() ? "" : " ", who);
+            v.settle = settles_tail;
+        }
+    if (v.state == State::right) rank(c, of_a, of_b, v);
+}
+
+}  // namespace crescent::check
