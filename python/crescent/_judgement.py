@@ -23,6 +23,7 @@ class Verdict:
     name: str  #: valid, support, normalised, density, identity, physics, tail, mean or efficiency
     state: State
     say: str  #: one sentence for the reader
+    cause: str = ""  #: what explains it, where something does
     settle: str = ""  #: what would settle it, where it is inconclusive
     expected: bool = True  #: False: the list of built-in arms expects another state
     evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers behind it
@@ -36,6 +37,7 @@ def _verdict(raw: dict[str, Any]) -> Verdict:
         raw["name"],
         raw["state"],
         raw["say"],
+        raw["cause"],
         raw["settle"],
         raw["expected"],
         _json.loads(raw["evidence"]),

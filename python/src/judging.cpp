@@ -160,7 +160,8 @@ AsDict as_dict(const Verdict& v) {
     out["name"] = v.name;
     out["state"] = std::string(word(v.state));
     out["say"] = v.say;
-    out["settle"] = v.settle;
+    out["cause"] = v.cause;
+    out["settle"] = settling(v, FrontEnd::python);
     out["expected"] = v.expected;
     out["evidence"] = v.evidence.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     out["seconds"] = v.seconds;

@@ -123,7 +123,8 @@ std::string verdict_json(const Judgement& judgement, const JudgementSource& sour
         one["name"] = v.name;
         one["state"] = word(v.state);
         one["say"] = v.say;
-        if (!v.settle.empty()) one["settle"] = v.settle;
+        if (!v.cause.empty()) one["cause"] = v.cause;
+        if (const std::string next = settling(v); !next.empty()) one["settle"] = next;
         one["expected"] = v.expected;
         if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
         if (v.waived) one["waived"] = true;
@@ -151,13 +152,15 @@ std::string verdict_junit(const Judgement& judgement) {
     for (const Verdict& v : judgement.verdicts) {
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         const bool open = v.state == State::skipped || v.state == State::inconclusive;
+        const std::string next = settling(v);
         const Case state = v.state == State::error ? Case::error
             : fails                                ? Case::failed
             : open                                 ? Case::skipped
                                                    : Case::passed;
         suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.trial), state,
             fmt::format("{}: {}", word(v.state), sentences_of(v.say).front()),
-            v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle), v.seconds});
+            v.say + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next),
+            v.seconds});
     }
     for (const std::string& line : judgement.unmet)
         suite.cases.push_back({"crescent check", "expectations", Case::failed, line, line, 0});

@@ -83,6 +83,16 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
     }
 }
 
+/// The cause that is named for the worst verdict, or for another wrong one of the same arm, best of the same name.
+std::string cause_of(const Finding& f, const Judgement& j) {
+    std::string out = f.worst->cause;
+    for (const bool of_name : {true, false})
+        for (const Verdict& v : j.verdicts)
+            if (out.empty() && v.arm == f.arm && v.state == State::wrong && (!of_name || v.name == f.name))
+                out = v.cause;
+    return out;
+}
+
 /// A diagnosis of the same arm for a worst verdict that nothing usual explains.
 void find_explained(Finding& f, const Judgement& j) {
     if (f.state != State::wrong || f.worst->evidence.value("diagnosis", "") != "none") return;
@@ -95,8 +105,9 @@ void find_explained(Finding& f, const Judgement& j) {
 
 }  // namespace
 
-std::string told(const Verdict& v) {
-    return v.say + (v.settle.empty() ? "" : " What would settle it: " + v.settle) +
+std::string told(const Verdict& v, FrontEnd front_end) {
+    const std::string next = settling(v, front_end);
+    return v.say + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " What would settle it: " + next) +
         (v.say_timed.empty() ? "" : " " + v.say_timed);
 }
 
@@ -135,6 +146,7 @@ std::vector<Finding> findings_of(const Judgement& j) {
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
         find_explained(out[i], j);
+        if (out[i].state == State::wrong) out[i].cause = cause_of(out[i], j);
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
         else
             for (const Verdict* v : members[i])
@@ -149,15 +161,25 @@ std::vector<Finding> findings_of(const Judgement& j) {
     return out;
 }
 
-std::string told(const Finding& f) {
-    if (f.state == State::error && f.worst->trial == before_any_trial) return "error. " + told(*f.worst);
-    if (f.state == State::error)
-        return fmt::format("error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of,
-            f.worst->trial, told(*f.worst));
+namespace {
+
+/// "at 8 of 8 w_o, worst at w_o 60 deg az 250"; "" for a sampler that is judged once, without w_o.
+std::string where_found(const Finding& f) {
+    if (f.of == 1 && f.worst->trial == without_wo) return "";
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    const bool alone = f.of == 1 && f.worst->trial == without_wo;
-    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state),
-        alone ? "" : fmt::format(" at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->trial), told(*f.worst));
+    return fmt::format("at {} of {} {}, {} {}", f.count, f.of, f.cases, as, f.worst->trial);
+}
+
+}  // namespace
+
+std::string told(const Finding& f, FrontEnd front_end) {
+    const std::string say = told(*f.worst, front_end);
+    if (f.state == State::error && f.worst->trial == before_any_trial) return "error. " + say;
+    if (f.state == State::error)
+        return fmt::format(
+            "error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of, f.worst->trial, say);
+    const std::string where = where_found(f);
+    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, say);
     if (f.explained)
         out += fmt::format(" What explains it at {}: {}.", f.explained->trial,
             f.explained->evidence["diagnosis_says"].get<std::string>());
@@ -192,7 +214,55 @@ std::string summary_of(const Judgement& j) {
     return out + details;
 }
 
-std::string what_is_wrong(const Judgement& judgement) { return summary_of(judgement); }
+namespace {
+
+std::string in_one_line(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+/// What and how large, where, and the cause: a line each.
+std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
+    if (f.state == State::error) return {in_one_line(told(f, FrontEnd::cpp))};
+    std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->say))};
+    if (const std::string where = where_found(f); !where.empty()) out.push_back("  " + where);
+    if (with_cause && !f.cause.empty()) out.push_back("  " + in_one_line(f.cause));
+    return out;
+}
+
+/// The step of the first finding: a wrong one is looked at alone, an open one has what would settle it.
+std::string next_step_of(const Finding& f) {
+    const Verdict& v = *f.worst;
+    std::string say = in_one_line(settling(v, FrontEnd::cpp));
+    if (say.empty() && v.wo && f.state == State::wrong) say = one_wo_text(*v.wo, FrontEnd::cpp);
+    return say.empty() ? "" : "Next: " + say;
+}
+
+}  // namespace
+
+std::string what_is_wrong(const Judgement& judgement, std::size_t most_lines) {
+    std::vector<Finding> findings = findings_of(judgement);
+    std::erase_if(findings, [](const Finding& f) { return f.expected; });
+    std::vector<std::string> last;
+    if (const std::string left = left_out_told(judgement); !left.empty()) last.push_back(in_one_line(left));
+    if (!findings.empty())
+        if (const std::string next = next_step_of(findings[0]); !next.empty()) last.push_back(next);
+    std::vector<std::string> lines;
+    std::size_t shown = 0;
+    for (; shown < findings.size(); ++shown) {
+        const std::vector<std::string> more =
+            lines_of(findings[shown], shown == 0 || findings[shown].cause != findings[0].cause);
+        const bool others = shown + 1 < findings.size();
+        if (shown > 0 && lines.size() + more.size() + others + last.size() > most_lines) break;
+        lines.insert(lines.end(), more.begin(), more.end());
+    }
+    std::vector<std::string> others;
+    for (; shown < findings.size(); ++shown)
+        others.push_back(fmt::format("{} ({})", findings[shown].name, word(findings[shown].state)));
+    if (!others.empty()) lines.push_back(fmt::format("Also not right: {}", fmt::join(others, ", ")));
+    lines.insert(lines.end(), last.begin(), last.end());
+    return lines.empty() ? "" : fmt::format("{}\n", fmt::join(lines, "\n"));
+}
 
 std::string unseen_told(const Judgement& judgement) {
     double integral = 0, bin = 0;

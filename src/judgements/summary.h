@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "judgements/next_step.h"
 #include "judgements/verdict.h"
 
 namespace crescent::inline judgements {
@@ -20,6 +21,7 @@ struct Finding {
     const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
     std::vector<std::pair<std::string, std::vector<std::string>>>
         sentences;                       // what the others say beyond the worst, each with its cases
+    std::string cause{};                 // of the worst, or of another wrong one of the arm
     const Verdict* explained = nullptr;  // one of the arm that says what explains it, where the worst cannot
 };
 
@@ -27,7 +29,7 @@ struct Finding {
 /// of the errors of one arm the first alone, which counts for all. Points into `judgement`.
 std::vector<Finding> findings_of(const Judgement& judgement);
 /// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
-std::string told(const Finding& finding);
+std::string told(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
 /// "Left out: all but valid at 3 of 8 cases (w_o 0 deg, ...). Not looked at: ..."; "" where nothing was.
 std::string left_out_told(const Judgement& judgement);
 /// What those that are right could hide, over all cases: "p that is off from one by less than ..."; "" where nothing
@@ -35,13 +37,14 @@ std::string left_out_told(const Judgement& judgement);
 std::string unseen_told(const Judgement& judgement);
 /// What share of the draws drew nothing where that is most, over 1 %; "" where it is nowhere.
 std::string nothing_drawn_told(const Judgement& judgement);
-/// The sentence of a verdict, with what it says of times.
-std::string told(const Verdict& verdict);
+/// The sentences of a verdict: what was found, its cause, what to try next, what it says of times.
+std::string told(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
 /// A text in sentences: each begins with a capital letter.
 std::vector<std::string> sentences_of(const std::string& text);
 /// All findings but the expected ones, a line each, then what was left out, then the details.
 std::string summary_of(const Judgement& judgement);
-/// What is not right, one line a finding over all w_o, then the details; "" where there is nothing.
-std::string what_is_wrong(const Judgement& judgement);
+/// What is not right in at most `most_lines` (5 or more) for a failing test: of the first findings what, how large,
+/// where and the cause, then the names of the others and what to try next in calls of C++; "" where there is nothing.
+std::string what_is_wrong(const Judgement& judgement, std::size_t most_lines = 8);
 
 }  // namespace crescent::inline judgements

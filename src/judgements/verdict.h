@@ -2,8 +2,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace crescent::inline judgements {
@@ -12,13 +14,23 @@ namespace crescent::inline judgements {
 enum class State { right, wrong, inconclusive, skipped, error };
 std::string_view word(State state);
 
+/// What to try next about a verdict. Each front end names it by its own calls or flags (next_step.h).
+struct NextStep {
+    enum class Kind { none, more_draws, more_time, heavier_pdf };
+    Kind kind = Kind::none;
+    double times = 0;  // how many times as many draws; 0: not known
+};
+
 struct Verdict {
     std::string arm;
     std::string trial;  // w_o and parameters
     std::string name;   // one of verdict_names
     State state = State::right;
-    std::string say;       // one sentence for the reader
-    std::string settle{};  // what would settle it, where it is inconclusive
+    std::string say;       // what was found, how large with its interval, and where
+    std::string cause{};   // what explains it; "" where nothing does
+    std::string settle{};  // what would settle it, where it is inconclusive and no front end has a call for it
+    NextStep next{};
+    std::optional<std::pair<double, double>> wo{};  // theta and azimuth in degrees; none for a sampler without w_o
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
     // What varies from run to run, kept apart so that equal calls give equal verdicts.
     double seconds = 0;

@@ -109,6 +109,7 @@ void judge_tail(const CheckAt& c, Verdict& v) {
     v.state = State::inconclusive;
     v.say = fmt::format(
         "k-hat = {:.3f} +- {:.3f}: the variance of the weights is infinite or not known.", tail->k, tail->se);
+    v.next.kind = NextStep::Kind::heavier_pdf;
 }
 
 void judge_at(const CheckAt& c, Verdict& v) {
@@ -135,7 +136,7 @@ void judge_at(const CheckAt& c, Verdict& v) {
         if (worst_ratio(only) <= inconclusive_at) return;
         v.state = State::inconclusive;
         v.say = "A fault ten times its target would not have been found.";
-        v.settle = fmt::format("About {:.0f} times as many draws.", worst_ratio(only) * worst_ratio(only) / 25);
+        v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
     }
 }
 
@@ -150,6 +151,7 @@ std::vector<Verdict> verdicts_of(
         for (std::string_view name : verdict_names) {
             Verdict v;
             v.arm = trial.arm, v.trial = trial.text(), v.name = name;
+            if (v.trial != without_wo) v.wo = {trial.theta_deg, trial.azimuth_deg};
             if (!can_be_asked(*trial.subject, name)) {
                 v.state = State::skipped;
                 out.push_back(std::move(v));
@@ -164,7 +166,7 @@ std::vector<Verdict> verdicts_of(
                 for (const SmallFault& f : outcome.small)
                     if (info(f.family).verdict == name) v.state = State::wrong, v.say += sentence_of(f);
             if (cause && first_density && v.state == State::wrong && (name == "density" || name == "normalised")) {
-                v.say += " " + cause->text;
+                v.cause = cause->text;
                 v.evidence["diagnosis"] = cause->factor;
                 first_density = false;
             }

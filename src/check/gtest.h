@@ -1,0 +1,102 @@
+// GoogleTest matchers: a sampler checked in one line of a user's own suite. gtest_alpha.h shares one alpha over a
+// suite.
+//
+//   EXPECT_THAT(MySampler{}, crescent::IsARightSampler());        // nothing wrong, nothing inconclusive
+//   EXPECT_THAT(MySampler{}, crescent::IsNotAWrongSampler());     // a heavy tail is allowed
+//   EXPECT_THAT(bsdf_pointer, crescent::IsARightSampler());       // T*, unique_ptr, shared_ptr
+//   EXPECT_THAT(MySampler{}, crescent::IsARightSamplerBy(crescent::TestSettings::thorough()));
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include "check/gtest_alpha.h"
+#include "verdicts/user.h"
+
+/// In place of the bytes of a struct that has no operator<<.
+template <class S>
+    requires(crescent::user::Judgeable<S> && !crescent::user::Pointing<S> &&
+        !requires(std::ostream& out, const S s) { out << s; })
+class testing::internal::UniversalPrinter<S> {
+public:
+    /// Prints what it is.
+    static void Print(const S&, std::ostream* out) { *out << "a sampler"; }
+};
+
+namespace crescent::inline verdicts {
+
+/// Checks a sampler. EXPECT_THAT matches first and, where that fails, matches again to explain: the second time, of the
+/// same argument, has the judgement of the first. No match is decided by a judgement that was kept.
+template <class Argument> class SamplerMatcher : public testing::MatcherInterface<Argument> {
+public:
+    /// settings: of each check; open: whether inconclusive verdicts match.
+    SamplerMatcher(TestSettings settings, bool open) : settings_(std::move(settings)), open_(open) {}
+
+    /// Whether the sampler is right. Explains in at most 8 lines where it is not.
+    bool MatchAndExplain(Argument arg, testing::MatchResultListener* listener) const override {
+        const Judgement j = judgement_of(arg, listener->IsInterested());
+        const bool matches = j.state == State::right || (open_ && j.state == State::inconclusive);
+        if (!matches && listener->IsInterested()) *listener << "\n" << what_is_wrong(j);
+        return matches;
+    }
+    /// "is a right sampler"
+    void DescribeTo(std::ostream* out) const override {
+        *out << (open_ ? "is not a wrong sampler" : "is a right sampler");
+    }
+    /// "is not a right sampler"
+    void DescribeNegationTo(std::ostream* out) const override {
+        *out << (open_ ? "is a wrong sampler" : "is not a right sampler");
+    }
+
+private:
+    /// Matchers of several elements (Each, ElementsAre) match some before they explain the first: only an explanation
+    /// that follows a single match can take its judgement.
+    Judgement judgement_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
+        if (explains && since_explained_ == 1 && of_ == &arg && kept_) {
+            since_explained_ = 0;
+            return *std::exchange(kept_, std::nullopt);
+        }
+        Judgement j = judge_sampler("sampler", user::handed(arg), shared_settings(settings_));
+        kept_.reset();
+        since_explained_ = explains ? 0 : since_explained_ + 1;
+        if (!explains) kept_ = j, of_ = &arg;
+        return j;
+    }
+
+    TestSettings settings_;
+    bool open_;
+    mutable std::optional<Judgement> kept_;
+    mutable const void* of_ = nullptr;
+    mutable int since_explained_ = 0;
+};
+
+/// A matcher of any sampler that judge_sampler takes.
+class AnySamplerMatcher {
+public:
+    /// As of SamplerMatcher.
+    AnySamplerMatcher(TestSettings settings, bool open) : settings_(std::move(settings)), open_(open) {}
+    /// The matcher of one type.
+    template <class Argument> operator testing::Matcher<Argument>() const {
+        return testing::Matcher<Argument>(new SamplerMatcher<Argument>(settings_, open_));
+    }
+
+private:
+    TestSettings settings_;
+    bool open_;
+};
+
+/// EXPECT_THAT(MySampler{}, crescent::IsARightSampler()): every verdict is right or was skipped.
+inline AnySamplerMatcher IsARightSampler() { return {TestSettings::quick(), false}; }
+
+/// The same where inconclusive verdicts pass too.
+inline AnySamplerMatcher IsNotAWrongSampler() { return {TestSettings::quick(), true}; }
+
+/// With levels, budget, w_o and seed of one's own: EXPECT_THAT(MySampler{},
+/// crescent::IsARightSamplerBy(crescent::TestSettings::thorough())).
+inline AnySamplerMatcher IsARightSamplerBy(const TestSettings& settings) { return {settings, false}; }
+
+}  // namespace crescent::inline verdicts

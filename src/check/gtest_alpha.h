@@ -1,0 +1,75 @@
+// One alpha over all tests of a GoogleTest suite, however many samplers they check.
+//
+//   int main(int argc, char** argv) {
+//       testing::InitGoogleTest(&argc, argv);
+//       crescent::share_alpha(1e-3);  // a suite of right samplers fails by chance once in 1000 runs at most
+//       return RUN_ALL_TESTS();
+//   }
+//
+// Every test of the program has an equal share (Sidak), whether it runs or not, and the k-th matcher within a test
+// 6 / (pi k)^2 of its test's. So the shares are the same if all tests run in one process or, as gtest_discover_tests
+// has it, each in a process of its own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "trials/settings.h"
+
+namespace crescent::inline verdicts {
+
+class SharedAlpha : public testing::Environment {
+public:
+    explicit SharedAlpha(double alpha) : alpha_(alpha) {}
+
+    /// The alpha of the next sampler in the test of that name; tests: in the whole suite.
+    double next(const std::string& test, int tests) {
+        const double pi2 = 9.869604401089358, k = ++calls_[test];
+        const double share = -std::expm1(std::log1p(-alpha_) / std::max(tests, 1)) * 6 / (pi2 * k * k);
+        spent_ += share;
+        ++checked_;
+        return share;
+    }
+    /// The sum of what this process gave out.
+    double spent() const { return spent_; }
+    /// Prints the number of samplers checked and the probability of a false failure.
+    void TearDown() override {
+        if (checked_ > 0)
+            std::printf(
+                "crescent: %d samplers checked in this process; right ones fail by chance with probability at "
+                "most %.4g of the suite's %g\n",
+                checked_, spent_, alpha_);
+    }
+
+private:
+    double alpha_, spent_ = 0;
+    int checked_ = 0;
+    std::map<std::string, int> calls_;
+};
+
+/// The shared alpha; null: each matcher has alpha for itself.
+inline SharedAlpha*& shared_alpha() {
+    static SharedAlpha* shared = nullptr;
+    return shared;
+}
+/// From here on the matchers of this program share alpha. GoogleTest owns what is returned.
+inline SharedAlpha& share_alpha(double alpha = 1e-3) {
+    auto* shared = new SharedAlpha(alpha);
+    testing::AddGlobalTestEnvironment(shared);
+    return *(shared_alpha() = shared);
+}
+/// `settings` with the share of alpha that the running test's next sampler has.
+inline TestSettings shared_settings(TestSettings settings = TestSettings::quick()) {
+    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    if (shared_alpha() && test)
+        settings.alpha = shared_alpha()->next(std::string(test->test_suite_name()) + "." + test->name(),
+            testing::UnitTest::GetInstance()->total_test_count());
+    return settings;
+}
+
+}  // namespace crescent::inline verdicts
