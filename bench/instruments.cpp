@@ -60,7 +60,7 @@ void table(const Experiment& experiment, std::uint64_t n, const std::shared_ptr<
         "CPU: {}, {} threads, {}  \nGL: {}  \n{}, N = {}, {} geometry pixels; crescent {} {}, {}\n\n", processor(),
         std::thread::hardware_concurrency(), isas().back(), gl->name(), experiment.file, n, pixels, version(), commit(),
         compiler());
-    std::cout << "| arm | CPU, Msamples/s | GL, Msamples/s | CPU / GL | operations a sample |"
+    std::cout << "| sampler | CPU, Msamples/s | GL, Msamples/s | CPU / GL | operations per sample |"
               << (peak > 0 ? " of the peak |" : "") << "\n|---|--:|--:|--:|--:|" << (peak > 0 ? "--:|" : "")
               << std::endl;
     for_each_arm(Arms{}, [&]<template <class> class A>() {
