@@ -80,7 +80,7 @@ def summary(turns, arm, samples):
 
 
 def table(rows):
-    out = ["| arm | crescent | straightforward | Mitsuba 3 | crescent / straightforward | crescent / Mitsuba |",
+    out = ["| sampler | crescent | straightforward | Mitsuba 3 | crescent / straightforward | crescent / Mitsuba |",
            "|---|---|---|---|---|---|"]
     for row in rows:
         rates, cells = row["rates"], []
@@ -95,26 +95,35 @@ def table(rows):
 
 def page(facts, rows, rounds, command):
     version = facts.get("mitsuba")
-    peer = "Mitsuba was not there." if version is None else (
+    peer = "Mitsuba was not installed." if version is None else (
         f"Mitsuba {version}: variant `llvm_ad_rgb`, integrator `direct` with `emitter_samples` 0 and `bsdf_samples` "
-        f"{facts['n']}, 1 spp, hidden emitters, the arms as a BSDF in Python; compiling is not counted. Its scene is "
-        "the same but for two things that cost it nothing: there geometry also occludes the fill, so its means differ, "
-        "and the canvas lies before the wall instead of in a recess."
+        f"{facts['n']}, 1 spp, hidden emitters, the samplers as a BSDF in Python; compilation is not counted. Its "
+        "scene differs in two details that cost no time: geometry also occludes the fill, so the means differ, and the "
+        "canvas is in front of the wall instead of in a recess."
     )
     return f"""# Speed
 
-Msamples/s, the median of {rounds} rounds in which the programs take turns on one machine; ratios are of one round's
-times, the median and in brackets the least and the largest. A sample is one draw of one geometry pixel, for all alike:
-{facts['geometry_pixels']} geometry pixels x N = {facts['n']}. Pixels that see nothing count for none.
+How fast crescent renders films, compared with a straightforward program and with Mitsuba 3. Measured and written by
+
+```sh
+{command}
+```
+
+Not run in the tests: needs Mitsuba and an idle machine.
+
+The unit is Msamples/s: the median of {rounds} rounds, in which the programs run alternately on one machine. Ratios are
+those of the times of one round: the median, and in brackets the smallest and the largest. A sample is one draw of one
+geometry pixel, for all programs: {facts['geometry_pixels']} geometry pixels x N = {facts['n']}. Pixels that see no
+surface are not counted.
 
 {table(rows)}
 
 - {datetime.date.today().isoformat()}, {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']},
   crescent {facts['version']} ({facts['commit']})
-- `{command}` writes this page. Each time is the best of three films in a row.
-- crescent: its films, shadow tests included, as a run makes them: primary rays are traced once a run.
-- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on as many
-  threads.
+- Each time is the best of three consecutive films.
+- crescent: films with shadow tests, as in a run: primary rays are traced once per run.
+- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on the same
+  number of threads.
 - {peer}
 """
 
@@ -139,7 +148,7 @@ def main():
     if args.write:
         command = shlex.join(["bench/compare.py", *sys.argv[1:]])
         file = ROOT / "docs" / "speed.md"
-        _, title, rest = (file.read_text() if file.exists() else "").partition("\n## The page\n")  # bench/page.py's
+        _, title, rest = (file.read_text() if file.exists() else "").partition("\n## Web app\n")  # bench/page.py's
         file.write_text(page(facts, rows, args.rounds, command) + title + rest)
     against_mitsuba = [(row["arm"], row["ratios"]["mitsuba"]) for row in rows if "mitsuba" in row["ratios"]]
     slow = [arm for arm, ratios in against_mitsuba if statistics.median(ratios) < LEAST]

@@ -6,7 +6,7 @@
 What ./page has built is measured: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
 three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last meter, and from a
 slider's move to the first new pixels, the median of twenty moves, and to N = 64 again. --write puts all of it under
-"The page" in docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
+"Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, as the law on the page does.
 """
 import argparse
 import datetime
@@ -25,7 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "laws" / "page"))
 import browser  # noqa: E402
 
-TITLE = "\n## The page\n"
+TITLE = "\n## Web app\n"
 
 
 def rates(crescent, build):
@@ -83,25 +83,25 @@ def section(rows, facts, openings, slider, command):
     table = "\n".join(f"| {r['arm']} | {r['page']:.1f} | {r['program']:.1f} | {r['page'] / r['program']:.2f} |"
                       for r in rows)
     return f"""{TITLE}
-Msamples/s of one thread, the best of five turns: the page's module beside the program's SSE4 code.
+Msamples/s of one thread, the best of five alternating runs: the module of the web app and the SSE4 code of the program.
 
-| arm | page | program, SSE4 | page / program |
+| sampler | page | program, SSE4 | page / program |
 |---|---|---|---|
 {table}
 
 | in Chromium, {openings[0]['workers']} workers, best of {len(openings)} | ms |
 |---|---|
 | from opening the file to the first picture | {least['first']} |
-| the gallery's three arms at N = 64, its rung 4 before | {least['films']} |
-| the same with the reference and all meters | {least['took']} |
-| from a slider's move to the first new pixels, median of 20 moves | {slider[0]:.0f} |
-| the slowest of the 20 | {slider[1]} |
-| from a slider's move to the three arms at N = 64, best of 3 | {slider[2]} |
+| the gallery's three samplers at N = 64, N = 4 first | {least['films']} |
+| the same with the reference and all metrics | {least['took']} |
+| from a move of a slider to the first new pixels, median of 20 moves | {slider[0]:.0f} |
+| the same, largest of the 20 | {slider[1]} |
+| from a move of a slider to the three samplers at N = 64, best of 3 | {slider[2]} |
 
 - {datetime.date.today().isoformat()}, {processor()}, {os.cpu_count()} threads, load {load:.1f} at the end;
   {openings[0]['browser']}; {facts['engine']}; crescent {facts['commit']}
-- `{command}` writes this part.
-- The reference by the module on one thread: {facts['reference']:.1f} s.
+- Written by `{command}`.
+- The reference, computed by the module on one thread: {facts['reference']:.1f} s.
 """
 
 
