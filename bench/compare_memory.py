@@ -106,12 +106,12 @@ def measured(args, folder, out):
     referred = ["--reference", reference]
     return "\n".join([
         f"{os.cpu_count()} processors; {args.renders} renders of {WIDTH} x {HEIGHT}, half, "
-        f"{'ZIP' if args.zip else 'uncompressed'}, {total / 1e9:.1f} GB, "
-        f"which are read in {read:.1f} s, once, cached:", "",
+        f"{'ZIP' if args.zip else 'uncompressed'}, {total / 1e9:.1f} GB; "
+        f"reading them once from the cache takes {read:.1f} s:", "",
         "| call | time | processor time | peak memory |", "|---|---|---|---|",
         row(args, folder, out, [], "two arms"),
-        row(args, folder, out, [plain] + referred, "and a reference, `flip = false`"),
-        row(args, folder, out, referred, "and a reference, with FLIP of the first render of each arm")])
+        row(args, folder, out, [plain] + referred, "with a reference, `flip = false`"),
+        row(args, folder, out, referred, "with a reference and FLIP of the first render of each arm")])
 
 
 def main():

@@ -46,11 +46,11 @@ def rate(hits, of):
 def measured(args, right, wrong):
     told = subprocess.run([args.crescent, "version"], capture_output=True, text=True, check=True)
     crescent = told.stdout.split(" (")[0]
-    rows = [f"Mitsuba {mi.__version__}, {crescent}: {args.repeats} repeats of {args.seeds} seeds a set, "
+    rows = [f"Mitsuba {mi.__version__}, {crescent}: {args.repeats} repeats with {args.seeds} seeds per set, "
             f"{args.size} x {args.size} pixels, {args.spp} samples, direct light, alpha {args.alpha}.", "",
-            "| sets | exit 0: no difference | exit 1: a difference | exit 4: cannot be said |", "|---|---|---|---|"]
-    biased = f"green wall's albedo {100 * args.bias:g} % higher in one"
-    for name, codes in (("two of one scene", right), (biased, wrong)):
+            "| sets | exit 0: no difference | exit 1: difference | exit 4: undecided |", "|---|---|---|---|"]
+    biased = f"green wall's albedo {100 * args.bias:g} % higher in one set"
+    for name, codes in (("two sets of one scene", right), (biased, wrong)):
         rows.append(f"| {name} | " + " | ".join(rate(codes.count(code), len(codes)) for code in (0, 1, 4)) + " |")
     return "\n".join(rows)
 
