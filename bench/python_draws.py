@@ -85,12 +85,15 @@ def spent_in_callables():
 def table(repeats):
     trials = _check._trials(crescent.Sampler(sample, pdf, f), False, [])
     rows = asked()
-    lines = ["| | draws | million draws a second of processor time | time of `sample` itself |", "|---|---|---|---|"]
+    lines = [
+        "| | draws | million draws per second of processor time | time relative to `sample` |",
+        "|---|---|---|---|",
+    ]
     alone = None  # s of processor time a draw
     for what, draws, work in (
-        ("`sample` by itself, in NumPy", BATCHES * 32768, numpy_alone()),
-        ("drawn by the bench and dropped", BATCHES * 32768, lambda: _crescent.draw(trials, BATCHES)),
-        ("a whole judgement, nine verdicts at 8 w_o", rows["sample"], lambda: crescent.check(sample, pdf, f)),
+        ("`sample` alone, in NumPy", BATCHES * 32768, numpy_alone()),
+        ("drawn by crescent and discarded", BATCHES * 32768, lambda: _crescent.draw(trials, BATCHES)),
+        ("a complete check, nine verdicts at 8 w_o", rows["sample"], lambda: crescent.check(sample, pdf, f)),
     ):
         cpu = best(repeats, work)
         alone = alone or cpu / draws
@@ -98,9 +101,9 @@ def table(repeats):
     whole = best(repeats, lambda: crescent.check(sample, pdf, f))
     inside = statistics.median(spent_in_callables() for _ in range(repeats))
     return "\n".join(lines) + (
-        f"\n\nA judgement asks for {rows['pdf']:,} rows of pdf and {rows['f']:,} of f beside its draws, "
-        f"{sum(rows.values()) / whole / 1e6:.1f} million rows in all a second of processor time. {inside:.0%} of that "
-        "time is spent in the callables; the rest is the verdicts' own work on what they gave."
+        f"\n\nA check evaluates {rows['pdf']:,} rows of pdf and {rows['f']:,} of f in addition to its draws: "
+        f"{sum(rows.values()) / whole / 1e6:.1f} million rows in all per second of processor time. {inside:.0%} of "
+        "that time is spent in the callables, the rest in the tests."
     )
 
 
