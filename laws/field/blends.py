@@ -70,17 +70,18 @@ FAULTS = [
         "a blend whose pdf is that of the chosen lobe alone",
         "Mitsuba 3",
         "https://github.com/mitsuba-renderer/mitsuba3/pull/1681",
-        "sample() of a blend gives the density of the lobe that it chose, pdf() that of the mixture: MIS weights do "
-        "not sum to one.",
+        "sample() of a blend returns the density of the chosen lobe, pdf() that of the mixture: MIS weights do not "
+        "sum to one.",
         ("identity",),
         blend(even, said=lambda wo, wi, d: 0.5 * np.where(d, cosine_pdf(wi), GLOSS_PDF(wo, wi))),
         blend(even),
     ),
     Fault(
-        "the lobe's weight from other directions in pdf than in sample",
+        "lobe weight computed from different directions in pdf and sample",
         "three-gpu-pathtracer",
         "https://github.com/gkjohnson/three-gpu-pathtracer/issues/847",
-        "Fresnel's share is taken at n where a lobe is chosen and at the half vector where the density is asked for.",
+        "The Fresnel share is computed at n when a lobe is chosen and at the half vector when the density is "
+        "evaluated.",
         ("normalised", "density"),
         blend(lambda wo: 1 - schlick(wo[:, 2]), said_share=lambda wo, wi: 1 - schlick(dot(wo, half(wo, wi)))),
         blend(lambda wo: 1 - schlick(wo[:, 2])),
@@ -89,8 +90,8 @@ FAULTS = [
         "lobes chosen by thresholds that are not cumulative",
         "Unity SS Path Tracing",
         "https://github.com/jiaozi158/UnitySSPathTracingURP/pull/8",
-        "Each lobe's probability is compared with the same random number without adding those before it: 0.4 of the "
-        "paths end.",
+        "The probability of each lobe is compared with the same random number without adding the previous ones: 0.4 "
+        "of the paths end.",
         ("normalised", "density"),
         thresholds(False),
         thresholds(True),
@@ -99,7 +100,7 @@ FAULTS = [
         "the mixture's pdf added to that of the chosen lobe",
         "Exposure Render",
         "https://github.com/ThomasKroes/exposure-render/issues/19",
-        "The lobe that was sampled has already written its pdf; the densities of both are added to it.",
+        "The sampled lobe has already written its pdf; the densities of both lobes are added to it.",
         ("identity",),
         blend(even, said=doubled),
         blend(even),

@@ -38,30 +38,30 @@ def even(wo, u):
 
 FAULTS = [
     Fault(
-        "x and y of the cosine's warp twice as long",
+        "x and y of the cosine warp doubled",
         "Ray Tracing: The Rest of Your Life",
         "https://github.com/RayTracing/TheRestOfYourLife/pull/8",
-        "The disk's coordinates are multiplied by 2 before they are lifted: directions crowd towards the horizon, p "
-        "says cos / pi.",
+        "The coordinates on the disk are multiplied by 2 before they are projected to the hemisphere: directions "
+        "cluster near the horizon, but p is cos / pi.",
         ("density",),
         of(twice_as_long, lambda wo, wi: cosine_pdf(wi)),
         COSINE,
     ),
     Fault(
-        "a point in the ball for one on the sphere",
+        "a point in the ball instead of on the sphere",
         "Ray Tracing in One Weekend",
         "https://github.com/RayTracing/raytracing.github.io/issues/145",
-        "n plus a random point in the unit ball is drawn, which is narrower than Lambert's cosine; the point belongs "
-        "on the sphere.",
+        "n plus a random point in the unit ball is drawn, which is narrower than the cosine distribution; the point "
+        "must be on the sphere.",
         ("density",),
         of(from_a_ball, lambda wo, wi: cosine_pdf(wi), u=3),
         of(from_a_sphere, lambda wo, wi: cosine_pdf(wi)),
     ),
     Fault(
-        "an even pdf for cosine draws",
+        "a uniform pdf for cosine draws",
         "Ray Tracing: The Rest of Your Life",
         "https://github.com/RayTracing/raytracing.github.io/issues/933",
-        "p was changed to 1 / (2 pi) and the draws stayed proportional to the cosine.",
+        "p was changed to 1 / (2 pi), but the draws remained proportional to the cosine.",
         ("density",),
         of(from_a_sphere, even_pdf),
         of(even, even_pdf),

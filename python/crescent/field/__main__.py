@@ -1,4 +1,4 @@
-"""``python -m crescent.field``: judges what ships in Mitsuba 3 and the faults of laws/field, and writes docs/field.md.
+"""``python -m crescent.field``: checks what ships in Mitsuba 3 and the faults of laws/field, and writes docs/field.md.
 
     python -m crescent.field [--faults FOLDER] [--out FILE] [--only PLUGIN ...]
 
@@ -91,7 +91,7 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
     import mitsuba as mi
 
     mi.set_variant("llvm_ad_rgb")
-    table = ["| plugin | state | not right |", "|---|---|---|"]
+    table = ["| plugin | state | faults found |", "|---|---|---|"]
     sections: dict[str, Finding] = {}
     for it in bsdfs() + emitters():
         if only and it.plugin["type"] not in only:
@@ -106,21 +106,20 @@ def _shipped_text(only: list[str]) -> Iterator[str]:
             sections.setdefault(f.note.because if f.note else f"{it.title()} {f.verdicts[0].name}", f)
     yield f"## What ships in Mitsuba {mi.__version__}"
     yield "\n".join(table)
-    yield "Left out: " + "; ".join(f"{names} ({why})" for names, why in LEFT_OUT.items()) + "."
-    yield "## What explains it"
+    yield "Not checked: " + "; ".join(f"{names} ({why})" for names, why in LEFT_OUT.items()) + "."
+    yield "## Explanations"
     for finding in sections.values():
         yield from _section(finding)
 
 
 def _faults_text(faults: list[Fault]) -> Iterator[str]:
-    yield "## Faults of public projects, written anew"
+    yield "## Faults of public projects, reimplemented"
     yield (
-        "Each is a sampler of a few lines in `laws/field/`, written from the public description that its link leads "
-        "to, beside "
-        "the same sampler mended. The tests hold that the verdicts named catch it, and that nothing accuses the "
-        "mended one."
+        "Each is a sampler of a few lines in `laws/field/`, written from the public description behind its link, "
+        "together with the corrected sampler. The tests check that the named verdicts find the fault and that the "
+        "corrected sampler is right."
     )
-    rows = ["| fault | project | caught by | mended |", "|---|---|---|---|"]
+    rows = ["| fault | project | found by | corrected |", "|---|---|---|---|"]
     for fault in faults:
         caught, mended = ", ".join(fault.judged().broken()), fault.judged(mended=True).state
         rows.append(f"| {fault.name}: {fault.says} | [{fault.project}]({fault.source}) | {caught} | {mended} |")
@@ -159,16 +158,16 @@ def main(argv: list[str] | None = None) -> int:
         print(e, file=sys.stderr)
         return 2
     parts = [
-        "# The field, judged",
-        "Written by `python -m crescent.field`, which anyone can run again: `pip install crescent[mitsuba]`. Verdicts "
-        "are those of "
-        "[check.md](check.md) at four w_o above the surface and three below; levels are shared within a plugin "
-        "at "
-        "alpha = 0.001. A draw of weight 0 that pdf and eval do not bear out is taken as nothing drawn. Kinds: *bug*; "
-        "*no "
-        "picture changes*: sample and pdf differ where eval is 0; *corner*: at random numbers that hardly ever come; "
-        "*approximation*: a fit in the code says so of itself; *single precision*; *the model*: it is meant so; "
-        "*open*: not decided.",
+        "# Survey of public samplers",
+        "Checks every BSDF and emitter that ships in Mitsuba 3, and reimplementations of faults of public projects. "
+        "Written by",
+        "```sh\npython -m crescent.field      # after pip install '.[mitsuba]'\n```",
+        "Not run in the tests: needs Mitsuba and several minutes.",
+        "Verdicts are those of [check.md](check.md) at four w_o above the surface and three below; levels are shared "
+        "within a plugin at alpha = 0.001. A draw of weight 0 is taken as no draw, unless its pdf agrees with pdf(w) "
+        "and eval is 0 there. Kinds of faults: *bug*; *no picture changes*: sample and pdf differ where eval is 0; "
+        "*corner*: at random numbers that occur very rarely; *approximation*: the code uses a fit with a stated "
+        "error; *single precision*; *the model*: the model defines it so; *open*: not decided.",
         *_shipped_text(args.only),
         *(_faults_text(known) if known else []),
     ]

@@ -56,10 +56,10 @@ NOTES = [
         "physics",
         "reciprocal",
         "the model",
-        "The map turns the frame that the BSDF below it is asked in, and the cosine at w_i with it: f divided by the "
-        "cosine at the surface's own normal is then not reciprocal, and 0 for one of two directions that change "
-        "places where the other stands under one of the horizons. Every shading normal does so (Veach 1996); sample "
-        "and pdf agree.",
+        "The map turns the frame in which the nested BSDF is evaluated, and with it the cosine at w_i. So f divided "
+        "by the cosine at the surface's own normal is not reciprocal, and it is 0 for one of two exchanged "
+        "directions if the other is below one of the horizons. Every shading normal has this effect (Veach 1996); "
+        "sample and pdf agree.",
         _TURNED,
     ),
     Note(
@@ -67,10 +67,10 @@ NOTES = [
         "normalised|density|identity",
         "",
         "single precision",
-        "The sun's disc is 1 - cos(0.268 deg) = 1.09e-5 deep, 183 steps of single precision: the cosine of its edge, "
-        "which the density divides by, and the product that says whether w is in the disc are each off by up to "
-        "half a step or more. So p over the disc is up to 0.6 % off, and a draw at its edge may not be in it. A disc "
-        "of 5 degrees is right, and so is the sky alone.",
+        "The sun's disc has a depth of 1 - cos(0.268 deg) = 1.09e-5, 183 steps of single precision. The cosine of "
+        "its edge, by which the density is divided, and the product that decides whether w is in the disc may each "
+        "be off by half a step or more. So p over the disc is up to 0.6 % off, and a draw at its edge may be "
+        "outside. A disc of 5 degrees is right, and so is the sky without the sun.",
         _SUN,
     ),
     Note(
@@ -78,16 +78,12 @@ NOTES = [
         "normalised|physics|mean|identity",
         "",
         "bug",
-        "The longitudinal density needs log I0(x), which `log_i0` of include/mitsuba/core/warp.h takes for x above 12 "
-        "as "
-        "x + (log(1 / (2 pi x)) + 1 / (8 x)) / 2. The expansion is x + log(1 / (2 pi x)) / 2 + 1 / (8 x) + ...: its "
-        "last term "
-        "stands inside the half. Below 12 the series ends too early. So the density is too small, by 1 / (16 x) where "
-        "x is "
-        "large, and f with it, which loses that much energy; weights are not touched, since both share the error. "
-        "Moving the "
-        "term out of the half mends it; `LogI0` of pbrt-v4 has the same. The script integrates the density of one "
-        "fibre lobe, which should come to 1.",
+        "The longitudinal density needs log I0(x). For x above 12, `log_i0` of include/mitsuba/core/warp.h computes "
+        "it as x + (log(1 / (2 pi x)) + 1 / (8 x)) / 2. The expansion is x + log(1 / (2 pi x)) / 2 + 1 / (8 x) + "
+        "...: its last term is halved by mistake. Below 12 the series ends too early. So the density is too small, "
+        "by 1 / (16 x) for large x, and so is f, which loses that much energy. Weights are not affected, since both "
+        "have the same error. Moving the term out of the parentheses fixes it; `LogI0` of pbrt-v4 has the same "
+        "fault. The script integrates the density of one fibre lobe; the expected result is 1.",
         _FIBER,
     ),
     Note(
@@ -95,44 +91,39 @@ NOTES = [
         "valid",
         "at u = .*corners of u",
         "corner",
-        "Where a random number is exactly 0 or next to 1 the distribution of normals divides by zero: pdf or "
-        "direction is "
-        "no number. A generator of 24 bits comes upon such numbers as seldom as the verdict says.",
+        "If a random number is exactly 0 or next to 1, the distribution of normals divides by zero, and pdf or "
+        "direction is NaN. A generator of 24 bits produces such numbers as rarely as the verdict states.",
     ),
     Note(
         "roughplastic",
         "normalised|density",
         "",
         "no picture changes",
-        "pdf() answers under the surface too, with the lobe's density there, of which sample() draws less than that; "
-        "eval() "
-        "is 0 there, so no picture changes. Beside it p is right above the surface.",
+        "pdf() is positive below the surface too, with the lobe's density there, and sample() draws less than that. "
+        "eval() is 0 there, so no picture changes. Above the surface p is right.",
     ),
     Note(
         "^principled:(?!.*spec_trans)",
         "normalised|density|support|identity",
         "nothing|Fewer than two bins",
         "no picture changes",
-        "For w_o under an opaque surface pdf() gives the density of lobes that sample() does not draw from; eval() is "
-        "0 "
-        "there, so no picture changes.",
+        "For w_o below an opaque surface pdf() returns the density of lobes that sample() does not draw from. "
+        "eval() is 0 there, so no picture changes.",
     ),
     Note(
         "beckmann",
         "normalised|density|identity|physics|mean",
         "",
         "approximation",
-        "G1 of Beckmann's distribution is the rational fit of Walter et al. 2007, whose stated relative error is 0.35 "
-        "%; as "
-        "visible normals are drawn with the exact one, p is off by the fit's error.",
+        "G1 of Beckmann's distribution is the rational fit of Walter et al. 2007 with a stated relative error of "
+        "0.35 %. Visible normals are drawn with the exact G1, so p is off by the error of the fit.",
     ),
     Note(
         "roughdielectric|principled.*spec_trans",
         "identity",
         "pdf that came with the draw and pdf\\(w\\) differ",
         "single precision",
-        "The half vector of a refraction is computed anew from two directions of single precision, and near the "
-        "critical "
+        "The half vector of a refraction is recomputed from two directions in single precision. Near the critical "
         "angle and the horizon most of its digits cancel.",
     ),
     Note(
@@ -140,17 +131,17 @@ NOTES = [
         "identity|normalised|density",
         "",
         "single precision",
-        "pdf(w) is found by sending a ray back; where it grazes the cylinder the cosine there is lost to the rounding "
-        "of the "
-        "direction and of the intersection, and p divides by it. The ratio of both is 1 in the middle of the lamp.",
+        "pdf(w) is found by tracing a ray back. If the ray grazes the cylinder, rounding of the direction and of "
+        "the intersection dominates the cosine, and p is divided by it. In the middle of the light the ratio of "
+        "both is 1.",
     ),
     Note(
         "principled.*sheen",
         "physics",
         "creates energy",
         "the model",
-        "Disney's sheen is added on top of the other lobes and takes nothing from them: at grazing w_o more leaves the "
-        "surface than arrives. The model is written so.",
+        "Disney's sheen is added to the other lobes without reducing them: at grazing w_o more light leaves the "
+        "surface than arrives. The model defines it so.",
     ),
 ]
 

@@ -179,6 +179,6 @@ def emitters() -> list[Shipped]:
 
 #: Plugins that are not judged here, and why.
 LEFT_OUT = {
-    "measured, measured_polarized": "need a file of measurements, which the package does not bring",
-    "point, spot, directional, directionalarea, projector": "shine from one direction: there is no density to judge",
+    "measured, measured_polarized": "need a file of measurements, which the package does not include",
+    "point, spot, directional, directionalarea, projector": "emit from one direction: there is no density to check",
 }
