@@ -43,7 +43,7 @@ add_section() { # TITLE
 }
 
 touched=0
-for title in "An arm" "A lobe" "A shape" "A light" "A meter" "A plate" "A verdict"; do
+for title in "A sampler" "A lobe" "A shape" "A light" "A metric" "A plate" "A verdict"; do
     add_section "$title"
     diff -rq plain fresh | sort >differences || true
     count=$(wc -l <differences)
