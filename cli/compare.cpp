@@ -129,7 +129,7 @@ int error_rates(const CompareFlags& flags) {
     const std::string text = compare_error_rates(flags.error_rates, flags.seed, progress);
     progress.clear();
     print(fmt::format(
-        "\n## How often compare errs\n\nWritten by the program (crescent {}, commit {}); reproduced by\n\n"
+        "\n## Error rates of compare\n\nWritten by crescent {}, commit {}. To reproduce:\n\n"
         "```sh\ncrescent compare --error-rates {} --seed {}\n```\n\nNot run in the tests: needs minutes of every "
         "core.\n\n{}",
         crescent::version(), commit(), flags.error_rates, flags.seed, text));

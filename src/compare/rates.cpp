@@ -82,9 +82,8 @@ std::string coverage(const std::vector<CompareResult>& all, const std::string& m
 
 std::string false_alarms(const std::vector<Calls>& worlds) {
     std::string out =
-        "| noise of A | of B | renders | calls that find a difference | of those in which each arm met what is rare "
-        "in "
-        "it | of the others | heavy tail said |\n|---|---|---|---|---|---|---|\n";
+        "| noise of A | of B | renders | calls with a difference found | of calls in which each arm contains its "
+        "rare events | of the others | heavy tail reported |\n|---|---|---|---|---|---|---|\n";
     for (const Calls& c : worlds) {
         std::uint64_t met = 0, alarms = 0;
         for (std::size_t k = 0; k < c.met.size(); ++k)
@@ -120,14 +119,11 @@ constexpr MadeNoise normal{Kind::normal, 0.2}, coarse{Kind::normal, 0.5};
 
 /// Why one column of the table is not at most alpha.
 const std::string no_test_can =
-    "Where an arm's light comes by bright events that none of its renders met, its renders are those of an arm that is "
-    "darker: no test can tell the two apart. (Renders of the two agree with at least the probability q that none is "
-    "met, "
-    "so a test that is wrong about the one in at most alpha of all calls is right about the other in at most alpha + 1 "
-    "- "
-    "q.) Such calls are counted apart. Only what is known beside the renders helps, such as `brightest`, a bound on "
-    "what "
-    "a pixel of one render can be.\n\n";
+    "If the light of an arm comes from bright events that none of its renders contains, its renders equal those of a "
+    "darker arm, and no test can distinguish the two. (Their renders agree with at least the probability q that no "
+    "event occurs, so a test that is wrong about one arm in at most alpha of all calls is right about the other in at "
+    "most alpha + 1 - q.) Such calls are counted separately. Only knowledge from elsewhere helps, such as `brightest`, "
+    "a bound on a pixel of one render.\n\n";
 
 std::vector<Calls> worlds_of(const std::vector<MadeNoise>& noises, bool both, const std::vector<int>& renders,
     const std::vector<CompareFlag>& more = {}) {
@@ -215,22 +211,25 @@ std::string ColourRates::text() const {
     };
     const auto chance = [](const MadeWorld& w) { return fmt::format("{:g}", w.b.failing); };
     std::string out =
-        "### In colour\n\nTwo arms, no reference. Three quarters of a channel's noise are that of all three, a quarter "
-        "is its own: the noise of two channels correlates by 0.9.\n\nOf equal arms:\n\n";
-    out += counts("| noise of both | renders | calls that find a difference |\n|---|---|---|\n",
+        "### In colour\n\nTwo arms, no reference. Three quarters of a channel's noise are common to all three, a "
+        "quarter "
+        "is its own: the correlation of two channels is 0.9.\n\nEqual arms:\n\n";
+    out += counts("| noise of both | renders | calls with a difference found |\n|---|---|---|\n",
         lines_of(alike, kind, arms_differ));
-    out += "\nB is brighter by so much, gamma noise of 20 %:\n\n" +
+    out += "\nB is brighter by this share, gamma noise of 20 %:\n\n" +
         counts(
             "| bias | renders | found |\n|---|---|---|\n", lines_of(bias, percent_of(&MadeNoise::bias), arms_differ));
-    out += "\nRed of B is brighter by so much and blue darker by 2.94 times as much, so that Y is the same:\n\n" +
+    out += "\nRed of B is brighter by this share and blue darker by 2.94 times as much, so Y is equal:\n\n" +
         counts("| red | renders | found |\n|---|---|---|\n", lines_of(hue, percent_of(&MadeNoise::hue), arms_differ));
-    out += "\n### Values that are not finite\n\nA pixel of a render of both arms is NaN with this chance:\n\n" +
-        counts("| chance | renders | calls that find a difference |\n|---|---|---|\n",
+    out += "\n### Values that are not finite\n\nA pixel of a render is NaN with this probability in both arms:\n\n" +
+        counts("| probability | renders | calls with a difference found |\n|---|---|---|\n",
             lines_of(failing_alike, chance, arms_differ));
-    out += "\nOf B alone:\n\n" +
-        counts("| chance | renders | found |\n|---|---|---|\n", lines_of(failing, chance, arms_differ));
-    out += "\n### Renders that share their seeds\n\nTaken for such, of independent seeds:\n\n" +
-        counts("| noise of both | renders | calls that take any two for such |\n|---|---|---|\n",
+    out += "\nIn B only:\n\n" +
+        counts("| probability | renders | found |\n|---|---|---|\n", lines_of(failing, chance, arms_differ));
+    out +=
+        "\n### Renders with shared seeds\n\nRenders with independent seeds that are taken for renders with shared "
+        "seeds:\n\n" +
+        counts("| noise of both | renders | calls that take any two renders for such |\n|---|---|---|\n",
             lines_of(alike, kind, seeds_seen));
     const std::string head = "| | renders | calls |\n|---|---|---|\n";
     std::vector<Counted> seen = lines_of(
@@ -253,12 +252,14 @@ std::string ColourRates::text() const {
     };
     more(lines_of(other_noise, pair("all recognised"), all_seeds_seen));
     more(lines_of(other_noise, pair("a difference is found"), arms_differ));
-    return out + "\nOf the same seeds, in another order; gamma noise of 20 % where nothing else is said:\n\n" +
+    return out + "\nThe same seeds in another order; gamma noise of 20 % unless stated otherwise:\n\n" +
         counts(head, seen);
 }
 
 std::string powers(const std::vector<Calls>& biased) {
-    std::string out = "| bias | renders | found | would have been, as calls without it say |\n|---|---|---|---|\n";
+    std::string out =
+        "| bias | renders | found | smallest difference that would be found, as stated without bias "
+        "|\n|---|---|---|---|\n";
     for (const Calls& c : biased) {
         double smallest = 0;
         for (const CompareResult& r : c.results)
@@ -297,22 +298,22 @@ std::string compare_error_rates(std::uint32_t repeats, std::uint32_t seed, Progr
     for (auto* worlds : all)
         for (Calls& c : *worlds) call(c, repeats, seed, monitor);
     std::string out = fmt::format(
-        "{} calls each, of two arms of 32 x 32 pixels whose mean is 1 and a reference without error: three comparisons "
-        "a call, which share alpha = 0.05.\n\n",
+        "{} calls each, with two arms of 32 x 32 pixels and mean 1 and a reference without error: three comparisons "
+        "per call, which share alpha = 0.05.\n\n",
         repeats);
-    out += "### How often equal arms are told apart\n\n" + no_test_can;
-    out += "Noise that the rules were chosen on:\n\n" + false_alarms(right);
-    out += "\nNoise that no rule was chosen on:\n\n" + false_alarms(other);
-    out += "\nTwo arms with the same noise, as two versions of a renderer have it, and no reference:\n\n" +
+    out += "### False alarms\n\n" + no_test_can;
+    out += "Kinds of noise with which the rules were chosen:\n\n" + false_alarms(right);
+    out += "\nOther kinds of noise:\n\n" + false_alarms(other);
+    out += "\nTwo arms with the same noise, as in two versions of a renderer, without a reference:\n\n" +
         false_alarms(alike);
     out += "\nWith `brightest = 10000`, a bound on a pixel of one render:\n\n" + false_alarms(bounded);
     out +=
-        "\n### How often a bias is found\n\nB is brighter by so much everywhere; its noise is 20 %, A's 50 % a "
-        "pixel.\n\n" +
+        "\n### Power\n\nB is brighter by this share everywhere; the noise of a pixel is 20 % in B "
+        "and 50 % in A.\n\n" +
         powers(biased) + "\n" + colour.text();
     out +=
-        "\n### How often a 95 % interval holds the truth\n\nStudent's t over renders, bias2 by the jackknife; of arm "
-        "A, over the frame. Where a heavy tail is said there is no interval.\n\n";
+        "\n### Coverage of 95 % intervals\n\nStudent's t over renders, bias2 by the jackknife; for arm A, over the "
+        "frame. If a heavy tail is reported there is no interval.\n\n";
     right.insert(right.end(), other.begin(), other.end());
     return out + covered(right);
 }

@@ -61,7 +61,7 @@ double quantile_of(const Records& all, double q, const std::function<double(cons
 
 std::string false_positives(const Records& all) {
     std::string out =
-        "| run | set | right cases | called wrong | upper bound | inconclusive | error |\n"
+        "| run | set | correct cases | reported wrong | upper bound | inconclusive | error |\n"
         "|---|---|---|---|---|---|---|\n";
     for (const auto& [run, of_run] : grouped(only(all, right), run_of))
         for (const auto& [set, r] : grouped(of_run, [](const Json& j) { return text(j, "set"); })) {
@@ -86,7 +86,7 @@ std::string by_family(const Records& all) {
                 out += fmt::format(
                     "| {} | {} | {} | {} | {} |\n", run, family, r.size(), wrong, r.size() - calls_right - wrong);
         }
-    const char* head = "| run | family | right cases | called wrong | inconclusive |\n|---|---|---|---|---|\n";
+    const char* head = "| run | family | correct cases | reported wrong | inconclusive |\n|---|---|---|---|---|\n";
     return out.empty() ? "" : head + out;
 }
 
@@ -96,7 +96,7 @@ std::string called_wrong(const Records& all) {
         out += fmt::format("| {} | {} {} {} | {} ({}), {} | {} by {} |\n", run_of(*r), text(*r, "set"),
             r->at("seed").get<std::uint64_t>(), r->at("index").get<std::uint64_t>(), text(*r, "family"),
             text(*r, "parameters"), text(*r, "real"), text(*r, "state"), r->at("wrong").dump());
-    return out.empty() ? "" : "| run | case | sampler | called |\n|---|---|---|---|\n" + out;
+    return out.empty() ? "" : "| run | case | sampler | reported |\n|---|---|---|---|\n" + out;
 }
 
 /// "9 of 10" of each run, by kind and size; runs are columns. From 100 cases on with the lower bound of the rate.
@@ -139,7 +139,7 @@ std::string missed(const Records& all) {
                 r->at("seed").get<std::uint64_t>(), r->at("index").get<std::uint64_t>(), text(*r, "kind"),
                 r->at("size").get<double>(), text(*r, "family"), text(*r, "parameters"), text(*r, "real"),
                 text(*r, "state"));
-    return out.empty() ? "" : "| run | case | fault | called |\n|---|---|---|---|\n" + out;
+    return out.empty() ? "" : "| run | case | fault | reported |\n|---|---|---|---|\n" + out;
 }
 
 /// Cases that two runs of different engines share: found by both, by one alone, by none.
@@ -164,14 +164,14 @@ std::string paired(const Records& all, const std::set<std::string>& runs) {
         }
     return out.empty()
         ? ""
-        : "| A | B | found by both | by A alone | by B alone | by none |\n|---|---|---|---|---|---|\n" + out;
+        : "| A | B | found by both | by A only | by B only | by none |\n|---|---|---|---|---|---|\n" + out;
 }
 
 /// Of the faults that are found: what is named where the cause is known, and where it has no name.
 std::string causes(const Records& all) {
     std::string out =
-        "| run | set | found, with a cause | it is named | and others beside it | another alone | none | "
-        "found, without a cause | something is named |\n|---|---|---|---|---|---|---|---|---|\n";
+        "| run | set | found, with a cause | cause named | with others | only another | none | "
+        "found, without a cause | some cause named |\n|---|---|---|---|---|---|---|---|---|\n";
     const auto names = [](const Json& j) { return causes_of(j).named; };
     const auto silent = [](const Json& j) { return causes_of(j).given == 0; };
     const auto others = [](const Json& j) { return causes_of(j).others; };
@@ -207,7 +207,7 @@ std::string stated(const Records& all) {
 
 std::string cost(const Records& all) {
     std::string out =
-        "| run | set | cases | CPU s a w_o, median | 90 % | evaluations a w_o, median | largest in all |\n"
+        "| run | set | cases | CPU s per w_o, median | 90 % | evaluations per w_o, median | largest in all |\n"
         "|---|---|---|---|---|---|---|\n";
     for (const auto& [run, of_run] : grouped(all, run_of))
         for (const auto& [set, r] : grouped(of_run, [](const Json& j) { return text(j, "set"); })) {
@@ -256,16 +256,16 @@ std::string table_of(const std::vector<Json>& records) {
     const auto section = [&](const char* title, const std::string& body) {
         if (!body.empty()) out += fmt::format("### {}\n\n{}\n", title, body);
     };
-    section("Right samplers", false_positives(all));
-    section("Right samplers by family", by_family(all));
-    section("Right samplers called wrong", called_wrong(all));
+    section("Correct samplers", false_positives(all));
+    section("Correct samplers by family", by_family(all));
+    section("Correct samplers reported wrong", called_wrong(all));
     section("Faults found", found_by_size(wrong, runs));
     section("Faults found, paired", paired(wrong, runs));
     section("Faults missed", missed(wrong));
     section("Causes", causes(wrong));
     section("Stated sizes", stated(all));
     section("Cost", cost(all));
-    section("p-values of right samplers", p_values(all));
+    section("p-values of correct samplers", p_values(all));
     return out;
 }
 
