@@ -61,6 +61,10 @@ inline constexpr double negative_weight = 1e-6;
 /// Equal directions beyond what the lattice of the sampler's arithmetic explains, times this, plus that: chosen.
 /// A lattice is not even (float steps halve towards 0), which the factor 4 covers; 8 pairs are no fault for anyone.
 inline constexpr double repeats_factor = 4, repeats_floor = 8;
+/// Solid angle that single precision may make one direction. Derived: a cosine computed with an error of 4 ulp rounds
+/// to 1 up to an angle of sqrt(8 ulp) from the axis, and about a half vector the direction turns by twice that; the
+/// disk has pi (2 sqrt(8 ulp))^2.
+inline constexpr double one_direction = 3.14159265358979 * 32 * ulp;
 
 /// Numbers are of few bits if a step of this size moves most draws not at all where it should move them by
 /// `few_bits_move`: up to 16 bits are found. Derived: a cosine in single precision near 1, drawn as u^(1 / (s + 1)),

@@ -80,7 +80,7 @@ public:
         const Stopwatch watch;
         source_.estimates = answers_are_estimates(source_);
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
-        out_.small = small_tests(source_, out_.plan->step, key_);
+        out_.small = small_tests(source_, key_);
         for (int look = 0; look < budget_.look_count; ++look) {
             if (decided_by(look)) break;
             if (look == 0 && regrown()) look = -1;

@@ -15,7 +15,6 @@ namespace {
 constexpr std::uint32_t points = 64;
 constexpr int coarsest = 6;  // steps from 2^-6 to 2^-21
 constexpr std::size_t steps = 16;
-constexpr double same_at_finest = 0.05;
 constexpr double smooth = 1.1;  // how much the pdf may vary within a difference
 constexpr int bisections = 24;  // of the ends of a branch, to 2^-24
 
@@ -77,16 +76,19 @@ std::optional<int> chooser(Source& source, const std::vector<Numbers>& u, const 
     return {};
 }
 
-/// Central differences over all steps. A map in pieces (a table) has differences across its pieces that agree by
-/// chance, so the finest steps count: three in a row must agree, and the pdf with the draws be about the same at all of
-/// them.
-void differentiate(Source& source, double rounding, std::vector<Point>& all) {
-    struct Step {
-        double area = -1, least_pdf = 0, most_pdf = 0;
-    };
-    std::vector<std::array<Step, steps>> at(all.size());
+/// w(u + h) - w(u - h) along both numbers, and the range of the pdf with these draws.
+struct Difference {
+    Vec3d along[2]{};
+    double area = -1, least_pdf = 0, most_pdf = 0;  // |dw/du|; -1 where a draw is missing
+};
+using Differences = std::array<Difference, steps>;
+
+double step_size(std::size_t s) { return std::ldexp(1.0, -coarsest - static_cast<int>(s)); }
+
+std::vector<Differences> differences(Source& source, const std::vector<Point>& all) {
+    std::vector<Differences> out(all.size());
     for (std::size_t s = 0; s < steps; ++s) {
-        const double h = std::ldexp(1.0, -coarsest - static_cast<int>(s));
+        const double h = step_size(s);
         std::vector<Numbers> u;
         for (const Point& p : all)
             for (int side = 0; side < 4; ++side) {
@@ -99,25 +101,40 @@ void differentiate(Source& source, double rounding, std::vector<Point>& all) {
             const Draw* q = &d[4 * i];
             const double x = all[i].u[all[i].first], y = all[i].u[all[i].second];
             if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, drawn)) continue;
-            const Vec3d n = cross(q[0].wi - q[1].wi, q[2].wi - q[3].wi);
+            const Vec3d a = q[0].wi - q[1].wi, b = q[2].wi - q[3].wi, n = cross(a, b);
             const auto [least, most] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
-            at[i][s] = {std::sqrt(dot(n, n)) / (4 * h * h), least, most};
+            out[i][s] = {{a, b}, std::sqrt(dot(n, n)) / (4 * h * h), least, most};
         }
     }
+    return out;
+}
+
+/// Whether all differences of finer steps are parts of that of step s, up to `jacobian_error` of it. Rounding moves
+/// each by up to the sampler's own step, whatever that is; three of a few such steps each, in the ratio of the steps in
+/// u, would agree exactly. Across the pieces of a table they are not parts of one difference either.
+bool is_linear_below(const Differences& d, std::size_t s) {
+    for (std::size_t k = s + 1; k < steps; ++k) {
+        if (!(d[k].area >= 0)) return false;
+        for (int n = 0; n < 2; ++n) {
+            const Vec3d off = d[k].along[n] - d[s].along[n] * (step_size(k) / step_size(s));
+            if (dot(off, off) > sqr(jacobian_error) * dot(d[s].along[n], d[s].along[n])) return false;
+        }
+    }
+    return true;
+}
+
+/// Central differences over all steps, the finest of which three in a row agree and the pdf with the draws is about the
+/// same.
+void differentiate(Source& source, std::vector<Point>& all) {
+    const std::vector<Differences> of = differences(source, all);
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t s = steps - 2; s-- > 0;) {  // the finest first
-            const Step *a = &at[i][s], *b = a + 1, *c = a + 2;
+            const Difference *a = &of[i][s], *b = a + 1, *c = a + 2;
             if (!(a->area > 0 && b->area > 0 && c->area > 0)) continue;
             const double least = std::min({a->least_pdf, b->least_pdf, c->least_pdf});
             const double most = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
             const double error = std::max(std::fabs(a->area - b->area), std::fabs(b->area - c->area)) / b->area;
-            if (!(most <= smooth * least) || !(error < jacobian_error)) continue;
-            std::size_t finest = s + 2;
-            const auto noise = [&](std::size_t k) {
-                return 4 * rounding / (std::ldexp(1.0, -coarsest - static_cast<int>(k)) * std::sqrt(b->area));
-            };
-            while (finest + 1 < steps && at[i][finest + 1].area > 0 && noise(finest + 1) < same_at_finest) ++finest;
-            if (std::fabs(at[i][finest].area / b->area - 1) > same_at_finest) break;
+            if (!(most <= smooth * least) || !(error < jacobian_error) || !is_linear_below(of[i], s + 1)) continue;
             all[i].error = error, all[i].area = (4 * b->area - a->area) / 3;
             break;
         }
@@ -129,7 +146,7 @@ struct Round {
     Example first{};
 };
 
-Round look(Source& source, double step, const StreamKey& key) {
+Round look(Source& source, const StreamKey& key) {
     std::vector<Numbers> u;
     for (std::uint32_t i = 0; i < points; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
     const std::vector<Draw> at = draws_at(source, u);
@@ -145,7 +162,7 @@ Round look(Source& source, double step, const StreamKey& key) {
     std::vector<Vec3d> w;
     for (std::size_t i = 0; i < u.size(); ++i)
         if (drawn(at[i])) all.push_back({u[i], branch[i], first, second, at[i].wi}), w.push_back(at[i].wi);
-    differentiate(source, step / angle_per_step + 0x1p-50, all);
+    differentiate(source, all);
     std::vector<double> p(w.size());
     source.density(w, p);
     Round out;
@@ -163,15 +180,15 @@ Round look(Source& source, double step, const StreamKey& key) {
 
 }  // namespace
 
-std::optional<SmallFault> jacobian(Source& source, double step, const StreamKey& given) {
+std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
     const int n = source.traits.numbers;
     if (!source.has_density() || source.traits.own_random || !source.subject.draws_at_will() || n < 2 || n > 3)
         return {};
     StreamKey key = given;
-    const Round one = look(source, step, key);
+    const Round one = look(source, key);
     if (one.broken < jacobian_breaks) return {};
     key.part = 1;
-    const Round two = look(source, step, key);
+    const Round two = look(source, key);
     if (two.broken < jacobian_breaks) return {};
     return SmallFault{Family::jacobian, static_cast<double>(one.broken + two.broken),
         static_cast<double>(one.looked + two.looked), std::min(one.worst, two.worst) - 1, one.first,

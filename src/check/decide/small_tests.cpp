@@ -165,7 +165,7 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     return {};
 }
 
-std::vector<SmallFault> small_tests(Source& source, double step, const StreamKey& given) {
+std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
     StreamKey key = given;
     std::vector<SmallFault> out;
     const auto add = [&](std::optional<SmallFault> fault) {
@@ -176,7 +176,7 @@ std::vector<SmallFault> small_tests(Source& source, double step, const StreamKey
     add(same_u_again(source, key));
     add(few_bits(source, key));
     key.purpose = Purpose::jacobian;
-    if (!source.estimates) add(jacobian(source, step, key));
+    if (!source.estimates) add(jacobian(source, key));
     return out;
 }
 

@@ -29,14 +29,13 @@ std::optional<SmallFault> corners_of_u(Source& source);
 /// The same u in another order, in other batches and alone.
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key);
 /// p |dw/du| of the branch that a draw takes is at least the probability of that branch.
-/// step: of the sampler's arithmetic.
-std::optional<SmallFault> jacobian(Source& source, double step, const StreamKey& key);
+std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
 /// Numbers of which few bits are used: a draw moves with u at large, and does not move at all with its last bits.
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key);
 /// Random numbers that change no draw.
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key);
 
 /// All of them.
-std::vector<SmallFault> small_tests(Source& source, double step, const StreamKey& key);
+std::vector<SmallFault> small_tests(Source& source, const StreamKey& key);
 
 }  // namespace crescent::check

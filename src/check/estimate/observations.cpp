@@ -192,7 +192,7 @@ private:
             const double log_p = v[bridge] > 0 ? v[slope] / v[bridge] : 0;
             to_.log_p.add(log_p), to_.slope_log_p += v[slope] * log_p;
         }
-        to_.keys.push_back(key_of(w));
+        to_.met.push_back({key_of(w), p});
         LeafIntegral& integral = integrals_.leaves[l];
         if (p > alike * integral.top) complete(integral, w, v, p);
     }

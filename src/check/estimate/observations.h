@@ -54,7 +54,11 @@ struct Observations {
     std::array<Replicates, integrands> by_set{};
     std::vector<Replicates> node_by_set;  // sum of h, by row of the coarse node that a leaf is in
     DrawChecks checks;
-    std::vector<std::uint64_t> keys;     // hashes of the directions
+    struct Met {
+        std::uint64_t key;  // hash of the direction
+        double p;
+    };
+    std::vector<Met> met;                // of the independent draws
     double mean_p = 0;                   // sum of p over the independent draws
     Sums log_p;                          // of ln p less its median
     double slope_log_p = 0;              // sum of the slope's h times that

@@ -16,16 +16,22 @@ void ask_share(Family family, const Count& count, double of, double tolerated, c
 }
 
 /// Pairs of equal directions, against those that the lattice of the arithmetic makes: N^2 / 2 pairs, of which a step^2
-/// of the sphere holds the integral of p^2 = E[p].
+/// of the sphere holds the integral of p^2 = E[p]. In single precision a small disk about an axis is one direction
+/// (`one_direction`), which then comes N p times.
 void ask_repeats(const Evidence& e, const Visit& visit) {
     const Observations& o = e.observations;
-    std::vector<std::uint64_t> keys = o.keys;
-    std::sort(keys.begin(), keys.end());
-    double equal = 0;
-    for (std::size_t k = 1; k < keys.size(); ++k) equal += keys[k] == keys[k - 1];
+    std::vector<Observations::Met> met = o.met;
+    std::ranges::sort(met, {}, &Observations::Met::key);
     const double least = e.source.traits.bits == 53 ? 0x1p-53 : ulp;
     const double step = std::max(e.plan.step / angle_per_step, least);
-    const double expected = o.independent * step * step * o.mean_p / 2;
+    const bool single = e.source.single() || e.plan.step >= angle_per_step * ulp / 4;
+    double equal = 0, expected = o.independent * step * step * o.mean_p / 2;
+    for (std::size_t k = 0, end = 0; k < met.size(); k = end) {
+        while (end < met.size() && met[end].key == met[k].key) ++end;
+        const double again = static_cast<double>(end - k - 1);
+        equal += again;
+        if (single) expected += std::min(again, o.independent * met[k].p * one_direction);
+    }
     visit({Family::repeats, 0, equal, std::sqrt(expected), repeats_floor,
         equal > repeats_floor + repeats_factor * expected ? 0.0 : 1.0, expected});
 }
