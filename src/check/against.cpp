@@ -47,7 +47,8 @@ std::map<AgainstAnswer::Family, WorstOf> worst_of(
 }
 
 /// The same member again, one-sided in the direction of the first.
-AgainstAnswer put_again(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b, const AgainstAnswer& r) {
+AgainstAnswer put_again(
+    const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b, const AgainstAnswer& r) {
     AgainstAnswer out = r;
     out.p = 1;
     ask_against(ground, a, b, [&](const AgainstAnswer& again) {
@@ -119,8 +120,8 @@ private:
     }
 
     CheckAt own(const AgainstSide& side) const {
-        return check_sampler_at(*side.trial.subject, 0, side.trial.wo, {side.trial.light, side.key.place, 1}, plan_.own,
-            plan_.seed);
+        return check_sampler_at(
+            *side.trial.subject, 0, side.trial.wo, {side.trial.light, side.key.place, 1}, plan_.own, plan_.seed);
     }
 
     Differences differences() {
@@ -171,21 +172,24 @@ private:
                 if (r.member < 2)
                     return fmt::format("A {} {:+.3g} +- {:.1g} more of its samples than B.",
                         r.member == 0 ? "draws nothing at" : "draws a direction at", r.difference, half);
-                return fmt::format("The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
+                return fmt::format(
+                    "The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
                     text_of(ground_->ways[static_cast<std::size_t>(r.member) - 2]), r.difference, half);
             case AgainstAnswer::sums:
             case AgainstAnswer::sums_by_sets:
                 if (r.member == log_density)
-                    return fmt::format("A is {} concentrated than B: the mean logarithm of their density differs by "
-                                       "{:.3g} +- {:.1g}.",
+                    return fmt::format(
+                        "A is {} concentrated than B: the mean logarithm of their density differs by "
+                        "{:.3g} +- {:.1g}.",
                         r.difference > 0 ? "more" : "less", std::fabs(r.difference), half);
                 return fmt::format("The mean direction of A is off that of B in {} by {:+.3g} +- {:.1g}.",
                     "xyz"[r.member - mean_x], r.difference, half);
             default: break;
         }
         const ChartRect& rect = ground_->tree.nodes()[static_cast<std::size_t>(r.member)].rect;
-        return fmt::format("About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
-                           "of those there.",
+        return fmt::format(
+            "About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
+            "of those there.",
             text_of(from_chart(rect.at(0.5, 0.5))), std::max(rect.theta_width(), rect.phi_width()), r.difference, half);
     }
     static std::string text_of(Vec3d w) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z); }
@@ -196,8 +200,8 @@ private:
         v.evidence["draws"] = {draws_a_.independent + draws_a_.scrambled, draws_b_.independent + draws_b_.scrambled};
         for (const auto& [family, p] : d.p) v.evidence["p"][std::string(name_of(family))] = p;
         for (const auto& [first, again] : d.found)
-            v.evidence["tests"][std::string(name_of(first.family))] = {{"difference", again.difference},
-                {"sd", again.sd}, {"p_first", first.p}, {"p_again", again.p}};
+            v.evidence["tests"][std::string(name_of(first.family))] = {
+                {"difference", again.difference}, {"sd", again.sd}, {"p_first", first.p}, {"p_again", again.p}};
         v.state = differ && plan_.expect_same ? State::wrong : State::right;
         if (differ) {
             const auto clearest = std::ranges::min_element(
@@ -209,7 +213,8 @@ private:
         v.say = "No difference between their distributions is seen.";
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;
-        v.say += fmt::format(" A part of {:.2g} of the draws that one of them lacks would have been found", *sizes.part);
+        v.say +=
+            fmt::format(" A part of {:.2g} of the draws that one of them lacks would have been found", *sizes.part);
         if (sizes.distance) {
             v.evidence["would_have_found"]["distance"] = *sizes.distance;
             v.say += fmt::format(", and mean directions {:.2g} apart", *sizes.distance);
@@ -237,10 +242,9 @@ std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFau
         Verdict v;
         v.arm = a.arm + " against " + b.arm, v.trial = a.text(), v.name = name;
         v.state = slow ? State::inconclusive : State::error;
-        v.say = slow ? std::string(fault.what())
-            : dynamic_cast<const SubjectGone*>(&fault)
-            ? fmt::format("It could not be evaluated: {}.", fault.what())
-            : fmt::format("The sampler broke off: {}.", fault.what());
+        v.say = slow                                   ? std::string(fault.what())
+            : dynamic_cast<const SubjectGone*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
+                                                       : fmt::format("The sampler broke off: {}.", fault.what());
         if (slow) v.settle = "More time (--patience), or a program that answers faster.";
         out.push_back(std::move(v));
     }
@@ -311,8 +315,8 @@ std::string against_text(const Judgement& j) {
             v.settle.empty() ? "" : " What would settle it: " + v.settle);
     }
     return out +
-        fmt::format("\n{}{}\n", word(j.state),
-            j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "");
+        fmt::format(
+            "\n{}{}\n", word(j.state), j.questions > 0 ? fmt::format("; {} questions were answered", j.questions) : "");
 }
 
 }  // namespace crescent::check

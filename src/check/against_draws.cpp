@@ -13,7 +13,7 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t most_ways = 16, kinds_before_ways = 2;  // nothing, directions
-constexpr double same_way = 1e-4;                              // distance of unit vectors
+constexpr double same_way = 1e-4;                             // distance of unit vectors
 constexpr std::size_t drawn_kept = 256;
 
 /// What one draw is: -1 nothing, 0 a direction, 1 + k the k-th way.
@@ -60,8 +60,8 @@ std::size_t nearest_way(std::span<const Vec3d> ways, Vec3d w) {
 }
 
 /// Pilot draws of all techniques.
-std::uint32_t draw_pilots(const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out,
-    std::vector<DeltaPart>& parts) {
+std::uint32_t draw_pilots(
+    const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<DeltaPart>& parts) {
     std::uint32_t of = 0;
     for (int t = 0; t < side.trial.subject->techniques(); ++t) {
         Sorter sorter(side, t);
@@ -90,8 +90,7 @@ CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const Che
     const std::uint32_t of = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
     for (const auto* parts : {&delta_a, &delta_b})
         for (const DeltaPart& p : *parts)
-            if (std::ranges::none_of(ways, [&](Vec3d w) { return length(w - p.wi) < same_way; }))
-                ways.push_back(p.wi);
+            if (std::ranges::none_of(ways, [&](Vec3d w) { return length(w - p.wi) < same_way; })) ways.push_back(p.wi);
     const double step = std::max(step_of_directions(of_a), step_of_directions(of_b));
     std::vector<DensityPoint> pilots;
     Vec3d middle{};
@@ -176,8 +175,8 @@ private:
         const Vec3d w = normalize(d.wi);
         const std::size_t l = ground_.tree.find(to_chart(w));
         const Leaf& leaf = ground_.tree.leaves()[l];
-        const std::array<double, against_sums> h = {math::log(leaf.q) - ground_.log_q, w.x - ground_.middle.x,
-            w.y - ground_.middle.y, w.z - ground_.middle.z};
+        const std::array<double, against_sums> h = {
+            math::log(leaf.q) - ground_.log_q, w.x - ground_.middle.x, w.y - ground_.middle.y, w.z - ground_.middle.z};
         if (set < 0) {
             ++to_.leaves[l];
             for (std::size_t q = 0; q < h.size(); ++q) to_.sums[q].add(h[q]);
@@ -314,7 +313,8 @@ void ask_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::function
     for (std::size_t k = 0; k < a.kinds.size(); ++k) {
         if (a.kinds[k] + b.kinds[k] == 0) continue;
         const TwoShares s(a.kinds[k], a.independent, b.kinds[k], b.independent);
-        visit(answer_of(AgainstAnswer::kinds, static_cast<int>(k), s, detection_floor * std::min(s.share, 1 - s.share)));
+        visit(
+            answer_of(AgainstAnswer::kinds, static_cast<int>(k), s, detection_floor * std::min(s.share, 1 - s.share)));
     }
 }
 
@@ -331,8 +331,8 @@ void ask_sums_against(const CommonGround& g, const AgainstDraws& a, const Agains
         const double v = std::max(square(a) - sqr(mean(a)), 0.0) / a.independent +
             std::max(square(b) - sqr(mean(b)), 0.0) / b.independent;
         AgainstAnswer out{AgainstAnswer::sums, q, mean(a) - mean(b), std::sqrt(v), floor};
-        out.p = bennett_p(bennett_z2(
-            std::fabs(out.difference) - floor, v, ranges[q] / std::min(a.independent, b.independent), 1e12));
+        out.p = bennett_p(
+            bennett_z2(std::fabs(out.difference) - floor, v, ranges[q] / std::min(a.independent, b.independent), 1e12));
         visit(out);
         if (a.scrambled == 0 || b.scrambled == 0) continue;
         const auto sets = [&](const AgainstDraws& d) {
@@ -386,7 +386,8 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
     double tests = 0;
     ask_against(g, a, b, [&](const AgainstAnswer& r) {
         tests += r.family == AgainstAnswer::nodes;
-        if (r.family == AgainstAnswer::sums_by_sets || (b.scrambled * a.scrambled == 0 && r.family == AgainstAnswer::sums)) {
+        if (r.family == AgainstAnswer::sums_by_sets ||
+            (b.scrambled * a.scrambled == 0 && r.family == AgainstAnswer::sums)) {
             constexpr double sums = against_sums;
             const double z = std::sqrt(-2 * math::log(level / sums / 2)) + power_quantile;
             const double needed = r.floor + z * r.sd;
@@ -408,7 +409,8 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
         if (std::min(all.a, all.b) < least_count) continue;
         const TwoShares s(counts[first].a, all.a, counts[first].b, all.b);
         const double needed =
-            needed_by_bennett(node_floor(g, x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) * s.per_share;
+            needed_by_bennett(node_floor(g, x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) *
+            s.per_share;
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;
             // Of the node's draws; it lies across cells, half of it in one.

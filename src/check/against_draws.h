@@ -31,10 +31,10 @@ struct CommonGround {
     Tree tree;
     double step = 0;  // of the coarser arithmetic, as an angle
     Vec3d middle{};
-    double log_q = 0;                       // mean of ln q over the tree's mass
-    std::vector<Vec3d> ways;                // directions of delta parts
+    double log_q = 0;                         // mean of ln q over the tree's mass
+    std::vector<Vec3d> ways;                  // directions of delta parts
     std::vector<DeltaPart> delta_a, delta_b;  // of the pilot draws
-    std::vector<Vec3d> drawn;               // some of the pilot directions of each
+    std::vector<Vec3d> drawn;                 // some of the pilot directions of each
 };
 
 CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);
@@ -49,8 +49,8 @@ struct AgainstDraws {
     std::array<Sums, against_sums> sums;
     std::array<Replicates, against_sums> by_set{};
     std::vector<Replicates> node_by_set;
-    std::vector<double> x;         // weights f L cos / p of the first draws; luminance
-    bool weighs = true;            // every one of them has a weight
+    std::vector<double> x;          // weights f L cos / p of the first draws; luminance
+    bool weighs = true;             // every one of them has a weight
     double invalid = 0, first = 0;  // draws that cannot be used
 };
 

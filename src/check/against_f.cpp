@@ -1,5 +1,6 @@
 // f is compared within what a few roundings of the directions move it by. Variances are ranked by a test of their
-// difference that fails at both stages; where f is known at A's draws alone, B's variance follows from them by p_A / p_B.
+// difference that fails at both stages; where f is known at A's draws alone, B's variance follows from them by p_A /
+// p_B.
 #include "check/against_f.h"
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include "check/constants.h"
 #include "check/estimate/scatter.h"
 #include "stats/moments.h"
-#include "stats/tail.h"
 
 namespace crescent::check {
 
@@ -116,8 +116,9 @@ std::string differing_delta(const AgainstCase& c) {
     for (Vec3d w : c.ground.ways) {
         const Vec3d a = power(c.ground.delta_a, w), b = power(c.ground.delta_b, w);
         if (length(a - b) <= same_number * std::max({length(a), length(b), 1e-30})) continue;
-        return fmt::format("The delta part towards ({:.4g}, {:.4g}, {:.4g}) differs: q times weight is {:.6g} and {:.6g}.",
-            w.x, w.y, w.z, luminance(a), luminance(b));
+        return fmt::format(
+            "The delta part towards ({:.4g}, {:.4g}, {:.4g}) differs: q times weight is {:.6g} and {:.6g}.", w.x, w.y,
+            w.z, luminance(a), luminance(b));
     }
     return "";
 }
@@ -132,9 +133,9 @@ void compare_f(const AgainstCase& c, Verdict& v) {
     };
     if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
         v.state = State::skipped;
-        v.say = only_at_draws(a)   ? "f of A is known at its draws alone, and B has no f to compare with it."
-            : a.draws_at_will() ? "There is no f to compare."
-                                : "The file of A has no column f: there is nothing to compare.";
+        v.say = only_at_draws(a) ? "f of A is known at its draws alone, and B has no f to compare with it."
+            : a.draws_at_will()  ? "There is no f to compare."
+                                 : "The file of A has no column f: there is nothing to compare.";
     } else if (is_estimate(c.a) || is_estimate(c.b)) {
         v.state = State::skipped;
         v.say = "f is a random estimate: only its mean could be the same.";
@@ -166,20 +167,10 @@ struct WeightMoments {
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
         // The second term is what the mean costs: alone where two values come equally often.
         variance_se = std::sqrt(std::max(m4 - sqr(variance), 0.0) / n + 2 * sqr(variance / std::max(n - 1, 1.0)));
-        heavy = is_heavy(x, s);
+        heavy = tail_may_be_heavy(x);
     }
     /// No more than the rounding of p is left.
     bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
-
-private:
-    static bool is_heavy(std::span<const double> x, const stats::Spread& s) {
-        if (s.largest <= bounded_weight * s.mean) return false;
-        std::vector<double> w(x.begin(), x.end());
-        const std::size_t m = std::min(stats::tail_length(w.size()) + 1, w.size());
-        std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
-        const std::optional<stats::Tail> tail = stats::fit_tail(std::span<const double>(w).first(m));
-        return tail && tail->k + 2 * tail->se >= heavy_index;
-    }
 };
 
 void skip(Verdict& v, std::string say) { v.state = State::skipped, v.say = std::move(say); }
@@ -193,8 +184,8 @@ void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
     const bool ranked = differ && !alike && std::fabs(ratio - 1) > alike_variances;
     v.evidence["better"] = !ranked ? "none" : ratio > 1 ? "B" : "A";
     v.say = fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
-        alike        ? "The variances are alike to 1 %"
-            : !ranked ? "Neither is shown to be better here"
+        alike           ? "The variances are alike to 1 %"
+            : !ranked   ? "Neither is shown to be better here"
             : ratio > 1 ? "B is better here"
                         : "A is better here",
         ratio, low, high);
@@ -237,8 +228,8 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
         v.say = fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
             none_a ? "A" : "B", none_a ? "B" : "A", none_a ? b.variance : a.variance);
     } else {
-        note_ratio(v, a.variance / b.variance,
-            math::hypot(a.variance_se / a.variance, b.variance_se / b.variance), differ(variances_p));
+        note_ratio(v, a.variance / b.variance, math::hypot(a.variance_se / a.variance, b.variance_se / b.variance),
+            differ(variances_p));
     }
 }
 
@@ -275,7 +266,8 @@ struct ReweighedDraws {
             const double p = x[i] > 0 ? b.density(d.wi) : 0;
             lost += x[i] > 0 && !(p > 0);
             others.push_back(p > 0 ? sqr(x[i]) * d.pdf / p : 0);
-            for (Group* g : {&of[i % groups], &all}) ++g->n, g->x += x[i], g->square += sqr(x[i]), g->other += others[i];
+            for (Group* g : {&of[i % groups], &all})
+                ++g->n, g->x += x[i], g->square += sqr(x[i]), g->other += others[i];
         }
     }
     /// Of the log ratio, by the jackknife (Quenouille 1956).
@@ -294,7 +286,8 @@ struct ReweighedDraws {
 
 void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     const JudgedSampler& b = *c.b.trial.subject;
-    if (!b.traits().has_pdf) return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
+    if (!b.traits().has_pdf)
+        return skip(v, "f is known at the draws of A alone, and B has no pdf(w) to weigh them by.");
     if (b.techniques() > 1)
         return skip(v, "f is known at the draws of A alone: the variance of a pair of techniques does not follow.");
     const ReweighedDraws first(c, 1);
@@ -314,8 +307,8 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
             std::max(first.all.of_other(), 0.0));
         return;
     }
-    note_ratio(v, math::exp(first.all.log_ratio()), first.log_se(),
-        first.p() < c.level && ReweighedDraws(c, 2).p() < c.again);
+    note_ratio(
+        v, math::exp(first.all.log_ratio()), first.log_se(), first.p() < c.level && ReweighedDraws(c, 2).p() < c.again);
     v.say += " B's follows from the draws of A by p_A / p_B.";
 }
 
@@ -343,13 +336,15 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
     if (of_f.evidence.contains("same") && !of_f.evidence["same"].get<bool>())
         return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
-        return skip(v, a.draws_at_will() ? "There is no f, hence no variance of f L cos / p."
-                                         : "The file of A has no column f, hence there are no weights f L cos / p.");
+        return skip(v,
+            a.draws_at_will() ? "There is no f, hence no variance of f L cos / p."
+                              : "The file of A has no column f, hence there are no weights f L cos / p.");
     if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, hence no variance of f L cos / p.");
     for (const auto& [draws, subject, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
         if (subject->has_drawn_f() && !draws->weighs)
             return skip(v,
-                fmt::format("{} has neither a pdf(w) nor a weight with its draws (weight=yes), hence no variance.", who));
+                fmt::format(
+                    "{} has neither a pdf(w) nor a weight with its draws (weight=yes), hence no variance.", who));
     if (is_wrong_itself(c.own_a, "A", v) || is_wrong_itself(c.own_b, "B", v)) return;
     if (!b.has_drawn_f()) return over_draws_of_a(c, v);
     const WeightMoments of_a(c.draws_a.x), of_b(c.draws_b.x);

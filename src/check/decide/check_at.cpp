@@ -78,7 +78,10 @@ public:
 
     CheckAt run() {
         const Stopwatch watch;
-        source_.estimates = answers_are_estimates(source_);
+        StreamKey looks = key_;
+        looks.purpose = Purpose::pairs;
+        out_.scatter = look_for_scatter(source_, looks);
+        source_.estimates = out_.scatter.pdf(), source_.f_estimates = out_.scatter.f();
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
         for (int look = 0; look < budget_.look_count; ++look) {

@@ -8,6 +8,7 @@
 #include "check/decide/sizes.h"
 #include "check/decide/small_tests.h"
 #include "check/estimate/budget.h"
+#include "check/estimate/scatter.h"
 
 namespace crescent::check {
 
@@ -34,6 +35,7 @@ struct CheckAt {
     std::vector<Answer> answers;    // by family, the least p times the number of members, at the last look
     Sizes sizes;
     bool inconclusive = false;
+    Scatter scatter;  // of pdf(w) and f(w), where they are random estimates
     int looks = 0;
     std::uint64_t evaluations = 0;
     double seconds = 0;

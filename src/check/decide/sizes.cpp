@@ -20,7 +20,7 @@ std::array<double, integrands> needed_by_sums(const Evidence& e, double level) {
         const double members = q >= centre_x ? 3 : 1;
         const Estimate& claimed = e.integrals.sums[q];
         const double mean = e.observations.sums[q].sum / n, square = e.observations.sums[q].square / n;
-        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : mean);
+        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : mean) + e.integrals.known_to[q];
         const double v = std::max(square - mean * mean, 0.0) / n + claimed.variance;
         out[q] = needed_by_bennett(floor, v, 1 / n, freedom(v, claimed.doubt), level / members);
         if (e.observations.scrambled == 0) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/estimate/chart.h"
 
 namespace crescent::check {
 
@@ -23,19 +24,6 @@ std::optional<const char*> fault_of(const Draw& d) {
     if (std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight)
         return "the weight is negative";
     return {};
-}
-
-bool answers_are_estimates(Source& source) {
-    if (!source.has_density() || !source.subject.draws_at_will()) return false;
-    constexpr double golden = 2.399963229728653;  // radians
-    std::vector<Vec3d> w;
-    for (int i = 0; i < 64; ++i) w.push_back(from_chart({(i + 0.5) / 32, std::fmod(golden * i, two_pi)}));
-    std::vector<double> a(w.size()), b(w.size());
-    source.stated_pdf(w, a);
-    source.stated_pdf(w, b);
-    int differ = 0;
-    for (std::size_t i = 0; i < w.size(); ++i) differ += std::fabs(a[i] - b[i]) > same_number * std::max(a[i], b[i]);
-    return differ >= 3;
 }
 
 namespace {
@@ -66,13 +54,15 @@ std::vector<Numbers> some_numbers(const Source& source, StreamKey key, std::uint
     return u;
 }
 
-/// The same draw, to the rounding of a text format of seven digits.
-bool same_draw(const Draw& a, const Draw& b) {
+bool same_to(double a, double b) { return std::fabs(a - b) <= same_number * std::max(std::fabs(a), std::fabs(b)); }
+
+/// The same draw, to the rounding of a text format of seven digits; its pdf and weight too where they are no estimates.
+bool same_draw(const Draw& a, const Draw& b, bool random = false) {
     constexpr double near = 1e-6;
     if ((a.pdf > 0) != (b.pdf > 0) || (a.delta != 0) != (b.delta != 0)) return false;
     if (!(a.pdf > 0) && a.delta == 0) return true;
     return std::fabs(a.wi.x - b.wi.x) + std::fabs(a.wi.y - b.wi.y) + std::fabs(a.wi.z - b.wi.z) <= near &&
-        std::fabs(a.pdf - b.pdf) <= same_number * std::max(a.pdf, b.pdf);
+        (random || (same_to(a.pdf, b.pdf) && same_to(a.weight.value_or(0), b.weight.value_or(0))));
 }
 
 }  // namespace
@@ -95,23 +85,79 @@ std::optional<SmallFault> corners_of_u(Source& source) {
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
 
+namespace {
+
+/// Calls in blocks of 1, 2, 3, ... 64 rows.
+constexpr std::size_t rows_in_blocks = 64 * 65 / 2;
+template <class Call> void in_blocks(const Call& call) {
+    for (std::size_t first = 0, block = 1; first < rows_in_blocks; first += block++) call(first, block);
+}
+
+}  // namespace
+
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
     if (source.traits.own_random || !source.subject.draws_at_will()) return {};
-    constexpr std::uint32_t count = 64;
-    const std::vector<Numbers> u = some_numbers(source, key, count);
-    std::vector<Draw> together(count), again(count), backwards(count);
+    const std::vector<Numbers> u = some_numbers(source, key, rows_in_blocks);
+    std::vector<Draw> together(u.size()), again(u.size()), backwards(u.size());
     source.draw(u, together);
-    for (std::size_t first = 0, block = 1; first < count; first += block++) {  // blocks of 1, 2, 3, ...
-        const std::size_t n = std::min<std::size_t>(block, count - first);
+    in_blocks([&](std::size_t first, std::size_t n) {
         source.draw(std::span(u).subspan(first, n), std::span(again).subspan(first, n));
-    }
+    });
     std::vector<Numbers> reversed(u.rbegin(), u.rend());
     source.draw(reversed, backwards);
     std::reverse(backwards.begin(), backwards.end());
-    SmallFault out{Family::state, 0, count};
-    for (std::size_t i = 0; i < count; ++i)
-        if (!same_draw(together[i], again[i]) || !same_draw(together[i], backwards[i]))
+    SmallFault out{Family::state, 0, static_cast<double>(u.size())};
+    const bool random = source.estimates || source.f_estimates;
+    for (std::size_t i = 0; i < u.size(); ++i)
+        if (!same_draw(together[i], again[i], random) || !same_draw(together[i], backwards[i], random))
             if (out.times++ == 0) out.first = {u[i], together[i], 0, 0}, out.what = "the same u gives another draw";
+    return out.times > 0 ? std::optional(out) : std::nullopt;
+}
+
+std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key) {
+    if (!source.subject.draws_at_will()) return {};
+    const std::vector<Numbers> u = some_numbers(source, key, rows_in_blocks);
+    std::vector<Draw> draws(u.size());
+    source.draw(u, draws);
+    constexpr double golden = 2.399963229728653;  // radians
+    std::vector<Vec3d> w;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const double k = static_cast<double>(i), n = static_cast<double>(u.size());
+        const Vec3d drawn = draws[i].wi;
+        const bool usable = draws[i].pdf > 0 && std::isfinite(drawn.x + drawn.y + drawn.z);
+        w.push_back(usable ? drawn : from_chart({2 * (k + 0.5) / n, std::fmod(golden * k, two_pi)}));
+    }
+    SmallFault out{Family::state, 0, static_cast<double>(u.size())};
+    const auto compare = [&](auto evaluate, auto differ, const char* what) {
+        using Value = std::decay_t<decltype(evaluate.value)>;
+        std::vector<Value> together(w.size()), again(w.size());
+        evaluate(w, together);
+        in_blocks([&](std::size_t first, std::size_t n) {
+            evaluate(std::span(w).subspan(first, n), std::span(again).subspan(first, n));
+        });
+        for (std::size_t i = 0; i < w.size(); ++i)
+            if (differ(together[i], again[i]) && out.times++ == 0) {
+                out.first.u = u[i], out.first.draw.wi = w[i], out.what = what;
+            }
+    };
+    struct Pdf {
+        Source& source;
+        double value = 0;
+        void operator()(std::span<const Vec3d> wi, std::span<double> to) const { source.stated_pdf(wi, to); }
+    };
+    struct F {
+        Source& source;
+        Vec3d value{};
+        void operator()(std::span<const Vec3d> wi, std::span<Vec3d> to) const { source.f_cos(wi, to); }
+    };
+    if (source.has_density() && !source.estimates)
+        compare(
+            Pdf{source}, [](double a, double b) { return !same_to(a, b) && !(std::isnan(a) && std::isnan(b)); },
+            "pdf(w) gives another answer in a block of another size");
+    if (source.has_f() && !source.f_estimates)
+        compare(
+            F{source}, [](Vec3d a, Vec3d b) { return !same_to(a.x, b.x) || !same_to(a.y, b.y) || !same_to(a.z, b.z); },
+            "f(w) gives another answer in a block of another size");
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
 
@@ -174,6 +220,7 @@ std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
     add(corners_of_u(source));
     key.purpose = Purpose::corners;
     add(same_u_again(source, key));
+    add(same_answers_again(source, key));
     add(few_bits(source, key));
     key.purpose = Purpose::jacobian;
     if (!source.estimates) add(jacobian(source, key));

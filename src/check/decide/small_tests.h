@@ -21,13 +21,12 @@ struct SmallFault {
     const char* what = "";
 };
 
-/// Whether p at one direction differs from call to call: then it is a random estimate, and only its mean is tested.
-bool answers_are_estimates(Source& source);
-
 /// u at 0, next to 0, at quarters and next to 1, in every two numbers and in every corner: samplers divide by 0 there.
 std::optional<SmallFault> corners_of_u(Source& source);
 /// The same u in another order, in other batches and alone.
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key);
+/// pdf(w) and f(w) of the same directions in blocks of other sizes: a program may mix up the rows of a block.
+std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key);
 /// p |dw/du| of the branch that a draw takes is at least the probability of that branch.
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
 /// Numbers of which few bits are used: a draw moves with u at large, and does not move at all with its last bits.

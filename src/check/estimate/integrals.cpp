@@ -12,11 +12,15 @@ void LightIntegrals::scale(double by) {
     for (auto* by_channel : {&all, &mean, &albedo})
         for (Estimate& e : *by_channel) e.scale(by);
     lost.scale(by), lit.scale(by);
+    for (auto& by_channel : leaves)
+        for (Estimate& e : by_channel) e.scale(by);
 }
 
 void LightIntegrals::add(const LightIntegrals& o) {
     for (std::size_t c = 0; c < 3; ++c) all[c].add(o.all[c]), mean[c].add(o.mean[c]), albedo[c].add(o.albedo[c]);
     lost.add(o.lost), lit.add(o.lit);
+    for (std::size_t l = 0; l < leaves.size(); ++l)
+        for (std::size_t c = 0; c < 3; ++c) leaves[l][c].add(o.leaves[l][c]);
 }
 
 double flux_factor(const Source& source, Vec3d wi, int channel) {
@@ -66,6 +70,7 @@ public:
     Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key)
         : source_(source), plan_(plan), of_f_(of_f && source.has_f()), stream_(key) {
         out_.leaves.resize(plan.tree.leaves().size());
+        if (of_f_ && !source.has_density()) out_.light.leaves.resize(plan.tree.leaves().size());
     }
 
     Integrals run(const std::vector<Grid>& grids) {
@@ -87,7 +92,7 @@ public:
 private:
     Source& source_;
     const Plan& plan_;
-    bool of_f_;
+    bool of_f_, tabulated_ = !source_.subject.draws_at_will();
     Stream stream_;
     Integrals out_;
     std::vector<Vec3d> w_, f_;
@@ -122,15 +127,22 @@ private:
                     for (std::size_t q = 0; q < integrands; ++q)
                         out_.even[q] += k * h[a][q], out_.even_square[q] += k * h[a][q] * h[a][q];
                 }
+                if (tabulated_) allow_tabulation(h[a], w_[at + a], k, to);
                 for (double& v : h[a]) v *= p;
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
-            if (of_f_) take_light(at, k);
+            if (of_f_) take_light(g.leaf, at, k);
         }
         to.top = most;
         out_.points += 2 * g.cells();
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
+    }
+
+    void allow_tabulation(const Values& h, Vec3d w, double k, LeafIntegral& to) {
+        const double unknown = k * source_.subject.tabulation_error(w);
+        to.known_to += unknown * h[bridge];
+        for (std::size_t q = 0; q < integrands; ++q) out_.known_to[q] += unknown * std::fabs(h[q]);
     }
 
     /// Where the points of a leaf look alike beside another density, their pairs cannot show a strip of it; one point
@@ -144,19 +156,20 @@ private:
         for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].variance += v * times[q];
     }
 
-    void take_light(std::size_t at, double k) {
+    void take_light(std::size_t leaf, std::size_t at, double k) {
         LightIntegrals& l = out_.light;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
             double f[2], mean[2], flux[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 f[a] = channel_of(f_[at + a], c);
-                mean[a] = f[a] * mean_bridge(f[a], p_[at + a], plan_.usual[channel], source_.has_density());
+                mean[a] = f[a] * mean_bridge(f[a], p_[at + a], plan_.usual[channel], is_bridged(source_));
                 flux[a] = f[a] * flux_factor(source_, w_[at + a], c);
             }
             l.all[channel].add_pair(f[0], f[1], k);
             l.mean[channel].add_pair(mean[0], mean[1], k);
             l.albedo[channel].add_pair(flux[0], flux[1], k);
+            if (!l.leaves.empty()) l.leaves[leaf][channel].add_pair(f[0], f[1], k);
         }
         double lit[2], lost[2];
         for (std::size_t a = 0; a < 2; ++a) {
@@ -176,11 +189,12 @@ private:
 void scale(Integrals& x, double by) {
     for (Estimate& e : x.sums) e.scale(by);
     x.domain *= by;
+    for (double& v : x.known_to) v *= by;
     for (double& v : x.even) v *= by;
     for (double& v : x.even_square) v *= by;
     for (LeafIntegral& leaf : x.leaves) {
         leaf.bridge.scale(by);
-        leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by;
+        leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by, leaf.known_to *= by;
     }
 }
 
@@ -200,12 +214,14 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
         to.light.points = lit;
     }
     scale(to, to.points / total), scale(pass, pass.points / total);
-    for (std::size_t q = 0; q < integrands; ++q)
-        to.sums[q].add(pass.sums[q]), to.even[q] += pass.even[q], to.even_square[q] += pass.even_square[q];
+    for (std::size_t q = 0; q < integrands; ++q) {
+        to.sums[q].add(pass.sums[q]), to.known_to[q] += pass.known_to[q];
+        to.even[q] += pass.even[q], to.even_square[q] += pass.even_square[q];
+    }
     for (std::size_t l = 0; l < to.leaves.size(); ++l) {
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
         a.bridge.add(b.bridge);
-        a.second += b.second, a.solid_angle += b.solid_angle;
+        a.second += b.second, a.solid_angle += b.solid_angle, a.known_to += b.known_to;
         a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);
     }
     to.heavy.insert(to.heavy.end(), pass.heavy.begin(), pass.heavy.end());

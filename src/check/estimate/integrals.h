@@ -31,13 +31,15 @@ struct LeafIntegral {
     double solid_angle = 0;  // integral of h where p > 0: what draws spread evenly would give
     double top = 0;          // the largest p that its points have met
     double per_point = 0;    // weight of one point
+    double known_to = 0;     // what the error of a tabulated p makes of it at most
 };
 
 /// Integrals of f |cos| by channel.
 struct LightIntegrals {
-    std::array<Estimate, 3> all, mean, albedo;  // as it is; bridged with p for `mean`; as flux
-    Estimate lost;                              // times the light, where p is 0
-    Estimate lit;                               // times the light
+    std::array<Estimate, 3> all, mean, albedo;    // as it is; bridged with p for `mean`; as flux
+    Estimate lost;                                // times the light, where p is 0
+    Estimate lit;                                 // times the light
+    std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, where there is no density to divide the draws by
     double points = 0;
     void scale(double by);
     void add(const LightIntegrals& other);
@@ -48,6 +50,7 @@ struct Integrals {
     std::vector<LeafIntegral> leaves;
     LightIntegrals light;
     std::array<double, integrands> even{}, even_square{};  // integrals of h and h^2 where p > 0
+    std::array<double, integrands> known_to{};             // what the error of a tabulated p makes of `sums` at most
     double domain = 0;  // solid angle of the upper half, and of the lower where p > 0
     double points = 0;
     std::vector<DensityPoint> heavy;  // points that hold much of the mass each: the tree has missed something there
@@ -56,11 +59,14 @@ struct Integrals {
 /// Adds a pass of about `points` points. of_f: evaluate f at them too.
 void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to);
 
-/// h of the mean: f cos bridged with p, so that no weight counts for more than the usual one. 1 where there is no
-/// density.
-inline double mean_bridge(double f_cos, double p, double usual, bool has_density) {
-    if (!has_density) return 1;
+/// h of the mean: f cos bridged with p, so that no weight counts for more than the usual one; 1 where that cannot be.
+inline double mean_bridge(double f_cos, double p, double usual, bool bridged) {
+    if (!bridged) return 1;
     return p > 0 && usual > 0 ? usual * p / (usual * p + f_cos) : 0;
+}
+/// Whether the mean is bridged: not without a density, nor where h would depend on random answers.
+inline bool is_bridged(const Source& source) {
+    return source.has_density() && !source.estimates && !source.f_estimates;
 }
 /// What turns f across the surface from radiance into power; 0 where the index is not known.
 double flux_factor(const Source& source, Vec3d wi, int channel);

@@ -64,11 +64,20 @@ private:
             if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
         p_.resize(w_.size());
         source_.density(w_, p_);
+        if (source_.estimates) settle_zeros();
         compare_pdf(u);
         if (with_f) compare_weights(u, set);
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set);
             else if (set < 0) ++to_.checks.nothing;
+    }
+
+    /// A draw below the surface is not nothing because an estimate of p came out as 0 once, where others there do not.
+    void settle_zeros() {
+        bool below = false;
+        for (std::size_t k = 0; k < w_.size(); ++k) below = below || (w_[k].z <= 0 && p_[k] > 0);
+        for (std::size_t k = 0; below && k < w_.size(); ++k)
+            if (w_[k].z <= 0 && p_[k] == 0) p_[k] = draws_[at_[k]].pdf;
     }
 
     /// A draw of the density with finite numbers; others are counted.
@@ -113,7 +122,9 @@ private:
         if (!source_.has_density() || plan_.estimates) return;
         std::vector<std::size_t> odd;
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <= same_number * p_[k])) odd.push_back(k);
+            if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
+                    same_number * p_[k] + source_.subject.tabulation_error(w_[k])))
+                odd.push_back(k);
         if (odd.empty()) return;
         std::vector<Vec3d> around, here;
         for (std::size_t k : odd) {
@@ -139,10 +150,11 @@ private:
         }
     }
 
+    /// Weights of the draws: what comes with them, else f cos / pdf; compared with that, and summed for the mean.
     void compare_weights(std::span<const Numbers> u, int set) {
-        const bool truth = source_.subject.has_true_f();
+        const bool evaluated = source_.has_f(), truth = evaluated && source_.subject.has_true_f();
         f_.assign(w_.size(), {});
-        source_.f_cos(w_, f_);
+        if (evaluated) source_.f_cos(w_, f_);
         if (truth) {
             true_f_.assign(w_.size(), {});
             source_.f_cos(w_, true_f_, true);
@@ -151,22 +163,34 @@ private:
         for (std::size_t k = 0; k < w_.size(); ++k) {
             const Draw& d = draws_[at_[k]];
             if (!is_direction(d, p_[k])) continue;
-            const Vec3d f = f_[k], due = truth ? true_f_[k] : f;
-            bool wrong = false, untrue = false;
-            for (int c = 0; c < source_.channels(); ++c) {
-                const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(due, c);
-                const double w = !d.weight ? own : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
-                wrong = wrong || std::fabs(own - w) > same_number * std::max(own, 1e-6) + 1e-9;
-                untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
-                if (set < 0)
-                    to_.mean[static_cast<std::size_t>(c)].add(
-                        w * mean_bridge(y, p_[k], plan_.usual[static_cast<std::size_t>(c)], source_.has_density()));
+            if (!evaluated && d.f) f_[k] = Vec3d{1, 1, 1} * (*d.f * std::fabs(d.wi.z));
+            if (!d.weight && (!source_.has_density() || !(evaluated || d.f))) {
+                ++to_.weightless;
+                continue;
             }
-            ++to_.checks.weights;
-            if (wrong) to_.checks.weight.add({u[at_[k]], d, p_[k], f.x / d.pdf});
-            if (untrue) to_.checks.true_f.add({u[at_[k]], d, f.x, due.x});
-            if (set < 0) to_.weights.push_back(luminance_of(d, f));
+            if (evaluated) compare_weight(u[at_[k]], d, k, truth ? true_f_[k] : f_[k], set);
+            if (set < 0) to_.weights.push_back(luminance_of(d, f_[k]));
         }
+    }
+
+    void compare_weight(const Numbers& u, const Draw& d, std::size_t k, Vec3d due, int set) {
+        const Vec3d f = f_[k];
+        const bool derived = source_.has_density(), random = source_.estimates || source_.f_estimates;
+        const std::size_t leaf = derived ? 0 : plan_.tree.find(to_chart(w_[k]));
+        bool wrong = false, untrue = false;
+        for (int c = 0; c < source_.channels(); ++c) {
+            const auto channel = static_cast<std::size_t>(c);
+            const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(due, c);
+            const double w = !d.weight ? own : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
+            wrong = wrong || (derived && std::fabs(own - w) > same_number * std::max(own, 1e-6) + 1e-9);
+            untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
+            if (set >= 0) continue;
+            to_.mean[channel].add(w * mean_bridge(y, p_[k], plan_.usual[channel], is_bridged(source_)));
+            if (!derived) to_.weight_leaves[leaf][channel].add(w);
+        }
+        ++to_.checks.weights;
+        if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
+        if (untrue && !source_.f_estimates) to_.checks.true_f.add({u, d, f.x, due.x});
     }
 
     double luminance_of(const Draw& d, Vec3d f) const {
@@ -187,7 +211,12 @@ private:
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
         ++to_.counts[l];
-        to_.mean_p += p;
+        to_.mean_p += source_.has_density() ? p : leaf.q;
+        if (!source_.has_density()) {
+            constexpr double ring = two_pi / 72;  // 5 degrees
+            const auto at = static_cast<std::size_t>(math::acos(std::clamp(w.z, -1.0, 1.0)) / ring);
+            ++to_.rings[std::min(at, to_.rings.size() - 1)];
+        }
         if (p > 0) {
             const double log_p = v[bridge] > 0 ? v[slope] / v[bridge] : 0;
             to_.log_p.add(log_p), to_.slope_log_p += v[slope] * log_p;
@@ -218,9 +247,10 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     if (to.leaves.empty()) {
         to.leaves.resize(plan.tree.leaves().size()), to.counts.resize(plan.tree.leaves().size());
         to.node_by_set.resize(plan.tree.rows());
+        if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
     Observer observer(source, plan, integrals, to);
-    const bool weighs = source.has_f();
+    const bool weighs = source.has_f() || source.subject.has_drawn_f();
     std::vector<Numbers> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;

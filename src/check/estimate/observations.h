@@ -44,6 +44,15 @@ struct Sums {
     void add(double x) { sum += x, square += x * x; }
 };
 
+/// Weights that fell into one leaf.
+struct WeightSums {
+    double count = 0, sum = 0, square = 0, largest = 0;
+    void add(double w) { ++count, sum += w, square += w * w, largest = std::max(largest, w); }
+    void add(const WeightSums& o) {
+        count += o.count, sum += o.sum, square += o.square, largest = std::max(largest, o.largest);
+    }
+};
+
 using Replicates = std::array<double, replicate_sets>;
 
 struct Observations {
@@ -58,13 +67,17 @@ struct Observations {
         std::uint64_t key;  // hash of the direction
         double p;
     };
-    std::vector<Met> met;                // of the independent draws
-    double mean_p = 0;                   // sum of p over the independent draws
-    Sums log_p;                          // of ln p less its median
-    double slope_log_p = 0;              // sum of the slope's h times that
-    std::vector<double> weights;         // luminance of the weights f cos / p of independent draws, 0 for nothing
-    std::array<Sums, 3> mean, delta;     // bridged weights by channel; power of delta draws
-    double weighed = 0;                  // draws that `mean` and `weights` are of
+    std::vector<Met> met;             // of the independent draws
+    double mean_p = 0;                // sum of p over the independent draws
+    Sums log_p;                       // of ln p less its median
+    double slope_log_p = 0;           // sum of the slope's h times that
+    std::vector<double> weights;      // luminance of the weights f cos / p of independent draws, 0 for nothing
+    std::array<Sums, 3> mean, delta;  // bridged weights by channel; power of delta draws
+    double weighed = 0;               // draws that `mean` and `weights` are of
+    std::uint64_t weightless = 0;     // directions among them that came with no weight, there being no p
+    /// Where there is no density: weights by leaf and channel, and draws by rings of 5 degrees about n.
+    std::vector<std::array<WeightSums, 3>> weight_leaves;
+    std::array<double, 36> rings{};
     std::uint64_t unmet = 0;             // draws at which p is more than any point of the leaf has met
     std::vector<DensityPoint> unmet_at;  // the first of them
 };

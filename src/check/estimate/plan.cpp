@@ -92,8 +92,8 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
         median = math::log(*at);
     }
     key.purpose = Purpose::tree;
-    return {Tree(source, std::move(pilot.points), pilot.of, std::move(hints), step, budget, key), step, median,
-        middle, pilot.weight, source.estimates, drawn, pilot.of};
+    return {Tree(source, std::move(pilot.points), pilot.of, std::move(hints), step, budget, key), step, median, middle,
+        pilot.weight, source.estimates || !source.has_density(), drawn, pilot.of};
 }
 
 }  // namespace crescent::check

@@ -58,8 +58,7 @@ std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
     source.draw(key, 0, u, draws);
     std::vector<Vec3d> out;
     for (const Draw& d : draws)
-        if (d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0)
-            out.push_back(normalize(d.wi));
+        if (d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0) out.push_back(normalize(d.wi));
     for (int i = 0; i < 32; ++i) out.push_back(from_chart({(i + 0.5) / 16, std::fmod(golden * i, two_pi)}));
     return out;
 }

@@ -21,8 +21,8 @@ public:
     const Vec3d wo;
     const TrialLight& light;
     const Traits traits;
-    /// p is a random estimate, right in the mean alone: h must not depend on it.
-    bool estimates = false;
+    /// p is a random estimate, right in the mean alone: h must not depend on it. The same of f.
+    bool estimates = false, f_estimates = false;
     /// The density is left out: what is asked is a matter of the draws alone.
     bool by_draws = false;
 

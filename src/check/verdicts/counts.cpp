@@ -47,7 +47,7 @@ void ask_counts(const Evidence& e, const Visit& visit) {
     ask_share(Family::zero, c.zero, draws, tolerated_zeros, visit);
     ask_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
     ask_share(Family::true_f, c.true_f, static_cast<double>(c.weights), tolerated_share, visit);
-    if (e.source.has_density() && !e.source.traits.delta) ask_repeats(e, visit);
+    if (!e.source.traits.delta) ask_repeats(e, visit);
 }
 
 }  // namespace crescent::check

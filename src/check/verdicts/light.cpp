@@ -1,10 +1,12 @@
 // mean: bridged weights against the integral of f cos. support: light where p is 0. physics: no more comes back than
 // arrives. All by channel.
+#include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
+#include "stats/tail.h"
 
 namespace crescent::check {
 
@@ -19,15 +21,46 @@ Estimate mean_of(const Sums& s, double n) {
 void ask_mean(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
-    if (!(o.weighed > 0) || o.checks.deltas > 0) return;  // deltas have no part in the integral
     const Estimate drawn = mean_of(o.mean[c], o.weighed), &due = e.integrals.light.mean[c];
     const double v = drawn.variance + due.variance, floor = detection_floor * due.value;
     Answer a{Family::mean, channel, drawn.value - due.value, std::sqrt(v), floor, 1, due.value};
-    const double largest = e.source.has_density() ? e.plan.usual[c] : 0;  // a bridged weight is at most that
-    a.p = largest > 0
+    const bool bridged = is_bridged(e.source);
+    const double largest = bridged ? e.plan.usual[c] : 0;  // a bridged weight is at most that
+    if (bridged && !(largest > 0)) return;
+    a.p = bridged
         ? bennett_p(bennett_z2(std::fabs(a.difference) - floor, v, largest / o.weighed, freedom(v, due.doubt)))
         : 2 * normal_p_of(std::fabs(a.difference) - floor, v);
-    if (largest > 0 || !e.source.has_density()) visit(a);
+    visit(a);
+}
+
+/// Without a density the weights alone say where the draws go: their sum in each node of the upper tree against the
+/// integral of f cos there.
+void ask_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
+    const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+    const auto c = static_cast<std::size_t>(channel);
+    const double n = e.observations.weighed;
+    std::vector<WeightSums> drawn(nodes.size());
+    std::vector<Estimate> due(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        if (nodes[i].child < 0) {
+            const auto l = static_cast<std::size_t>(nodes[i].leaf);
+            drawn[i] = e.observations.weight_leaves[l][c], due[i] = e.integrals.light.leaves[l][c];
+            continue;
+        }
+        for (int half : {0, 1}) {
+            const auto k = static_cast<std::size_t>(nodes[i].child + half);
+            drawn[i].add(drawn[k]), due[i].add(due[k]);
+        }
+        const WeightSums& w = drawn[i];
+        if (i == 0 || nodes[i].depth > mean_depth || w.count < mean_draws || w.largest * w.largest * 20 > w.square)
+            continue;
+        const double mean = w.sum / n, v = std::max(w.square / n - mean * mean, 0.0) / n + due[i].variance;
+        const double floor = detection_floor * due[i].value;
+        Answer a{
+            Family::mean, static_cast<int>(3 * i) + channel, mean - due[i].value, std::sqrt(v), floor, 1, due[i].value};
+        a.p = student_p_of(std::fabs(a.difference) - floor, v, freedom(v, due[i].doubt));
+        visit(a);
+    }
 }
 
 void ask_albedo(const Evidence& e, int channel, const Visit& visit) {
@@ -42,10 +75,30 @@ void ask_albedo(const Evidence& e, int channel, const Visit& visit) {
 
 }  // namespace
 
+bool tail_may_be_heavy(std::span<const double> weights) {
+    double mean = 0, largest = 0;
+    for (double x : weights) mean += x / static_cast<double>(weights.size()), largest = std::max(largest, x);
+    if (largest <= bounded_weight * mean) return false;
+    std::vector<double> w(weights.begin(), weights.end());
+    const std::size_t m = std::min(stats::tail_length(w.size()) + 1, w.size());
+    std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
+    const std::optional<stats::Tail> tail = stats::fit_tail(std::span<const double>(w).first(m));
+    return tail && tail->k + 2 * tail->se >= heavy_index;
+}
+
+bool mean_can_be_asked(const Evidence& e) {
+    const Observations& o = e.observations;
+    // Delta parts have no share in the integral. A mean that is not bridged needs a variance.
+    return o.weighed > 0 && o.weightless == 0 && o.checks.deltas == 0 &&
+        (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
+}
+
 void ask_light(const Evidence& e, const Visit& visit) {
     if (!e.source.has_f() || !(e.integrals.light.points > 0)) return;
+    const bool of_mean = mean_can_be_asked(e);
     for (int c = 0; c < e.source.channels(); ++c) {
-        ask_mean(e, c, visit);
+        if (of_mean) ask_mean(e, c, visit);
+        if (of_mean && !e.source.has_density()) ask_mean_by_nodes(e, c, visit);
         if (e.source.traits.wo != Traits::Asked::none) ask_albedo(e, c, visit);
     }
     if (!e.source.has_density() || e.plan.estimates) return;

@@ -20,13 +20,14 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
             const LeafIntegral& c = e.integrals.leaves[l];
             s = {o.leaves[l] / o.independent, c.bridge.value, c.second, c.solid_angle, c.bridge.variance,
-                c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q)};
+                c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q), c.known_to};
             continue;
         }
         for (int half : {0, 1}) {
             const NodeSums& h = out[static_cast<std::size_t>(nodes[i].child + half)];
             s.drawn += h.drawn, s.claimed += h.claimed, s.second += h.second, s.solid_angle += h.solid_angle;
-            s.variance += h.variance, s.doubt += h.doubt, s.largest = std::max(s.largest, h.largest);
+            s.variance += h.variance, s.doubt += h.doubt, s.known_to += h.known_to,
+                s.largest = std::max(s.largest, h.largest);
         }
     }
     return out;
@@ -42,7 +43,7 @@ NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::si
     const double moved =
         e.plan.step / x.rect.width(x.along_phi) + less * e.plan.step / (x.rect.width(!x.along_phi) + 1e-300);
     out.difference = a.drawn - r * all.drawn;
-    out.floor = all.drawn * (detection_floor * less + moved);
+    out.floor = all.drawn * (detection_floor * less + moved + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
     const double c2 = all.claimed * all.claimed, to_variance = all.drawn * all.drawn / (c2 * c2);
     out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };

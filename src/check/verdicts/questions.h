@@ -71,12 +71,17 @@ void ask_nodes(const Evidence& e, const Visit& visit);
 void ask_light(const Evidence& e, const Visit& visit);
 void ask_counts(const Evidence& e, const Visit& visit);
 
+/// Whether the weights may have an infinite variance, by their Pareto index and its standard error.
+bool tail_may_be_heavy(std::span<const double> weights);
+/// Whether their mean can be compared with the integral of f cos.
+bool mean_can_be_asked(const Evidence& e);
+
 /// Mean of a whole sum over the replicates.
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 
 /// O and C of every node, from its leaves, and how its h splits between its halves.
 struct NodeSums {
-    double drawn = 0, claimed = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0;
+    double drawn = 0, claimed = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0, known_to = 0;
 };
 std::vector<NodeSums> node_sums(const Evidence& e);
 /// What a node's test compares.

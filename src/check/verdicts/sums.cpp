@@ -37,7 +37,8 @@ void ask_sums(const Evidence& e, const Visit& visit) {
         const auto at = static_cast<std::size_t>(q);
         const Estimate& claimed = e.integrals.sums[at];
         const double mean = o.sums[at].sum / n, square = o.sums[at].square / n;
-        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : std::max(mean, claimed.value));
+        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : std::max(mean, claimed.value)) +
+            e.integrals.known_to[at];
         Answer a{kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
         const double v = std::max(square - mean * mean, 0.0) / n + claimed.variance;
         a.sd = std::sqrt(v);

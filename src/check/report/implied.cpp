@@ -1,0 +1,142 @@
+// The cells are nodes of the tree, cut while both halves have enough draws; a map's bins take their share of each leaf,
+// both being rectangles of one chart. What is counted has the standard error of a binomial law.
+#include "check/report/implied.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace crescent::check {
+
+namespace {
+
+constexpr double draws_of_cell = 100;  // a standard error of a tenth
+constexpr std::size_t most_cells = 512;
+constexpr double degrees_per_ring = 5;
+
+/// A share of the draws over a solid angle, 1/sr.
+struct Implied {
+    double p = 0, se = 0;
+    Implied(double seen, double of, double solid_angle)
+        : p(seen / (of * solid_angle)), se(std::sqrt(seen * std::max(1 - seen / of, 0.0)) / (of * solid_angle)) {}
+};
+
+std::vector<double> draws_by_node(const CheckAt& c) {
+    const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
+    std::vector<double> out(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const TreeNode& x = nodes[i];
+        const auto child = static_cast<std::size_t>(x.child);
+        out[i] = x.child < 0 ? static_cast<double>(c.observations.counts[static_cast<std::size_t>(x.leaf)])
+                             : out[child] + out[child + 1];
+    }
+    return out;
+}
+
+/// The fullest cell is cut first.
+std::vector<std::size_t> cells_of(const Tree& tree, const std::vector<double>& draws) {
+    const auto can_be_cut = [&](std::size_t i) {
+        const int child = tree.nodes()[i].child;
+        return child >= 0 &&
+            std::min(draws[static_cast<std::size_t>(child)], draws[static_cast<std::size_t>(child) + 1]) >=
+            draws_of_cell;
+    };
+    const auto emptier = [&](std::size_t a, std::size_t b) {
+        return draws[a] < draws[b] || (draws[a] == draws[b] && a > b);
+    };
+    std::vector<std::size_t> open = {0}, out;
+    while (!open.empty()) {
+        std::pop_heap(open.begin(), open.end(), emptier);
+        const std::size_t i = open.back();
+        open.pop_back();
+        if (!can_be_cut(i) || open.size() + out.size() + 2 > most_cells) {
+            out.push_back(i);
+            continue;
+        }
+        for (int half : {0, 1}) {
+            open.push_back(static_cast<std::size_t>(tree.nodes()[i].child + half));
+            std::push_heap(open.begin(), open.end(), emptier);
+        }
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+nlohmann::ordered_json rows_by_rings(const CheckAt& c) {
+    const auto& rings = c.observations.rings;
+    std::size_t last = rings.size() / 2;
+    for (std::size_t i = 0; i < rings.size(); ++i)
+        if (rings[i] > 0) last = std::max(last, i + 1);
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < last; ++i) {
+        const double from = static_cast<double>(i) * degrees_per_ring, to = from + degrees_per_ring;
+        const double angle = two_pi * (math::cos(from * two_pi / 360) - math::cos(to * two_pi / 360));
+        const Implied here(rings[i], c.observations.independent, angle);
+        rows.push_back({from, to, here.p, here.se});
+    }
+    return rows;
+}
+
+}  // namespace
+
+void note_implied_density(const CheckAt& c, Verdict& v) {
+    const Tree& tree = c.plan->tree;
+    const std::vector<double> draws = draws_by_node(c);
+    const double n = c.observations.independent;
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    double least = 0;  // the highest by what it is at least: four standard errors are beyond the chance of 512 cells
+    std::size_t highest = 0;
+    for (std::size_t i : cells_of(tree, draws)) {
+        const ChartRect& r = tree.nodes()[i].rect;
+        const Implied here(draws[i], n, r.area());
+        rows.push_back({1 - r.t1, 1 - r.t0, r.phi0, r.phi1, here.p, here.se});
+        if (here.p - 4 * here.se > least) least = here.p - 4 * here.se, highest = i;
+    }
+    const ChartRect& r = tree.nodes()[highest].rect;
+    const Vec3d w = from_chart(r.at(0.5, 0.5));
+    const Implied peak(draws[highest], n, r.area());
+    v.evidence["implied_by"] = "tree";
+    v.evidence["implied_peak"] = {{"wi", {w.x, w.y, w.z}}, {"pdf", peak.p}, {"standard_error", peak.se}};
+    v.evidence["implied_rings"] = {
+        {"columns", {"from_deg", "to_deg", "pdf", "standard_error"}}, {"rows", rows_by_rings(c)}};
+    v.evidence["implied_bins"] = {
+        {"columns", {"cos_theta_from", "cos_theta_to", "phi_from", "phi_to", "pdf", "standard_error"}},
+        {"rows", std::move(rows)}};
+    v.say = draws[0] > 0
+        ? fmt::format(
+              "There is no pdf(w) to compare the draws with. The density that they imply is highest about "
+              "({:.4g}, {:.4g}, {:.4g}): {:.4g} +- {:.2g} 1/sr, over {:.2g} sr.",
+              w.x, w.y, w.z, peak.p, peak.se, r.area())
+        : "There is no pdf(w), and no direction is drawn as a density.";
+}
+
+BinMap implied_map(const CheckAt& c) {
+    constexpr int sectors = 32, rings_above = 16;
+    const Tree& tree = c.plan->tree;
+    bool below = false;
+    for (const Leaf& leaf : tree.leaves())
+        below = below ||
+            (tree.rect(leaf).t0 >= 1 &&
+                c.observations.counts[static_cast<std::size_t>(&leaf - tree.leaves().data())] > 0);
+    BinMap out;
+    out.coordinates = "cos theta x phi about n";
+    out.rings = below ? 2 * rings_above : rings_above, out.sectors = sectors;
+    out.observed.assign(static_cast<std::size_t>(out.rings * sectors), 0);
+    for (int i = 0; i <= out.rings; ++i) out.edges.push_back(static_cast<double>(i) / rings_above);
+    const double height = 1.0 / rings_above, width = two_pi / sectors;
+    for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+        const ChartRect& r = tree.rect(tree.leaves()[l]);
+        const double p = static_cast<double>(c.observations.counts[l]) / (c.observations.independent * r.area());
+        const auto share = [](double low, double high, double from, double step) {
+            return std::max(0.0, std::min(high, from + step) - std::max(low, from)) / step;
+        };
+        for (int i = static_cast<int>(r.t0 / height); p > 0 && i < out.rings && i * height < r.t1; ++i)
+            for (int k = static_cast<int>(r.phi0 / width); k < sectors && k * width < r.phi1; ++k)
+                out.observed[static_cast<std::size_t>(i * sectors + k)] +=
+                    p * share(r.t0, r.t1, i * height, height) * share(r.phi0, r.phi1, k * width, width);
+    }
+    out.full_scale = *std::ranges::max_element(out.observed);
+    return out;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,15 @@
+// The density that the draws of a sampler without pdf(w) imply: their share in a cell over its solid angle, with its
+// standard error.
+#pragma once
+
+#include "check/decide/check_at.h"
+#include "judgements/verdict.h"
+
+namespace crescent::check {
+
+/// Into the verdict on the density: by cells of the tree, by rings about n, and where it is highest.
+void note_implied_density(const CheckAt& c, Verdict& v);
+/// In rings of equal solid angle and sectors about n.
+BinMap implied_map(const CheckAt& c);
+
+}  // namespace crescent::check
