@@ -182,7 +182,7 @@ private:
                 return true;
             });
         talk_.greeted();
-        if (hello_.traits.wo != Traits::Asked::none) probe_f();
+        probe_f();
     }
     /// Whether there is a BRDF: `-`, or NaN in a block, is none.
     void probe_f() {
