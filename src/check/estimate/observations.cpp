@@ -211,7 +211,8 @@ private:
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
         ++to_.counts[l];
-        to_.mean_p += source_.has_density() ? p : leaf.q;
+        const double density = source_.has_density() ? p : leaf.q;
+        to_.mean_p += density;
         if (!source_.has_density()) {
             constexpr double ring = two_pi / 72;  // 5 degrees
             const auto at = static_cast<std::size_t>(math::acos(std::clamp(w.z, -1.0, 1.0)) / ring);
@@ -221,7 +222,7 @@ private:
             const double log_p = v[bridge] > 0 ? v[slope] / v[bridge] : 0;
             to_.log_p.add(log_p), to_.slope_log_p += v[slope] * log_p;
         }
-        to_.met.push_back({key_of(w), p});
+        to_.met.push_back({key_of(w), density});
         LeafIntegral& integral = integrals_.leaves[l];
         if (p > alike * integral.top) complete(integral, w, v, p);
     }
