@@ -21,7 +21,6 @@ try:
     import numpy as np
 
     mi.set_variant("llvm_ad_rgb")
-    import drjit as dr
     from mitsuba.chi2 import ChiSquareTest, SphericalDomain
 except ImportError as missing:
     print(f"skipped: {missing}; pip install mitsuba numpy 'arviz<1'")
