@@ -46,7 +46,8 @@ PAGE
 mkdir planted
 python3 "$prose" text planted planted.md
 ! retired planted || die "retired words are not found"
-[ "$(grep -c 'planted/planted.md:1: ' found)" -eq 2 ] && [ "$(wc -l <found)" -eq 2 ] || die "not as planted: $(cat found)"
+[ "$(grep -c 'planted/planted.md:1: ' found)" -eq 2 ] && [ "$(wc -l <found)" -eq 2 ] ||
+    die "not as planted: $(cat found)"
 
 (cd "$CRESCENT_SOURCE" && python3 "$prose" text "$work/prose" "${pages[@]}") || die "no prose"
 sed -i '/^|/d' prose/docs/error-rates.md  # its tables have the names of samplers and faults
