@@ -221,7 +221,6 @@ int check(const CheckFlags& given) {
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
     try_files(flags);
-    if (flags.error_rates > 0) return check_error_rates(flags, monitor);
     if (flags.right > 0) return check_right(flags, monitor);
     if (flags.planted) return check_planted(flags, monitor);
     Judgement j;

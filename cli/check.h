@@ -23,9 +23,6 @@ int check_against(
 
 /// Which verdict catches which fault. Exit 0 where every fault is caught.
 int check_planted(const CheckFlags& flags, Progress& monitor);
-/// All tables of docs/error-rates.md. Exit 0 where every fault is caught in full mode and no right sampler is accused
-/// beyond --alpha.
-int check_error_rates(const CheckFlags& flags, ProgressMonitor& monitor);
 /// Exit 0 where no right sampler is accused more often than was promised.
 int check_right(const CheckFlags& flags, ProgressMonitor& monitor);
 

@@ -1,10 +1,11 @@
-// `crescent check --planted`, `--right` and `--error-rates`: the bench itself, measured.
+// `crescent check --planted` and `--right`: the check itself, on samplers of which it is known what they are.
 #include <algorithm>
 #include <cstdio>
 
 #include "check.h"
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
+#include "stats/rates.h"
 
 namespace crescent::cli {
 
@@ -59,60 +60,7 @@ namespace {
 
 bool keeps_promise(const RightLaw& law) { return rate_interval(law.accused, law.judged).first <= law.alpha; }
 
-/// Right samplers at random parameters in quick and in full mode, where --right asks for them; kept: no more of them
-/// are accused than was promised.
-std::string right_tables(const CheckFlags& flags, ProgressMonitor& monitor, bool& kept) {
-    if (flags.right == 0) return {};
-    std::string out =
-        "Samplers of many families, the parameters and w_o of each drawn at random, each judged by a call of its "
-        "own.\n";
-    for (TestSettings settings : {TestSettings::quick(), TestSettings::thorough()}) {
-        settings.alpha = flags.alpha;
-        settings.seed = flags.seed;
-        const RightLaw law = measure_right(flags.first, flags.right, settings, monitor);
-        for (const std::string& text : law.said) monitor.log(text);
-        out += (law.full ? "\n### Full mode\n\n" : "\n### Quick mode\n\n") + right_law_text(law);
-        kept = kept && keeps_promise(law);
-    }
-    return out;
-}
-
-/// The command that makes docs/error-rates.md.
-std::string command_of_rates(const CheckFlags& f) {
-    std::string out = "crescent check --error-rates " + std::to_string(f.error_rates);
-    if (f.right > 0) out += " --right " + std::to_string(f.right);
-    if (f.first > 0) out += " --first " + std::to_string(f.first);
-    if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
-    return out + " --seed " + std::to_string(f.seed);
-}
-
 }  // namespace
-
-int check_error_rates(const CheckFlags& flags, ProgressMonitor& monitor) {
-    TestSettings settings = test_settings_of(flags);
-    settings.draws = 4096;  // the levels do not depend on it; many seeds matter more than many draws
-    const FalseAlarms alarms = measure_false_alarms(flags.error_rates, settings, monitor);
-    bool kept = rate_interval(alarms.calls, alarms.seeds).first <= alarms.alpha;
-    const std::string law = right_tables(flags, monitor, kept);
-    std::vector<Caught> table;
-    std::vector<Explained> causes;
-    const std::vector<PlantedFault> quick = planted_faults(false), full = planted_faults(true);
-    for (std::size_t i = 0; i < quick.size(); ++i) {
-        const Judgement seen = judge(quick[i].trials, TestSettings::quick(), monitor);
-        causes.push_back(explained(quick[i], seen));
-        table.push_back({quick[i].name, quick[i].breaks, catchers(seen),
-            catchers(judge(full[i].trials, TestSettings::thorough(), monitor))});
-        kept = kept && !table.back().full.empty();
-    }
-    print(error_rates_text(alarms, law, table, command_of_rates(flags),
-        "crescent " + crescent::version() + ", commit " + crescent::commit()));
-    std::string told;
-    const std::size_t right = std::max<std::size_t>(flags.right, 100);
-    const std::size_t found = count_false_diagnoses(flags.first, right, flags.seed, told);
-    if (!told.empty()) monitor.log(told);
-    print(explained_text(causes, found, right));
-    return kept && found == 0 ? held : failed;
-}
 
 int check_right(const CheckFlags& flags, ProgressMonitor& monitor) {
     const RightLaw law = measure_right(flags.first, flags.right, test_settings_of(flags), monitor);

@@ -54,14 +54,13 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
 }
 
 /// The files that a call writes.
-std::vector<CLI::Option*> outputs(CLI::App& c, CheckFlags& f) {
-    std::vector<CLI::Option*> files = {
-        c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
-        c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
-        c.add_option("--junit", f.junit, "write for a build server"),
-        c.add_option("--html", f.html, "write one page with maps, histograms and roses")};
-    for (CLI::Option* file : files) file->type_name("FILE")->check(told);
-    return files;
+void outputs(CLI::App& c, CheckFlags& f) {
+    for (CLI::Option* file :
+        {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
+            c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
+            c.add_option("--junit", f.junit, "write for a build server"),
+            c.add_option("--html", f.html, "write one page with maps, histograms and roses")})
+        file->type_name("FILE")->check(told);
 }
 
 /// A sampler of the caller's own.
@@ -110,23 +109,17 @@ void add_check(CLI::App& app, Work& work) {
     auto* planted = c->add_flag("--planted", f->planted, "judge the planted faults: which verdict catches which")
                         ->excludes(arm)
                         ->excludes(set);
-    auto* rates = c->add_option("--error-rates", f->error_rates, "measure the bench itself on so many seeds")
-                      ->type_name("SEEDS")
-                      ->check(whole_number(1, 100000))
-                      ->excludes(arm)
-                      ->excludes(set)
-                      ->excludes(planted);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
     limits(*c, *f, exec);
     auto* right =
         c->add_option("--right", f->right,
-             "judge so many right samplers at random parameters; with --error-rates in quick and in full mode")
+             "judge so many right samplers at random parameters")
             ->type_name("N")
             ->check(whole_number(1, 1000000));
     for (auto* other : {arm, set, planted}) right->excludes(other);
     c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
-    for (auto* other : {arm, set, planted, rates, right}) exec->excludes(other), samples->excludes(other);
-    for (auto* other : {arm, set, planted, rates, right, exec, samples}) plugin->excludes(other);
+    for (auto* other : {arm, set, planted, right}) exec->excludes(other), samples->excludes(other);
+    for (auto* other : {arm, set, planted, right, exec, samples}) plugin->excludes(other);
     exec->excludes(samples);
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
         ->type_name("FILE")
@@ -136,9 +129,9 @@ void add_check(CLI::App& app, Work& work) {
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
     auto* against = comparison(*c, *f);
     auto* expect = waivers(*c, *f);
-    for (auto* other : {planted, rates, right}) expect->excludes(other);
-    for (auto* other : {planted, rates, right}) against->excludes(other), wo->excludes(other);
-    for (auto* file : outputs(*c, *f)) file->excludes(rates);
+    for (auto* other : {planted, right}) expect->excludes(other);
+    for (auto* other : {planted, right}) against->excludes(other), wo->excludes(other);
+    outputs(*c, *f);
     c->add_flag("--quiet", f->quiet, "no progress; the table stays");
 }
 

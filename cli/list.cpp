@@ -52,7 +52,7 @@ std::vector<Word> meters() {
 std::vector<Word> verdicts() {
     std::vector<Word> out;
     for (std::size_t k = 0; k < verdict_names.size(); ++k)
-        out.push_back({std::string(verdict_names[k]), std::string(verdict_kinds[k]->question)});
+        out.push_back({std::string(verdict_names[k]), std::string(verdict_questions[k])});
     return out;
 }
 

@@ -7,9 +7,9 @@
 #include "laws/planted/planted.h"
 #include "subjects/list.h"
 #include "subjects/pipe.h"
-#include "verdicts/gtest.h"
+#include "check/gtest.h"
 #include "verdicts/judge.h"
-#include "verdicts/print.h"
+#include "check/print.h"
 
 namespace crescent {
 namespace {

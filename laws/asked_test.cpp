@@ -14,8 +14,8 @@
 #include "laws/right/renderers.h"
 #include "subjects/asked_once.h"
 #include "subjects/list.h"
-#include "verdicts/print.h"
-#include "verdicts/user.h"
+#include "check/print.h"
+#include "check/user.h"
 
 namespace crescent {
 namespace {

@@ -6,7 +6,7 @@
 #include "laws/right/right.h"
 #include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/print.h"
+#include "check/print.h"
 
 namespace crescent {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "judgements/all.h"
 #include "judgements/summary.h"
-#include "verdicts/gtest.h"
+#include "check/gtest.h"
 
 namespace crescent {
 namespace {

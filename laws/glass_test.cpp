@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "judgements/told_last.h"
-#include "verdicts/print.h"
-#include "verdicts/user.h"
+#include "check/print.h"
+#include "check/user.h"
 
 namespace crescent {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "check/check.h"
 #include "subjects/list.h"
-#include "verdicts/judge.h"
 
 namespace crescent {
 

@@ -12,7 +12,7 @@
 #include "laws/right/right.h"
 #include "subjects/list.h"
 #include "subjects/pipe.h"
-#include "verdicts/print.h"
+#include "check/print.h"
 
 namespace crescent {
 namespace {

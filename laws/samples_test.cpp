@@ -8,8 +8,8 @@
 #include "laws/right/right.h"
 #include "simd/frame.h"
 #include "subjects/samples.h"
-#include "verdicts/print.h"
-#include "verdicts/user.h"
+#include "check/print.h"
+#include "check/user.h"
 
 namespace crescent {
 namespace {

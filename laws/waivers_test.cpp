@@ -5,7 +5,7 @@
 
 #include "base/errors.h"
 #include "judgements/waivers.h"
-#include "verdicts/print.h"
+#include "check/print.h"
 
 namespace crescent {
 namespace {

@@ -10,7 +10,7 @@
 #include "math/spherical.h"
 #include "subjects/list.h"
 #include "verdicts/judge.h"
-#include "verdicts/print.h"
+#include "check/print.h"
 
 namespace crescent {
 namespace {

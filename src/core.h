@@ -7,6 +7,7 @@
 #include "base/formula.h"
 #include "base/progress_monitor.h"
 #include "base/text.h"
+#include "check/check.h"
 #include "color/tone.h"
 #include "color/turbo.h"
 #include "estimator/estimator.h"
@@ -35,4 +36,3 @@
 #include "subjects/forwarded.h"
 #include "subjects/list.h"
 #include "subjects/numbers.h"
-#include "verdicts/judge.h"

@@ -5,7 +5,7 @@
 //   Arms              the samplers on trial as a list of types; for_each_arm walks it
 //   estimate_films    Scene + arm -> films: per pixel the moments of n samples, one film a rung
 //   OpenPixel         one pixel of a scene -> each of its samples taken apart: direction, density, f, L, cosine, X
-//   judge             a sampler by itself -> ordered verdicts with their evidence; verdicts/gtest.h has the matchers
+//   judge             a sampler by itself -> ordered verdicts with their evidence; check/gtest.h has the matchers
 //   find_instrument   what else can compute films, where a door has brought it
 //   film_maker        what makes an explainer of a run, where a door has brought it
 //   plan, prepare, execute, collect, write
@@ -33,6 +33,8 @@
 #include "base/stopwatch.h"
 #include "base/text.h"
 #include "check/against.h"
+#include "check/check.h"
+#include "check/user.h"
 #include "color/turbo.h"
 #include "compare/compare.h"
 #include "compare/rates.h"
@@ -47,6 +49,7 @@
 #include "film_maker.h"
 #include "films/exr.h"
 #include "films/film.h"
+#include "judgements/all.h"
 #include "judgements/print.h"
 #include "judgements/waivers.h"
 #include "math/functions.h"
@@ -77,7 +80,3 @@
 #include "subjects/pipe.h"
 #include "subjects/plugin.h"
 #include "subjects/samples.h"
-#include "verdicts/error_rates.h"
-#include "verdicts/judge.h"
-#include "verdicts/user.h"
-#include "verdicts/verdict_kind.h"

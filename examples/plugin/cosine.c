@@ -6,7 +6,7 @@
  * disk, lifted to the hemisphere. */
 #include <math.h>
 
-#include "verdicts/sampler_plugin.h"
+#include "check/sampler_plugin.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -1,4 +1,4 @@
 // EXPECT_THAT(MySampler{}, crescent::IsARightSampler()); needs GoogleTest and GoogleMock.
 #pragma once
 
-#include "verdicts/gtest.h"
+#include "check/gtest.h"

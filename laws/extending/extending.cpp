@@ -19,8 +19,8 @@
 #include "reference/reference.h"
 #include "report/report.h"
 #include "subjects/list.h"
-#include "verdicts/judge.h"
-#include "verdicts/print.h"
+#include "check/check.h"
+#include "check/print.h"
 
 using namespace crescent;
 

@@ -3,10 +3,7 @@
 #include <map>
 #include <set>
 
-#include "diagnosis/diagnosis.h"
 #include "laws/planted/planted.h"
-#include "laws/right/right.h"
-#include "verdicts/error_rates.h"
 
 namespace crescent {
 
@@ -74,43 +71,6 @@ Explained explained(const PlantedFault& fault, const Judgement& judgement) {
     out.right = out.right && !other;
     if (!said.empty()) out.said = fmt::format("{}", fmt::join(said, "; "));
     return out;
-}
-
-std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uint32_t seed, std::string& told) {
-    TestSettings settings = TestSettings::quick();
-    settings.seed = seed;
-    std::size_t found = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-        TestCounts test_counts;
-        const Trial trial = right_trial(i, seed);
-        TrialContext work(trial, settings, test_counts, static_cast<std::uint32_t>(i));
-        work.measure_density();
-        for (const std::optional<Diagnosis>& what :
-            {diagnose_density(work, 0), diagnose_identity(work, 0), diagnose_lobes(work, 0)}) {
-            if (!what) continue;
-            ++found;
-            told += fmt::format("{} {} [{}]: {}\n", i, trial.arm, trial.text(), what->means);
-        }
-    }
-    return found;
-}
-
-std::string explained_text(const std::vector<Explained>& all, std::size_t false_alarms, std::size_t right) {
-    std::string out =
-        "\n## What a diagnosis says of a planted fault\n\n| fault | its cause | what is said to explain it "
-        "|\n|---|---|---|\n";
-    std::uint64_t with = 0, named = 0;
-    for (const Explained& e : all) {
-        out += fmt::format("| {} | {} | {} |\n", e.fault, e.cause.empty() ? "-" : e.cause, e.said);
-        with += !e.cause.empty();
-        named += e.right;
-    }
-    out += fmt::format("\nOf the faults with a cause that a diagnosis knows it is named, and no other, for {}.\n",
-        rate_text(named, with));
-    return out +
-        fmt::format(
-            "Asked of right samplers at random parameters, something is said to explain what is not there for {}.\n",
-            rate_text(false_alarms, right));
 }
 
 }  // namespace crescent

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "verdicts/judge.h"
+#include "check/check.h"
 
 namespace crescent {
 
@@ -36,10 +36,5 @@ struct Explained {
     bool right = false;              // it has a cause, which is named, and nothing else is
 };
 Explained explained(const PlantedFault& fault, const Judgement& judgement);
-/// A table of them, and how many of those with a cause were named rightly; `false_alarms` of `right` right samplers had
-/// one found.
-std::string explained_text(const std::vector<Explained>& all, std::size_t false_alarms, std::size_t right);
-/// How many of the right samplers `first` to `first + count` a diagnosis finds something in, though nobody is accused.
-std::size_t count_false_diagnoses(std::size_t first, std::size_t count, std::uint32_t seed, std::string& told);
 
 }  // namespace crescent

@@ -7,7 +7,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "simd/random.h"
-#include "verdicts/error_rates.h"
+#include "stats/rates.h"
 
 namespace crescent {
 

@@ -2,8 +2,8 @@
 // measures.
 #pragma once
 
+#include "check/check.h"
 #include "laws/right/right.h"
-#include "verdicts/judge.h"
 
 namespace crescent {
 

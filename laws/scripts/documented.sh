@@ -48,7 +48,7 @@ look "$work/planted.h" >"$work/found" && die "nothing of what was planted is fou
 
 mapfile -t headers < <(sed -n 's/^#include "\(.*\)"$/\1/p' crescent.h)
 [ "${#headers[@]}" -gt 40 ] || die "too few headers in crescent.h: ${headers[*]}"
-look "${headers[@]}" verdicts/gtest.h >"$work/found" || die "$(cat "$work/found")"
+look "${headers[@]}" check/gtest.h >"$work/found" || die "$(cat "$work/found")"
 
 # unopened FILE...: those whose first line is no comment.
 unopened() { awk 'FNR == 1 && !/^\/[\/*]/ { print FILENAME; nextfile }' "$@"; }

@@ -53,13 +53,13 @@ expect 0 readme/build/my_tests
 grep -q '1 test' printed || die "the README's sampler is not judged: $(cat printed)"
 readme fetched docs/install.md -DFETCHCONTENT_SOURCE_DIR_CRESCENT="$CRESCENT_SOURCE"  # subproject.sh compiles it
 # Without components: crescent::check where the rest lacks a library; asked for by name, the rest is an error.
-for components in '' 'COMPONENTS verdicts' 'COMPONENTS run'; do
+for components in '' 'COMPONENTS check' 'COMPONENTS run'; do
     rm -rf lacking && mkdir lacking
     {
         echo 'cmake_minimum_required(VERSION 3.25)'
         echo 'project(lacking LANGUAGES CXX)'
         echo "find_package(crescent REQUIRED $components)"
-        echo 'if(NOT TARGET crescent::check OR NOT TARGET crescent::verdicts)'
+        echo 'if(NOT TARGET crescent::check)'
         echo '  message(FATAL_ERROR "no crescent::check")'
         echo 'endif()'
     } >lacking/CMakeLists.txt

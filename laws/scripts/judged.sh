@@ -9,7 +9,7 @@ build_example my_sampler $without
 expect 0 my_sampler/build/my_sampler
 [ ! -e my_sampler/build/my_sampler_test ] || expect 0 my_sampler/build/my_sampler_test
 
-printf '%s\n' '#include "verdicts/user.h"' 'struct V { double x, y, z; };' \
+printf '%s\n' '#include "check/user.h"' 'struct V { double x, y, z; };' \
     'struct S { struct D { V wi; double pdf; }; D sample(V, int) const; double pdf(V, V) const; };' \
     'auto j = crescent::judge_sampler("s", S{});' >odd.cpp
 ! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" odd.cpp >said 2>&1 || die "a u of int compiles"
@@ -18,7 +18,7 @@ grep -q "sample takes wo and then one to eight random numbers" said && [ "$(grep
 
 # refused MEMBERS WORDS: a sampler with these members beside sample is refused with one sentence that has these words.
 refused() {
-    printf '%s\n' '#include "verdicts/user.h"' 'struct V { float x, y, z; };' 'struct U { float x, y; };' \
+    printf '%s\n' '#include "check/user.h"' 'struct V { float x, y, z; };' 'struct U { float x, y; };' \
         "struct S { struct D { V wi; float pdf; }; D sample(V, U) const; $1 };" \
         'auto j = crescent::judge_sampler("s", S{});' >odd.cpp
     ! "${CXX:-g++}" -std=c++20 -fsyntax-only -I"$CRESCENT_SOURCE/src" odd.cpp >said 2>&1 || die "this compiles: $1"

@@ -23,7 +23,6 @@ done
 for large in 4294967296 9223372036854775807 -1; do
     expect 2 "$CRESCENT" run "$tiny" --set "seed=$large"
     expect 2 "$CRESCENT" check cosine --seed "$large"
-    expect 2 "$CRESCENT" check --error-rates "$large"
 done
 # Nothing that the terminal would obey.
 for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(printf '\033\302\233')=3" \

@@ -14,7 +14,7 @@
 #include <optional>
 #include <tuple>
 
-#include "verdicts/user.h"
+#include "check/user.h"
 
 namespace crescent::adapters {
 

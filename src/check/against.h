@@ -10,9 +10,9 @@
 #pragma once
 
 #include "base/progress_monitor.h"
+#include "check/settings.h"
 #include "judgements/verdict.h"
 #include "subjects/list.h"
-#include "trials/settings.h"
 
 namespace crescent::check {
 

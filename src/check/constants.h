@@ -14,6 +14,21 @@ namespace crescent::check {
 inline constexpr double alpha1 = 1e-5, alpha2 = 1e-3;
 inline constexpr double questions_covered = 1e5;  // 1e-3 / (alpha1 alpha2)
 
+/// The two levels of a call.
+struct Levels {
+    double first = alpha1, second = alpha2;
+};
+/// Levels by which a right call is reported with probability at most `alpha` if it puts so many questions: the second
+/// stage is scaled by what alpha is above 1e-3 and the questions are above `questions_covered`. It stays between alpha1
+/// and 1/10, and the first stage takes the rest: below alpha1 a confirmation would be harder to pass than a suspicion,
+/// above 1/10 it would confirm nothing.
+constexpr Levels levels_of(double alpha, double questions) {
+    const double both = alpha / (questions > questions_covered ? questions : questions_covered);
+    const double scaled = both / alpha1;
+    const double second = scaled < alpha1 ? alpha1 : scaled > 0.1 ? 0.1 : scaled;
+    return {both / second, second};
+}
+
 /// How alpha1 is shared among the looks of a staged budget, the last look having what is left. Chosen: an early look
 /// may only stop for a clear fault, and 1/8 of alpha1 costs it 3 % in the size found.
 inline constexpr double early_look = 1.0 / 8;

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "check/gtest_alpha.h"
-#include "verdicts/user.h"
+#include "check/user.h"
 
 /// In place of the bytes of a struct that has no operator<<.
 template <class S>
@@ -27,7 +27,7 @@ public:
     static void Print(const S&, std::ostream* out) { *out << "a sampler"; }
 };
 
-namespace crescent::inline verdicts {
+namespace crescent {
 
 /// Checks a sampler. EXPECT_THAT matches first and, where that fails, matches again to explain: the second time, of the
 /// same argument, has the judgement of the first. No match is decided by a judgement that was kept.
@@ -99,4 +99,4 @@ inline AnySamplerMatcher IsNotAWrongSampler() { return {TestSettings::quick(), t
 /// crescent::IsARightSamplerBy(crescent::TestSettings::thorough())).
 inline AnySamplerMatcher IsARightSamplerBy(const TestSettings& settings) { return {settings, false}; }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent

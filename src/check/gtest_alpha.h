@@ -19,9 +19,9 @@
 #include <map>
 #include <string>
 
-#include "trials/settings.h"
+#include "check/settings.h"
 
-namespace crescent::inline verdicts {
+namespace crescent {
 
 class SharedAlpha : public testing::Environment {
 public:
@@ -72,4 +72,4 @@ inline TestSettings shared_settings(TestSettings settings = TestSettings::quick(
     return settings;
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "compare/made.h"
 #include "compare/schema.h"
 #include "simd/random.h"
-#include "verdicts/error_rates.h"
+#include "stats/rates.h"
 
 namespace crescent::inline comparing {
 

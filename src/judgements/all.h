@@ -1,29 +1,31 @@
-// The one list of verdicts, in the order in which they are given: the first says whether a sampler can be judged at
-// all, and each stands on those before it. A new one is one file in verdicts/, which says all there is to know of it
-// (verdict_kind.h), and one word here; the list feeds `crescent check` and all that it writes, --expect, `crescent list
-// verdicts`, the bench's own error rates and the laws.
+// The one list of verdicts with the question that each answers, in the order in which they are given. The families of
+// check/verdicts/ name the verdict that they make wrong. The list feeds `crescent check` and all that it writes,
+// --expect, `crescent list verdicts` and the tests.
 #pragma once
 
 #include <array>
 #include <string_view>
 
 // clang-format off: one a line
-#define CRESCENT_VERDICTS(verdict) \
-    verdict(valid)                 \
-    verdict(support)               \
-    verdict(normalised)            \
-    verdict(density)               \
-    verdict(identity)              \
-    verdict(physics)               \
-    verdict(tail)                  \
-    verdict(mean)                  \
-    verdict(efficiency)
+#define CRESCENT_VERDICTS(verdict)                              \
+    verdict(valid, "can what comes back be used?")              \
+    verdict(support, "does p reach wherever f L cos is not 0?") \
+    verdict(normalised, "does p integrate to one?")             \
+    verdict(density, "do the draws follow p?")                  \
+    verdict(identity, "does the sampler agree with itself?")    \
+    verdict(physics, "is f a BRDF?")                            \
+    verdict(tail, "how heavy is the weight X = f L cos / p?")   \
+    verdict(mean, "is the mean of X the integral?")             \
+    verdict(efficiency, "what does a sample cost?")
 // clang-format on
 
 namespace crescent::inline judgements {
 
-#define CRESCENT_NAME(verdict) std::string_view(#verdict),
+#define CRESCENT_NAME(verdict, question) std::string_view(#verdict),
 inline constexpr std::array verdict_names = {CRESCENT_VERDICTS(CRESCENT_NAME)};
 #undef CRESCENT_NAME
+#define CRESCENT_QUESTION(verdict, question) std::string_view(question),
+inline constexpr std::array verdict_questions = {CRESCENT_VERDICTS(CRESCENT_QUESTION)};
+#undef CRESCENT_QUESTION
 
 }  // namespace crescent::inline judgements

@@ -76,6 +76,7 @@ struct Judgement {
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
     std::uint64_t questions = 0;                           // that a sampler from outside answered
+    std::uint64_t evaluations = 0;                         // of sample, pdf and f
     State state = State::right;                            // of everything together
     bool as_expected = true;                               // whether every verdict is the expected one
 };

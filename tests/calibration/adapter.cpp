@@ -1,7 +1,7 @@
 // A sampler as a user would hand it over: a struct whose members take directions and const T* u in its own precision.
 #include "tests/calibration/geometry.h"
 #include "tests/calibration/sampler.h"
-#include "verdicts/user.h"
+#include "check/user.h"
 
 namespace crescent::calibration {
 

@@ -9,7 +9,7 @@
 #include "subjects/forwarded.h"
 #include "tests/calibration/engine.h"
 
-#define CRESCENT_ENGINES(engine) engine(engine_0_1) engine(engine_0_2)
+#define CRESCENT_ENGINES(engine) engine(engine_0_2)
 
 namespace crescent::calibration {
 

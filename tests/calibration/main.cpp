@@ -22,7 +22,7 @@ using namespace crescent::calibration;
 
 struct Options {
     std::vector<std::string> words;
-    std::string engine = "0.1", cases = "0:60", mode = "quick", out;
+    std::string engine = "0.2", cases = "0:60", mode = "quick", out;
     std::uint64_t seed = 1, draws = 0, evaluations = 0;
     int wo = -1;
     bool pipe = false, serve = false, list = false;

@@ -70,9 +70,8 @@ class Check {
 public:
     Check(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
         std::uint32_t seed)
-        : source_(subject, technique, wo, data.light), budget_(budget) {
+        : source_(subject, technique, wo, data.light), budget_(budget), levels_(data.levels) {
         key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
-        alpha2_ = alpha2 / std::max(1.0, data.questions / questions_covered);
         out_.wo = wo, out_.technique = technique;
     }
 
@@ -98,13 +97,13 @@ private:
     Source source_;
     const CheckBudget& budget_;
     StreamKey key_;
-    double alpha2_;
+    Levels levels_;
     CheckAt out_;
     Stage first_;
 
     double level_of(int look) const {
         const int last = budget_.look_count - 1;
-        return look == last ? alpha1 * (1 - last * early_look) : alpha1 * early_look;
+        return levels_.first * (look == last ? 1 - last * early_look : early_look);
     }
 
     bool decided_by(int look) {
@@ -156,7 +155,7 @@ private:
         const Evidence e = second.evidence(source_, *out_.plan);
         for (const Best& b : suspects) {
             const Answer again = needs_no_second(b.answer.family) ? b.answer : same_member(e, b.answer);
-            if (again.p < alpha2_) out_.findings.push_back({b.answer, again, b.members});
+            if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
         if (!out_.findings.empty() && second.points > first_.points)

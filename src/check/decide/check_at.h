@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "check/constants.h"
 #include "check/decide/sizes.h"
 #include "check/decide/small_tests.h"
 #include "check/estimate/budget.h"
@@ -16,7 +17,7 @@ namespace crescent::check {
 struct CaseData {
     TrialLight light{};
     std::uint16_t place = 0;  // number of the case in its call: names its random streams
-    double questions = 1;     // families put in the whole call; beyond `questions_covered` alpha2 is divided
+    Levels levels{};
 };
 
 /// A question that failed at both stages, or at the only one for what needs no second (a NaN is a NaN).

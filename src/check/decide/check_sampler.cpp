@@ -1,11 +1,16 @@
-// Results do not depend on threads: each case has streams of its own, named by its place in the call.
+// Results do not depend on threads: each case has streams of its own, named by its place in the call. A program has a
+// limited time: a few draws at every w_o come first, then the middle of the hemisphere and the most grazing w_o, then
+// the others as far as the time goes.
 #include "check/decide/check_sampler.h"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "check/constants.h"
 #include "check/decide/whole_sampler.h"
+#include "subjects/faults.h"
 
 namespace crescent::check {
 
@@ -27,7 +32,7 @@ std::vector<CheckOutcome> grouped(std::span<const Trial> trials) {
                 t.lighting == trials[i].lighting;
         };
         auto at = std::ranges::find_if(out, same);
-        if (at == out.end()) out.push_back({trials[i].arm, {}, {}, {}, 0}), at = out.end() - 1;
+        if (at == out.end()) at = out.insert(out.end(), {trials[i].arm, {}, {}, {}, 0, {}, {}});
         at->trials.push_back(i);
     }
     return out;
@@ -61,39 +66,158 @@ void look_at_whole(std::span<const Trial> trials, const CheckSettings& settings,
 
 }  // namespace
 
+namespace {
+
+/// One w_o of one sampler.
+struct Job {
+    CheckOutcome* outcome;
+    std::size_t index;  // into its trials
+};
+
+/// What `work` throws of a sampler from outside.
+template <class Work> std::optional<Cut> cut_of(const Work& work) {
+    try {
+        work();
+    } catch (const SubjectTooSlow& fault) {
+        return Cut{Cut::Why::too_slow, fault.what(), false};
+    } catch (const SubjectGone& fault) {
+        return Cut{Cut::Why::gone, fault.what(), false};
+    } catch (const SubjectFault& fault) { return Cut{Cut::Why::fault, fault.what(), false}; }
+    return {};
+}
+
+/// Numbers that cannot be used among a few draws.
+std::optional<SmallFault> look_first(const Trial& trial, const StreamKey& key) {
+    constexpr std::uint32_t few = 256;  // a program of 10 answers/s gives them at 12 w_o within five minutes
+    SmallFault out{Family::values};
+    const Traits traits = trial.subject->traits();
+    std::vector<Numbers> u;
+    for (std::uint32_t i = 0; i < few; ++i) u.push_back(numbers_at(key, i, traits.numbers, traits.bits == 24));
+    std::vector<Draw> draws(u.size());
+    for (int t = 0; t < trial.subject->techniques(); ++t) {
+        trial.subject->sample(t, trial.wo, u, draws);
+        out.of += few;
+        for (std::size_t i = 0; i < u.size(); ++i)
+            if (const auto fault = fault_of(draws[i]); fault && out.times++ == 0)
+                out.first = {u[i], draws[i], draws[i].pdf, 0}, out.what = *fault;
+    }
+    return out.times > 0 ? std::optional(out) : std::nullopt;
+}
+
+class Call {
+public:
+    Call(std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor)
+        : trials_(trials), settings_(settings), monitor_(monitor), outcomes_(grouped(trials)) {
+        for (CheckOutcome& o : outcomes_) {
+            o.at.resize(o.trials.size()), o.cut.resize(o.trials.size());
+            for (std::size_t k = 0; k < o.trials.size(); ++k) jobs_.push_back({&o, k});
+        }
+        const double families = static_cast<double>(Family::families);
+        levels_ = levels_of(settings.alpha, std::max(settings.cases, static_cast<double>(jobs_.size())) * families);
+    }
+
+    std::vector<CheckOutcome> run() {
+        if (std::ranges::any_of(trials_, [](const Trial& t) { return t.subject->serial(); })) in_turn();
+        else parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
+        for (CheckOutcome& o : outcomes_) {
+            o.whole_cut = cut_of([&] { look_at_whole(trials_, settings_, o); });
+            for (const auto& techniques : o.at)
+                for (const CheckAt& c : techniques) o.evaluations += c.evaluations;
+        }
+        return std::move(outcomes_);
+    }
+
+private:
+    std::span<const Trial> trials_;
+    const CheckSettings& settings_;
+    ProgressMonitor& monitor_;
+    std::vector<CheckOutcome> outcomes_;
+    std::vector<Job> jobs_;
+    Levels levels_;
+
+    std::size_t index_of(const Job& job) const { return job.outcome->trials[job.index]; }
+    const Trial& trial_of(const Job& job) const { return trials_[index_of(job)]; }
+
+    void check(const Job& job) {
+        monitor_.check();
+        const Trial& trial = trial_of(job);
+        const CheckBudget& budget =
+            trial.subject->limited() && settings_.limited ? *settings_.limited : settings_.budget;
+        std::vector<CheckAt>& at = job.outcome->at[job.index];
+        std::optional<Cut>& cut = job.outcome->cut[job.index];
+        cut = cut_of([&] {
+            for (int t = 0; t < trial.subject->techniques(); ++t)
+                at.push_back(check_sampler_at(*trial.subject, t, trial.wo,
+                    {trial.light, static_cast<std::uint16_t>(index_of(job)), levels_}, budget, settings_.seed));
+        });
+        if (cut) at.clear();
+        monitor_.advance(1);
+    }
+
+    /// The middle first, then the most grazing one: between them they meet most faults.
+    void order() {
+        std::ranges::sort(jobs_, {}, [&](const Job& j) {
+            return std::tuple(std::fabs(trial_of(j).theta_deg - 45), index_of(j));
+        });
+        const auto grazing = std::ranges::find_if(jobs_, [&](const Job& j) { return trial_of(j).theta_deg == 85; });
+        if (grazing != jobs_.end() && grazing > jobs_.begin()) std::rotate(jobs_.begin() + 1, grazing, grazing + 1);
+    }
+
+    /// What the first draws show is kept where nothing else is known, or where the draws after them do not show it.
+    void keep(const Job& job, const std::optional<SmallFault>& fault) {
+        std::vector<CheckAt>& at = job.outcome->at[job.index];
+        std::optional<Cut>& cut = job.outcome->cut[job.index];
+        if (cut) cut->first_draws = true;
+        if (!fault) return;
+        const auto not_valid = [](const auto& f) { return info(f.family).verdict == info(Family::values).verdict; };
+        for (const CheckAt& c : at) {
+            if (std::ranges::any_of(c.small, not_valid)) return;
+            if (std::ranges::any_of(c.findings, [&](const Finding& f) { return not_valid(f.first); })) return;
+        }
+        if (at.empty()) at.emplace_back().wo = trial_of(job).wo;
+        at.front().small.push_back(*fault);
+    }
+
+    bool affords(const Job& job, std::uint64_t dearest) const {
+        const Spending now = trial_of(job).subject->spending();
+        if (now.allowed <= 0 || dearest == 0) return true;
+        const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
+        return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
+    }
+
+    /// By one thread: first few draws at every w_o, then each w_o that there is time for, as far as the dearest one so
+    /// far tells; the first is tried in any case.
+    void in_turn() {
+        order();
+        std::vector<std::optional<SmallFault>> looks(jobs_.size());
+        for (std::size_t j = 0; j < jobs_.size(); ++j) {
+            monitor_.check();
+            const Trial& trial = trial_of(jobs_[j]);
+            const StreamKey key{settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
+            if (trial.subject->draws_at_will())
+                jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(trial, key); });
+        }
+        std::uint64_t dearest = 0;
+        for (std::size_t j = 0; j < jobs_.size(); ++j) {
+            std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
+            if (cut) {
+                monitor_.advance(1);
+                continue;
+            }
+            const std::uint64_t before = trial_of(jobs_[j]).subject->spending().answers;
+            if (affords(jobs_[j], dearest)) check(jobs_[j]);
+            else cut = Cut{Cut::Why::too_slow, "no time is left", true}, monitor_.advance(1);
+            keep(jobs_[j], looks[j]);
+            dearest = std::max(dearest, trial_of(jobs_[j]).subject->spending().answers - before);
+        }
+    }
+};
+
+}  // namespace
+
 std::vector<CheckOutcome> check_samplers(
     std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor) {
-    std::vector<CheckOutcome> out = grouped(trials);
-    struct Job {
-        std::size_t outcome, index;
-    };
-    std::vector<Job> jobs;
-    for (std::size_t o = 0; o < out.size(); ++o) {
-        out[o].at.resize(out[o].trials.size());
-        for (std::size_t k = 0; k < out[o].trials.size(); ++k) jobs.push_back({o, k});
-    }
-    const double questions =
-        std::max(settings.cases, static_cast<double>(jobs.size())) * static_cast<double>(Family::families);
-    const auto run = [&](std::size_t j) {
-        monitor.check();
-        CheckOutcome& o = out[jobs[j].outcome];
-        const std::size_t i = o.trials[jobs[j].index];
-        const Trial& trial = trials[i];
-        for (int t = 0; t < trial.subject->techniques(); ++t)
-            o.at[jobs[j].index].push_back(check_sampler_at(*trial.subject, t, trial.wo,
-                {trial.light, static_cast<std::uint16_t>(i), questions}, settings.budget, settings.seed));
-        monitor.advance(1);
-    };
-    const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
-    if (serial)
-        for (std::size_t j = 0; j < jobs.size(); ++j) run(j);
-    else parallel_for(std::size_t{0}, jobs.size(), run);
-    for (CheckOutcome& o : out) {
-        look_at_whole(trials, settings, o);
-        for (const auto& techniques : o.at)
-            for (const CheckAt& c : techniques) o.evaluations += c.evaluations;
-    }
-    return out;
+    return Call(trials, settings, monitor).run();
 }
 
 }  // namespace crescent::check

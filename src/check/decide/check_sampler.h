@@ -1,6 +1,9 @@
-// A sampler over all its w_o: each w_o by itself on any thread, and the tests that need none or several.
+// A sampler over all its w_o: each w_o by itself on any thread, a program by one in an order of its own, and the tests
+// that need no w_o or several.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,22 +16,35 @@ namespace crescent::check {
 /// What a call asks for.
 struct CheckSettings {
     CheckBudget budget = CheckBudget::quick();
+    /// Where each answer costs something; empty: `budget`.
+    std::optional<CheckBudget> limited{};
     std::uint32_t seed = 1;
-    /// Samplers and w_o in the whole call; beyond `questions_covered` families alpha2 is divided.
+    double alpha = 1e-3;
+    /// Samplers and w_o in the whole call; beyond `questions_covered` families the second level is divided.
     double cases = 1;
+};
+
+/// Why a sampler was not examined to the end at some w_o.
+struct Cut {
+    enum class Why { fault, gone, too_slow } why = Why::fault;
+    std::string what;
+    bool first_draws = false;  // whether the first draws were examined before, see CheckOutcome::at
 };
 
 /// Of one sampler.
 struct CheckOutcome {
     std::string arm;
     std::vector<std::size_t> trials;       // indices into the call's trials
-    std::vector<std::vector<CheckAt>> at;  // by trial and technique
+    std::vector<std::vector<CheckAt>> at;  // by trial and technique; cut short: what the first draws showed
     std::vector<SmallFault> small;         // of the sampler as a whole
     std::uint64_t evaluations = 0;
+    std::vector<std::optional<Cut>> cut;  // by trial
+    std::optional<Cut> whole_cut{};       // of what belongs to no w_o
     bool wrong() const;
 };
 
-/// Trials of one or of several samplers; those of one name and subject belong together. Baselines are left out.
+/// Trials of one or of several samplers; those of one name and subject belong together. Baselines are left out. Faults
+/// of a sampler from outside (subjects/faults.h) are kept with the w_o at which they occurred.
 std::vector<CheckOutcome> check_samplers(
     std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor);
 

@@ -31,8 +31,8 @@ struct CheckBudget {
 
     /// In process: at most 1.5 M evaluations.
     static CheckBudget quick() { return {}; }
-    /// Through pipes and Python: at most 0.5 M evaluations a w_o.
-    static CheckBudget limited() {
+    /// Through pipes and Python: at most so many evaluations a w_o.
+    static CheckBudget limited(std::size_t /*evaluations*/ = 500000) {
         CheckBudget b;
         b.pilot = 1u << 13;
         b.looks = {Look{1u << 14, 1u << 13, 1u << 14}, Look{1u << 16, 1u << 15, 1u << 16}, Look{}};

@@ -22,10 +22,10 @@
 
 #include <fmt/format.h>
 
+#include "check/check.h"
 #include "subjects/faults.h"
 #include "subjects/user_call.h"
 #include "subjects/users_trials.h"
-#include "verdicts/judge.h"
 
 namespace crescent::user {
 
@@ -176,7 +176,7 @@ template <class S> Traits traits_of(const S& s) {
 
 }  // namespace crescent::user
 
-namespace crescent::inline verdicts {
+namespace crescent {
 
 /// A user's struct as a sampler that can be judged. Members that are not const are called by one thread at a time.
 template <class Given> class UserSubject : public CalledSampler {
@@ -188,6 +188,7 @@ public:
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler()); }
     bool serial() const override { return !user::all_const<S>(); }
+    bool limited() const override { return false; }
     void sample(int, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
         count(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
@@ -288,4 +289,4 @@ SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits kno
     return {std::move(sample), std::move(pdf), std::move(f), known};
 }
 
-}  // namespace crescent::inline verdicts
+}  // namespace crescent

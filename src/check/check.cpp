@@ -1,0 +1,181 @@
+// The engine's outcomes as one judgement: verdicts in order, what is expected of each, what there was no time for.
+#include "check/check.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iterator>
+
+#include "check/constants.h"
+#include "check/decide/check_sampler.h"
+#include "check/explain/causes.h"
+#include "check/report/verdicts.h"
+#include "judgements/all.h"
+
+namespace crescent {
+
+namespace {
+
+using check::CheckAt;
+using check::CheckBudget;
+using check::CheckOutcome;
+using check::Cut;
+
+/// Verdicts of each trial, in the order of the list.
+using ByTrial = std::vector<std::vector<Verdict>>;
+
+/// A heavy tail or an equal rank is no fault of a sampler.
+bool may_stay_open(const Verdict& v) {
+    return v.name == "tail" || v.name == "mean" || v.name == "efficiency" || v.evidence.contains("unmet_share");
+}
+
+/// Whether it is what is expected of a right sampler, or of a built-in arm here.
+void expect(const Trial& trial, Verdict& v) {
+    const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= check::heavy_index;
+    if (trial.theory.wrong && *trial.theory.wrong == v.name) {
+        v.expected = v.state == State::wrong;
+        v.why_expected = trial.theory.why;
+    } else if (infinite && v.name == "tail") {
+        v.expected = v.state == State::inconclusive;
+        v.why_expected = trial.theory.why;
+    } else if (!trial.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
+        v.expected = true;
+        v.why_expected = trial.theory.underflows;
+    } else {
+        v.expected = v.state == State::right || v.state == State::skipped ||
+            (v.state == State::inconclusive && may_stay_open(v));
+    }
+}
+
+constexpr const char* more_time = "More time (--patience), or a program that answers faster.";
+
+/// What is said where the time of a program did not suffice.
+std::string too_slow(const Trial& trial, const TestSettings& settings) {
+    return fmt::format(
+        "Not examined: {:g} s are too short for this program to be examined at every w_o. {} --accept-few judges by "
+        "the w_o that were examined.",
+        trial.subject->spending().allowed,
+        settings.full ? "--patience gives it longer;" : "--full gives it an hour, --patience as long as you set;");
+}
+
+/// What the verdicts of a trial that ended early say: the first of them, and the others.
+struct Said {
+    State state = State::error;
+    std::string first, rest;
+};
+
+Said said_of(const Cut& cut, const Trial& trial, const TestSettings& settings) {
+    const std::string rest = "It could not be evaluated: the sampler broke off before.";
+    switch (cut.why) {
+        case Cut::Why::fault: return {State::error, fmt::format("The sampler broke off: {}.", cut.what), rest};
+        case Cut::Why::gone: return {State::error, rest, rest};
+        case Cut::Why::too_slow: break;
+    }
+    const std::string say = too_slow(trial, settings);
+    return {settings.accept_few ? State::skipped : State::inconclusive, say, say};
+}
+
+/// Every verdict of a trial that ended early, but for `valid` where the first draws were seen. Notes what there was no
+/// time for.
+void cut_short(const Trial& trial, const Cut& cut, const TestSettings& settings,
+    std::vector<Verdict>& verdicts, Judgement& j) {
+    const Said said = said_of(cut, trial, settings);
+    LeftOut left{trial.arm, trial.text(), {}, said.first};
+    for (Verdict& v : verdicts) {
+        if (cut.first_draws && v.name == verdict_names[0]) continue;
+        const bool first = left.verdicts.empty();
+        v.state = said.state;
+        v.say = first ? said.first : said.rest;
+        v.evidence = nlohmann::ordered_json::object();
+        if (first && cut.why == Cut::Why::fault) v.evidence["first_fault"] = cut.what;
+        if (v.state == State::inconclusive) v.settle = more_time;
+        left.verdicts.push_back(v.name);
+    }
+    if (said.state != State::error) j.left_out.push_back(std::move(left));
+}
+
+/// The tests of the sampler as a whole ended early: said where they would be, at its first w_o.
+void cut_whole(const Cut& cut, const Trial& trial, const TestSettings& settings, Verdict& valid) {
+    if (valid.state != State::right) return;
+    const Said said = said_of(cut, trial, settings);
+    valid.state = said.state, valid.say = said.first;
+}
+
+/// Verdicts of one sampler, handed to its trials.
+void distribute(std::span<const Trial> trials, const CheckOutcome& outcome, const TestSettings& settings, ByTrial& to,
+    Judgement& j) {
+    const std::optional<check::Cause> cause = outcome.wrong() ? check::cause_of(trials, outcome) : std::nullopt;
+    std::vector<Verdict> all = check::verdicts_of(trials, outcome, cause);
+    auto next = all.begin();
+    for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
+        const std::size_t i = outcome.trials[k];
+        std::vector<Verdict>& mine = to[i];
+        std::move(next, next + verdict_names.size(), std::back_inserter(mine));
+        next += verdict_names.size();
+        if (outcome.cut[k]) cut_short(trials[i], *outcome.cut[k], settings, mine, j);
+    }
+    if (outcome.whole_cut) cut_whole(*outcome.whole_cut, trials[outcome.trials[0]], settings, to[outcome.trials[0]][0]);
+}
+
+/// Few w_o may be accepted, none may not.
+void refuse_none(std::span<const CheckOutcome> outcomes, Judgement& j) {
+    const auto whole = [](const CheckOutcome& o) {
+        return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
+    };
+    if (std::ranges::any_of(outcomes, whole)) return;
+    for (const LeftOut& left : j.left_out)
+        for (Verdict& v : j.verdicts)
+            if (v.trial == left.trial && v.arm == left.arm && v.state == State::skipped)
+                v.state = State::inconclusive, v.settle = more_time;
+}
+
+void count(const CheckOutcome& outcome, Judgement& j) {
+    for (const auto& techniques : outcome.at)
+        for (const CheckAt& c : techniques) {
+            j.tests += c.answers.size();
+            j.screened += c.findings.size() + c.suspected.size();
+            j.confirmed += c.findings.size();
+        }
+    j.evaluations += outcome.evaluations;
+}
+
+}  // namespace
+
+CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
+    if (settings.budget) return *settings.budget;
+    if (limited) {
+        // A twelfth of all is for what belongs to no w_o, and for the arms beside it.
+        const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
+        return CheckBudget::limited(std::min(settings.questions, each));
+    }
+    return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
+}
+
+Judgement judge(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& monitor) {
+    const auto judged = static_cast<std::size_t>(std::ranges::count_if(trials, [](const Trial& t) { return !t.baseline; }));
+    check::CheckSettings of_engine;
+    of_engine.budget = budget_of(settings, false, judged);
+    of_engine.limited = budget_of(settings, true, judged);
+    of_engine.seed = settings.seed, of_engine.alpha = settings.alpha;
+    monitor.begin("verdicts", static_cast<double>(judged));
+    Judgement out;
+    out.alpha = settings.alpha;
+    const std::vector<CheckOutcome> outcomes = check::check_samplers(trials, of_engine, monitor);
+    ByTrial verdicts(trials.size());
+    std::vector<std::size_t> trial_of;
+    for (const CheckOutcome& outcome : outcomes) {
+        distribute(trials, outcome, settings, verdicts, out);
+        count(outcome, out);
+    }
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        if (trials[i].baseline) continue;
+        out.questions = std::max(out.questions, trials[i].subject->spending().answers);
+        std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));
+        trial_of.resize(out.verdicts.size(), i);
+    }
+    if (settings.accept_few) refuse_none(outcomes, out);
+    for (std::size_t v = 0; v < out.verdicts.size(); ++v) expect(trials[trial_of[v]], out.verdicts[v]);
+    settle(out);
+    return out;
+}
+
+}  // namespace crescent

@@ -1,4 +1,0 @@
-// Verdicts and judgements, for those who include the verdicts alone.
-#pragma once
-
-#include "judgements/verdict.h"
