@@ -12,13 +12,6 @@
 
 namespace crescent {
 
-/// The usual settings with so many draws a w_o.
-inline TestSettings of_draws(std::uint64_t draws) {
-    TestSettings settings;
-    settings.draws = draws;
-    return settings;
-}
-
 inline Judgement judged_alone(const Trial& trial, const TestSettings& settings) {
     ProgressMonitor monitor;
     return judge({&trial, 1}, settings, monitor);
