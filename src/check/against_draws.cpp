@@ -43,9 +43,9 @@ Vec3d weight_of(const Draw& d, int channels) {
     return channels == 3 ? d.weights : Vec3d{w, w, w};
 }
 
-void add_delta(std::vector<DeltaPart>& parts, const Draw& d, int channels, double share) {
+void add_delta(std::vector<AgainstDelta>& parts, const Draw& d, int channels, double share) {
     const Vec3d w = weight_of(d, channels);
-    for (DeltaPart& p : parts)
+    for (AgainstDelta& p : parts)
         if (length(p.wi - d.wi) < same_way && std::fabs(p.q - d.delta) <= same_number * p.q &&
             length(p.weight - w) <= same_number * length(w)) {
             p.drawn += share;
@@ -61,7 +61,7 @@ std::size_t nearest_way(std::span<const Vec3d> ways, Vec3d w) {
 
 /// Pilot draws of all techniques.
 std::uint32_t draw_pilots(
-    const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<DeltaPart>& parts) {
+    const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<AgainstDelta>& parts) {
     std::uint32_t of = 0;
     for (int t = 0; t < side.trial.subject->techniques(); ++t) {
         Sorter sorter(side, t);
@@ -86,10 +86,10 @@ std::uint32_t draw_pilots(
 
 CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
     std::vector<Vec3d> of_a, of_b, drawn, ways;
-    std::vector<DeltaPart> delta_a, delta_b;
+    std::vector<AgainstDelta> delta_a, delta_b;
     const std::uint32_t of = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
     for (const auto* parts : {&delta_a, &delta_b})
-        for (const DeltaPart& p : *parts)
+        for (const AgainstDelta& p : *parts)
             if (std::ranges::none_of(ways, [&](Vec3d w) { return length(w - p.wi) < same_way; })) ways.push_back(p.wi);
     const double step = std::max(step_of_directions(of_a), step_of_directions(of_b));
     std::vector<DensityPoint> pilots;

@@ -81,6 +81,18 @@ inline constexpr double repeats_factor = 4, repeats_floor = 8;
 /// disk has pi (2 sqrt(8 ulp))^2.
 inline constexpr double one_direction = 3.14159265358979 * 32 * ulp;
 
+/// Directions of a delta part and probabilities that are stated with it, at most this many of each: chosen; a boundary
+/// has two, three indices have four.
+inline constexpr std::size_t most_delta_parts = 16;
+
+/// A delta part leads where the index says to within this, in radians: an index that is stated in four digits.
+inline constexpr double delta_direction = 1e-3;
+/// Relative difference of the power of a delta part and of its way back: Fresnel near the critical angle, in single
+/// precision.
+inline constexpr double delta_power_tolerance = 1e-2;
+/// Cosine from the surface below which the way back is not asked for: samplers clamp there.
+inline constexpr double grazing_cosine = 0.02;
+
 /// Numbers are of few bits if a step of this size moves most draws not at all where it should move them by
 /// `few_bits_move`: up to 16 bits are found. Derived: a cosine in single precision near 1, drawn as u^(1 / (s + 1)),
 /// hides steps of the direction up to 2^-18 / sqrt(2 (s + 1)), at most half of that.
@@ -113,6 +125,24 @@ inline constexpr double heavy_index = 0.5;
 /// A largest weight of no more means than this among thousands is no tail: one with index 1/2 has a largest of the
 /// order of sqrt(n) means.
 inline constexpr double bounded_weight = 4;
+/// Weights that differ by this much relatively are one: as same_number, of the threshold of a tail; 10 times less of
+/// values that are drawn again and again.
+inline constexpr double alike_weights = 1e-3, alike_values = 1e-5;
+/// A largest weight that was drawn this often is a bound: what lies beyond comes a fifth as often at most, with 98 %
+/// (the rule of three for 1 in 5 of 20).
+inline constexpr std::size_t bound_drawn = 20;
+/// Weights of no more different values than this are no tail: a Pareto fit takes the steps between them for one.
+inline constexpr std::size_t few_values = 8;
+/// A lobe that is seldom chosen and weighs more than the rest is a step, not a tail: a heavy fit is repeated for this
+/// share of the largest weights, if at least `deeper_least` are left (standard error of k: 0.25).
+inline constexpr std::size_t deeper_part = 8, deeper_least = 40;
+/// A part of the integral that lies where weights are larger than any drawn is reported if the mean of the draws is
+/// short by this many of its standard errors. Derived: for a Pareto tail of index 1/2, where the variance is just not
+/// finite, n draws leave out 1 / 1.3 sqrt(E) standard errors, E exponential: more than 3 has a probability below 1e-6.
+inline constexpr double unseen_errors = 3;
+/// None of n draws meets what is drawn with probability c with probability exp(-n c); below this probability it is no
+/// chance, but p that is wrong, which is the matter of `density`.
+inline constexpr double missed_by_chance = 1e-4;
 
 // ---- targets of a quick check: a right verdict whose size exceeds ten times its target is inconclusive. Chosen by
 // what matters in a render: less is not seen in an image of a few thousand samples a pixel.

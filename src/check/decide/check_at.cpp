@@ -7,6 +7,7 @@
 
 #include "base/stopwatch.h"
 #include "check/constants.h"
+#include "check/decide/delta_directions.h"
 
 namespace crescent::check {
 
@@ -34,6 +35,7 @@ void ask_all(const Evidence& e, const Visit& visit) {
     ask_nodes(e, visit);
     ask_light(e, visit);
     ask_counts(e, visit);
+    ask_deltas(e, visit);
 }
 
 /// By family, the member with the least p, and how many there are.
@@ -162,7 +164,20 @@ private:
             first_ = std::move(second);  // more to explain it by
     }
 
+    /// Where delta parts lead: no matter of chance.
+    void look_at_deltas() {
+        const Observations& o = first_.observations;
+        if (o.deltas.empty() || o.deltas.scattered()) return;
+        StreamKey key = key_;
+        key.purpose = Purpose::light, key.part = 2;
+        const std::vector<DeltaPart>& parts = o.deltas.parts(o.independent);
+        std::optional<SmallFault> fault = refraction(source_, parts, key);
+        if (!fault) fault = way_back(source_, parts, key);
+        if (fault) out_.small.push_back(*fault);
+    }
+
     void finish() {
+        look_at_deltas();
         const Evidence e = first_.evidence(source_, *out_.plan);
         for (const auto& [family, best] : best_of(e)) {
             out_.answers.push_back(best.answer);

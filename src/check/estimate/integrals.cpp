@@ -14,6 +14,7 @@ void LightIntegrals::scale(double by) {
     lost.scale(by), lit.scale(by);
     for (auto& by_channel : leaves)
         for (Estimate& e : by_channel) e.scale(by);
+    for (WeighedPoint& w : weighed) w.light *= by, w.chance *= by;
 }
 
 void LightIntegrals::add(const LightIntegrals& o) {
@@ -21,6 +22,7 @@ void LightIntegrals::add(const LightIntegrals& o) {
     lost.add(o.lost), lit.add(o.lit);
     for (std::size_t l = 0; l < leaves.size(); ++l)
         for (std::size_t c = 0; c < 3; ++c) leaves[l][c].add(o.leaves[l][c]);
+    weighed.insert(weighed.end(), o.weighed.begin(), o.weighed.end());
 }
 
 double flux_factor(const Source& source, Vec3d wi, int channel) {
@@ -82,6 +84,8 @@ public:
             p_.resize(w_.size()), f_.assign(w_.size(), {});
             source_.density(w_, p_);
             if (of_f_) source_.f_cos(w_, f_, source_.subject.has_true_f());
+            mis_.assign(w_.size(), 1);
+            if (of_f_ && source_.subject.techniques() > 1) source_.mis_weights(w_, mis_);
             std::size_t at = 0;
             for (std::size_t g = first; g < last; ++g) take(grids[g], at);
             first = last;
@@ -96,7 +100,7 @@ private:
     Stream stream_;
     Integrals out_;
     std::vector<Vec3d> w_, f_;
-    std::vector<double> p_;
+    std::vector<double> p_, mis_;
 
     void place(const Grid& g) {
         const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[g.leaf]);
@@ -175,15 +179,20 @@ private:
         for (std::size_t a = 0; a < 2; ++a) {
             const Vec3d f = f_[at + a];
             const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
-            lit[a] = y > 0 ? y * radiance(w_[at + a]) : 0;
+            lit[a] = y > 0 ? y * source_.radiance(w_[at + a]) : 0;
             lost[a] = p_[at + a] > 0 || (lit[a] > 0 && source_.reached_otherwise(w_[at + a])) ? 0 : lit[a];
         }
         l.lit.add_pair(lit[0], lit[1], k);
         l.lost.add_pair(lost[0], lost[1], k);
         l.points += 2;
+        for (std::size_t a = 0; a < 2; ++a) note_weight(at + a, k);
     }
 
-    double radiance(Vec3d w) const { return source_.light.even() || w.z <= 0 ? source_.light.fill : source_.light(w); }
+    void note_weight(std::size_t at, double k) {
+        const double p = p_[at], f = source_.channels() == 3 ? luminance(f_[at]) : f_[at].x;
+        const double share = mis_[at] * f * source_.radiance(w_[at]);
+        if (source_.has_density() && p > 0 && share > 0) out_.light.weighed.push_back({share / p, k * share, k * p});
+    }
 };
 
 void scale(Integrals& x, double by) {

@@ -34,12 +34,19 @@ struct LeafIntegral {
     double known_to = 0;     // what the error of a tabulated p makes of it at most
 };
 
+/// A point where light is: the weight X = f L cos / p of a draw there (of three channels the luminance), with the MIS
+/// weight of the technique, and what the point holds of the integrals of X p and of p.
+struct WeighedPoint {
+    double x = 0, light = 0, chance = 0;
+};
+
 /// Integrals of f |cos| by channel.
 struct LightIntegrals {
     std::array<Estimate, 3> all, mean, albedo;    // as it is; bridged with p for `mean`; as flux
     Estimate lost;                                // times the light, where p is 0
     Estimate lit;                                 // times the light
     std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, where there is no density to divide the draws by
+    std::vector<WeighedPoint> weighed;            // where p > 0 and X > 0
     double points = 0;
     void scale(double by);
     void add(const LightIntegrals& other);

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "check/constants.h"
+#include "check/estimate/weights.h"
 
 namespace crescent::check {
 
@@ -67,6 +68,7 @@ private:
         if (source_.estimates) settle_zeros();
         compare_pdf(u);
         if (with_f) compare_weights(u, set);
+        if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (is_direction(draws_[at_[k]], p_[k])) take(w_[k], p_[k], set);
             else if (set < 0) ++to_.checks.nothing;
@@ -111,10 +113,8 @@ private:
     }
 
     void take_delta(const Draw& d) {
-        for (int c = 0; c < source_.channels(); ++c) {
-            const double w = source_.channels() == 3 ? channel_of(d.weights, c) : d.weight.value_or(0);
-            to_.delta[static_cast<std::size_t>(c)].add(w * std::max(flux_factor(source_, d.wi, c), 0.0));
-        }
+        const double one = d.weight.value_or(0);
+        if (d.delta > 0) to_.deltas.add(d, source_.channels() == 3 ? d.weights : Vec3d{one, one, one});
     }
 
     /// The draw's own pdf must lie in the range of p over a few roundings of w; p must not be 0 all around.
@@ -169,7 +169,6 @@ private:
                 continue;
             }
             if (evaluated) compare_weight(u[at_[k]], d, k, truth ? true_f_[k] : f_[k], set);
-            if (set < 0) to_.weights.push_back(luminance_of(d, f_[k]));
         }
     }
 
@@ -191,11 +190,6 @@ private:
         ++to_.checks.weights;
         if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
         if (untrue && !source_.f_estimates) to_.checks.true_f.add({u, d, f.x, due.x});
-    }
-
-    double luminance_of(const Draw& d, Vec3d f) const {
-        if (d.weight) return *d.weight;
-        return (source_.channels() == 3 ? luminance(f) : f.x) / d.pdf;
     }
 
     void take(Vec3d w, double p, int set) {
@@ -262,6 +256,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         u.resize(std::min(batch_size, last_draw - from));
         observer.batch(draws, from, u, weighs && from < of_f);
     }
+    if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.subject.draws_at_will()) return;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
                         last = look.scrambled / replicate_sets;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "check/estimate/delta_parts.h"
 #include "check/estimate/integrals.h"
 #include "check/estimate/sobol.h"
 
@@ -67,14 +68,16 @@ struct Observations {
         std::uint64_t key;  // hash of the direction
         double p;
     };
-    std::vector<Met> met;             // of the independent draws
-    double mean_p = 0;                // sum of p over the independent draws
-    Sums log_p;                       // of ln p less its median
-    double slope_log_p = 0;           // sum of the slope's h times that
-    std::vector<double> weights;      // luminance of the weights f cos / p of independent draws, 0 for nothing
-    std::array<Sums, 3> mean, delta;  // bridged weights by channel; power of delta draws
-    double weighed = 0;               // draws that `mean` and `weights` are of
-    std::uint64_t weightless = 0;     // directions among them that came with no weight, there being no p
+    std::vector<Met> met;                 // of the independent draws
+    double mean_p = 0;                    // sum of p over the independent draws
+    Sums log_p;                           // of ln p less its median
+    double slope_log_p = 0;               // sum of the slope's h times that
+    std::vector<double> weights;          // X of the first independent draws in their order, see weights.h
+    DeltaParts deltas;                    // of independent draws
+    std::array<Sums, 3> mean;             // bridged weights by channel
+    std::array<double, 3> delta_power{};  // that delta parts return, by channel
+    double weighed = 0;                   // draws that `mean` and `weights` are of
+    std::uint64_t weightless = 0;         // directions among them that came with no weight, there being no p
     /// Where there is no density: weights by leaf and channel, and draws by rings of 5 degrees about n.
     std::vector<std::array<WeightSums, 3>> weight_leaves;
     std::array<double, 36> rings{};

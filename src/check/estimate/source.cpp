@@ -79,6 +79,10 @@ bool Source::reached_otherwise(Vec3d wi) {
     return false;
 }
 
+void Source::mis_weights(std::span<const Vec3d> wi, std::span<double> out) {
+    subject.mis_weight(technique, pairs_of(wi), out);
+}
+
 void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) { subject.pdf(technique, pairs_of(wi), out); }
 
 void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) {

@@ -48,6 +48,11 @@ public:
     /// f |cos| by channel, without the light; 1/sr. truth: of the BRDF itself, where that is known apart from f.
     void f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth = false);
 
+    /// MIS weights of directions that this technique drew.
+    void mis_weights(std::span<const Vec3d> wi, std::span<double> out);
+    /// Of the light from w; below the surface that of its even part.
+    double radiance(Vec3d w) const { return light.even() || w.z <= 0 ? light.fill : light(w); }
+
     std::uint64_t evaluations() const { return evaluations_; }
     /// Answers of density() and f_cos() that were not finite or negative, and where the first was.
     std::uint64_t invalid() const { return invalid_; }

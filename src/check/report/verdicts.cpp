@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "check/constants.h"
+#include "check/decide/tail.h"
 #include "judgements/all.h"
-#include "stats/tail.h"
 
 namespace crescent::check {
 
@@ -42,6 +42,13 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
         case Family::centre_sets:
             return fmt::format("The mean direction of the draws is off p's in {} by {:+.3g} +- {:.1g}.",
                 "xyz"[std::clamp(f.first.member, 0, 2)], 2 * a.difference, 2 * half);
+        case Family::delta_share:
+            return fmt::format("A delta part is {:.5g} +- {:.1g} of the draws and states a probability of {:.5g}.",
+                a.expected + a.difference, half, a.expected);
+        case Family::delta_scatter:
+            return "Draws said to be of delta parts have more than 16 directions: what has a density is no delta part.";
+        case Family::delta_weight:
+            return fmt::format("{:g} draws of a delta part have another weight than the first of it.", a.difference);
         case Family::depth: return "Draws and p differ in many small places.";
         case Family::bridge:
         case Family::bridge_sets:
@@ -76,7 +83,8 @@ std::string sentence_of(const SmallFault& f) {
 bool can_be_asked(const JudgedSampler& s, std::string_view name) {
     if (name == "normalised" || name == "density") return s.traits().has_pdf;
     if (name == "support") return s.traits().has_pdf && s.has_f();
-    if (name == "physics" || name == "mean") return s.has_f();
+    if (name == "physics") return s.has_f() || s.traits().delta;
+    if (name == "mean") return s.has_f();
     if (name == "tail") return s.has_drawn_f();
     return name != "efficiency";  // of several samplers
 }
@@ -88,28 +96,6 @@ void add_sizes(const Sizes& s, Verdict& v) {
     if (v.name == "normalised") add("constant", s.constant);
     if (v.name != "density") return;
     add("leak", s.leak), add("cap", s.cap), add("rotation", s.rotation), add("parameter", s.parameter);
-}
-
-/// The Pareto index of the largest weights.
-void judge_tail(const CheckAt& c, Verdict& v) {
-    std::vector<double> w = c.observations.weights;
-    const std::size_t m = stats::tail_length(w.size()) + 1;
-    if (w.size() < 1000 || m > w.size()) {
-        v.state = State::skipped;
-        return;
-    }
-    std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
-    double mean = 0;
-    for (double x : w) mean += x / static_cast<double>(w.size());
-    if (w[0] <= bounded_weight * mean) return;
-    const std::optional<stats::Tail> tail = stats::fit_tail(std::span<const double>(w).first(m));
-    if (!tail) return;
-    v.evidence["k"] = tail->k, v.evidence["se"] = tail->se;
-    if (tail->k - 2 * tail->se < heavy_index && tail->k + 2 * tail->se < heavy_index) return;
-    v.state = State::inconclusive;
-    v.say = fmt::format(
-        "k-hat = {:.3f} +- {:.3f}: the variance of the weights is infinite or not known.", tail->k, tail->se);
-    v.next.kind = NextStep::Kind::heavier_pdf;
 }
 
 void judge_at(const CheckAt& c, Verdict& v) {
@@ -159,9 +145,10 @@ std::vector<Verdict> verdicts_of(
             }
             for (const CheckAt& c : outcome.at[k]) {
                 judge_at(c, v);
-                if (name == "tail" && v.state == State::right) judge_tail(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
+            if (name == "tail") judge_tail(trial, outcome.at[k], v);
+            if (name == "mean") leave_heavy_mean_open(outcome.at[k], v);
             if (k == 0)
                 for (const SmallFault& f : outcome.small)
                     if (info(f.family).verdict == name) v.state = State::wrong, v.say += sentence_of(f);

@@ -66,8 +66,8 @@ void ask_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
 void ask_albedo(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
-    const Estimate of_deltas = mean_of(o.delta[c], o.independent), &of_density = e.integrals.light.albedo[c];
-    const double total = of_deltas.value + of_density.value, v = of_deltas.variance + of_density.variance;
+    const Estimate& of_density = e.integrals.light.albedo[c];
+    const double total = o.delta_power[c] + of_density.value, v = of_density.variance;
     Answer a{Family::albedo, channel, total - 1, std::sqrt(v), albedo_excess, 1, 1};
     a.p = student_p_of(total - 1 - albedo_excess, v, freedom(v, of_density.doubt));
     visit(a);
@@ -88,9 +88,8 @@ bool tail_may_be_heavy(std::span<const double> weights) {
 
 bool mean_can_be_asked(const Evidence& e) {
     const Observations& o = e.observations;
-    // Delta parts have no share in the integral. A mean that is not bridged needs a variance.
-    return o.weighed > 0 && o.weightless == 0 && o.checks.deltas == 0 &&
-        (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
+    // A mean that is not bridged needs a variance.
+    return o.weighed > 0 && o.weightless == 0 && (is_bridged(e.source) || !tail_may_be_heavy(o.weights));
 }
 
 void ask_light(const Evidence& e, const Visit& visit) {

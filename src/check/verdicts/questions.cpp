@@ -20,6 +20,9 @@ const FamilyInfo& info(Family family) {
         {"node", "density"},
         {"node, replicates", "density"},
         {"depth", "density"},
+        {"delta share", "density"},
+        {"delta scatter", "density"},
+        {"delta weight", "identity"},
         {"pointwise", "identity"},
         {"zero", "identity"},
         {"weight", "identity"},
@@ -32,6 +35,7 @@ const FamilyInfo& info(Family family) {
         {"mis", "mean"},
         {"albedo", "physics"},
         {"reciprocity", "physics"},
+        {"delta direction", "physics"},
     }};
     return list[static_cast<std::size_t>(family)];
 }

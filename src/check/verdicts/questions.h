@@ -23,19 +23,23 @@ enum class Family {
     centre_sets,
     node,  // how h divides between the halves of a node
     node_sets,
-    depth,      // sum of squares over all nodes of one depth
-    pointwise,  // pdf with the draw against pdf(w)
-    zero,       // p = 0 where something is drawn
-    weight,     // weight with the draw against f cos / pdf
-    jacobian,   // p against the derivatives of sample(u)
-    repeats,    // directions that come again
-    state,      // the same u gives another draw, alone or in another batch
-    support,    // f cos where p is 0
-    mean,       // bridged weights against the integral of f cos
-    true_f,     // f against what it ought to be
-    mis,        // weights of combined techniques sum to 1
-    albedo,     // more light comes back than arrives
+    depth,          // sum of squares over all nodes of one depth
+    delta_share,    // draws of a delta part against the probability they state
+    delta_scatter,  // too many directions for delta parts
+    delta_weight,   // draws of one delta part with several weights
+    pointwise,      // pdf with the draw against pdf(w)
+    zero,           // p = 0 where something is drawn
+    weight,         // weight with the draw against f cos / pdf
+    jacobian,       // p against the derivatives of sample(u)
+    repeats,        // directions that come again
+    state,          // the same u gives another draw, alone or in another batch
+    support,        // f cos where p is 0
+    mean,           // bridged weights against the integral of f cos
+    true_f,         // f against what it ought to be
+    mis,            // weights of combined techniques sum to 1
+    albedo,         // more light comes back than arrives
     reciprocity,
+    delta_direction,  // where delta parts lead, against the index and the way back
     families
 };
 
@@ -70,6 +74,7 @@ void ask_sums(const Evidence& e, const Visit& visit);
 void ask_nodes(const Evidence& e, const Visit& visit);
 void ask_light(const Evidence& e, const Visit& visit);
 void ask_counts(const Evidence& e, const Visit& visit);
+void ask_deltas(const Evidence& e, const Visit& visit);
 
 /// Whether the weights may have an infinite variance, by their Pareto index and its standard error.
 bool tail_may_be_heavy(std::span<const double> weights);

@@ -1,0 +1,158 @@
+// That a boundary lies flat is seen from where it mirrors to, or, if nothing is mirrored, by turning w_o about n.
+#include "check/decide/delta_directions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/constants.h"
+#include "math/functions.h"
+#include "simd/scalar.h"
+
+namespace crescent::check {
+
+namespace {
+
+bool near(Vec3d a, Vec3d b) { return length(a - b) < delta_direction; }
+Vec3d mirrored(Vec3d wo) { return {-wo.x, -wo.y, wo.z}; }
+
+/// Where an index refracts w_o to; none where it reflects totally.
+std::optional<Vec3d> refracted(Vec3d wo, double below_over_above) {
+    const double e = wo.z > 0 ? below_over_above : 1 / below_over_above, x = -wo.x / e, y = -wo.y / e,
+                 rest = 1 - x * x - y * y;
+    if (rest < 0) return {};
+    return Vec3d{x, y, wo.z > 0 ? -std::sqrt(rest) : std::sqrt(rest)};
+}
+
+bool is_refracted(Vec3d wo, Vec3d wi, Vec3d eta, bool inverted) {
+    for (int c = 0; c < 3; ++c) {
+        const double one = channel_of(eta, c);
+        const std::optional<Vec3d> due = refracted(wo, inverted ? 1 / one : one);
+        if (due && near(*due, wi)) return true;
+    }
+    return false;
+}
+
+/// Draws of the same technique at another w_o.
+std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, const StreamKey& key) {
+    std::vector<Numbers> u;
+    for (std::uint32_t i = 0; i < n; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    std::vector<Draw> out(n);
+    source.subject.sample(source.technique, wo, u, out);
+    return out;
+}
+
+/// A flat boundary sends a turned w_o to where it sends w_o, turned.
+bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
+    constexpr double angle = 2.4;  // radians: no symmetry of a pattern
+    if (!source.subject.draws_at_will()) return false;
+    const math::SinCos by = math::sincos(angle);
+    const auto turned = [&](Vec3d w) { return Vec3d{by.cos * w.x - by.sin * w.y, by.sin * w.x + by.cos * w.y, w.z}; };
+    const std::vector<Draw> there = drawn_at(source, turned(source.wo), 256, key);
+    return std::ranges::any_of(there, [due = turned(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, due); });
+}
+
+SmallFault fault_at(const DeltaPart& p, const char* what) {
+    SmallFault out{Family::delta_direction, static_cast<double>(p.drawn), static_cast<double>(p.drawn), 0, {}, what};
+    out.first.draw.wi = p.wi, out.first.draw.delta = p.q, out.first.draw.weights = p.weight;
+    return out;
+}
+
+}  // namespace
+
+std::optional<SmallFault> refraction(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
+    if (!source.traits.eta) return {};
+    const Vec3d wo = source.wo, eta = *source.traits.eta;
+    std::vector<const DeltaPart*> across;
+    const DeltaPart* askew = nullptr;  // reflected, but not to the mirror direction of a flat boundary
+    bool mirrors = false;
+    for (const DeltaPart& p : parts) {
+        const bool through = p.wi.z * wo.z < 0;
+        if (!through) {
+            if (near(p.wi, mirrored(wo))) mirrors = true;
+            else if (!near(p.wi, wo)) askew = &p;
+        } else if (std::ranges::none_of(across, [&](const DeltaPart* q) { return near(q->wi, p.wi); })) {
+            across.push_back(&p);
+        }
+    }
+    const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
+    if (across.size() > indices) return {};  // a boundary with another shape
+    if (askew) {                             // a boundary that refracts as a flat one mirrors as it, too
+        const bool flat = std::ranges::any_of(
+            across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
+        if (!flat) return {};
+        return fault_at(*askew, "a delta part is not reflected to where the boundary that refracts mirrors w_o to");
+    }
+    for (const DeltaPart* p : across) {
+        if (near(p->wi, -wo) || is_refracted(wo, p->wi, eta, false)) continue;
+        if (!mirrors && !turns_with_wo(source, p->wi, key)) continue;
+        return fault_at(*p,
+            is_refracted(wo, p->wi, eta, true) ? "a delta part goes to where 1 / eta in place of eta refracts to"
+                                               : "a delta part goes elsewhere than the stated index refracts to");
+    }
+    return {};
+}
+
+namespace {
+
+/// q times the weight by channel, of the first channel alone where there is one.
+Vec3d carried(const Source& source, const Draw& d) {
+    const double w = d.weight.value_or(0);
+    return d.delta * (source.channels() == 3 ? d.weights : Vec3d{w, w, w});
+}
+
+bool alike_power(double a, double b) {
+    return std::fabs(a - b) <= delta_power_tolerance * std::max(std::fabs(a), std::fabs(b)) + 1e-6;
+}
+bool alike_power(Vec3d a, Vec3d b) { return alike_power(a.x, b.x) && alike_power(a.y, b.y) && alike_power(a.z, b.z); }
+
+/// What the way back carries over what comes: f(a, b) / eta_a^2 = f(b, a) / eta_b^2 (Veach 1997, 5.2), and radiance is
+/// scaled by 1 / eta^2 either way. None where it is not known.
+std::optional<Vec3d> due_back(const Source& source, Vec3d wi) {
+    const Vec3d wo = source.wo;
+    if (wi.z * wo.z > 0) return near(wi, mirrored(wo)) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
+    if (!source.traits.eta || near(wi, -wo) || !is_refracted(wo, wi, *source.traits.eta, false)) return {};
+    if (source.traits.importance) return Vec3d{1, 1, 1};
+    const auto of = [up = wo.z > 0](double eta) { return sqr(sqr(up ? eta : 1 / eta)); };
+    return Vec3d{of(source.traits.eta->x), of(source.traits.eta->y), of(source.traits.eta->z)};
+}
+
+/// The power of a part and that of its way back, where both come in one piece.
+std::optional<SmallFault> power_back(
+    const Source& source, const std::vector<DeltaPart>& all, const DeltaPart& p, const std::vector<Draw>& back) {
+    const std::optional<Vec3d> due = due_back(source, p.wi);
+    const auto in_one_piece = std::ranges::count_if(all, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
+    if (!due || in_one_piece != 1 || p.otherwise > 0) return {};
+    const Vec3d first = carried(source, back[0]), come = p.q * p.weight,
+                expected = {come.x * due->x, come.y * due->y, come.z * due->z};
+    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(carried(source, d), first); })) return {};
+    if (alike_power(first, expected)) return {};
+    SmallFault out = fault_at(p, "the way back of a delta part carries another share of the light: not reciprocal");
+    out.first.p = first.x, out.first.due = expected.x;
+    out.size = expected.x > 0 ? first.x / expected.x - 1 : 0;
+    return out;
+}
+
+}  // namespace
+
+std::optional<SmallFault> way_back(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
+    const Traits& traits = source.traits;
+    if (!traits.reciprocal || traits.wo == Traits::Asked::none || !source.subject.draws_at_will()) return {};
+    for (const DeltaPart& p : parts) {
+        if (p.wi.z < grazing_cosine && (traits.wo != Traits::Asked::both || p.wi.z > -grazing_cosine)) continue;
+        // Of the same kind: mirrored as w_o is to w_i, or passed on.
+        const Vec3d wi = normalize(p.wi);
+        std::vector<Draw> back = drawn_at(source, wi, 512, key);
+        std::erase_if(
+            back, [&](const Draw& d) { return !(d.delta > 0) || (d.wi.z * wi.z < 0) != (wi.z * source.wo.z < 0); });
+        const bool often = back.size() >= 8;
+        std::erase_if(back, [&](const Draw& d) { return !near(d.wi, source.wo); });
+        if (!back.empty()) {
+            if (std::optional<SmallFault> fault = power_back(source, parts, p, back)) return fault;
+        } else if (often) {
+            return fault_at(p, "a delta part sends w_o to a direction that is never sent back to w_o");
+        }
+    }
+    return {};
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,238 @@
+// Intervals are two standard errors in the logarithm. Times differ from run to run and are kept apart from the rest.
+#include "check/decide/efficiency.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+
+#include "base/parallel.h"
+#include "check/constants.h"
+#include "check/decide/tail.h"
+#include "check/estimate/weights.h"
+#include "math/functions.h"
+#include "subjects/faults.h"
+
+namespace crescent::check {
+
+double Efficiency::low() const { return value() * math::exp(-2 * math::hypot(relative_se, cost_se)); }
+double Efficiency::high() const { return value() * math::exp(2 * math::hypot(relative_se, cost_se)); }
+
+namespace {
+
+/// Draws of a baseline. Of a program each costs an evaluation of f, and a variance to 3 % ranks well enough.
+constexpr std::uint32_t baseline_draws = 1u << 15, baseline_draws_of_program = 1u << 12;
+
+std::vector<double> baseline_weights(const Trial& trial, const StreamKey& key) {
+    std::vector<double> out;
+    const std::uint32_t n = trial.subject->limited() ? baseline_draws_of_program : baseline_draws;
+    for (int t = 0; t < trial.subject->techniques(); ++t) {
+        Source source(*trial.subject, t, trial.wo, trial.light);
+        StreamKey draws = key;
+        draws.technique = static_cast<std::uint8_t>(t);
+        std::vector<double> x;
+        std::vector<Numbers> u;
+        for (std::uint32_t from = 0; from < n; from += batch_size) {
+            u.resize(std::min(batch_size, n - from));
+            for (std::uint32_t i = 0; i < u.size(); ++i)
+                u[i] = numbers_at(draws, from + i, source.numbers(), source.single());
+            std::vector<Draw> batch(u.size());
+            source.draw(u, batch);
+            std::vector<std::size_t> at;
+            std::vector<Vec3d> wi;
+            for (std::size_t i = 0; i < batch.size(); ++i)
+                if (batch[i].pdf > 0 && batch[i].wi.z > 0) at.push_back(i), wi.push_back(batch[i].wi);
+            std::vector<double> p(wi.size(), 1);
+            std::vector<Vec3d> f(wi.size());
+            source.f_cos(wi, f);
+            append_weights(source, batch, {at, wi, p, f}, x);
+        }
+        if (out.empty()) out = std::move(x);
+        else
+            for (std::size_t i = 0; i < x.size(); ++i) out[i] += x[i];
+    }
+    return out;
+}
+
+void note_variance(std::span<const double> x, const stats::Spread& s, Efficiency& e) {
+    double fourth = 0;
+    for (double v : x) fourth += sqr(sqr(v - s.mean)) / s.n;
+    e.variance = sqr(s.sd);
+    e.relative_se = e.variance > 0 ? std::sqrt(std::max(fourth / sqr(e.variance) - 1, 0.0) / s.n) : 0;
+}
+
+bool draws_below(const CheckAt& c) {
+    const std::vector<Leaf>& leaves = c.plan->tree.leaves();
+    for (std::size_t l = 0; l < std::min(leaves.size(), c.observations.counts.size()); ++l)
+        if (c.observations.counts[l] > 0 && c.plan->tree.rect(leaves[l]).t0 >= 1) return true;
+    return false;
+}
+
+Efficiency variance_of(std::span<const CheckAt> techniques, std::size_t trial) {
+    Efficiency e;
+    e.trial = trial;
+    e.whole = std::ranges::any_of(techniques, draws_below);
+    const std::vector<double> x = weights_of(techniques);
+    e.weighed = !x.empty();
+    if (!e.weighed) return e;
+    const WeightTail t = tail_of(techniques);
+    note_variance(x, t.spread, e);
+    e.heavy = t.heavy() || t.open() || t.has_unseen();
+    return e;
+}
+
+Efficiency variance_of_baseline(const Trial& trial, std::size_t index, const StreamKey& key) {
+    Efficiency e;
+    e.trial = index;
+    try {
+        const std::vector<double> x = baseline_weights(trial, key);
+        const WeightTail t = tail_of_weights(x);
+        note_variance(x, t.spread, e);
+        e.weighed = true, e.heavy = t.heavy() || t.open();
+    } catch (const SubjectTooSlow&) {
+    } catch (const SubjectFault& fault) { e.fault = fault.what(); }
+    return e;
+}
+
+}  // namespace
+
+std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes,
+    const CheckSettings& settings, const ProgressMonitor& monitor) {
+    std::vector<Efficiency> out(trials.size());
+    std::vector<std::size_t> baselines;
+    for (const CheckOutcome& o : outcomes)
+        for (std::size_t k = 0; k < o.trials.size(); ++k) out[o.trials[k]] = variance_of(o.at[k], o.trials[k]);
+    for (std::size_t i = 0; i < trials.size(); ++i)
+        if (trials[i].baseline) baselines.push_back(i);
+    const auto run = [&](std::size_t b) {
+        monitor.check();
+        const std::size_t i = baselines[b];
+        const StreamKey key{settings.seed, static_cast<std::uint16_t>(i), 0, 1, Purpose::light, 3};
+        out[i] = variance_of_baseline(trials[i], i, key);
+    };
+    const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
+    if (serial)
+        for (std::size_t b = 0; b < baselines.size(); ++b) run(b);
+    else parallel_for(std::size_t{0}, baselines.size(), run);
+    return out;
+}
+
+namespace {
+
+/// What one sample took in one turn, ns; nothing where the sampler cannot be asked any more.
+std::optional<double> time_once(
+    const Trial& trial, std::span<const Numbers> u, std::vector<Draw>& draws, Efficiency& e) {
+    try {
+        const auto start = std::chrono::steady_clock::now();
+        for (int t = 0; t < trial.subject->techniques(); ++t)
+            trial.subject->sample(t, trial.wo, u, std::span(draws).first(u.size()));
+        return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() /
+            static_cast<double>(u.size());
+    } catch (const SubjectTooSlow&) {
+    } catch (const SubjectFault& fault) { e.fault = fault.what(); }
+    return {};
+}
+
+}  // namespace
+
+void measure_costs(
+    std::span<const Trial> trials, std::uint32_t seed, std::span<Efficiency> all, const ProgressMonitor& monitor) {
+    constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
+    std::vector<Numbers> u(most);
+    const StreamKey key{seed, 0, 0, 1, Purpose::light, 4};
+    for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, Numbers::most, true);
+    std::vector<std::vector<double>> times(all.size());
+    std::vector<Draw> draws(most);
+    for (std::size_t turn = 0; turn < turns; ++turn)
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            monitor.check();
+            const Trial& trial = trials[all[i].trial];
+            if (!all[i].weighed || times[i].size() < turn || !trial.subject->draws_at_will()) continue;
+            const std::size_t n = trial.subject->limited() ? of_a_program : most;
+            if (const std::optional<double> ns = time_once(trial, std::span(u).first(n), draws, all[i]))
+                times[i].push_back(*ns);
+        }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (times[i].size() < turns) continue;
+        std::sort(times[i].begin(), times[i].end());
+        all[i].nanoseconds = times[i][turns / 2];
+        all[i].cost_se = 0.5 * (times[i][turns - 2] - times[i][1]) / all[i].nanoseconds;
+    }
+}
+
+namespace {
+
+/// What samplers that are ranked beside each other have in common.
+std::string company_of(const Trial& t) {
+    std::string key = fmt::format("{:g} {:g} {} {}", t.theta_deg, t.azimuth_deg, t.brdf, t.lighting);
+    for (const auto& [name, value] : t.parameters) key += fmt::format(" {}={:g}", name, value);
+    return key;
+}
+
+/// Samplers by variance times time.
+struct Ranks {
+    std::vector<std::string> better, worse, level;  // than these it is; level: not ranked against these
+};
+
+Ranks ranks_of(const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency* const> company) {
+    Ranks out;
+    for (const Efficiency* o : company) {
+        if (o->trial == e.trial || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
+        const bool level = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
+        (level ? out.level : e.high() < o->low() ? out.better : out.worse).push_back(trials[o->trial].arm);
+    }
+    return out;
+}
+
+std::string say_ranks(const Efficiency& e, const Ranks& ranks) {
+    std::string say = fmt::format("A sample takes {:.3g} ns", e.nanoseconds);
+    if (!ranks.better.empty())
+        say += fmt::format("; variance x time is lower than that of {}", fmt::join(ranks.better, ", "));
+    if (!ranks.worse.empty()) say += fmt::format("; higher than that of {}", fmt::join(ranks.worse, ", "));
+    if (!ranks.level.empty())
+        say +=
+            fmt::format("; not ranked against {}: intervals overlap or a tail is heavy", fmt::join(ranks.level, ", "));
+    return say + ".";
+}
+
+void judge_one_efficiency(
+    const Efficiency& e, std::span<const Trial> trials, std::span<const Efficiency* const> company, Verdict& v) {
+    if (!e.fault.empty()) {
+        v.state = State::error;
+        v.evidence["first_fault"] = e.fault;
+        v.say = "The sampler broke off: " + e.fault + ".";
+        return;
+    }
+    v.evidence["variance"] = e.variance;
+    v.evidence["variance_relative_se"] = e.relative_se;
+    v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
+    if (e.heavy) {
+        v.state = State::inconclusive;
+        v.say = "Heavy tail: the variance is not known, hence no rank.";
+        v.next.kind = NextStep::Kind::heavier_pdf;
+        return;
+    }
+    v.state = State::right;
+    v.say = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
+    if (e.nanoseconds > 0) v.say_timed = say_ranks(e, ranks_of(e, trials, company));
+}
+
+}  // namespace
+
+std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<const Efficiency> all) {
+    std::vector<Verdict> out(trials.size());
+    std::map<std::string, std::vector<const Efficiency*>> companies;
+    for (const Efficiency& e : all)
+        if (e.weighed) companies[company_of(trials[e.trial])].push_back(&e);
+    for (const Efficiency& e : all) {
+        Verdict& v = out[e.trial];
+        v.arm = trials[e.trial].arm, v.trial = trials[e.trial].text(), v.name = "efficiency";
+        v.state = State::skipped;
+        v.say = "There are no weights to take a variance of.";
+        if (e.weighed || !e.fault.empty()) judge_one_efficiency(e, trials, companies[company_of(trials[e.trial])], v);
+    }
+    return out;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,51 @@
+// Variances that are known, and ranks by them.
+#include "check/decide/efficiency.h"
+
+#include <gtest/gtest.h>
+
+#include "subjects/list.h"
+
+namespace crescent::check {
+namespace {
+
+/// Lambert of albedo 0.5 under an even light: X of a uniform draw is cos, of variance 1 / 12; of a cosine one 0.5
+/// always.
+TEST(EfficiencyOfSamplers, HasTheVarianceOfTheWeights) {
+    std::vector<Trial> trials;
+    const TrialSetup setup = trial_setup(LobeKind::none, true, "fill", 32);
+    for (const char* arm : {"uniform", "cosine"}) {
+        trials.push_back(trial_on(setup, 30, 0, arm, nullptr));
+        trials.back().subject = arm_on(arm, trials.back());
+    }
+    Trial baseline = trials[0];
+    baseline.baseline = true;
+    trials.push_back(baseline);
+    CheckSettings settings;
+    settings.budget = CheckBudget::limited();
+    ProgressMonitor monitor;
+    const std::vector<CheckOutcome> outcomes = check_samplers(trials, settings, monitor);
+    std::vector<Efficiency> all = variances_of(trials, outcomes, settings, monitor);
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_NEAR(all[0].variance, 1.0 / 12, 4 * all[0].relative_se / 12);
+    EXPECT_NEAR(all[2].variance, 1.0 / 12, 4 * all[2].relative_se / 12);
+    EXPECT_LT(all[1].variance, 1e-9);
+    for (Efficiency& e : all) e.nanoseconds = 10, e.cost_se = 0.01;  // equal times: ranks are by variance
+    const std::vector<Verdict> v = judge_efficiency(trials, all);
+    EXPECT_EQ(v[0].state, State::right);
+    EXPECT_NE(v[0].say_timed.find("higher than that of cosine"), std::string::npos) << v[0].say_timed;
+    EXPECT_NE(v[1].say_timed.find("lower than that of uniform"), std::string::npos) << v[1].say_timed;
+    EXPECT_EQ(v[0].say.find("ns"), std::string::npos);  // what varies from run to run stays apart
+}
+
+TEST(EfficiencyOfSamplers, MeasuresWhatASampleCosts) {
+    std::vector<Trial> trials = {trial_on(trial_setup(LobeKind::none, true, "fill", 32), 30, 0, "cosine", nullptr)};
+    trials[0].subject = arm_on("cosine", trials[0]);
+    std::vector<Efficiency> all(1);
+    all[0].weighed = true;
+    measure_costs(trials, 1, all, ProgressMonitor{});
+    EXPECT_GT(all[0].nanoseconds, 0);
+    EXPECT_LT(all[0].nanoseconds, 1e5);
+}
+
+}  // namespace
+}  // namespace crescent::check

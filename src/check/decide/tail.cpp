@@ -1,0 +1,202 @@
+// A tail is heavy where its index is at least 1/2 with its interval, open where the interval contains 1/2.
+#include "check/decide/tail.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "math/functions.h"
+
+namespace crescent::check {
+
+namespace {
+
+std::size_t times_of_largest(std::span<const double> x) {
+    if (x.empty()) return 0;
+    const double least = *std::ranges::max_element(x) * (1 - alike_values);
+    return static_cast<std::size_t>(std::ranges::count_if(x, [&](double v) { return v >= least; }));
+}
+
+bool is_of_few_values(std::span<const double> falling) {
+    std::size_t values = 0;
+    for (std::size_t i = 0; i < falling.size() && values <= few_values; ++values) {
+        const double least = falling[i] * (1 - alike_values);
+        while (i < falling.size() && falling[i] >= least) ++i;
+    }
+    return values <= few_values;
+}
+
+std::optional<stats::Tail> fit_of(std::span<const double> x) {
+    const std::size_t length = std::min(stats::tail_length(x.size()) + 1, x.size());
+    std::vector<double> largest(x.begin(), x.end());
+    std::partial_sort(
+        largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
+    const std::span<const double> falling = std::span<const double>(largest).first(length);
+    const std::optional<stats::Tail> tail = stats::fit_tail(falling);
+    const auto may_be_heavy = [](const stats::Tail& t) { return t.k + 2 * t.se >= heavy_index; };
+    if (!tail || !may_be_heavy(*tail)) return tail;
+    if (times_of_largest(falling) >= bound_drawn || is_of_few_values(falling)) return {};
+    if (length <= deeper_part * deeper_least) return tail;
+    const std::optional<stats::Tail> upper = stats::fit_tail(falling.first(1 + (length - 1) / deeper_part));
+    return upper && !may_be_heavy(*upper) ? upper : tail;
+}
+
+/// Points of one technique with weights beyond the largest drawn are appended; what all points hold of the integral.
+double find_unseen(const CheckAt& c, std::vector<WeighedPoint>& unseen) {
+    const std::vector<double>& x = c.observations.weights;
+    if (x.empty() || c.plan->estimates) return 0;
+    const double largest = *std::ranges::max_element(x) * (1 + alike_weights);
+    double due = 0;
+    for (const WeighedPoint& w : c.integrals.light.weighed) {
+        due += w.light;
+        if (w.x > largest) unseen.push_back(w);
+    }
+    return due;
+}
+
+void note_unseen(std::vector<WeighedPoint> unseen, WeightTail& to) {
+    double square = 0;
+    for (const WeighedPoint& w : unseen)
+        to.unseen += w.light, to.unseen_chance += w.chance, square += w.light * w.light;
+    to.unseen_error = std::sqrt(square);
+    std::ranges::sort(unseen, std::greater<>(), &WeighedPoint::x);
+    double light = 0;
+    for (std::size_t i = 0; i < unseen.size() && light < to.unseen / 2; ++i)
+        light += unseen[i].light, to.half_chance += unseen[i].chance;
+}
+
+/// Draws whose mean has a standard error of 1 %.
+double draws_for_1_percent(const stats::Spread& s) {
+    return s.mean > 0 ? std::max(s.sd * s.sd / (s.mean * s.mean) / 1e-4, 1.0) : 1;
+}
+
+/// The fit to the largest weights, or that there is nothing to fit.
+void tell_fit(const WeightTail& t, const Trial& trial, Verdict& v) {
+    if (!t.fit) {
+        v.evidence["times_largest"] = t.times_largest;
+        v.say = t.times_largest < bound_drawn || static_cast<double>(t.times_largest) == t.spread.n
+            ? "The largest weights are alike: there is no tail. "
+            : fmt::format("The largest weight was drawn {} times: there is no tail. ", t.times_largest);
+        return;
+    }
+    v.evidence["k"] = t.fit->k, v.evidence["se"] = t.fit->se, v.evidence["exceedances"] = t.fit->exceedances;
+    v.say =
+        fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", t.fit->k, t.fit->se, t.fit->exceedances);
+    if (trial.theory.tail_k) v.say += fmt::format(" (theory: {:.3f})", *trial.theory.tail_k);
+    v.say += ". ";
+}
+
+void tell_unseen(const WeightTail& t, Verdict& v) {
+    const double share = t.unseen / t.due;
+    v.state = State::inconclusive;
+    v.evidence["unmet_share"] = share;
+    v.evidence["unmet_share_error"] = t.unseen_error / t.due;
+    v.evidence["unmet_chance_of_a_draw"] = t.unseen_chance;
+    v.evidence["largest_drawn_weight"] = t.spread.largest;
+    v.evidence["unmet_half_chance"] = t.half_chance;
+    v.say += fmt::format(
+        "Heavy tail that no draw met: {:.3g} +- {:.1g} % of f L cos comes from directions whose weight is larger than "
+        "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
+        100 * share, 196 * t.unseen_error / t.due, t.spread.n, t.spread.largest, t.half_chance);
+    if (t.half_chance > 0) v.next = {NextStep::Kind::more_draws, std::max(1 / (t.half_chance * t.spread.n), 2.0)};
+    else v.next.kind = NextStep::Kind::heavier_pdf;
+}
+
+bool has_weights(std::span<const CheckAt> techniques) {
+    return !techniques.empty() && std::ranges::all_of(techniques, [](const CheckAt& c) {
+        return !c.observations.weights.empty() && c.observations.weightless == 0;
+    });
+}
+
+}  // namespace
+
+bool WeightTail::has_unseen() const {
+    const double se = spread.sd / std::sqrt(std::max(spread.n, 1.0));
+    return due > 0 && unseen - 2 * unseen_error > unseen_errors * se + detection_floor * due &&
+        spread.n * unseen_chance < -math::log(missed_by_chance);
+}
+
+std::vector<double> weights_of(std::span<const CheckAt> techniques) {
+    std::vector<double> out;
+    for (const CheckAt& c : techniques) {
+        const std::vector<double>& x = c.observations.weights;
+        if (out.empty()) out = x;
+        else
+            for (std::size_t i = 0; i < std::min(x.size(), out.size()); ++i) out[i] += x[i];
+    }
+    return out;
+}
+
+WeightTail tail_of_weights(std::span<const double> x) {
+    WeightTail out;
+    out.spread = stats::spread(x);
+    out.times_largest = times_of_largest(x);
+    out.bounded = out.spread.n >= 1000 && out.spread.largest <= bounded_weight * out.spread.mean;
+    out.fit = fit_of(x);
+    return out;
+}
+
+WeightTail tail_of(std::span<const CheckAt> techniques) {
+    WeightTail out = tail_of_weights(weights_of(techniques));
+    std::vector<WeighedPoint> unseen;
+    for (const CheckAt& c : techniques) out.due += find_unseen(c, unseen);
+    note_unseen(std::move(unseen), out);
+    return out;
+}
+
+void judge_tail(const Trial& trial, std::span<const CheckAt> techniques, Verdict& v) {
+    if (!has_weights(techniques)) {
+        v.state = State::skipped;
+        v.say = "There are no weights f L cos / p.";
+        return;
+    }
+    const WeightTail t = tail_of(techniques);
+    const double mean = t.spread.mean;
+    v.evidence["draws"] = t.spread.n;
+    v.evidence["relative_sd"] = mean > 0 ? t.spread.sd / mean : 0;
+    v.evidence["largest_over_mean"] = mean > 0 ? t.spread.largest / mean : 0;
+    if (trial.theory.bounded) v.evidence["theory"] = "bounded";
+    if (trial.theory.tail_k) v.evidence["theory_k"] = *trial.theory.tail_k;
+    tell_fit(t, trial, v);
+    if (t.has_unseen()) {
+        v.evidence["samples_for_1_percent"] = "not known";
+        tell_unseen(t, v);
+    } else if (t.heavy()) {
+        v.state = State::inconclusive;
+        v.evidence["samples_for_1_percent"] = "no finite answer";
+        v.say += "Heavy tail: the variance is infinite or looks so, and no interval of the mean means anything.";
+        v.next.kind = NextStep::Kind::heavier_pdf;
+    } else if (t.open()) {
+        v.state = State::inconclusive;
+        v.evidence["samples_for_1_percent"] = "not known";
+        v.say += "Heavy tail or not: the interval of k contains 1/2, from where on the variance is infinite.";
+        // The tail of n draws has 3 sqrt(n): the error of k falls with the fourth root of n.
+        const double tails = 4 * t.fit->se * t.fit->se / std::max(sqr(t.fit->k - heavy_index), 1e-4);
+        v.next = {NextStep::Kind::more_draws, std::max(sqr(tails), 2.0)};
+    } else {
+        const double draws = draws_for_1_percent(t.spread);
+        v.evidence["samples_for_1_percent"] = draws;
+        if (t.bounded) v.say += fmt::format("The largest weight is {:.3g} means. ", t.spread.largest / mean);
+        v.say += fmt::format("The variance is finite: about {:.3g} samples give 1 %.", draws);
+    }
+}
+
+void leave_heavy_mean_open(std::span<const CheckAt> techniques, Verdict& v) {
+    if (v.state != State::right || !has_weights(techniques)) return;
+    const WeightTail t = tail_of(techniques);
+    if (t.has_unseen()) {
+        v.evidence["mean"] = t.spread.mean, v.evidence["quadrature"] = t.due;
+        v.say = fmt::format(
+            "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}. ", t.spread.n, t.spread.mean, t.due);
+        tell_unseen(t, v);
+    } else if (t.heavy()) {
+        v.state = State::inconclusive;
+        v.say = fmt::format(
+            "Heavy tail: k-hat = {:.3f} +- {:.3f}. Weights below the usual one agree with the integral; the plain mean "
+            "of all, {:.6g}, has no interval.",
+            t.fit->k, t.fit->se, t.spread.mean);
+        v.next.kind = NextStep::Kind::heavier_pdf;
+    }
+}
+
+}  // namespace crescent::check

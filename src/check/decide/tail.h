@@ -1,0 +1,46 @@
+// How heavy the weights X = f L cos / p are: the Pareto index k of the largest (PSIS, Vehtari et al. 2024,
+// stats/tail.h), and the unseen tail, which is the part of the integral that lies where X is larger than any weight
+// drawn. The points of the integrals show it; draws cannot.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "check/decide/check_at.h"
+#include "judgements/verdict.h"
+#include "stats/moments.h"
+#include "stats/tail.h"
+
+namespace crescent::check {
+
+/// Of all techniques together.
+struct WeightTail {
+    stats::Spread spread;
+    std::optional<stats::Tail> fit;  // none where the largest weights do not spread
+    std::size_t times_largest = 0;   // draws of the largest weight
+    bool bounded = false;            // the largest weight is no more than a few means
+    double due = 0;                  // integral of f L cos where p > 0, by the points; with that of delta parts
+    // Where weights are larger than any drawn, by technique summed:
+    double unseen = 0, unseen_error = 0;  // integral of f L cos, and its standard error
+    double unseen_chance = 0;             // integral of p
+    double half_chance = 0;               // the same over the largest weights that carry half of `unseen`
+
+    bool heavy() const { return !bounded && fit && fit->k - 2 * fit->se >= heavy_index; }
+    /// The interval of k contains 1/2.
+    bool open() const { return !bounded && !heavy() && fit && fit->k + 2 * fit->se >= heavy_index; }
+    bool has_unseen() const;
+};
+
+/// X of each draw, summed over the techniques of one w_o.
+std::vector<double> weights_of(std::span<const CheckAt> techniques);
+/// The fit alone, for weights without points.
+WeightTail tail_of_weights(std::span<const double> x);
+WeightTail tail_of(std::span<const CheckAt> techniques);
+
+/// The verdict `tail`: right, or inconclusive with what would settle it, or skipped.
+void judge_tail(const Trial& trial, std::span<const CheckAt> techniques, Verdict& v);
+/// The verdict `mean` of weights without a variance: what was tested is right, but no interval of their plain mean
+/// means anything.
+void leave_heavy_mean_open(std::span<const CheckAt> techniques, Verdict& v);
+
+}  // namespace crescent::check

@@ -1,0 +1,101 @@
+// Cosine powers on Lambert have a known Pareto index; lobes that leave Lambert's light to directions they never draw
+// have an unseen tail.
+#include "check/decide/tail.h"
+
+#include <gtest/gtest.h>
+
+#include "check/report/verdicts.h"
+
+namespace crescent::check {
+namespace {
+
+/// p ~ cos^s about n, with a share of cosine beside it; f is Lambert of albedo 1, whose weights without that share are
+/// u^-k, k = (s - 1) / (s + 1).
+struct PowerLobe : JudgedSampler {
+    double s = 1, share = 0;
+    std::string name() const override { return "power"; }
+    Traits traits() const override {
+        Traits t;
+        t.numbers = 3;
+        return t;
+    }
+    double density_at(double z) const {
+        return z > 0 ? (1 - share) * (s + 1) / two_pi * std::pow(z, s) + share * z / pi : 0;
+    }
+    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const double z = std::pow(u[i].x, 1 / ((u[i][2] < share ? 1 : s) + 1)), r = std::sqrt(1 - z * z);
+            out[i] = {{r * std::cos(two_pi * u[i].y), r * std::sin(two_pi * u[i].y), z}, density_at(z)};
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = density_at(at[i].wi.z);
+    }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = at[i].wi.z > 0 ? 1 / pi : 0;
+    }
+};
+
+struct JudgedTail {
+    Verdict tail, mean;
+    WeightTail of;
+};
+JudgedTail tail_at(const PowerLobe& sampler) {
+    Trial t;
+    t.wo = {0, 0, 1}, t.subject = std::make_shared<PowerLobe>(sampler);
+    const CheckAt c = check_sampler_at(*t.subject, 0, t.wo, {}, CheckBudget::limited(), 1);
+    for (const Finding& f : c.findings) ADD_FAILURE() << info(f.first.family).name << f.first.difference;
+    for (const SmallFault& f : c.small) ADD_FAILURE() << f.what << f.size;
+    JudgedTail out;
+    out.of = tail_of({&c, 1});
+    judge_tail(t, {&c, 1}, out.tail);
+    leave_heavy_mean_open({&c, 1}, out.mean);
+    return out;
+}
+
+TEST(TailOfWeights, HasTheIndexOfTheory) {
+    for (double s : {2.0, 8.0, 32.0}) {
+        PowerLobe lobe;
+        lobe.s = s;
+        const JudgedTail t = tail_at(lobe);
+        ASSERT_TRUE(t.of.fit) << s;
+        const double k = (s - 1) / (s + 1);
+        EXPECT_NEAR(t.of.fit->k, k, 3 * t.of.fit->se) << s;
+        EXPECT_EQ(t.tail.state, k < 0.5 ? State::right : State::inconclusive) << s << t.tail.say;
+        EXPECT_EQ(t.mean.state, k < 0.5 ? State::right : State::inconclusive) << s << t.mean.say;
+        EXPECT_EQ(t.tail.next.kind == NextStep::Kind::none, k < 0.5);
+    }
+}
+
+TEST(TailOfWeights, IsRightWhereWeightsAreAlike) {
+    const JudgedTail t = tail_at({});
+    EXPECT_EQ(t.tail.state, State::right);
+    EXPECT_FALSE(t.of.has_unseen());
+    EXPECT_NEAR(t.tail.evidence["samples_for_1_percent"].get<double>(), 1, 1e-9);
+}
+
+/// One draw in 1e6 is of the cosine, which carries nearly all of the light: no draw meets it.
+TEST(TailOfWeights, ThatNoDrawMetIsSeenByThePoints) {
+    PowerLobe lobe;
+    lobe.s = 1e4, lobe.share = 1e-6;
+    const JudgedTail t = tail_at(lobe);
+    EXPECT_TRUE(t.of.has_unseen());
+    EXPECT_EQ(t.tail.state, State::inconclusive);
+    EXPECT_EQ(t.mean.state, State::inconclusive);
+    EXPECT_GT(t.tail.evidence["unmet_share"].get<double>(), 0.9);
+    EXPECT_NEAR(t.tail.evidence["unmet_half_chance"].get<double>(), 5e-7, 2e-7);
+    EXPECT_NE(t.tail.say.find("Heavy tail that no draw met"), std::string::npos);
+    EXPECT_EQ(t.tail.next.kind, NextStep::Kind::more_draws);
+    EXPECT_GT(t.tail.next.times, 20);
+}
+
+/// The same cosine, drawn often enough: a step of weights, no tail.
+TEST(TailOfWeights, ThatIsDrawnOftenIsNone) {
+    PowerLobe lobe;
+    lobe.s = 1e4, lobe.share = 0.02;
+    EXPECT_EQ(tail_at(lobe).tail.state, State::right);
+}
+
+}  // namespace
+}  // namespace crescent::check
