@@ -18,6 +18,22 @@ constexpr Kind kinds[integrands] = {{Family::mass, Family::mass_sets}, {Family::
     {Family::slope, Family::slope_sets}, {Family::centre, Family::centre_sets}, {Family::centre, Family::centre_sets},
     {Family::centre, Family::centre_sets}};
 
+/// What leaves that no draw met add to the variance of one draw: replicates that all miss them show nothing of it.
+Values unmet_variance(const Evidence& e) {
+    Values out{};
+    const std::vector<Leaf>& leaves = e.plan.tree.leaves();
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+        const LeafIntegral& leaf = e.integrals.leaves[l];
+        if (e.observations.counts[l] > 0 || !(leaf.second > 0)) continue;
+        const double h = leaf.second / leaf.bridge.value, share = leaf.bridge.value / h;
+        const Vec3d off = from_chart(e.plan.tree.rect(leaves[l]).at(0.5, 0.5)) - e.plan.middle;
+        const double log_q = math::log(leaves[l].q) - e.plan.median_log_p;
+        const Values there = {1, h, h * log_q, h * off.x, h * off.y, h * off.z};
+        for (std::size_t q = 0; q < integrands; ++q) out[q] += share * sqr(there[q] - e.integrals.sums[q].value);
+    }
+    return out;
+}
+
 }  // namespace
 
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand) {
@@ -33,6 +49,7 @@ void ask_sums(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density()) return;
     const Observations& o = e.observations;
     const double n = o.independent;
+    const Values unmet = unmet_variance(e);
     for (int q = 0; q < integrands; ++q) {
         const auto at = static_cast<std::size_t>(q);
         const Estimate& claimed = e.integrals.sums[at];
@@ -48,7 +65,7 @@ void ask_sums(const Evidence& e, const Visit& visit) {
         const ReplicateMean<Replicates> sets = replicate_mean(e, q);
         a.family = kinds[q].by_sets;
         a.difference = sets.mean - claimed.value;
-        const double w = sets.variance + claimed.variance;
+        const double w = sets.variance + claimed.variance + unmet[at] / o.scrambled;
         a.sd = std::sqrt(w);
         a.p = student_p_of(std::fabs(a.difference) - floor, w,
             freedom(w, claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1)));
