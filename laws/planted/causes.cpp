@@ -52,6 +52,7 @@ std::vector<PlantedFault> planted_faults(bool full) {
     for (PlantedFault& fault : out) fault.cause = cause_of(fault.name);
     for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
     for (PlantedFault& f : boundary_faults()) out.push_back(std::move(f));
+    for (PlantedFault& fault : out) fault.verdict = verdict_of(fault.name);
     return out;
 }
 

@@ -14,7 +14,8 @@ struct PlantedFault {
     std::string name;    // a few words
     std::string breaks;  // the arm it breaks
     std::vector<Trial> trials;
-    std::string cause{};  // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
+    std::string cause{};    // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
+    std::string verdict{};  // the one that asks for it; "" where several do
 };
 
 std::vector<PlantedFault> planted_faults(bool full);
@@ -29,6 +30,7 @@ std::vector<PlantedFault> held_out_faults();
 /// Those of several lobes, of lights and of shadowing, apart: what they lacked a name for was mended.
 std::vector<PlantedFault> held_out_lobe_faults();
 std::string cause_of(const std::string& fault);
+std::string verdict_of(const std::string& fault);
 
 /// What was said of a planted fault over its w_o.
 struct Explained {
