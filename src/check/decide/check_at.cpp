@@ -138,6 +138,8 @@ private:
     }
 
     Sizes sizes(const Evidence& e, double level) {
+        const bool drawn = e.observations.checks.directions > 0 || e.integrals.sums[mass].value > 0;
+        if (!drawn) return {};  // delta parts alone, or nothing: no density that could hide a fault
         double nodes = 0;
         ask_nodes(e, [&](const Answer& a) { nodes += a.family == Family::node; });
         StreamKey key = key_;
