@@ -29,6 +29,13 @@ void KnownList::wrong(std::string name, std::string verdict, Recipe r, std::init
     add(std::move(name), Known::wrong, std::move(verdict), trials_at(std::move(r), theta));
 }
 
+void KnownList::missed(std::string name, Recipe r, std::initializer_list<double> theta) {
+    add(std::move(name), Known::missed, "", trials_at(std::move(r), theta));
+}
+void KnownList::called_wrong(std::string name, std::string verdict, Recipe r, std::initializer_list<double> theta) {
+    add(std::move(name), Known::called_wrong, std::move(verdict), trials_at(std::move(r), theta));
+}
+
 std::vector<KnownSampler> known_samplers() {
     std::vector<KnownSampler> out;
     for (const auto& list : {delta_samplers(), phase_functions(), single_precision_samplers(), lobe_samplers(),

@@ -7,6 +7,7 @@
 
 #include "base/stopwatch.h"
 #include "check/constants.h"
+#include "check/estimate/both_ways.h"
 #include "check/decide/delta_directions.h"
 
 namespace crescent::check {
@@ -83,6 +84,7 @@ public:
         looks.purpose = Purpose::pairs;
         out_.scatter = look_for_scatter(source_, looks);
         source_.estimates = out_.scatter.pdf(), source_.f_estimates = out_.scatter.f();
+        if (!source_.f_estimates) source_.unscaled = both_ways(source_.subject, key_) != BothWays::not_known;
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
         for (int look = 0; look < budget_.look_count; ++look) {

@@ -156,9 +156,8 @@ private:
 
     /// The middle first, then the most grazing one: between them they meet most faults.
     void order() {
-        std::ranges::sort(jobs_, {}, [&](const Job& j) {
-            return std::tuple(std::fabs(trial_of(j).theta_deg - 45), index_of(j));
-        });
+        std::ranges::sort(
+            jobs_, {}, [&](const Job& j) { return std::tuple(std::fabs(trial_of(j).theta_deg - 45), index_of(j)); });
         const auto grazing = std::ranges::find_if(jobs_, [&](const Job& j) { return trial_of(j).theta_deg == 85; });
         if (grazing != jobs_.end() && grazing > jobs_.begin()) std::rotate(jobs_.begin() + 1, grazing, grazing + 1);
     }
@@ -193,7 +192,8 @@ private:
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             monitor_.check();
             const Trial& trial = trial_of(jobs_[j]);
-            const StreamKey key{settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
+            const StreamKey key{
+                settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
             if (trial.subject->draws_at_will())
                 jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(trial, key); });
         }

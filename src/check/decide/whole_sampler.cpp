@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/estimate/both_ways.h"
 
 namespace crescent::check {
 
@@ -126,7 +127,7 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
         there.push_back(p), back.push_back({p.wi, p.wo});
     }
     const std::vector<Vec3d> f = f_of(subject, there), g = f_of(subject, back), again = f_of(subject, there);
-    SmallFault as_surface{Family::reciprocity, 0, 256, 0, {}, "f(a, b) differs from f(b, a)"}, as_phase = as_surface;
+    SmallFault out{Family::reciprocity, 0, 256, 0, {}, "f(a, b) differs from f(b, a)"};
     for (std::size_t i = 0; i < there.size(); ++i)
         for (int c = 0; c < (traits.channels == 3 ? 3 : 1); ++c) {
             const Pair& p = there[i];
@@ -135,13 +136,12 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
             const bool across = p.wo.z * p.wi.z < 0;
             Draw at;
             at.wi = p.wi;
-            if (differ(a * std::fabs(p.wi.z), b * std::fabs(p.wo.z), reciprocity_tolerance)) ++as_phase.times;
             if ((!across || traits.eta) && differ(a * due_ratio(traits, p, c), b, reciprocity_tolerance))
-                note(as_surface, {}, at, a, as_surface.what), as_surface.first.due = b;
+                note(out, {}, at, a, out.what), out.first.due = b;
         }
-    const bool phase = both && !traits.eta && as_phase.times == 0;
     // A pair or two in 256 may be where f ends: a rounding of the half vector.
-    return as_surface.times > tolerated_breaks && !phase ? std::optional(as_surface) : std::nullopt;
+    if (out.times <= tolerated_breaks || both_ways(subject, key) == BothWays::phase_function) return {};
+    return out;
 }
 
 std::optional<SmallFault> mis_weights(const JudgedSampler& subject, Vec3d wo, const StreamKey& key) {

@@ -27,7 +27,7 @@ void LightIntegrals::add(const LightIntegrals& o) {
 
 double flux_factor(const Source& source, Vec3d wi, int channel) {
     if (source.wo.z * wi.z >= 0 || source.traits.importance) return 1;
-    if (!source.traits.eta) return 0;  // not known: what is reflected alone is compared with 1
+    if (!source.traits.eta) return source.unscaled ? 1 : 0;  // 0: not known: what is reflected alone is compared with 1
     const double eta = channel_of(*source.traits.eta, channel);
     return source.wo.z > 0 ? eta * eta : 1 / (eta * eta);
 }

@@ -25,6 +25,8 @@ public:
     bool estimates = false, f_estimates = false;
     /// The density is left out: what is asked is a matter of the draws alone.
     bool by_draws = false;
+    /// No index is stated, and none scales f across the surface (both_ways.h).
+    bool unscaled = false;
 
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
