@@ -76,6 +76,7 @@ public:
         : source_(subject, technique, wo, data.light), budget_(budget), levels_(data.levels) {
         key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
         out_.wo = wo, out_.technique = technique;
+        out_.numbers = source_.numbers(), out_.channels = source_.channels();
     }
 
     CheckAt run() {

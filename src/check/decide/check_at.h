@@ -29,7 +29,7 @@ struct Finding {
 /// Everything about one w_o. Evidence is kept for the explanation.
 struct CheckAt {
     Vec3d wo{};
-    int technique = 0;
+    int technique = 0, numbers = 2, channels = 1;  // as traits have them
     std::vector<Finding> findings;
     std::vector<SmallFault> small;
     std::vector<Answer> suspected;  // failed at stage 1 and passed at stage 2

@@ -147,32 +147,12 @@ struct Round {
 };
 
 Round look(Source& source, const StreamKey& key) {
-    std::vector<Numbers> u;
-    for (std::uint32_t i = 0; i < points; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
-    const std::vector<Draw> at = draws_at(source, u);
-    std::vector<double> branch(u.size(), 1.0);
-    int first = 0, second = 1;
-    if (source.traits.numbers == 3) {
-        const std::optional<int> k = chooser(source, u, at);
-        if (!k) return {};
-        first = *k == 0 ? 1 : 0, second = *k == 2 ? 1 : 2;
-        branch = branch_lengths(source, u, at, *k);
-    }
-    std::vector<Point> all;
-    std::vector<Vec3d> w;
-    for (std::size_t i = 0; i < u.size(); ++i)
-        if (drawn(at[i])) all.push_back({u[i], branch[i], first, second, at[i].wi}), w.push_back(at[i].wi);
-    differentiate(source, all);
-    std::vector<double> p(w.size());
-    source.density(w, p);
     Round out;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const Point& x = all[i];
-        if (!(x.error < jacobian_error) || !(p[i] > 0) || !(x.branch > 1e-3)) continue;
+    for (const MapDensity& x : map_densities(source, key)) {
         ++out.looked;
-        const double ratio = p[i] * x.area / x.branch;
+        const double ratio = x.p / x.drawn;
         if (ratio >= 1 - jacobian_tolerance - 4 * x.error) continue;
-        if (out.broken++ == 0) out.first = {x.u, at[0], p[i], x.branch / x.area};
+        if (out.broken++ == 0) out.first = {x.u, x.draw, x.p, x.drawn};
         out.worst = std::min(out.worst, ratio);
     }
     return out;
@@ -180,10 +160,41 @@ Round look(Source& source, const StreamKey& key) {
 
 }  // namespace
 
+std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
+    std::vector<MapDensity> out;
+    if (source.traits.own_random || !source.subject.draws_at_will() || source.traits.numbers < 2 ||
+        source.traits.numbers > 3)
+        return out;
+    std::vector<Numbers> u;
+    for (std::uint32_t i = 0; i < points; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    const std::vector<Draw> at = draws_at(source, u);
+    std::vector<double> branch(u.size(), 1.0);
+    int first = 0, second = 1;
+    if (source.traits.numbers == 3) {
+        const std::optional<int> k = chooser(source, u, at);
+        if (!k) return out;
+        first = *k == 0 ? 1 : 0, second = *k == 2 ? 1 : 2;
+        branch = branch_lengths(source, u, at, *k);
+    }
+    std::vector<Point> all;
+    std::vector<Draw> of;
+    std::vector<Vec3d> w;
+    for (std::size_t i = 0; i < u.size(); ++i)
+        if (drawn(at[i]))
+            all.push_back({u[i], branch[i], first, second, at[i].wi}), w.push_back(at[i].wi), of.push_back(at[i]);
+    differentiate(source, all);
+    std::vector<double> p(w.size());
+    source.density(w, p);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Point& x = all[i];
+        if (!(x.error < jacobian_error) || !(p[i] > 0) || !(x.branch > 1e-3)) continue;
+        out.push_back({x.u, of[i], p[i], x.branch / x.area, x.error});
+    }
+    return out;
+}
+
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
-    const int n = source.traits.numbers;
-    if (!source.has_density() || source.traits.own_random || !source.subject.draws_at_will() || n < 2 || n > 3)
-        return {};
+    if (!source.has_density()) return {};
     StreamKey key = given;
     const Round one = look(source, key);
     if (one.broken < jacobian_breaks) return {};

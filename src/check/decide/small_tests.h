@@ -27,6 +27,14 @@ std::optional<SmallFault> corners_of_u(Source& source);
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key);
 /// pdf(w) and f(w) of the same directions in blocks of other sizes: a program may mix up the rows of a block.
 std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key);
+/// What the map draws at a few points where its derivatives are known to `jacobian_error`, and p there, both 1/sr.
+/// Other u may lead to the same direction, so `drawn` is a part of what is drawn there.
+struct MapDensity {
+    Numbers u;
+    Draw draw;
+    double p = 0, drawn = 0, error = 0;  // error: of `drawn`, relative
+};
+std::vector<MapDensity> map_densities(Source& source, const StreamKey& key);
 /// p |dw/du| of the branch that a draw takes is at least the probability of that branch.
 std::optional<SmallFault> jacobian(Source& source, const StreamKey& key);
 /// Numbers of which few bits are used: a draw moves with u at large, and does not move at all with its last bits.

@@ -1,106 +1,288 @@
-// Candidate factors by which a density may be off, as functions of the direction, and their names in a report.
+// Candidates are tried in the order of their likelihood; the first that passes the check in place of p is the cause,
+// unless another passes that draws tell no better.
 #include "check/explain/causes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
 
 #include "check/constants.h"
-#include "check/explain/regression.h"
+#include "check/decide/small_tests.h"
+#include "check/explain/frames.h"
+#include "check/explain/leaf_factors.h"
+#include "check/explain/lobes.h"
+#include "check/explain/spread.h"
+#include "check/explain/text.h"
+#include "check/explain/weights.h"
 
 namespace crescent::check {
 
 namespace {
 
-/// A candidate: its value for given directions, positive. p: at that direction, by the sampler.
-struct Factor {
-    const char* name;
-    std::function<double(Vec3d wo, Vec3d wi)> value;
+constexpr std::size_t most_places = 2, most_checks = 4;
+constexpr double least_lead = 8;  // nats over all draws by which a cause beats another: e^-8
+constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
+/// Shares of the divergence that are enough where nothing explains all of it: of frames, in which a table that is read
+/// in another order is not wholly known; of what has a fitted number, which replicates know better than the fit.
+constexpr double most_of_it = 0.4, nearly_all = 0.9;
+
+/// A candidate, with what is said of it once it has passed.
+struct Candidate {
+    Hypothesis hypothesis;
+    std::function<Cause(const Hypothesis&)> tell;
+    double in_part = 2;  // named too if it explains this share of the divergence; above 1: only if it passes
 };
 
-Vec3d half_of(Vec3d a, Vec3d b) {
-    const Vec3d h = a + b;
-    return h * (1 / std::sqrt(dot(h, h) + 1e-300));
-}
+std::string at_w_o(const Place& place) { return place.trial->text(); }
 
-const std::vector<Factor>& factors() {
-    static const std::vector<Factor> all = {
-        {"cos theta_i", [](Vec3d, Vec3d i) { return std::fabs(i.z); }},
-        {"sin theta_i", [](Vec3d, Vec3d i) { return std::sqrt(i.x * i.x + i.y * i.y); }},
-        {"w_o.m", [](Vec3d o, Vec3d i) { return std::fabs(dot(half_of(o, i), o)); }},
-        {"n.m", [](Vec3d o, Vec3d i) { return std::fabs(half_of(o, i).z); }},
-        {"p", nullptr},
-        {"the side of the surface", [](Vec3d, Vec3d i) { return i.z < 0 ? std::exp(1.0) : 1.0; }},
-        {"e^x", [](Vec3d, Vec3d i) { return math::exp(i.x); }},
-        {"e^y", [](Vec3d, Vec3d i) { return math::exp(i.y); }},
-        {"e^z", [](Vec3d, Vec3d i) { return math::exp(i.z); }},
-    };
-    return all;
-}
-constexpr std::size_t nameable = 4;  // the first of them
-
-/// Rows of one w_o: leaves in which the claim expects a draw, chosen by the claim alone.
-void add_rows(const CheckAt& c, Vec3d wo, std::size_t group, std::vector<Row>& rows) {
-    const double n = c.observations.independent;
-    double h = 0, h2 = 0;
-    for (const LeafIntegral& l : c.integrals.leaves) h += l.bridge.value, h2 += l.second;
-    if (!(h > 0)) return;
-    for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
-        const LeafIntegral& leaf = c.integrals.leaves[l];
-        if (leaf.bridge.value * n < 1) continue;
-        const ChartRect& rect = c.plan->tree.rect(c.plan->tree.leaves()[l]);
-        Row r{group, c.observations.leaves[l], leaf.bridge.value * n, leaf.bridge.variance * n * n, h2 / h, {}};
-        for (const Factor& f : factors()) {
-            double value = 0;
-            for (int j = 0; j < 9 && f.value; ++j)
-                value += f.value(wo, from_chart(rect.at((1 + 2 * (j % 3)) / 6.0, (1 + 2 * (j / 3)) / 6.0))) / 9;
-            if (!f.value) value = c.plan->tree.leaves()[l].q;
-            r.x.push_back(math::log(value + 1e-12));
-        }
-        rows.push_back(std::move(r));
+std::optional<Candidate> constant_candidate(std::span<const Place> places) {
+    std::vector<MassRatio> all;
+    bool any = false;
+    for (const Place& place : places) {
+        all.push_back(mass_ratio(*place.at));
+        any = any || std::fabs(all.back().ratio - 1) > std::max(detection_floor, 3 * all.back().error);
     }
+    if (!any) return {};
+    Candidate out;
+    out.hypothesis.name = "constant";
+    out.hypothesis.free = true;
+    out.hypothesis.density = [](const JudgedSampler& s, int t, std::span<const Pair> at, std::span<double> to) {
+        s.exact_pdf(t, at, to);
+    };
+    for (const MassRatio& m : all) {
+        out.hypothesis.constants.push_back(1 / std::max(m.ratio, 1e-12));
+        out.hypothesis.masses.push_back(out.hypothesis.constants.back());
+    }
+    score(out.hypothesis, places);
+    out.tell = [all, places](const Hypothesis&) {
+        const auto [low, high] = std::ranges::minmax_element(all, {}, &MassRatio::ratio);
+        double mean = 0, error = 0;
+        for (const MassRatio& m : all)
+            mean += m.ratio / static_cast<double>(all.size()), error = std::max(error, m.error);
+        const double known_to = std::max(4 * error / mean, detection_floor);
+        Cause cause{"constant", mean, error, ""};
+        if (high->ratio - low->ratio > 2 * known_to * mean) {
+            const auto at = [&](auto it) { return at_w_o(places[static_cast<std::size_t>(it - all.begin())]); };
+            cause.text = fmt::format("p is a constant times what is drawn at each w_o, from {} at {} to {} at {}.",
+                with_error(low->ratio, 1.96 * low->error), at(low), with_error(high->ratio, 1.96 * high->error),
+                at(high));
+            return cause;
+        }
+        const std::string name = number_name(mean, known_to, places[0].traits);
+        cause.text = fmt::format("p is a constant {}{} times what is drawn.", with_error(mean, 1.96 * error),
+            name.empty() || name == fmt::format("{:g}", std::round(mean)) ? "" : " = " + name);
+        return cause;
+    };
+    return out;
 }
 
-double nearest_half(double x) { return std::round(2 * x) / 2; }
+std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std::span<const Place> places) {
+    const double exponent = f.exponent;
+    std::string out;
+    if (f.name == "a constant across the surface") {
+        const double by = std::exp(-f.fitted), half = 1.96 * f.error * by;
+        out = fmt::format("Across the surface p is {} times what is drawn{}.", with_error(by, half),
+            h.constants.empty() || std::fabs(h.constants[0] - 1) < 0.01 ? ", and right on the side of w_o"
+                                                                        : ", relative to the side of w_o");
+        out +=
+            " A constant across the surface explains it: the probability with which a lobe is chosen (the "
+            "chooser's) or a factor of that lobe.";
+        return out;
+    }
+    const std::string power = std::fabs(exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(exponent));
+    double least = 1e300, most = 0;
+    for (double c : h.constants) least = std::min(least, c), most = std::max(most, c);
+    std::string times;
+    if (most < 1.02 * least && std::fabs(least - 1) > 0.01) {
+        const std::string name = number_name(least, 0.01, places[0].traits);
+        times = fmt::format(" and a constant {:.4g}{}", least, name.empty() ? "" : " = " + name);
+    } else if (most > 1.02 * least) times = " and a constant at each w_o";
+    return fmt::format("Draws follow p {} {}{}{} (fitted exponent {}): {} {} in p.", exponent > 0 ? "times" : "over",
+        f.name, power, times, with_error(f.fitted, 1.96 * f.error), f.name,
+        exponent > 0 ? "is missing" : "is once too often");
+}
 
-/// p is the same multiple of what is drawn at every w_o.
-std::optional<Cause> constant_of(const CheckOutcome& outcome) {
-    double low = 1e300, high = 0, sum = 0, count = 0, sd = 0;
-    for (const auto& techniques : outcome.at)
-        for (const CheckAt& c : techniques) {
-            const double drawn = c.observations.sums[mass].sum / std::max(c.observations.independent, 1.0);
-            const double by = c.integrals.sums[mass].value / std::max(drawn, 1e-12);
-            low = std::min(low, by), high = std::max(high, by), sum += by, ++count;
-            sd = std::max(sd, std::sqrt(c.integrals.sums[mass].variance) / std::max(drawn, 1e-12));
+Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
+    Candidate out;
+    out.hypothesis = f.hypothesis;
+    out.tell = [f, places](
+                   const Hypothesis& h) { return Cause{f.name, f.exponent, f.error, factor_sentence(f, h, places)}; };
+    return out;
+}
+
+Candidate candidate_of_power(FactorHypothesis f) {
+    Candidate out{f.hypothesis, {}, nearly_all};
+    out.tell = [f](const Hypothesis&) {
+        return Cause{"p", f.exponent, f.error,
+            fmt::format("Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
+                        "differs between sample and pdf.",
+                with_error(1 + f.exponent, 1.96 * f.error), f.exponent > 0 ? "more" : "less")};
+    };
+    return out;
+}
+
+Candidate candidate_of(const Hypothesis& frame) {
+    Candidate out{frame, {}, most_of_it};
+    out.tell = [name = frame.name](const Hypothesis& h) {
+        return Cause{name, 0, 0,
+            h.explained < 0.9 ? fmt::format("{:.0f} % of the difference is explained by {} between draws and p.",
+                                    100 * h.explained, name)
+                              : fmt::format("Draws follow p with {}.", name)};
+    };
+    return out;
+}
+
+Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, bool about_z) {
+    Candidate out{turn.hypothesis, {}, most_of_it};
+    out.tell = [turn, places, about_z](const Hypothesis& h) {
+        std::size_t most = 0;
+        for (std::size_t k = 1; k < turn.turns.size(); ++k)
+            if (dot(turn.turns[k].by, turn.turns[k].by) > dot(turn.turns[most].by, turn.turns[most].by)) most = k;
+        const Turn& t = turn.turns[most];
+        const double angle = std::sqrt(dot(t.by, t.by));
+        const Vec3d axis = t.by * (1 / std::max(angle, 1e-300));
+        Cause cause{about_z ? "turned about z" : "turned", angle, t.error, ""};
+        if (about_z)
+            cause.text = fmt::format(
+                "Draws are those of p turned about z by {} rad{}: a shift of a table's columns, or "
+                "of the azimuth.",
+                with_error(t.by.z, 1.96 * t.error),
+                std::fabs(t.by.z) > 0 ? fmt::format(" = 2 pi / {:.1f}", two_pi / std::fabs(t.by.z)) : "");
+        else
+            cause.text = fmt::format("Draws are those of p turned by {} rad about ({:.3f}, {:.3f}, {:.3f}) at {}.",
+                with_error(angle, 1.96 * t.error), axis.x, axis.y, axis.z, at_w_o(places[most]));
+        if (h.explained < 0.9)
+            cause.text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
+        return cause;
+    };
+    return out;
+}
+
+using Candidates = std::vector<Candidate>;
+
+void add_if(Candidates& to, std::optional<Candidate> c) {
+    if (c) to.push_back(std::move(*c));
+}
+
+void sort_by_gain(Candidates& all) {
+    std::ranges::sort(all, std::greater<>(), [](const Candidate& c) { return c.hypothesis.gain; });
+}
+
+/// Causes without a number of their own but a constant.
+Candidates plain_candidates(std::span<const Place> places) {
+    Candidates out;
+    add_if(out, constant_candidate(places));
+    for (FactorHypothesis& f : factor_hypotheses(places)) out.push_back(candidate_of(std::move(f), places));
+    for (const Hypothesis& h : frame_hypotheses(places)) out.push_back(candidate_of(h));
+    sort_by_gain(out);
+    return out;
+}
+
+/// Causes with an angle, an exponent or a share that is fitted.
+Candidates fitted_candidates(std::span<const Place> places) {
+    Candidates out;
+    if (places[0].traits.wo == Traits::Asked::none)
+        if (const auto turn = azimuth_hypothesis(places)) out.push_back(candidate_of(*turn, places, true));
+    if (const auto turn = turn_hypothesis(places)) out.push_back(candidate_of(*turn, places, false));
+    if (auto power = power_hypothesis(places)) out.push_back(candidate_of_power(std::move(*power)));
+    for (const Leak& leak : leak_hypotheses(places)) {
+        Candidate c{leak.hypothesis, {}, nearly_all};
+        c.tell = [leak](const Hypothesis&) { return Cause{"leak", leak.share, leak.error, leak_sentence(leak)}; };
+        out.push_back(std::move(c));
+    }
+    sort_by_gain(out);
+    return out;
+}
+
+/// The one that passes, if none that is as likely passes too.
+std::optional<Cause> passing(Candidates& all, std::span<const Place> places, bool& several) {
+    const Candidate* found = nullptr;
+    std::size_t checks = 0;
+    for (Candidate& c : all) {
+        if (found) {
+            const double less = found->hypothesis.gain - c.hypothesis.gain;
+            const double by_chance = least_lead / std::min(found->hypothesis.draws, c.hypothesis.draws);
+            if (less > std::max({3 * found->hypothesis.error, 3 * c.hypothesis.error, by_chance})) break;
+            if (say_the_same(found->hypothesis, c.hypothesis, places)) continue;
         }
-    const double value = sum / std::max(count, 1.0), known = std::max(3e-3 * value, 4 * sd);
-    if (!(count > 0) || high - low > 2 * known || std::fabs(value - 1) < known / 10 || sd > 0.05) return {};
-    return Cause{
-        "constant", value, sd, fmt::format("p is {:.5g} times what is drawn: a constant factor explains it.", value)};
+        if (checks++ == most_checks) break;
+        if (!passes(c.hypothesis, places, 1)) continue;
+        if (found) return several = true, std::nullopt;
+        found = &c;
+    }
+    if (!found) return {};
+    Hypothesis h = found->hypothesis;
+    score(h, places);
+    return found->tell(h);
+}
+
+/// What explains most of a difference that nothing explains wholly, by twice as much as anything else.
+std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
+    Candidate* best = nullptr;
+    for (Candidate& c : all) {
+        if (c.in_part > 1) continue;
+        score(c.hypothesis, places);
+        if (c.hypothesis.explained > c.in_part && (!best || c.hypothesis.gain > best->hypothesis.gain)) best = &c;
+    }
+    if (!best) return {};
+    for (const Candidate& c : all) {
+        if (&c == best || c.in_part > 1 || c.hypothesis.explained < best->hypothesis.explained / 2) continue;
+        if (!say_the_same(best->hypothesis, c.hypothesis, places)) return {};
+    }
+    return best->tell(best->hypothesis);
+}
+
+/// A constant in all the draws can be a factor that varies little. The map's own derivatives tell them apart where one
+/// u alone leads to each direction: then what it draws is all that is drawn.
+std::optional<Cause> by_the_map(std::optional<Cause> constant, std::span<const Place> places) {
+    constexpr double one_to_one = 20;  // times the constant's distance from 1
+    std::vector<KnownRatio> ratios;
+    const double off = std::fabs(std::log(constant->exponent));
+    for (const Place& place : places) {
+        Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
+        const StreamKey key{23, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
+            8, Purpose::jacobian, 1};
+        for (const MapDensity& m : map_densities(source, key))
+            ratios.push_back({place.trial->wo, m.draw.wi, m.drawn / m.p, m.error});
+    }
+    double near = 0, same = 0;
+    for (const KnownRatio& r : ratios) {
+        near += std::fabs(std::log(r.value)) < one_to_one * off;
+        same += std::fabs(std::fabs(std::log(r.value)) - off) < 0.1 * off + 2 * r.error + constant->error;
+    }
+    const double count = static_cast<double>(ratios.size());
+    if (count < 32 || near < 0.9 * count || same > 0.8 * count) return constant;
+    const std::vector<Factor> factors = factors_for(places[0].traits, places[0].trial->light);
+    const std::optional<RatioCause> c = explain_ratios(ratios, factors);
+    if (!c || c->exponent == 0) return {};
+    return Cause{c->name, c->exponent, 0,
+        ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits)};
+}
+
+std::optional<Cause> explained_by(std::span<const Place> places) {
+    Candidates plain = plain_candidates(places);
+    bool several = false;
+    if (std::optional<Cause> c = passing(plain, places, several); c || several) {
+        if (c && c->factor == "constant") return by_the_map(std::move(c), places);
+        return c;
+    }
+    if (std::optional<Cause> c = lobe_cause(places)) return c;
+    Candidates fitted = fitted_candidates(places);
+    if (std::optional<Cause> c = passing(fitted, places, several); c || several) return c;
+    plain.insert(plain.end(), std::make_move_iterator(fitted.begin()), std::make_move_iterator(fitted.end()));
+    return in_part(plain, places);
 }
 
 }  // namespace
 
 std::optional<Cause> cause_of(std::span<const Trial> trials, const CheckOutcome& outcome) {
-    std::vector<Row> rows;
-    std::size_t groups = 0;
-    for (std::size_t k = 0; k < outcome.at.size(); ++k)
-        for (const CheckAt& c : outcome.at[k])
-            if (c.plan && c.plan->drawn > 0 && groups < 16) add_rows(c, trials[outcome.trials[k]].wo, groups++, rows);
-    if (rows.size() < 64) return {};
-    const double before = misfit_of(rows);
-    const Fit even = fit(rows, groups, {});
-    const auto explains = [&](double misfit) { return misfit < 1.1 || misfit - 1 < 0.02 * (before - 1); };
-    if (explains(even.misfit)) return constant_of(outcome);
-    const Fit best = select(rows, groups, factors().size(), 2);
-    if (best.factors.size() != 1 || !explains(best.misfit)) return {};
-    const std::size_t k = best.factors[0];
-    const double b = best.exponents[0], simple = nearest_half(b);
-    if (k >= nameable || simple == 0 || std::fabs(b - simple) > std::max(3 * best.errors[0], 0.03)) return {};
-    const char* name = factors()[k].name;
-    return Cause{name, b, best.errors[0],
-        fmt::format("Draws follow p times {}^{:.3g} (+- {:.2g}): {} {} in the pdf.", name, b, best.errors[0], name,
-            b > 0 ? "is missing" : "is there once too often")};
+    const bool few = std::ranges::any_of(outcome.trials, [&](std::size_t i) { return trials[i].subject->serial(); });
+    const std::vector<Place> places = places_of(trials, outcome, most_places, few ? draws_of_few : draws_of_many);
+    if (places.empty()) return weight_cause(trials, outcome);
+    if (std::optional<Cause> c = curve_cause(places)) return c;
+    if (std::optional<Cause> c = explained_by(places)) return c;
+    return unreached_cause(places);
 }
 
 }  // namespace crescent::check

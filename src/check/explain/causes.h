@@ -1,5 +1,7 @@
-// What explains a density that is wrong: one regression over the leaves of all w_o on the factors that samplers leave
-// out or have twice. A cause is named only if it explains the misfit and is a simple number of a factor; else none is.
+// What explains a sampler that is wrong: candidate causes, each a rule for any sampler, and the one that the evidence
+// singles out. Factors come from one regression over the leaves of all w_o; frames, turns and leaks from likelihoods;
+// lobes from the draws of each. A cause is named only if the sampler that is corrected for it passes the questions that
+// it failed, and no other candidate does as well; else none is.
 #pragma once
 
 #include <optional>
@@ -11,9 +13,10 @@
 namespace crescent::check {
 
 struct Cause {
-    std::string factor;              // a name of the list, "constant"
+    std::string factor;              // a name of the list: "constant", "cos theta_i"
     double exponent = 0, error = 0;  // draws / pdf ~ factor^exponent; of a constant its value
     std::string text;                // a sentence
+    std::string verdict{};           // that it explains; "": the first wrong one of density and normalised
 };
 
 /// None where nothing is named.

@@ -7,77 +7,12 @@
 
 #include "check/constants.h"
 #include "check/decide/tail.h"
+#include "check/report/sentences.h"
 #include "judgements/all.h"
 
 namespace crescent::check {
 
 namespace {
-
-std::string direction(Vec3d w) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", w.x, w.y, w.z); }
-
-/// What was found, how large, with its interval, and where.
-std::string sentence_of(const CheckAt& c, const Finding& f) {
-    const Answer& a = f.second.sd > 0 ? f.second : f.first;
-    const double half = 1.96 * a.sd;
-    switch (f.first.family) {
-        case Family::mass:
-        case Family::mass_sets: {
-            const double drawn = a.expected + a.difference;
-            if (!(drawn > 0)) return fmt::format("Nothing is drawn, and p integrates to {:.5g}.", a.expected);
-            return fmt::format("p integrates to {:.6g} +- {:.1g} where {:.6g} of the samples draw a direction.",
-                a.expected, half, drawn);
-        }
-        case Family::node:
-        case Family::node_sets: {
-            const ChartRect& r = c.plan->tree.nodes()[static_cast<std::size_t>(f.first.member)].rect;
-            return fmt::format(
-                "Draws and p differ about w_i = {}, within {:.2g} rad: by {:+.3g} +- {:.1g} of what is drawn.",
-                direction(from_chart(r.at(0.5, 0.5))), std::max(r.theta_width(), r.phi_width()), a.difference, half);
-        }
-        case Family::slope:
-        case Family::slope_sets:
-            return fmt::format("Draws are {} concentrated than p: mean of h ln p {:+.3g} +- {:.1g}.",
-                a.difference > 0 ? "more" : "less", a.difference, half);
-        case Family::centre:
-        case Family::centre_sets:
-            return fmt::format("The mean direction of the draws is off p's in {} by {:+.3g} +- {:.1g}.",
-                "xyz"[std::clamp(f.first.member, 0, 2)], 2 * a.difference, 2 * half);
-        case Family::delta_share:
-            return fmt::format("A delta part is {:.5g} +- {:.1g} of the draws and states a probability of {:.5g}.",
-                a.expected + a.difference, half, a.expected);
-        case Family::delta_scatter:
-            return "Draws said to be of delta parts have more than 16 directions: what has a density is no delta part.";
-        case Family::delta_weight:
-            return fmt::format("{:g} draws of a delta part have another weight than the first of it.", a.difference);
-        case Family::depth: return "Draws and p differ in many small places.";
-        case Family::bridge:
-        case Family::bridge_sets:
-            return fmt::format("Draws and p differ where they are: {:+.3g} +- {:.1g} of the bridge sum {:.4g}.",
-                a.difference, half, a.expected);
-        case Family::pointwise:
-            return fmt::format("The pdf with a draw is not pdf(w) for {:.2g} of the draws.", a.difference);
-        case Family::zero: return fmt::format("pdf(w) is 0 at {:.2g} of the draws.", a.difference);
-        case Family::weight: return fmt::format("The weight is not f cos / pdf for {:.2g} of the draws.", a.difference);
-        case Family::repeats:
-            return fmt::format("{:g} of {:g} draws repeat a direction.", a.difference, c.observations.independent);
-        case Family::support:
-            return fmt::format(
-                "p is 0 over directions that carry {:.3g} % of f L cos.", 100 * a.difference / a.expected);
-        case Family::mean:
-            return fmt::format("The weights estimate the light {:+.3g} % off, +- {:.1g} %.",
-                100 * a.difference / a.expected, 100 * half / a.expected);
-        case Family::true_f: return fmt::format("f is not the BRDF for {:.2g} of the draws.", a.difference);
-        case Family::albedo:
-            return fmt::format("f reflects {:.5g} +- {:.1g} of an even light.", 1 + a.difference, half);
-        default: return fmt::format("{:g} answers cannot be used.", a.difference);
-    }
-}
-
-std::string sentence_of(const SmallFault& f) {
-    std::string out = fmt::format("{:g} of {:g}: {}", f.times, f.of, f.what);
-    if (f.size != 0) out += fmt::format(" ({:+.3g})", f.size);
-    return out + ".";
-}
 
 /// Whether the sampler gives what a verdict needs.
 bool can_be_asked(const JudgedSampler& s, std::string_view name) {
@@ -101,7 +36,7 @@ void add_sizes(const Sizes& s, Verdict& v) {
 void judge_at(const CheckAt& c, Verdict& v) {
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name)
-            v.state = State::wrong, v.say += (v.say.empty() ? "" : " ") + sentence_of(f);
+            v.state = State::wrong, v.say += (v.say.empty() ? "" : " ") + sentence_of(f, c.numbers);
     const Finding* worst = nullptr;
     for (const Finding& f : c.findings)
         if (info(f.first.family).verdict == v.name) {
@@ -126,12 +61,29 @@ void judge_at(const CheckAt& c, Verdict& v) {
     }
 }
 
+/// A cause is said once: of a constant with `normalised`, of another density with `density`, else where it belongs; or
+/// with the first verdict that is wrong.
+void place(const Cause& cause, std::vector<Verdict>& all) {
+    std::vector<std::string_view> names = {"density", "normalised"};
+    if (!cause.verdict.empty()) names = {cause.verdict};
+    else if (cause.factor == "constant") names = {"normalised", "density"};
+    names.push_back("");
+    for (std::string_view name : names)
+        for (Verdict& v : all) {
+            if (v.state != State::wrong || (!name.empty() && v.name != name)) continue;
+            v.cause = cause.text;
+            v.evidence["diagnosis"] = cause.factor;
+            if (cause.exponent != 0) v.evidence["diagnosis_value"] = cause.exponent;
+            if (cause.error > 0) v.evidence["diagnosis_error"] = cause.error;
+            return;
+        }
+}
+
 }  // namespace
 
 std::vector<Verdict> verdicts_of(
     std::span<const Trial> trials, const CheckOutcome& outcome, const std::optional<Cause>& cause) {
     std::vector<Verdict> out;
-    bool first_density = true;
     for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
         const Trial& trial = trials[outcome.trials[k]];
         for (std::string_view name : verdict_names) {
@@ -151,15 +103,13 @@ std::vector<Verdict> verdicts_of(
             if (name == "mean") leave_heavy_mean_open(outcome.at[k], v);
             if (k == 0)
                 for (const SmallFault& f : outcome.small)
-                    if (info(f.family).verdict == name) v.state = State::wrong, v.say += sentence_of(f);
-            if (cause && first_density && v.state == State::wrong && (name == "density" || name == "normalised")) {
-                v.cause = cause->text;
-                v.evidence["diagnosis"] = cause->factor;
-                first_density = false;
-            }
+                    if (info(f.family).verdict == name)
+                        v.state = State::wrong,
+                        v.say += (v.say.empty() ? "" : " ") + sentence_of(f, trial.subject->traits().numbers);
             out.push_back(std::move(v));
         }
     }
+    if (cause) place(*cause, out);
     return out;
 }
 

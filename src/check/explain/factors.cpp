@@ -1,0 +1,126 @@
+// Equations of refraction: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces".
+#include "check/explain/factors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "check/estimate/chart.h"
+#include "simd/frame.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// A boundary seen from w_o's side; eta = index beyond over here.
+struct SeenBoundary {
+    double below_over_above;
+    double eta(Vec3d wo) const { return wo.z > 0 ? below_over_above : 1 / below_over_above; }
+    Vec3d half(Vec3d wo, Vec3d wi) const { return half_vector_of(wo, wi, eta(wo)); }
+    static bool across(Vec3d wo, Vec3d wi) { return wo.z * wi.z < 0; }
+    /// (22)
+    double fresnel(double c, double n) const {
+        const double g2 = n * n - 1 + c * c;
+        if (g2 <= 0) return 1;
+        const double g = std::sqrt(g2), one = (g - c) / (g + c), two = (c * (g + c) - 1) / (c * (g - c) + 1);
+        return 0.5 * one * one * (1 + two * two);
+    }
+    double fresnel(Vec3d wo, Vec3d wi) const { return fresnel(std::fabs(dot(wo, half(wo, wi))), eta(wo)); }
+    /// dm / dw_i of a refraction, (17).
+    double refracted(Vec3d wo, Vec3d wi) const {
+        const Vec3d m = half(wo, wi);
+        const double n = eta(wo), om = dot(wo, m), im = dot(wi, m), sum = om + n * im;
+        return n * n * std::fabs(im) / std::max(sum * sum, 1e-300);
+    }
+};
+
+void add_of_boundary(std::vector<Factor>& out, double below_over_above) {
+    const SeenBoundary b{below_over_above};
+    const auto add = [&](const char* name, auto across, auto reflected) {
+        out.push_back({name, [=](Vec3d o, Vec3d i) { return b.across(o, i) ? across(o, i) : reflected(o, i); }});
+    };
+    const auto one = [](Vec3d, Vec3d) { return 1.0; };
+    const auto om = [b](Vec3d o, Vec3d i) { return std::fabs(dot(o, b.half(o, i))); };
+    const auto im = [b](Vec3d o, Vec3d i) { return std::fabs(dot(i, b.half(o, i))); };
+    const auto through = [b](Vec3d o, Vec3d i) { return 1 - b.fresnel(o, i); };
+    const auto reflected = [b](Vec3d o, Vec3d i) { return b.fresnel(o, i); };
+    const auto odds = [b](Vec3d o, Vec3d i) {
+        const double f = b.fresnel(o, i);
+        return f > 0 && f < 1 ? (1 - f) / f : 0;
+    };
+    add("eta^2 across the surface", [b](Vec3d o, Vec3d) { return b.eta(o) * b.eta(o); }, one);
+    add("Fresnel (1 - F across the surface)", through, reflected);
+    add("1 - Fresnel of what is refracted", through, one);
+    add("Fresnel of what is reflected", one, reflected);
+    add(
+        "Fresnel exchanged with 1 - Fresnel",
+        [odds](Vec3d o, Vec3d i) {
+            const double v = odds(o, i);
+            return v > 0 ? 1 / v : 0;
+        },
+        odds);
+    add("the Jacobian of refraction", [b](Vec3d o, Vec3d i) { return b.refracted(o, i); }, one);
+    add(
+        "the Jacobian of refraction for that of reflection",
+        [b, om](Vec3d o, Vec3d i) { return 4 * om(o, i) * b.refracted(o, i); }, one);
+    add(
+        "(w_i.m) / (w_o.m) of what is refracted",
+        [om, im](Vec3d o, Vec3d i) { return im(o, i) / std::max(om(o, i), 1e-12); }, one);
+    add("w_i.m of what is refracted", im, one);
+    add("cos theta_i of what is refracted", [](Vec3d, Vec3d i) { return std::fabs(i.z); }, one);
+}
+
+void add_of_light(std::vector<Factor>& out, const TrialLight& light) {
+    if (light.disks.size() != 1 || !light.lamps.empty()) return;
+    const TrialDisk disk = light.disks[0];
+    out.push_back({"cosine at the light", [disk](Vec3d, Vec3d i) { return std::max(-dot(i, disk.normal), 0.0); }});
+    out.push_back({"distance^2 / cosine at the light", [disk](Vec3d, Vec3d i) {
+                       const std::optional<double> d = disk.distance(i);
+                       return d ? *d * *d / -dot(i, disk.normal) : 0;
+                   }});
+}
+
+}  // namespace
+
+Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta) {
+    const Vec3d sum = wo.z * wi.z < 0 ? wo + wi * eta : wo + wi;
+    const double size = std::sqrt(dot(sum, sum));
+    return size > 1e-12 ? sum * (1 / size) : Vec3d{0, 0, 1};
+}
+
+std::vector<Factor> factors_for(const Traits& traits, const TrialLight& light) {
+    const bool one_index = traits.eta && traits.eta->x == traits.eta->z;
+    const double eta = one_index ? traits.eta->x : 1;
+    const auto half = [eta](Vec3d o, Vec3d i) { return half_vector_of(o, i, o.z > 0 ? eta : 1 / eta); };
+    const auto om = [half](Vec3d o, Vec3d i) { return std::fabs(dot(o, half(o, i))); };
+    const auto nm = [half](Vec3d o, Vec3d i) { return std::fabs(half(o, i).z); };
+    std::vector<Factor> out = {{"cos theta_i", [](Vec3d, Vec3d i) { return std::fabs(i.z); }},
+        {"sin theta_i", [](Vec3d, Vec3d i) { return std::sqrt(i.x * i.x + i.y * i.y); }}};
+    if (traits.wo != Traits::Asked::none) {
+        out.push_back({"a constant across the surface",
+            [](Vec3d o, Vec3d i) { return o.z * i.z < 0 ? math::exp(1.0) : 1.0; }, 1, true});
+        out.push_back({"w_o.m", om, 4});
+        out.push_back({"n.m", nm});
+        out.push_back({"(n.m) / (w_o.m)", [=](Vec3d o, Vec3d i) { return nm(o, i) / std::max(om(o, i), 1e-12); }});
+        out.push_back({"w_i.R", [](Vec3d o, Vec3d i) { return std::max(dot(i, mirror(o)), 0.0); }});
+    }
+    if (one_index) add_of_boundary(out, eta);
+    add_of_light(out, light);
+    return out;
+}
+
+std::string number_name(double value, double known_to, const Traits& traits) {
+    constexpr double pi = two_pi / 2;
+    std::vector<std::pair<std::string, double>> known = {
+        {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}, {"pi/2", pi / 2}, {"2 pi^2", 2 * pi * pi}};
+    if (traits.eta && traits.eta->x == traits.eta->z) known.push_back({"eta^2", traits.eta->x * traits.eta->x});
+    for (const auto& [name, number] : known) {
+        if (std::fabs(number - 1) < 10 * known_to) continue;
+        if (std::fabs(value / number - 1) < known_to) return name;
+        if (std::fabs(value * number - 1) < known_to)
+            return name.find_first_of(" /") == std::string::npos ? "1/" + name : "1/(" + name + ")";
+    }
+    return "";
+}
+
+}  // namespace crescent::check

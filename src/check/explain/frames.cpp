@@ -1,0 +1,257 @@
+// Named frames are tried on a few hundred draws; turns are looked for on the tree's own densities first, which costs no
+// evaluations, and then with p itself.
+#include "check/explain/frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::size_t draws_to_climb = 512;
+constexpr std::size_t most_frames = 4;  // that are looked at closely
+
+/// A frame that is taken for another: p there times the ratio of areas is the density of the draws.
+struct NamedFrame {
+    const char* name;
+    Vec3d (*of)(Vec3d);
+    double (*area)(Vec3d) = nullptr;  // none: areas stay
+    bool of_lights = false;           // where no normal stands apart
+};
+
+/// theta and phi / 2 exchanged, as in a table whose rows and columns are.
+Vec3d transposed(Vec3d w) {
+    const double theta = math::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+    double phi = math::atan2(w.y, w.x);
+    if (phi < 0) phi += two_pi;
+    const math::SinCos to_theta = math::sincos(phi / 2), to_phi = math::sincos(2 * theta);
+    return {to_theta.sin * to_phi.cos, to_theta.sin * to_phi.sin, to_theta.cos};
+}
+double transposed_area(Vec3d w) {
+    const Vec3d t = transposed(w);
+    return std::sqrt((t.x * t.x + t.y * t.y + 1e-30) / (w.x * w.x + w.y * w.y + 1e-30));
+}
+
+constexpr NamedFrame named_frames[] = {{"the frame mirrored in y", [](Vec3d w) { return Vec3d{w.x, -w.y, w.z}; }},
+    {"the frame mirrored in x", [](Vec3d w) { return Vec3d{-w.x, w.y, w.z}; }},
+    {"the azimuth turned by 180 deg", [](Vec3d w) { return Vec3d{-w.x, -w.y, w.z}; }},
+    {"x and y exchanged (transposed)", [](Vec3d w) { return Vec3d{w.y, w.x, w.z}; }},
+    {"the azimuth turned by 90 deg", [](Vec3d w) { return Vec3d{-w.y, w.x, w.z}; }},
+    {"the azimuth turned by -90 deg", [](Vec3d w) { return Vec3d{w.y, -w.x, w.z}; }},
+    {"above and below exchanged", [](Vec3d w) { return Vec3d{w.x, w.y, -w.z}; }},
+    {"forward and back exchanged", [](Vec3d w) { return -w; }},
+    {"rows and columns exchanged (theta and phi / 2)", transposed, transposed_area, true},
+    {"y and z exchanged", [](Vec3d w) { return Vec3d{w.x, w.z, w.y}; }, nullptr, true},
+    {"x and z exchanged", [](Vec3d w) { return Vec3d{w.z, w.y, w.x}; }, nullptr, true},
+    {"a turn by 90 deg about x", [](Vec3d w) { return Vec3d{w.x, -w.z, w.y}; }, nullptr, true},
+    {"a turn by -90 deg about x", [](Vec3d w) { return Vec3d{w.x, w.z, -w.y}; }, nullptr, true},
+    {"a turn by 90 deg about y", [](Vec3d w) { return Vec3d{w.z, w.y, -w.x}; }, nullptr, true},
+    {"a turn by -90 deg about y", [](Vec3d w) { return Vec3d{-w.z, w.y, w.x}; }, nullptr, true},
+    {"x, y, z taken for y, z, x", [](Vec3d w) { return Vec3d{w.y, w.z, w.x}; }, nullptr, true},
+    {"x, y, z taken for z, x, y", [](Vec3d w) { return Vec3d{w.z, w.x, w.y}; }, nullptr, true}};
+
+enum Which { of_wo = 1, of_wi = 2, of_both = 3 };
+
+/// Where a draw counts as nothing because the pdf with it is 0, there is no density.
+void clear_where_zero(const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> density) {
+    std::vector<double> p(at.size());
+    s.exact_pdf(technique, at, p);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (!(p[i] > 0)) density[i] = 0;
+}
+
+Hypothesis in_frame(const NamedFrame& frame, int which, bool at_zero) {
+    Hypothesis h;
+    const char* suffix[] = {"", " for w_o", " for w_i", ""};
+    h.name = std::string(frame.name) + suffix[frame.of_lights ? 0 : which];
+    h.density = [frame, which, at_zero](
+                    const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
+        std::vector<Pair> there(at.begin(), at.end());
+        for (Pair& pair : there) {
+            if (which & of_wo) pair.wo = frame.of(pair.wo);
+            if (which & of_wi) pair.wi = frame.of(pair.wi);
+        }
+        s.exact_pdf(technique, there, out);
+        for (std::size_t i = 0; frame.area && i < at.size(); ++i) out[i] *= frame.area(at[i].wi);
+        if (!at_zero) clear_where_zero(s, technique, at, out);
+    };
+    return h;
+}
+
+/// w_o under the surface, and directions in place of w_o where there is none, are not asked for.
+bool can_be_asked(const NamedFrame& frame, int which, const Traits& traits) {
+    if (traits.wo == Traits::Asked::none) return which == of_wi;
+    if (frame.of_lights) return false;
+    return !(which & of_wo) || traits.wo == Traits::Asked::both || frame.of({0, 0, 1}).z > 0;
+}
+
+/// By the leaves' densities and all draws of the check.
+void score_by_tree(const NamedFrame& frame, std::span<const Place> places, Hypothesis& h) {
+    Sums gain;
+    double draws = 0;
+    for (const Place& place : places) {
+        const Tree& tree = place.at->plan->tree;
+        for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+            const double count = place.at->observations.counts[l];
+            if (!(count > 0)) continue;
+            const Vec3d w = from_chart(tree.rect(tree.leaves()[l]).at(0.5, 0.5));
+            const double there = tree.leaves()[tree.find(to_chart(frame.of(w)))].q * (frame.area ? frame.area(w) : 1);
+            const double by = place.log_of(there) - place.log_of(tree.leaves()[l].q);
+            gain.sum += count * by, gain.square += count * by * by, draws += count;
+        }
+    }
+    if (draws == 0) return;
+    h.gain = gain.sum / draws, h.draws = draws;
+    h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
+}
+
+Vec3d rotated(Vec3d w, Vec3d by) {
+    const double angle = std::sqrt(dot(by, by));
+    if (!(angle > 0)) return w;
+    const Vec3d axis = by * (1 / angle);
+    const math::SinCos r = math::sincos(angle);
+    return w * r.cos + cross(axis, w) * r.sin + axis * (dot(axis, w) * (1 - r.cos));
+}
+
+/// Mean log likelihood where the draws are those of p turned by `by`.
+class Likelihood {
+public:
+    Likelihood(const Place& place, std::size_t most) : place_(place), count_(std::min(most, place.w.size())) {}
+    double by_tree(Vec3d by) const {
+        const Tree& tree = place_.at->plan->tree;
+        std::vector<double> q(count_);
+        for (std::size_t i = 0; i < count_; ++i) q[i] = tree.leaves()[tree.find(to_chart(rotated(place_.w[i], -by)))].q;
+        return place_.mean_log(q);
+    }
+    double by_p(Vec3d by) const {
+        std::vector<Pair> at;
+        for (std::size_t i = 0; i < count_; ++i) at.push_back({place_.trial->wo, rotated(place_.w[i], -by)});
+        std::vector<double> p(count_);
+        place_.subject().exact_pdf(place_.technique(), at, p);
+        for (double& v : p)
+            if (!std::isfinite(v)) v = 0;
+        return place_.mean_log(p);
+    }
+    /// Standard error of the angle, from the curvature about it.
+    double error_of(Vec3d by, double step) const {
+        const double angle = std::sqrt(dot(by, by));
+        const Vec3d axis = angle > 0 ? by * (1 / angle) : Vec3d{0, 0, 1};
+        const double here = by_p(by), less = by_p(by - axis * step), more = by_p(by + axis * step);
+        const double bend = (2 * here - less - more) / (step * step);
+        return bend > 0 ? 1 / std::sqrt(bend * static_cast<double>(count_)) : step;
+    }
+
+private:
+    const Place& place_;
+    std::size_t count_;
+};
+
+/// Steps along the given axes, halved where none of them helps.
+template <class L>
+Vec3d climb(Vec3d from, std::span<const Vec3d> axes, double step, double least, const L& likelihood) {
+    double best = likelihood(from);
+    while (step > least) {
+        bool moved = false;
+        for (Vec3d axis : axes)
+            for (double sign : {1.0, -1.0}) {
+                const Vec3d to = from + axis * (sign * step);
+                if (const double l = likelihood(to); l > best) best = l, from = to, moved = true;
+            }
+        if (!moved) step /= 2;
+    }
+    return from;
+}
+
+/// An angle of which p varies over a lobe: of a lobe of density p, 1 / sqrt(p).
+double width_of(const Place& place) { return std::min(1.0, 0.3 * math::exp(-place.at->plan->median_log_p / 2)); }
+
+/// The part of a turn, 2 pi / n, next to an angle that is as likely: a column of a table.
+template <class L> double whole_columns(double angle, const L& likelihood) {
+    constexpr int beside = 3;
+    const double n = std::round(two_pi / std::fabs(angle));
+    double best = angle, most = likelihood(angle, false);
+    for (int k = -beside; k <= beside; ++k) {
+        const double to = std::copysign(two_pi / std::max(n + k, 2.0), angle);
+        if (std::fabs(to - angle) > 0.1 * std::fabs(angle)) continue;
+        if (const double l = likelihood(to, false); l >= most) best = to, most = l;
+    }
+    return best;
+}
+
+Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& turns) {
+    Hypothesis h;
+    h.name = "turned";
+    std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its turn
+    for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].trial->wo, turns[k].by});
+    h.density = [by, at_zero = places[0].draws_at_zero()](
+                    const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
+        std::vector<Pair> there(at.begin(), at.end());
+        for (Pair& pair : there) {
+            const auto of = std::ranges::max_element(by, {}, [&](const auto& one) { return dot(one.first, pair.wo); });
+            pair.wi = rotated(pair.wi, -of->second);
+        }
+        s.exact_pdf(technique, there, out);
+        if (!at_zero) clear_where_zero(s, technique, at, out);
+    };
+    return h;
+}
+
+}  // namespace
+
+std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places) {
+    std::vector<Hypothesis> out;
+    for (const NamedFrame& frame : named_frames)
+        for (int which : {of_wi, of_wo, of_both}) {
+            if (!can_be_asked(frame, which, places[0].traits)) continue;
+            Hypothesis h = in_frame(frame, which, places[0].draws_at_zero());
+            if (which == of_wi) score_by_tree(frame, places, h);
+            else score(h, places);
+            if (h.helps()) out.push_back(std::move(h));
+        }
+    std::ranges::sort(out, std::greater<>(), &Hypothesis::gain);
+    if (out.size() > most_frames) out.resize(most_frames);
+    return out;
+}
+
+std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places) {
+    FoundTurn out;
+    const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (const Place& place : places) {
+        const double width = width_of(place);
+        const Likelihood coarse(place, 1024), fine(place, draws_to_climb), all(place, place.w.size());
+        Vec3d by = climb({}, axes, width, width / 16, [&](Vec3d v) { return coarse.by_tree(v); });
+        by = climb(by, axes, width / 8, width / 256, [&](Vec3d v) { return fine.by_p(v); });
+        by = climb(by, axes, width / 256, width / 1024, [&](Vec3d v) { return all.by_p(v); });
+        out.turns.push_back({by, all.error_of(by, width / 16)});
+    }
+    out.hypothesis = turned_by(places, out.turns);
+    score(out.hypothesis, places);
+    return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
+}
+
+std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
+    constexpr int angles = 720;
+    double best = -1e300, at = 0;
+    std::vector<Likelihood> coarse, fine;
+    for (const Place& place : places) coarse.emplace_back(place, 1024), fine.emplace_back(place, place.w.size());
+    const auto sum = [&](double angle, bool by_tree) {
+        double out = 0;
+        for (const Likelihood& l : by_tree ? coarse : fine)
+            out += by_tree ? l.by_tree({0, 0, angle}) : l.by_p({0, 0, angle});
+        return out;
+    };
+    for (int k = 1; k < angles; ++k)
+        if (const double l = sum(k * two_pi / angles, true); l > best) best = l, at = k * two_pi / angles;
+    const Vec3d axis[] = {{0, 0, 1}};
+    at = climb({0, 0, at}, axis, two_pi / angles / 2, two_pi / angles / 64, [&](Vec3d v) { return sum(v.z, false); }).z;
+    if (at > two_pi / 2) at -= two_pi;
+    at = whole_columns(at, sum);
+    FoundTurn out;
+    for (const Likelihood& l : fine) out.turns.push_back({{0, 0, at}, l.error_of({0, 0, at}, two_pi / angles)});
+    out.hypothesis = turned_by(places, out.turns);
+    score(out.hypothesis, places);
+    return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,188 @@
+// The supposed density is given to the check itself, as that of a sampler which draws as before.
+#include "check/explain/hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "subjects/forwarded.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr double least_log = 14;  // nats below the median of p: what a draw where the density is 0 counts
+
+class Supposed : public ForwardedSampler {
+public:
+    Supposed(std::shared_ptr<const JudgedSampler> inner, const Hypothesis& h, double constant)
+        : ForwardedSampler(std::move(inner)), h_(h), constant_(constant) {}
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { exact_pdf(t, at, out); }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        h_.density(inner(), t, at, out);
+        for (double& v : out) v *= constant_;
+    }
+    bool has_f() const override { return false; }
+    bool has_true_f() const override { return false; }
+
+private:
+    const Hypothesis& h_;
+    double constant_;
+};
+
+/// One look of the size at which the fault was found.
+CheckBudget budget_for(const CheckAt& found, bool few) {
+    CheckBudget b = few || found.looks == 1 ? CheckBudget::limited() : CheckBudget::quick();
+    const std::uint32_t n = found.looks == 1 ? 1u << 15 : few ? 1u << 16 : 1u << 17;
+    b.looks = {Look{n, n, n}, Look{}, Look{}};
+    b.look_count = 1;
+    return b;
+}
+
+bool of_density(Family f) { return info(f).verdict == "density" || info(f).verdict == "normalised"; }
+
+bool density_is_wrong(const CheckAt& c) {
+    return std::ranges::any_of(c.findings, [](const Finding& f) { return of_density(f.first.family); });
+}
+
+void draw_at(Place& place, std::uint32_t count) {
+    Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
+    const StreamKey key{7, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()), 8,
+        Purpose::pairs, 1};
+    std::vector<Numbers> u(count);
+    for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, source.numbers(), source.single());
+    std::vector<Draw> draws(count);
+    source.draw(u, draws);
+    std::vector<Vec3d> w;
+    std::vector<const Draw*> of;
+    for (const Draw& d : draws)
+        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0)
+            w.push_back(d.wi), of.push_back(&d);
+    std::vector<double> p(w.size());
+    source.density(w, p);
+    const CheckAt& c = *place.at;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+        if (!is_direction(*of[i], p[i])) continue;
+        place.w.push_back(w[i]), place.p.push_back(p[i]);
+        const std::size_t l = c.plan->tree.find(to_chart(w[i]));
+        const double claimed = c.integrals.leaves[l].bridge.value, n = c.observations.independent;
+        const double area = c.plan->tree.rect(c.plan->tree.leaves()[l]).area();
+        const double here = std::max(static_cast<double>(c.observations.counts[l]), 1.0);
+        // The logarithm of a count is low by 1 / (2 count) on average.
+        place.implied.push_back(math::exp(0.5 / here) *
+            (claimed > 0 && c.observations.leaves[l] > 0 && p[i] > 0 ? p[i] * c.observations.leaves[l] / (claimed * n)
+                                                                     : here / (n * area)));
+    }
+    place.of = count;
+}
+
+}  // namespace
+
+MassRatio mass_ratio(const CheckAt& c) {
+    const Observations& o = c.observations;
+    const double n = std::max(o.independent, 1.0);
+    const auto by = [&](int q) {
+        const Sums& s = o.sums[static_cast<std::size_t>(q)];
+        const Estimate& claimed = c.integrals.sums[static_cast<std::size_t>(q)];
+        const double drawn = s.sum / n, ratio = drawn > 0 ? claimed.value / drawn : 0;
+        const double variance = std::max(s.square / n - drawn * drawn, 0.0) / n;
+        const double error = drawn > 0 ? std::sqrt(claimed.variance + ratio * ratio * variance) / drawn : 1;
+        return MassRatio{drawn, claimed.value, ratio, error};
+    };
+    MassRatio out = by(mass);
+    const MassRatio other = by(bridge);
+    if (other.error < out.error / 2) out.ratio = other.ratio, out.error = other.error;
+    return out;
+}
+
+double Place::log_of(double density) const {
+    return std::max(
+        std::isfinite(density) && density > 0 ? math::log(density) : -1e300, at->plan->median_log_p - least_log);
+}
+
+double Place::mean_log(std::span<const double> density) const {
+    double sum = 0;
+    for (double d : density) sum += log_of(d);
+    return density.empty() ? 0 : sum / static_cast<double>(density.size());
+}
+
+std::vector<Place> places_of(
+    std::span<const Trial> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count) {
+    std::vector<Place> wrong;
+    for (std::size_t k = 0; k < outcome.at.size(); ++k)
+        for (const CheckAt& c : outcome.at[k])
+            if (density_is_wrong(c) && c.plan && c.plan->drawn > 0) {
+                const Trial& t = trials[outcome.trials[k]];
+                wrong.push_back({&t, &c, outcome.trials[k], t.subject->traits(), {}, {}, {}, 0});
+            }
+    // Spread over the list, which goes from n to grazing and below.
+    std::vector<Place> out;
+    for (std::size_t k = 0; k < std::min(most, wrong.size()); ++k)
+        out.push_back(wrong[(2 * k + 1) * wrong.size() / (2 * std::min(most, wrong.size()))]);
+    for (Place& p : out) draw_at(p, count);
+    std::erase_if(out, [](const Place& p) { return p.w.size() < 64; });
+    return out;
+}
+
+void score(Hypothesis& h, std::span<const Place> places) {
+    Sums gain;
+    double left = 0, before = 0, draws = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const Place& place = places[k];
+        const MassRatio masses = mass_ratio(*place.at);
+        const double more = ((h.masses.empty() ? 1 : h.masses[k]) - 1) * masses.claimed / masses.drawn;
+        std::vector<Pair> at;
+        for (Vec3d w : place.w) at.push_back({place.trial->wo, w});
+        std::vector<double> p(at.size());
+        h.density(place.subject(), place.technique(), at, p);
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            const double of_p = place.log_of(place.p[i]), of_h = place.log_of(p[i] * h.constant(k));
+            const double of_draws = place.log_of(place.implied[i]);
+            gain.add(of_h - of_p - more), ++draws;
+            left += of_draws - of_h, before += of_draws - of_p;
+        }
+    }
+    if (draws == 0) return;
+    h.gain = gain.sum / draws, h.draws = draws;
+    h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
+    h.explained = before > 0 ? std::min(1 - left / before, 1.0) : 0;
+}
+
+bool say_the_same(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places) {
+    constexpr double same_density = 1e-3, most_of_draws = 0.9;
+    double same = 0, draws = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        std::vector<Pair> at;
+        for (Vec3d w : places[k].w) at.push_back({places[k].trial->wo, w});
+        std::vector<double> p(at.size()), q(at.size());
+        a.density(places[k].subject(), places[k].technique(), at, p);
+        b.density(places[k].subject(), places[k].technique(), at, q);
+        for (std::size_t i = 0; i < at.size(); ++i, ++draws)
+            same += std::fabs(p[i] * a.constant(k) - q[i] * b.constant(k)) <= same_density * p[i] * a.constant(k);
+    }
+    return same >= most_of_draws * draws;
+}
+
+bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed) {
+    if (h.constants.empty()) h.constants.assign(places.size(), 1);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const Place& place = places[k];
+        const auto check = [&] {
+            const Supposed supposed(place.trial->subject, h, h.constants[k]);
+            return check_sampler_at(supposed, place.technique(), place.trial->wo,
+                CaseData{place.trial->light, static_cast<std::uint16_t>(place.number), {}},
+                budget_for(*place.at, supposed.serial()), seed ^ 0x9e3779b9u);
+        };
+        CheckAt c = check();
+        if (density_is_wrong(c) && h.free) {
+            const double claimed = c.integrals.sums[mass].value;
+            const double drawn = c.observations.sums[mass].sum / std::max(c.observations.independent, 1.0);
+            if (!(claimed > 0) || !(drawn > 0)) return false;
+            h.constants[k] *= drawn / claimed;
+            c = check();
+        }
+        if (density_is_wrong(c)) return false;
+    }
+    return !places.empty();
+}
+
+}  // namespace crescent::check

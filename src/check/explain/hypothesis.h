@@ -1,0 +1,70 @@
+// A hypothesis of what is wrong: the density that the draws would have if it were true. It is judged by the same
+// questions as the sampler's own density, so a cause is named only where the sampler that is corrected for it passes.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "check/decide/check_sampler.h"
+#include "check/estimate/source.h"
+
+namespace crescent::check {
+
+/// Masses of draws and p at a place: p over what is drawn, by masses or by the bridge, whichever is known better, with
+/// its standard error.
+struct MassRatio {
+    double drawn = 0, claimed = 0, ratio = 1, error = 0;
+};
+MassRatio mass_ratio(const CheckAt& c);
+
+/// One technique at one w_o that was found wrong, with fresh draws and p there.
+struct Place {
+    const Trial* trial = nullptr;
+    const CheckAt* at = nullptr;
+    std::size_t number = 0;  // of the trial in the call
+    Traits traits{};
+    std::vector<Vec3d> w;
+    std::vector<double> p;
+    std::vector<double> implied;  // density of the draws by the leaves' counts, 1/sr
+    double of = 0;                // draws in all
+    /// Whether draws where p is 0 count as draws, or as nothing because the pdf with them is 0 too.
+    bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
+    const JudgedSampler& subject() const { return *trial->subject; }
+    int technique() const { return at->technique; }
+    /// ln of a density at a draw; where it is 0, of e^-14 times the median of p.
+    double log_of(double density) const;
+    double mean_log(std::span<const double> density) const;
+};
+
+/// Up to `most` of those where a question on the density failed, the plainest first; w_o that differ most.
+std::vector<Place> places_of(
+    std::span<const Trial> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
+
+struct Hypothesis {
+    std::string name;  // of the cause
+    /// The supposed density of a subject's technique, 1/sr.
+    std::function<void(const JudgedSampler&, int technique, std::span<const Pair>, std::span<double>)> density;
+    /// By place: what that is multiplied by; empty: 1. free: it is set so that the masses agree.
+    std::vector<double> constants{};
+    bool free = false;
+    double constant(std::size_t place) const { return constants.empty() ? 1 : constants[place]; }
+    /// By place: what the density integrates to over what p does; empty: the same.
+    std::vector<double> masses{};
+    /// Mean log likelihood of a draw over the places (that of a Poisson process, so that masses count), relative to
+    /// that of p, and its standard error.
+    double gain = 0, error = 0, draws = 0;  // draws: that this is known by
+    bool helps() const { return gain > 3 * error && gain > 0; }
+    /// Of the divergence between draws and p, by the leaves; 1 where nothing is left.
+    double explained = 0;
+};
+
+/// Sets gain, error and explained.
+void score(Hypothesis& h, std::span<const Place> places);
+/// Both have the same density at nine of ten draws.
+bool say_the_same(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places);
+/// Every question on the density is passed at all places with the supposed density in place of p. Sets free constants.
+bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed);
+
+}  // namespace crescent::check

@@ -1,0 +1,284 @@
+// The ends of the lobes are where the direction jumps along one number, at the same place whatever the others are. By
+// (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, x = 1
+// where p has the lobe as it is drawn; x follows by weighted least squares over cells.
+#include "check/explain/lobes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "check/constants.h"
+#include "stats/distributions.h"
+#include "stats/least_squares.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::size_t settings_of_others = 12, scanned = 65, most_lobes = 8;
+constexpr int halvings = 22;
+constexpr double jump_angle = 0.02;    // rad: a root or a logarithm moves less over 2^-22
+constexpr double one_end = 1e-4;       // of the number
+constexpr double steep_rim = 0x1p-7;   // what is steep at 0 and at 1 is no jump
+constexpr double draws_of_cell = 400;  // so that a cell's 5 % error biases x by 0.3 % at most
+constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
+constexpr double fits_at = 1e-3;      // p-value of the misfit that is left
+constexpr double known_share = 0.02;  // of x, relative
+
+bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
+
+struct NumberStep {
+    std::size_t of;
+    double from, to;
+    Draw a, b;
+    static double move(const Draw& a, const Draw& b) {
+        if (has_direction(a) != has_direction(b)) return 4;  // more than any
+        const Vec3d d = b.wi - a.wi;
+        return has_direction(a) ? std::sqrt(dot(d, d)) : 0;
+    }
+    bool jumps() const { return move(a, b) > jump_angle; }
+};
+
+/// Halves each step towards the side that moves more, and drops those that are smooth.
+void close_in(Source& source, int number, std::span<const Numbers> others, std::vector<NumberStep>& all) {
+    for (int k = 0; k < halvings && !all.empty(); ++k) {
+        std::vector<Numbers> u;
+        for (const NumberStep& s : all) u.push_back(others[s.of]), u.back()[number] = (s.from + s.to) / 2;
+        std::vector<Draw> middle(u.size());
+        source.draw(u, middle);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            NumberStep& s = all[i];
+            if (NumberStep::move(s.a, middle[i]) > NumberStep::move(middle[i], s.b))
+                s.to = u[i][number], s.b = middle[i];
+            else s.from = u[i][number], s.a = middle[i];
+        }
+        std::erase_if(all, [](const NumberStep& s) { return !s.jumps(); });
+    }
+}
+
+std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const Numbers> others) {
+    std::vector<NumberStep> out;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        std::vector<Numbers> u(scanned, others[i]);
+        for (std::size_t k = 0; k < scanned; ++k)
+            u[k][number] = std::clamp(static_cast<double>(k) / (scanned - 1), steep_rim, 1 - steep_rim);
+        std::vector<Draw> w(u.size());
+        source.draw(u, w);
+        for (std::size_t k = 0; k + 1 < scanned; ++k)
+            if (const NumberStep s{i, u[k][number], u[k + 1][number], w[k], w[k + 1]}; s.jumps()) out.push_back(s);
+    }
+    if (out.size() > settings_of_others * most_lobes) return {};  // a table
+    close_in(source, number, others, out);
+    std::ranges::sort(out, {}, &NumberStep::from);
+    return out;
+}
+
+/// The ends that a third of the settings have in common; none where other jumps between two directions are many.
+std::vector<LobeInterval> intervals(const std::vector<NumberStep>& all, std::size_t tried) {
+    const auto of_two = [](const NumberStep& s) { return has_direction(s.a) && has_direction(s.b); };
+    std::vector<LobeInterval> out;
+    double from = 0;
+    std::ptrdiff_t common = 0;
+    for (auto next = all.begin(); next != all.end();) {
+        const auto first = next;
+        while (next != all.end() && next->from - first->from < one_end) ++next;
+        if (3 * (next - first) < static_cast<std::ptrdiff_t>(tried)) continue;
+        common += std::count_if(first, next, of_two);
+        const double end = (first[(next - first) / 2].from + first[(next - first) / 2].to) / 2;
+        out.push_back({from, end}), from = end;
+    }
+    if (out.empty() || 10 * common < 9 * std::count_if(all.begin(), all.end(), of_two)) return {};
+    out.push_back({from, 1});
+    return out.size() <= most_lobes ? out : std::vector<LobeInterval>();
+}
+
+/// Sums of h by leaf over draws of one lobe, and how many draws there were.
+struct LobeDraws {
+    std::vector<double> sum, square;
+    double drawn = 0;
+};
+LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, std::size_t lobe, std::uint32_t count) {
+    LobeDraws out;
+    const Plan& plan = *place.at->plan;
+    out.sum.resize(plan.tree.leaves().size()), out.square.resize(out.sum.size());
+    StreamKey key{13, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()), 8,
+        Purpose::draws, static_cast<std::uint16_t>(lobe)};
+    for (std::uint32_t from = 0; from < count; from += batch_size) {
+        std::vector<Numbers> u(std::min(batch_size, count - from));
+        for (std::uint32_t i = 0; i < u.size(); ++i) {
+            u[i] = numbers_at(key, from + i, source.numbers(), source.single());
+            u[i][by.number] = by.lobes[lobe].from + by.lobes[lobe].share() * u[i][by.number];
+        }
+        std::vector<Draw> draws(u.size());
+        source.draw(u, draws);
+        std::vector<Vec3d> w;
+        std::vector<const Draw*> of;
+        for (const Draw& d : draws)
+            if (has_direction(d)) w.push_back(d.wi), of.push_back(&d);
+        std::vector<double> p(w.size());
+        source.density(w, p);
+        for (std::size_t i = 0; i < w.size(); ++i) {
+            if (!is_direction(*of[i], p[i])) continue;
+            const std::size_t l = plan.tree.find(to_chart(w[i]));
+            const double h = plan.values(plan.tree.leaves()[l], w[i], p[i])[bridge];
+            out.sum[l] += h, out.square[l] += h * h;
+        }
+    }
+    out.drawn = count;
+    return out;
+}
+
+/// A cell of leaves: the claim, and what each lobe gives.
+struct LobeCell {
+    double claimed = 0, variance = 0, draws = 0;
+    std::vector<double> mean, mean_variance;
+};
+
+/// Leaves in the tree's order are neighbours; they are joined until a cell has enough draws.
+std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& by, const std::vector<LobeDraws>& all) {
+    std::vector<LobeCell> out;
+    LobeCell cell;
+    const auto clear = [&] {
+        cell = {};
+        cell.mean.resize(all.size()), cell.mean_variance.resize(all.size());
+    };
+    clear();
+    for (std::size_t l = 0; l < place.at->integrals.leaves.size(); ++l) {
+        const Estimate& claim = place.at->integrals.leaves[l].bridge;
+        cell.claimed += claim.value, cell.variance += claim.variance;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const double share = by.lobes[k].share() / all[k].drawn;
+            cell.mean[k] += share * all[k].sum[l], cell.mean_variance[k] += share * share * all[k].square[l];
+            cell.draws += 2 * all[k].sum[l];
+        }
+        if (cell.draws + 2 * cell.claimed * all[0].drawn < draws_of_cell) continue;
+        out.push_back(std::move(cell));
+        clear();
+    }
+    return out;
+}
+
+struct Shares {
+    std::vector<double> x, errors;
+    double misfit = 0, before = 0, cells = 0;  // chi squared with x and with 1
+};
+
+double chi_squared(const std::vector<LobeCell>& cells, const std::vector<double>& x) {
+    double out = 0;
+    for (const LobeCell& c : cells) {
+        double sum = 0, v = c.variance;
+        for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * c.mean[k], v += x[k] * x[k] * c.mean_variance[k];
+        out += (c.claimed - sum) * (c.claimed - sum) / (v + 1e-300);
+    }
+    return out;
+}
+
+std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t lobes) {
+    Shares out;
+    out.x.assign(lobes, 1), out.errors.resize(lobes);
+    out.cells = static_cast<double>(cells.size());
+    out.before = chi_squared(cells, out.x);
+    std::vector<std::vector<double>> normal;
+    for (int round = 0; round < 8; ++round) {
+        normal.assign(lobes, std::vector<double>(lobes));
+        std::vector<double> right(lobes);
+        for (const LobeCell& c : cells) {
+            double v = c.variance + 1e-300;
+            for (std::size_t k = 0; k < lobes; ++k) v += out.x[k] * out.x[k] * c.mean_variance[k];
+            for (std::size_t k = 0; k < lobes; ++k) {
+                right[k] += c.mean[k] * c.claimed / v;
+                for (std::size_t j = 0; j < lobes; ++j) normal[k][j] += c.mean[k] * c.mean[j] / v;
+            }
+            // The square of a mean has its variance in it.
+            for (std::size_t k = 0; k < lobes; ++k) normal[k][k] -= c.mean_variance[k] / v;
+        }
+        const auto x = stats::solved(normal, right, 1e-6);
+        if (!x) return {};
+        for (double v : *x)
+            if (!std::isfinite(v)) return {};
+        out.x = *x;
+    }
+    for (std::size_t k = 0; k < lobes; ++k) {
+        std::vector<double> unit(lobes);
+        unit[k] = 1;
+        const auto column = stats::solved(normal, unit, 1e-6);
+        out.errors[k] = column ? std::sqrt(std::max((*column)[k], 0.0)) : 1;
+    }
+    out.misfit = chi_squared(cells, out.x);
+    return out;
+}
+
+bool explains(const Shares& s) {
+    const double degrees = s.cells - static_cast<double>(s.x.size());
+    if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
+    // What is left is within chance, or a fiftieth of what there was.
+    return stats::chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
+}
+
+std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
+    std::vector<std::size_t> off;
+    std::vector<std::string> drawn, claimed;
+    for (std::size_t k = 0; k < s.x.size(); ++k) {
+        drawn.push_back(fmt::format("{:.3g}", by.lobes[k].share()));
+        claimed.push_back(fmt::format("{:.3g}", s.x[k] * by.lobes[k].share()));
+        if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);
+    }
+    if (off.size() == 1) {
+        const LobeInterval& lobe = by.lobes[off[0]];
+        const double x = s.x[off[0]];
+        const bool left_out =
+            std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
+        return fmt::format(
+            "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
+            "it draws in p, the others are right: {}.",
+            by.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]],
+            left_out ? "the chooser's probability of that one lobe is left out"
+                     : "the chooser's probability of that one lobe, or a constant of its own, is off");
+    }
+    return fmt::format(
+        "The lobes that u{} chooses are drawn with {}; p has them with {}: the chooser's probability "
+        "differs.",
+        by.number + 1, fmt::join(drawn, ", "), fmt::join(claimed, ", "));
+}
+
+}  // namespace
+
+std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
+    if (source.traits.own_random || !source.subject.draws_at_will() || source.traits.numbers < 2) return {};
+    std::vector<Numbers> others;
+    for (std::uint32_t i = 0; others.size() < settings_of_others && i < 1000; ++i) {
+        const Numbers u = numbers_at(key, i, source.numbers(), source.single());
+        if (std::min(u.x, u.y) > 0.1 && std::max(u.x, u.y) < 0.9) others.push_back(u);
+    }
+    std::optional<LobeChooser> out;
+    for (int number = source.traits.numbers - 1; number >= 0; --number) {
+        std::vector<LobeInterval> lobes = intervals(jumps_along(source, number, others), others.size());
+        if (lobes.empty()) continue;
+        if (out) return {};  // two numbers choose
+        out = {number, std::move(lobes)};
+    }
+    return out;
+}
+
+std::optional<Cause> lobe_cause(std::span<const Place> places) {
+    for (const Place& place : places) {
+        Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
+        const StreamKey key{13, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
+            8, Purpose::pairs, 2};
+        const std::optional<LobeChooser> by = chooser_of(source, key);
+        if (!by) continue;
+        const std::uint32_t count = source.subject.serial() ? few_draws_for_lobes : draws_for_lobes;
+        std::vector<LobeDraws> draws;
+        for (std::size_t k = 0; k < by->lobes.size(); ++k)
+            draws.push_back(draws_of(source, place, *by, k, count / static_cast<std::uint32_t>(by->lobes.size())));
+        const auto shares = shares_of(cells_of(place, *by, draws), by->lobes.size());
+        if (!shares || !explains(*shares)) continue;
+        const auto [least, most] = std::ranges::minmax_element(shares->x);
+        if (*most - *least < known_share) continue;  // a constant
+        return Cause{"chooser", shares->x[0], shares->errors[0], lobe_sentence(*by, *shares)};
+    }
+    return {};
+}
+
+}  // namespace crescent::check

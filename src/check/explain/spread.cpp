@@ -1,0 +1,181 @@
+// By the counts and densities of the leaves.
+#include "check/explain/spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "check/decide/small_tests.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr int em_steps = 60;
+constexpr double least_share = 1e-4;
+constexpr double expected_at_least = 10;  // draws, of a leaf in which none fell: e^-10
+constexpr double least_unreached = 2e-3;  // share of p's mass
+
+bool in_domain(const ChartRect& rect, bool whole) { return whole || rect.t0 < 1; }
+
+/// Solid angle of the leaves in which p is positive.
+double support_of(const Place& place, bool whole) {
+    double sum = 0;
+    const Tree& tree = place.at->plan->tree;
+    for (const Leaf& leaf : tree.leaves())
+        if (leaf.met && in_domain(tree.rect(leaf), whole)) sum += tree.rect(leaf).area();
+    return sum;
+}
+
+/// By (1) with h ln p, the test function that an even part moves most: its mean is linear in the share. Taken where it
+/// knows the share better and agrees with it.
+void refine_by_slope(std::span<const Place> places, double even, double& share, double& error) {
+    double sum = 0, weights = 0;
+    for (const Place& place : places) {
+        const Observations& o = place.at->observations;
+        const Estimate& of_p = place.at->integrals.sums[slope];
+        const double of_even = place.at->integrals.even[slope] * even, n = std::max(o.independent, 1.0);
+        double mean = o.sums[slope].sum / n, variance = o.sums[slope].square / (n * n);
+        if (o.scrambled > 0) {
+            Replicates y;
+            for (std::size_t k = 0; k < y.size(); ++k) y[k] = o.by_set[slope][k] * replicate_sets / o.scrambled;
+            const ReplicateMean<Replicates> sets(y, 0);
+            mean = sets.mean, variance = sets.variance;
+        }
+        const double by = of_even - of_p.value;
+        if (!(std::fabs(by) > 0)) return;
+        const double weight = by * by / (variance + of_p.variance + 1e-300);
+        sum += weight * (mean - of_p.value) / by, weights += weight;
+    }
+    if (!(weights > 0) || 1 / std::sqrt(weights) > error || std::fabs(sum / weights - share) > 5 * error) return;
+    share = sum / weights, error = 1 / std::sqrt(weights);
+}
+
+/// The share of an even density in a mixture with the leaves' q, by expectation and maximisation.
+/// Draws where p is 0 may count as nothing: then the even part is seen where p is positive alone, `seen` of it.
+Leak fitted_leak(std::span<const Place> places, bool whole) {
+    const double even = 1 / (whole ? 2 * two_pi : two_pi);
+    Leak out;
+    out.whole = whole;
+    const bool at_zero = places[0].draws_at_zero();
+    double share = 0.01, information = 0;
+    for (int step = 0; step < em_steps; ++step) {
+        double sum = 0, seen = 0;
+        information = 0;
+        for (const Place& place : places) {
+            const Tree& tree = place.at->plan->tree;
+            seen += place.at->observations.independent * (at_zero ? 1 : even * support_of(place, whole));
+            for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+                const double count = place.at->observations.counts[l];
+                if (!(count > 0)) continue;
+                const double u = in_domain(tree.rect(tree.leaves()[l]), whole) ? even : 0;
+                const double p = tree.leaves()[l].met ? tree.leaves()[l].q : 0;
+                const double all = (1 - share) * p + share * u + 1e-300;
+                sum += count * share * u / all;
+                information += count * (u - p) * (u - p) / (all * all);
+            }
+        }
+        share = seen > 0 ? std::min(sum / seen, 1.0) : 0;
+    }
+    out.error = information > 0 ? 1 / std::sqrt(information) : 1;
+    refine_by_slope(places, even, share, out.error);
+    out.share = share;
+    out.hypothesis.name = "leak";
+    out.hypothesis.density = [share, even, whole, at_zero](const JudgedSampler& s, int technique,
+                                 std::span<const Pair> at, std::span<double> to) {
+        s.exact_pdf(technique, at, to);
+        for (std::size_t i = 0; i < at.size(); ++i)
+            if (at_zero || to[i] > 0) to[i] = (1 - share) * to[i] + (whole || at[i].wi.z > 0 ? share * even : 0);
+    };
+    return out;
+}
+
+/// Where no draw falls though p expects some, and where draws fall: masses of p and of the draws.
+struct Reach {
+    double unreached = 0, reached = 0, drawn = 0, misfit = 0, leaves = 0;
+};
+Reach reach_at(const CheckAt& c) {
+    Reach out;
+    const double n = c.observations.independent;
+    double h_drawn = 0, h_claimed = 0;
+    for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
+        const LeafIntegral& leaf = c.integrals.leaves[l];
+        if (c.observations.counts[l] > 0) h_drawn += c.observations.leaves[l] / n, h_claimed += leaf.bridge.value;
+    }
+    const double by = h_claimed > 0 ? h_drawn / h_claimed : 1;
+    for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
+        const LeafIntegral& leaf = c.integrals.leaves[l];
+        const Leaf& of_tree = c.plan->tree.leaves()[l];
+        const double p = of_tree.met ? of_tree.q * c.plan->tree.rect(of_tree).area() : 0;
+        const double expected = leaf.bridge.value * n * by;
+        if (!(c.observations.counts[l] > 0)) {
+            if (expected > expected_at_least || leaf.bridge.value * n > expected_at_least) out.unreached += p;
+            continue;
+        }
+        out.reached += p, out.drawn += c.observations.counts[l] / n;
+        if (expected < 20) continue;
+        const double unit = leaf.second / std::max(leaf.bridge.value, 1e-300);
+        const double off = c.observations.leaves[l] - expected;
+        out.misfit += off * off / (unit * expected + leaf.bridge.variance * n * n * by * by + 1e-300), ++out.leaves;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
+    std::vector<Leak> out;
+    for (bool whole : {true, false}) {
+        Leak leak = fitted_leak(places, whole);
+        if (leak.share < least_share || leak.share > 0.9) continue;
+        bool mass_agrees = true;
+        for (const Place& place : places) {
+            leak.hypothesis.masses.push_back(1 - leak.share +
+                leak.share * (place.draws_at_zero() ? 1 : support_of(place, whole) / ((whole ? 2 : 1) * two_pi)) /
+                    mass_ratio(*place.at).claimed);
+            const MassRatio m = mass_ratio(*place.at);
+            mass_agrees = mass_agrees &&
+                std::fabs(leak.hypothesis.masses.back() * m.ratio - 1) < 5 * (m.error / m.ratio + leak.error);
+        }
+        if (!mass_agrees) continue;
+        score(leak.hypothesis, places);
+        if (leak.hypothesis.gain > 0) out.push_back(std::move(leak));
+    }
+    return out;
+}
+
+std::string leak_sentence(const Leak& leak) {
+    return fmt::format("{:.3g} % +- {:.2g} % of the draws are spread evenly over the {}, which p does not have.",
+        100 * leak.share, 196 * leak.error, leak.whole ? "sphere" : "upper half");
+}
+
+std::optional<Cause> curve_cause(std::span<const Place> places) {
+    for (const Place& place : places) {
+        Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
+        const StreamKey key{11, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
+            8, Purpose::corners, 1};
+        const std::vector<int> unused = numbers_without_effect(source, key);
+        if (unused.empty() || source.traits.numbers - static_cast<int>(unused.size()) > 1) continue;
+        return Cause{
+            "curve", 0, 0, fmt::format("All draws lie on a curve: u{} has no effect on them.", unused.front() + 1)};
+    }
+    return {};
+}
+
+std::optional<Cause> unreached_cause(std::span<const Place> places) {
+    const Place* worst = nullptr;
+    Reach most;
+    for (const Place& place : places) {
+        const Reach r = reach_at(*place.at);
+        if (!(r.unreached > least_unreached * (r.unreached + r.reached))) continue;
+        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached) continue;  // more than that is off
+        if (!worst || r.unreached > most.unreached) worst = &place, most = r;
+    }
+    if (!worst) return {};
+    return Cause{"unreached", most.unreached, 0,
+        fmt::format("p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to, at {}. Combined "
+                    "with another sampler by MIS that darkens.",
+            most.unreached, most.unreached + most.reached, worst->trial->text())};
+}
+
+}  // namespace crescent::check

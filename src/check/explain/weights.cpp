@@ -1,0 +1,207 @@
+// Fresh draws at up to three w_o where a question on them failed.
+#include "check/explain/weights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "check/constants.h"
+#include "check/explain/ratios.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr std::size_t most_directions = 3;
+constexpr std::uint32_t draws_to_compare = 512;
+constexpr double agrees_to = 2e-3;  // of a constant, relative
+
+using ByChannel = std::array<double, 3>;
+
+/// Of one draw: what came with it, and what is due.
+struct Compared {
+    Vec3d wo{}, wi{};
+    double pdf = 0, p = 0;
+    bool weighs = false;
+    ByChannel weight{}, due{}, f{}, true_f{};
+};
+
+ByChannel channels_of(Vec3d v) { return {v.x, v.y, v.z}; }
+
+std::vector<Compared> compared_at(const Trial& trial, int technique, std::uint16_t place) {
+    Source source(*trial.subject, technique, trial.wo, trial.light);
+    const StreamKey key{17, place, static_cast<std::uint8_t>(technique), 8, Purpose::light, 1};
+    std::vector<Numbers> u(draws_to_compare);
+    for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = numbers_at(key, i, source.numbers(), source.single());
+    std::vector<Draw> draws(u.size());
+    source.draw(u, draws);
+    std::vector<Vec3d> w;
+    std::vector<const Draw*> of;
+    for (const Draw& d : draws)
+        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z))
+            w.push_back(d.wi), of.push_back(&d);
+    std::vector<double> p(w.size());
+    std::vector<Vec3d> f(w.size()), truth(w.size());
+    if (source.has_density()) source.stated_pdf(w, p);
+    if (source.has_f()) source.f_cos(w, f);
+    if (trial.subject->has_true_f()) source.f_cos(w, truth, true);
+    std::vector<Compared> out;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+        const Draw& d = *of[i];
+        Compared c{trial.wo, w[i], d.pdf, p[i], d.weight.has_value() && source.has_f(), {}, {}, channels_of(f[i]),
+            channels_of(truth[i])};
+        if (c.weighs) {
+            c.weight = source.channels() == 3 ? channels_of(d.weights) : ByChannel{*d.weight, *d.weight, *d.weight};
+            c.due = channels_of(f[i] * (1 / d.pdf));
+        }
+        out.push_back(c);
+    }
+    return out;
+}
+
+bool near(const ByChannel& a, const ByChannel& b) {
+    for (std::size_t c = 0; c < 3; ++c)
+        if (!(std::fabs(a[c] - b[c]) <= 1e-3 * std::max(std::fabs(a[c]), std::fabs(b[c])))) return false;
+    return true;
+}
+ByChannel grey(const ByChannel& c) {
+    const double y = luminance({c[0], c[1], c[2]});
+    return {y, y, y};
+}
+struct ChannelExchange {
+    const char* name;
+    ByChannel (*of)(const ByChannel&);
+};
+constexpr ChannelExchange channel_exchanges[] = {
+    {"channels 1 and 3 exchanged", [](const ByChannel& c) { return ByChannel{c[2], c[1], c[0]}; }},
+    {"channels 1 and 2 exchanged", [](const ByChannel& c) { return ByChannel{c[1], c[0], c[2]}; }},
+    {"channels 2 and 3 exchanged", [](const ByChannel& c) { return ByChannel{c[0], c[2], c[1]}; }},
+    {"channels moved by one", [](const ByChannel& c) { return ByChannel{c[1], c[2], c[0]}; }},
+    {"channels moved by two", [](const ByChannel& c) { return ByChannel{c[2], c[0], c[1]}; }},
+    {"luminance in every channel", grey}};
+
+std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
+    double weighed = 0, plain = 0;
+    std::array<double, std::size(channel_exchanges)> same{};
+    for (const Compared& c : all) {
+        if (!c.weighs) continue;
+        ++weighed, plain += near(c.weight, c.due);
+        for (std::size_t k = 0; k < same.size(); ++k) same[k] += near(c.weight, channel_exchanges[k].of(c.due));
+    }
+    if (weighed < 64 || 2 * plain > weighed) return {};
+    for (std::size_t k = 0; k < same.size(); ++k)
+        if (same[k] >= 0.9 * weighed)
+            return Cause{channel_exchanges[k].name, 0, 0,
+                fmt::format("Weights are f cos / p with {}.", channel_exchanges[k].name), "identity"};
+    return {};
+}
+
+std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const Trial& trial, const char* given,
+    const char* due, const char* verdict) {
+    const std::vector<Factor> factors = factors_for(trial.subject->traits(), trial.light);
+    const std::optional<RatioCause> c = explain_ratios(ratios, factors);
+    if (!c) return {};
+    return Cause{c->name, c->exponent == 0 ? c->constant : c->exponent, 0,
+        ratio_sentence(given, due, *c, trial.subject->traits()), verdict};
+}
+
+void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, double due) {
+    if (due > 0) to.push_back({wo, wi, given / due});
+}
+
+/// f(a, b) with its eta^2 over f(b, a), for pairs across the surface and on one side.
+std::vector<KnownRatio> reciprocity_ratios(const Trial& trial) {
+    const JudgedSampler& s = *trial.subject;
+    const Traits traits = s.traits();
+    Stream stream({19, 0, 0, 8, Purpose::pairs, 1});
+    std::vector<Pair> there, back;
+    for (int i = 0; i < 256; ++i) {
+        const auto direction = [&](bool below) {
+            const double z = 0.05 + 0.95 * stream.number();
+            return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
+        };
+        const bool both = traits.wo == Traits::Asked::both;
+        there.push_back({direction(both && i % 2), direction(both && i % 2 == 0)});
+        back.push_back({there.back().wi, there.back().wo});
+    }
+    std::vector<double> a(there.size()), b(back.size());
+    s.f(there, a), s.f(back, b);
+    std::vector<KnownRatio> out;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+        const Pair& p = there[i];
+        double due = 1;
+        if (p.wo.z * p.wi.z < 0 && traits.eta)
+            due = (p.wo.z > 0) == !traits.importance ? sqr(traits.eta->x) : 1 / sqr(traits.eta->x);
+        add_ratio(out, p.wo, p.wi, a[i] * due, b[i]);
+    }
+    return out;
+}
+
+/// eta^2 seen from w_o's side, and the cosines, as reciprocity shows them: once for each direction.
+std::optional<Cause> reciprocity_cause(const Trial& trial) {
+    const Traits traits = trial.subject->traits();
+    const std::vector<KnownRatio> ratios = reciprocity_ratios(trial);
+    std::vector<Factor> factors = {{"cos theta_i", [](Vec3d o, Vec3d i) { return std::fabs(i.z / o.z); }}};
+    if (traits.eta && traits.eta->x == traits.eta->z)
+        factors.push_back({"eta^2", [eta2 = sqr(traits.eta->x)](Vec3d o, Vec3d i) {
+                               return o.z * i.z >= 0 ? 1.0 : o.z > 0 ? eta2 : 1 / eta2;
+                           }});
+    const std::optional<RatioCause> c = explain_ratios(ratios, factors);
+    if (!c || c->exponent == 0 || std::fabs(c->constant - 1) > agrees_to) return {};
+    return Cause{c->name, c->exponent, 0,
+        fmt::format("f(a, b) over f(b, a) is off by {}{} across the surface: {} in f.",
+            c->name == "eta^2" ? "eta^2" : "the ratio of the cosines (cos theta_i)",
+            c->exponent == 1 || c->exponent == -1 ? "" : fmt::format(" to the power {:g}", c->exponent),
+            c->name == "eta^2" ? "eta^2 is missing or inverted" : "cos theta_i is once too often or missing"),
+        "physics"};
+}
+
+bool found(const CheckAt& c, Family family) {
+    return std::ranges::any_of(c.findings, [&](const Finding& f) { return f.first.family == family; });
+}
+
+}  // namespace
+
+std::string ratio_sentence(const char* given, const char* due, const RatioCause& c, const Traits& traits) {
+    const std::string number = number_name(c.constant, agrees_to, traits);
+    const std::string constant = fmt::format("a constant {:.4g}{}", c.constant, number.empty() ? "" : " = " + number);
+    if (c.exponent == 0) return fmt::format("{} {} times {}.", given, due, constant);
+    const std::string power = std::fabs(c.exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(c.exponent));
+    return fmt::format("{} {} {} {}{}{}.", given, due, c.exponent > 0 ? "times" : "over", c.name, power,
+        std::fabs(c.constant - 1) < agrees_to ? "" : " and " + constant);
+}
+
+std::optional<Cause> weight_cause(std::span<const Trial> trials, const CheckOutcome& outcome) {
+    std::vector<Compared> all;
+    const Trial* trial = nullptr;
+    std::size_t directions = 0;
+    for (std::size_t k = 0; k < outcome.at.size() && directions < most_directions; ++k)
+        for (const CheckAt& c : outcome.at[k]) {
+            const bool wrong = found(c, Family::pointwise) || found(c, Family::weight) || found(c, Family::true_f) ||
+                found(c, Family::mean);
+            if (!wrong) continue;
+            trial = &trials[outcome.trials[k]];
+            const std::vector<Compared> here =
+                compared_at(*trial, c.technique, static_cast<std::uint16_t>(outcome.trials[k]));
+            all.insert(all.end(), here.begin(), here.end());
+            ++directions;
+        }
+    if (trial) {
+        if (auto c = exchanged_channels(all); c && trial->subject->traits().channels == 3) return c;
+        std::vector<KnownRatio> pdf, weight, f;
+        for (const Compared& c : all) {
+            add_ratio(pdf, c.wo, c.wi, c.pdf, c.p);
+            if (c.weighs) add_ratio(weight, c.wo, c.wi, c.weight[0], c.due[0]);
+            if (trial->subject->has_true_f()) add_ratio(f, c.wo, c.wi, c.f[0], c.true_f[0]);
+        }
+        if (auto c = ratio_cause(pdf, *trial, "The pdf with a draw is", "pdf(w)", "identity")) return c;
+        if (auto c = ratio_cause(weight, *trial, "Weights are", "f cos / p", "identity")) return c;
+        if (auto c = ratio_cause(f, *trial, "f is", "the BRDF", "mean")) return c;
+    }
+    for (const SmallFault& f : outcome.small)
+        if (f.family == Family::reciprocity) return reciprocity_cause(trials[outcome.trials[0]]);
+    return {};
+}
+
+}  // namespace crescent::check

@@ -1,0 +1,172 @@
+// Each sentence is computed from the numbers of the finding alone. w_o is named by the verdict that it stands in.
+#include "check/report/sentences.h"
+
+#include <cmath>
+
+#include "check/constants.h"
+#include "check/explain/text.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr double interval = 1.96;  // standard errors: 95 %
+
+std::string u_text(const Numbers& u, int count) {
+    std::string out = "(";
+    for (int k = 0; k < count; ++k) out += fmt::format("{}{:.6g}", k ? ", " : "", u[k]);
+    return out + ")";
+}
+
+/// "first at u = (0.25, 0), w_i = (0, 0, 1)"
+std::string first_at(const Example& e, int numbers) {
+    bool any = false;
+    for (int k = 0; k < numbers; ++k) any = any || e.u[k] != 0;
+    std::string out = "first at ";
+    if (any) out += "u = " + u_text(e.u, numbers) + ", ";
+    return out + "w_i = " + direction_text(e.draw.wi);
+}
+
+std::string mass_sentence(const Answer& a) {
+    const double drawn = a.expected + a.difference, half = interval * a.sd;
+    if (!(drawn > 0)) return fmt::format("Nothing is drawn, and p integrates to {:.5g}.", a.expected);
+    if (drawn > 1 - 1e-9) return fmt::format("p integrates to {}. Expected 1.", with_error(a.expected, half));
+    return fmt::format("p integrates to {}. Expected {:.6g}, the share of the samples that draw a direction.",
+        with_error(a.expected, half), drawn);
+}
+
+/// Sums of h over the leaves below a node: of the draws and of p.
+std::pair<double, double> sums_below(const CheckAt& c, int node) {
+    const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
+    if (x.child < 0) {
+        const auto l = static_cast<std::size_t>(x.leaf);
+        return {c.observations.leaves[l] / c.observations.independent, c.integrals.leaves[l].bridge.value};
+    }
+    const auto a = sums_below(c, x.child), b = sums_below(c, x.child + 1);
+    return {a.first + b.first, a.second + b.second};
+}
+
+/// A half of a node against what p expects there, given the draws in the whole node. The half with the smaller share is
+/// named: there the deviation is larger.
+std::string node_sentence(const CheckAt& c, int node, const Answer& a) {
+    const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
+    const auto whole = sums_below(c, node), first = sums_below(c, x.child), second = sums_below(c, x.child + 1);
+    const bool of_first = first.second <= second.second;
+    const double expected = whole.first * (of_first ? first.second : second.second) / (whole.second + 1e-300);
+    const double difference = of_first ? a.difference : -a.difference;
+    const ChartRect& r = c.plan->tree.nodes()[static_cast<std::size_t>(x.child + (of_first ? 0 : 1))].rect;
+    const std::string where = fmt::format("around w_i = {}, within {:.2g} rad",
+        direction_text(from_chart(r.at(0.5, 0.5))), std::max(r.theta_width(), r.phi_width()) / 2);
+    if (!(expected > 0) || std::fabs(difference) > 9 * expected)
+        return fmt::format("Draws fall where p expects {} of them: {}.", expected > 0 ? "a tenth" : "none", where);
+    return fmt::format("{} {} draws than p expects {}.",
+        percent(std::fabs(difference) / expected, interval * a.sd / expected), difference > 0 ? "more" : "fewer",
+        where);
+}
+
+std::string pair_sentence(const char* what, double share, const Example& e, int numbers, const std::string& values) {
+    return fmt::format("{} for {:.3g} % of the draws, {}{}.", what, 100 * share, first_at(e, numbers), values);
+}
+
+std::string channel_of(const Answer& a, bool of_three) {
+    return of_three ? fmt::format(" in channel {}", a.member + 1) : "";
+}
+
+std::string light_sentence(const Answer& a, Family family, bool of_three) {
+    const double half = interval * a.sd;
+    if (family == Family::support)
+        return fmt::format(
+            "p is 0 over directions that carry {} of f L cos.", percent(a.difference / a.expected, half / a.expected));
+    if (family == Family::albedo)
+        return fmt::format("f sends back {} times what arrives from an even light{}. Expected at most 1.",
+            with_error(1 + a.difference, half), channel_of(a, of_three));
+    return fmt::format("The weighted draws give {} times the integral of f cos{}. Expected 1.",
+        with_error(1 + a.difference / a.expected, half / a.expected), channel_of(a, of_three));
+}
+
+/// Whole sums.
+std::string sum_sentence(const Finding& f, const Answer& a) {
+    const double half = interval * a.sd;
+    switch (f.first.family) {
+        case Family::slope:
+        case Family::slope_sets:
+            return fmt::format("Draws are {} concentrated than p: the mean of h ln p is off by {}.",
+                a.difference > 0 ? "more" : "less", with_error(a.difference, half));
+        case Family::centre:
+        case Family::centre_sets:
+            return fmt::format("The mean direction of the draws is off that of p by {} in {}.",
+                with_error(2 * a.difference, 2 * half), "xyz"[std::clamp(f.first.member, 0, 2)]);
+        case Family::depth:
+            return fmt::format(
+                "Draws and p differ in many small places: chi^2 is {:.0f} over {:.0f} nodes of depth {}.",
+                a.difference + a.expected, a.expected, f.first.member);
+        default:
+            return fmt::format("Where draws fall they are {} {} than p expects.",
+                percent(std::fabs(a.difference) / a.expected, half / a.expected), a.difference > 0 ? "more" : "fewer");
+    }
+}
+
+}  // namespace
+
+std::string sentence_of(const CheckAt& c, const Finding& f) {
+    const Answer& a = f.second.sd > 0 ? f.second : f.first;
+    const DrawChecks& checks = c.observations.checks;
+    const int numbers = c.numbers;
+    switch (f.first.family) {
+        case Family::mass:
+        case Family::mass_sets: return mass_sentence(a);
+        case Family::node:
+        case Family::node_sets: return node_sentence(c, f.first.member, a);
+        case Family::bridge:
+        case Family::bridge_sets:
+        case Family::slope:
+        case Family::slope_sets:
+        case Family::centre:
+        case Family::centre_sets:
+        case Family::depth: return sum_sentence(f, a);
+        case Family::pointwise:
+            return pair_sentence("The pdf with a draw is not pdf(w)", a.difference, checks.pointwise.first, numbers,
+                fmt::format(": {:.5g} with the draw, pdf(w) {:.5g}", checks.pointwise.first.draw.pdf,
+                    checks.pointwise.first.p));
+        case Family::zero: return pair_sentence("pdf(w) is 0", a.difference, checks.zero.first, numbers, "");
+        case Family::weight:
+            return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, numbers,
+                fmt::format(": weight {:.5g}, f cos / pdf {:.5g}", checks.weight.first.draw.weight.value_or(0),
+                    checks.weight.first.due));
+        case Family::true_f:
+            return pair_sentence("f is not the BRDF", a.difference, checks.true_f.first, numbers,
+                fmt::format(": f cos {:.5g}, expected {:.5g}", checks.true_f.first.p, checks.true_f.first.due));
+        case Family::repeats:
+            return fmt::format("{:g} pairs of {:g} draws have the same direction. Expected {:.2g}.", a.difference,
+                c.observations.independent, a.expected);
+        case Family::delta_share:
+            return fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
+                with_error(a.expected + a.difference, interval * a.sd), a.expected);
+        case Family::delta_scatter:
+            return "Draws said to be of delta parts have more than 16 directions: what has a density is no delta part.";
+        case Family::delta_weight:
+            return fmt::format("{:g} draws of a delta part have another weight than the first of it.", a.difference);
+        case Family::support:
+        case Family::albedo:
+        case Family::mean: return light_sentence(a, f.first.family, c.channels == 3);
+        default:
+            if (checks.invalid.times > 0)
+                return fmt::format("{:g} answers cannot be used: {}, {}.", a.difference,
+                    fault_of(checks.invalid.first.draw).value_or("the pdf or the weight is not a number >= 0"),
+                    first_at(checks.invalid.first, numbers));
+            return fmt::format("{:g} answers of pdf(w) or f cannot be used.", a.difference);
+    }
+}
+
+std::string sentence_of(const SmallFault& f, int numbers) {
+    std::string what = f.what;
+    if (!what.empty() && what[0] >= 'a' && what[0] <= 'z' && what.compare(0, 2, "p ") != 0 &&
+        what.compare(0, 4, "pdf ") != 0 && what.compare(0, 2, "f(") != 0)
+        what[0] = static_cast<char>(what[0] - 'a' + 'A');
+    std::string out = fmt::format("{}: {:g} of {:g}", what, f.times, f.of);
+    if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
+    else if (f.family == Family::mis) out += fmt::format(", by up to {:.3g}", std::fabs(f.size));
+    return out + ", " + first_at(f.first, numbers) + ".";
+}
+
+}  // namespace crescent::check
