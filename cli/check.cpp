@@ -163,7 +163,7 @@ std::string command_of(const CheckFlags& f) {
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
     for (const std::string& text : f.wo) out += " --wo " + shell_word(text);
     for (const std::string& text : f.expect) out += " --expect " + shell_word(text);
-    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted},
+    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted}, {"--describe", f.describe},
              {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
         if (given) out += std::string(" ") + flag;
     if (f.patience > 0) out += " --patience " + shortest(f.patience);
@@ -212,6 +212,25 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
     return out;
 }
 
+/// What distribution the draws have; no verdict.
+int describe_draws(const CheckFlags& flags, std::span<const Trial> trials, Progress& monitor) {
+    check::DescribeSettings settings;
+    settings.seed = flags.seed;
+    if (flags.full) settings.draws *= 16, settings.draws_of_limited *= 16;
+    const std::vector<check::Description> all = check::describe(trials, settings, monitor);
+    monitor.clear();
+    std::string text;
+    for (const check::Description& d : all) text += check::description_text(d) + "\n";
+    print(text);
+    if (!flags.json.empty()) {
+        const nlohmann::ordered_json out = {{"format", "crescent check descriptions 1"},
+            {"version", crescent::version()}, {"commit", crescent::commit()}, {"command", command_of(flags)},
+            {"descriptions", check::description_json(all)}};
+        write_whole(flags.json, out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    }
+    return held;
+}
+
 }  // namespace
 
 int check(const CheckFlags& given) {
@@ -231,6 +250,7 @@ int check(const CheckFlags& given) {
     try {
         const std::vector<Trial> trials = trials_for(flags, monitor);
         check_waivers(waivers, names_of(trials));
+        if (flags.describe) return describe_draws(flags, trials, monitor);
         if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
         tell_cost(trials, test_settings_of(flags), monitor);
         j = judge(trials, test_settings_of(flags), monitor);

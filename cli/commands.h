@@ -75,6 +75,7 @@ struct CheckFlags {
     unsigned seed = 1;
     unsigned right = 0, first = 0;          // right: how many right samplers; 0: not asked for
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
+    bool describe = false;  // what distribution the draws have, and no verdict
 };
 int check(const CheckFlags& flags);
 

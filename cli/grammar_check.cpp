@@ -111,11 +111,9 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
     limits(*c, *f, exec);
-    auto* right =
-        c->add_option("--right", f->right,
-             "judge so many right samplers at random parameters")
-            ->type_name("N")
-            ->check(whole_number(1, 1000000));
+    auto* right = c->add_option("--right", f->right, "judge so many right samplers at random parameters")
+                      ->type_name("N")
+                      ->check(whole_number(1, 1000000));
     for (auto* other : {arm, set, planted}) right->excludes(other);
     c->add_option("--first", f->first, "of --right: where in their row to begin")->type_name("K")->needs(right);
     for (auto* other : {arm, set, planted, right}) exec->excludes(other), samples->excludes(other);
@@ -128,6 +126,9 @@ void add_check(CLI::App& app, Work& work) {
     auto* wo = c->add_option("--wo", f->wo, "judge at this w_o alone; may be given again; the one of --samples");
     wo->type_name("DEG[,DEG] or x,y,z")->take_all()->expected(1)->allow_extra_args(false);
     auto* against = comparison(*c, *f);
+    auto* describe = c->add_flag("--describe", f->describe,
+        "print what distribution the draws have, with intervals, and no verdict; --json writes it");
+    for (auto* other : {planted, right, against}) describe->excludes(other);
     auto* expect = waivers(*c, *f);
     for (auto* other : {planted, right}) expect->excludes(other);
     for (auto* other : {planted, right}) against->excludes(other), wo->excludes(other);

@@ -34,6 +34,7 @@
 #include "base/text.h"
 #include "check/against.h"
 #include "check/check.h"
+#include "check/report/describe.h"
 #include "check/user.h"
 #include "color/turbo.h"
 #include "compare/compare.h"

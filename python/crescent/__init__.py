@@ -11,7 +11,7 @@ f in 1/sr without the cosine.
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from ._check import check
+from ._check import Description, check, describe
 from ._crescent import commit
 from ._crescent import version as __version__
 from ._judgement import Judgement, Verdict
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from . import adapters, testing
 
 __all__ = [
+    "Description",
     "Experiment",
     "Film",
     "Judgement",
@@ -38,6 +39,7 @@ __all__ = [
     "brdf_names",
     "check",
     "commit",
+    "describe",
     "join",
     "load",
     "parse",

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import json
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Unpack
 
 import numpy as np
@@ -18,6 +19,17 @@ from ._libraries import library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
 
 Progress = Callable[[str, float, float], None]
+
+
+@dataclass(frozen=True)
+class Description:
+    """What distribution draws have: ``print`` shows it; `cases` has the numbers, each with its 95 % interval."""
+
+    text: str
+    cases: list[dict[str, Any]]
+
+    def __str__(self) -> str:
+        return self.text
 
 
 def _must_be_known(known: Mapping[str, Any]) -> None:
@@ -169,6 +181,54 @@ def _sampler_of(sample: Any, pdf: Any, f: Any, known: Known) -> Sampler:
     return replace(sample, **known)
 
 
+def _trials_and_title(
+    sample: Any,
+    pdf: Any,
+    f: Any,
+    known: Known,
+    settings: Mapping[str, float] | None,
+    full: bool,
+    wo_deg: Grid | None,
+) -> tuple[_crescent.Trials, str]:
+    """What `check` and `describe` are given, over its w_o, and its name."""
+    _must_be_known(known)
+    if isinstance(sample, str) and names_a_file(sample):
+        sample = sampler_at(sample)
+    if isinstance(sample, str):
+        if pdf is not None or f is not None or known:
+            raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")
+        return _crescent.trials_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
+    if settings:
+        raise TypeError("settings are of a built-in arm; a sampler of one's own has its parameters in itself")
+    sampler = _sampler_of(sample, pdf, f, known)
+    return _trials(sampler, full, wo_deg), sampler.title()
+
+
+def describe(
+    sample: Callable[..., Any] | Sampler | str,
+    pdf: Callable[..., Any] | None = None,
+    f: Callable[..., Any] | None = None,
+    *,
+    wo_deg: Grid | None = None,
+    seed: int = 1,
+    full: bool = False,
+    settings: Mapping[str, float] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+    **known: Unpack[Known],
+) -> Description:
+    """What distribution the draws of a sampler have at each w_o; its arguments are those of :func:`check`.
+
+    Nothing is judged, and neither pdf nor f is evaluated but to learn their shapes. `full` makes sixteen times as many
+    draws.
+    """
+    trials, _ = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
+    seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
+    threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
+    text, numbers = _crescent.describe(trials, seed=seed, full=full, threads=threads, progress=progress)
+    return Description(text, json.loads(numbers))
+
+
 def check(
     sample: Callable[..., Any] | Sampler | str,
     pdf: Callable[..., Any] | None = None,
@@ -197,18 +257,7 @@ def check(
     sampler may be called wrong, over everything in the call. `against`: a second sampler, compared with the first.
     `progress(what, done, total)` is called some times a second.
     """
-    _must_be_known(known)
-    if isinstance(sample, str) and names_a_file(sample):
-        sample = sampler_at(sample)
-    if isinstance(sample, str):
-        if pdf is not None or f is not None or known:
-            raise TypeError(f"the built-in arm '{sample}' has its own pdf and f; its parameters go into settings")
-        trials, title = _crescent.trials_of_arm(sample, _numbers(settings or {}), full, _grid(wo_deg, "upper")), sample
-    else:
-        if settings:
-            raise TypeError("settings are of a built-in arm; a sampler of one's own has its parameters in itself")
-        sampler = _sampler_of(sample, pdf, f, known)
-        trials, title = _trials(sampler, full, wo_deg), sampler.title()
+    trials, title = _trials_and_title(sample, pdf, f, known, settings, full, wo_deg)
     other = None
     if isinstance(against, str):
         other = _crescent.arm_beside(against, trials)

@@ -113,6 +113,30 @@ Judged judged(Trials& trials, Trials* other, double alpha, std::uint32_t seed, b
     return out;
 }
 
+/// What distribution the draws have: as text and as JSON.
+std::pair<std::string, std::string> described(
+    Trials& trials, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
+    check::DescribeSettings settings;
+    settings.seed = seed;
+    if (full) settings.draws *= 16, settings.draws_of_limited *= 16;
+    PolledMonitor monitor;
+    Raised raised(monitor);
+    std::vector<check::Description> all;
+    const auto work = [&] { all = check::describe(trials.all, settings, monitor); };
+    tell(trials, &raised);
+    try {
+        watched(monitor, raised, progress, is_serial(trials),
+            [&] { threads > 0 ? on_threads(threads, work) : work(); });
+    } catch (...) {
+        tell(trials, nullptr);
+        throw;
+    }
+    tell(trials, nullptr);
+    std::string text;
+    for (const check::Description& d : all) text += check::description_text(d) + "\n";
+    return {text, check::description_json(all).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
 /// The trials of an arm of the list where `a` was judged.
 Trials arm_beside(const std::string& arm, const Trials& a) {
     if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
@@ -238,6 +262,7 @@ void add_judging(nb::module_& m) {
     m.def("arm_beside", &arm_beside, "arm"_a, "trials"_a);
     m.def("judge", &judged, "trials"_a, "other"_a.none(), "alpha"_a, "seed"_a, "full"_a, "accept_few"_a,
         "expect_same"_a, "threads"_a, "command"_a, "progress"_a.none());
+    m.def("describe", &described, "trials"_a, "seed"_a, "full"_a, "threads"_a, "progress"_a.none());
     m.def("write_whole", &write_whole, "path"_a, "text"_a, "Writes beside the place and renames.");
     m.def("sampler_names", &sampler_names, "The built-in arms.");
     add_judged(m);

@@ -26,6 +26,17 @@ def test_a_right_sampler_is_right_and_a_pdf_that_is_1_percent_off_is_wrong():
     assert {"normalised", "identity"} <= set(off.broken())
 
 
+def test_describe_says_what_distribution_the_draws_have():
+    d = crescent.describe(cosine, cosine_pdf, name="cosine", wo_deg=30)
+    assert "mean direction" in str(d) and len(d.cases) == 1
+    case = d.cases[0]
+    mean_z = case["mean"][2]
+    assert mean_z["low"] < mean_z["value"] < mean_z["high"] and abs(mean_z["value"] - 2 / 3) < 0.01
+    assert case["share_above"]["value"] == 1 and case["share_below"]["value"] == 0
+    with pytest.raises(TypeError, match="no keyword"):
+        crescent.describe(cosine, colour=3)
+
+
 def test_a_judgement_is_data_files_and_no_truth_value(tmp_path):
     j = crescent.check(cosine, cosine_pdf, lambert, name="mine", wo_deg=[30, (60, 250)])
     assert {v.case for v in j.verdicts} == {"w_o 30 deg az 0", "w_o 60 deg az 250"}

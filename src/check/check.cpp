@@ -7,9 +7,12 @@
 
 #include "check/constants.h"
 #include "check/decide/check_sampler.h"
+#include "check/decide/efficiency.h"
 #include "check/explain/causes.h"
+#include "check/report/pictures.h"
 #include "check/report/verdicts.h"
 #include "judgements/all.h"
+#include "subjects/faults.h"
 
 namespace crescent {
 
@@ -76,8 +79,8 @@ Said said_of(const Cut& cut, const Trial& trial, const TestSettings& settings) {
 
 /// Every verdict of a trial that ended early, but for `valid` where the first draws were seen. Notes what there was no
 /// time for.
-void cut_short(const Trial& trial, const Cut& cut, const TestSettings& settings,
-    std::vector<Verdict>& verdicts, Judgement& j) {
+void cut_short(
+    const Trial& trial, const Cut& cut, const TestSettings& settings, std::vector<Verdict>& verdicts, Judgement& j) {
     const Said said = said_of(cut, trial, settings);
     LeftOut left{trial.arm, trial.text(), {}, said.first};
     for (Verdict& v : verdicts) {
@@ -140,6 +143,52 @@ void count(const CheckOutcome& outcome, Judgement& j) {
 
 }  // namespace
 
+namespace {
+
+/// Trials beside each other; the call does nothing else while it takes times. What ended early stays so.
+void rank(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes, const check::CheckSettings& settings,
+    const ProgressMonitor& monitor, ByTrial& verdicts) {
+    std::vector<check::Efficiency> all = check::variances_of(trials, outcomes, settings, monitor);
+    check::measure_costs(trials, settings.seed, all, monitor);
+    std::vector<Verdict> ranked = check::judge_efficiency(trials, all);
+    for (const CheckOutcome& o : outcomes)
+        for (std::size_t k = 0; k < o.trials.size(); ++k) {
+            if (o.cut[k]) continue;
+            const std::size_t i = o.trials[k];
+            const auto v = std::ranges::find(verdicts[i], "efficiency", &Verdict::name);
+            if (v == verdicts[i].end()) continue;
+            ranked[i].wo = v->wo, ranked[i].seconds = v->seconds;
+            *v = std::move(ranked[i]);
+        }
+}
+
+/// Maps and weights by trial. A program is asked for them in any case: what it is asked does not depend on what is
+/// written.
+void draw_pictures(
+    std::span<const Trial> trials, std::span<const CheckOutcome> outcomes, const TestSettings& settings, Judgement& j) {
+    std::vector<std::vector<BinMap>> maps(trials.size());
+    std::vector<std::optional<WeightPicture>> weights(trials.size());
+    for (const CheckOutcome& o : outcomes)
+        for (std::size_t k = 0; k < o.trials.size(); ++k) {
+            const std::size_t i = o.trials[k];
+            if (o.cut[k] || !(settings.pictures || trials[i].subject->limited())) continue;
+            for (const CheckAt& c : o.at[k])
+                if (std::optional<BinMap> map = check::bin_map(trials[i], c)) maps[i].push_back(std::move(*map));
+            if (!o.tails[k].weighed) continue;
+            weights[i] = check::weight_picture(trials[i], check::weights_of(o.at[k]), o.tails[k]);
+            try {
+                check::add_rose(trials[i], *weights[i]);
+            } catch (const SubjectFault&) { weights[i]->rose_p.clear(); }  // it ended meanwhile
+        }
+    if (!settings.pictures) return;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        std::ranges::move(maps[i], std::back_inserter(j.maps));
+        if (weights[i]) j.weights.push_back(std::move(*weights[i]));
+    }
+}
+
+}  // namespace
+
 CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
     if (settings.budget) return *settings.budget;
     if (limited) {
@@ -151,11 +200,12 @@ CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_
 }
 
 Judgement judge(std::span<const Trial> trials, const TestSettings& settings, ProgressMonitor& monitor) {
-    const auto judged = static_cast<std::size_t>(std::ranges::count_if(trials, [](const Trial& t) { return !t.baseline; }));
+    const auto judged =
+        static_cast<std::size_t>(std::ranges::count_if(trials, [](const Trial& t) { return !t.baseline; }));
     check::CheckSettings of_engine;
     of_engine.budget = budget_of(settings, false, judged);
     of_engine.limited = budget_of(settings, true, judged);
-    of_engine.seed = settings.seed, of_engine.alpha = settings.alpha;
+    of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_weights = settings.pictures;
     monitor.begin("verdicts", static_cast<double>(judged));
     Judgement out;
     out.alpha = settings.alpha;
@@ -166,6 +216,8 @@ Judgement judge(std::span<const Trial> trials, const TestSettings& settings, Pro
         distribute(trials, outcome, settings, verdicts, out);
         count(outcome, out);
     }
+    rank(trials, outcomes, of_engine, monitor, verdicts);
+    draw_pictures(trials, outcomes, settings, out);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;
         out.questions = std::max(out.questions, trials[i].subject->spending().answers);

@@ -44,10 +44,12 @@ std::string histogram(const WeightPicture& w) {
         if (tail.size() > 1) chart.line(tail, "c2");
     }
     const std::string fitted = w.exceedances > 0
-        ? fmt::format("the tail fitted to the {:.0f} largest is the line, k = {:.3f}", w.exceedances, w.k)
-        : std::string("no tail: the largest are all alike");
-    return fmt::format("<figure class=narrow>{}<figcaption>{:.0f} zeros are left out; {}</figcaption></figure>",
-        chart.str(), w.zeros, fitted);
+        ? fmt::format("the line is the Pareto tail fitted to the {:.0f} largest, k = {:.3f}", w.exceedances, w.k)
+        : std::string("the largest weights are alike, so that there is no tail to fit");
+    return fmt::format(
+        "<figure class=narrow>{}<figcaption>Histogram of the weights X = f L cos / p, both axes logarithmic; {}; {:.0f} "
+        "draws of weight 0 are left out.</figcaption></figure>",
+        chart.str(), fitted, w.zeros);
 }
 
 /// What this page needs beside the style sheet of all.
@@ -65,17 +67,17 @@ constexpr const char* head =
     "polyline{fill:none;stroke-width:2}.rose-f{stroke:var(--soft)}.rose-p{stroke:var(--c1)}.worst{fill:none;stroke:#"
     "0a0;stroke-width:2}"
     ".wide{overflow-x:auto}details p{margin-top:1em}</style><script>"
-    "function paint(w,top,seen,due){const "
+    "function paint(w,top,seen,due,off){const "
     "c=document.currentScript.previousElementSibling.querySelectorAll('canvas');const "
     "night=matchMedia('(prefers-color-scheme:dark)').matches;"
     "const grey=v=>{const m=Math.min(v/top,1),g=night?25+225*m:255-225*m;return[g,g,g]};"
-    "const tint=(o,e)=>{const "
-    "d=(o-e)/Math.sqrt(Math.max(e,1))/4,a=Math.min(Math.abs(d),1),f=night?25:255*(1-a),g=25+230*a;if(night)return "
+    "const tint=v=>{const "
+    "d=v/4,a=Math.min(Math.abs(d),1),f=night?25:255*(1-a),g=25+230*a;if(night)return "
     "d<0?[f,g/2,g]:[g,f,g/3];return d<0?[f,f,255]:[255,f,f]};"
     "const draw=(k,colour)=>{const "
     "x=c[k].getContext('2d'),p=x.createImageData(w,seen.length/"
     "w);seen.forEach((o,i)=>{p.data.set([...colour(i),255],4*i)});x.putImageData(p,0,0)};"
-    "draw(0,i=>grey(seen[i]));if(due){draw(1,i=>grey(due[i]));draw(2,i=>tint(seen[i],due[i]))}}"
+    "draw(0,i=>grey(seen[i]));if(due){draw(1,i=>grey(due[i]));draw(2,i=>tint(off[i]))}}"
     "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>d.open=true))</script>";
 
 std::string names_of(const Judgement& j) {

@@ -7,7 +7,6 @@
 
 #include "math/functions.h"
 #include "simd/scalar.h"
-#include "stats/bins.h"
 
 namespace crescent::inline judgements {
 
@@ -15,6 +14,8 @@ namespace {
 
 // A map is 260 x 200 px (`canvas` in the page's style), with room for its labels to the left and below.
 constexpr double map_width = 260, map_height = 200;
+constexpr const char* axes_text = "theta downwards, phi to the right";
+constexpr const char* shades = "by shade 0 to";
 
 double degrees_of(double a) { return 2 * math::asin(std::sqrt(std::clamp(a / 2, 0.0, 1.0))) * 180 / pi; }
 
@@ -30,8 +31,11 @@ std::string map_axes(const BinMap& m) {
         if (edge < m.edges.size())
             out += fmt::format("<text x=34 y={:.1f} text-anchor=end>{}</text><path d='M36 {:.1f}h4'/>", y + 9,
                 degrees(degrees_of(m.edges[edge])), y + 5);
-        const double x = 40 + map_width * i / 4;
-        out += fmt::format("<text x={:.1f} y=222 text-anchor=middle>{}</text><path d='M{:.1f} 205v4'/>", x, 90 * i, x);
+        const std::size_t sector = static_cast<std::size_t>(std::lround(0.25 * i * m.sectors));
+        const double x = 40 + map_width * static_cast<double>(sector) / m.sectors;
+        const double turn = sector < m.sector_edges.size() ? m.sector_edges[sector] : 90 * i;
+        out += fmt::format(
+            "<text x={:.1f} y=222 text-anchor=middle>{}</text><path d='M{:.1f} 205v4'/>", x, degrees(turn), x);
     }
     return out;
 }
@@ -58,12 +62,24 @@ std::string curve(const std::vector<double>& v, std::string_view name) {
 std::string implied_figure(const BinMap& m) {
     const double top = std::max(m.full_scale, 1e-300);
     return fmt::format(
-        "<p>The density that the draws imply, by bin, {}: degrees from the axis downwards, one row a ring whatever it "
-        "spans; degrees about it to the right. Full scale is {:.4g} 1/sr. There is no pdf(w) to hold it against.</p>"
+        "<p>Density of the draws by bin, {}. There is no pdf(w) to compare it with.</p>"
         "<div class='row wide'><figure class=map><canvas width={} height={}></canvas><svg width=320 "
-        "height=230>{}</svg><figcaption>implied density</figcaption></figure></div>"
+        "height=230>{}</svg><figcaption>Density of the draws, {} {:.4g} 1/sr. Degrees: {}.</figcaption></figure></div>"
         "<script>paint({},{:.6g},[{:.4g}])</script>",
-        m.coordinates, top, m.sectors, m.rings, map_axes(m), m.sectors, top, fmt::join(m.observed, ","));
+        m.coordinates, m.sectors, m.rings, map_axes(m), shades, top, axes_text, m.sectors, top,
+        fmt::join(m.observed, ","));
+}
+
+double deviation_of(const BinMap& m, std::size_t bin) {
+    const double sd = m.sd.empty() ? std::sqrt(std::max(m.expected[bin], 1.0)) : std::max(m.sd[bin], 1.0);
+    return (m.observed[bin] - m.expected[bin]) / sd;
+}
+
+std::size_t furthest_bin(const BinMap& m) {
+    std::size_t worst = 0;
+    for (std::size_t i = 1; i < m.observed.size(); ++i)
+        if (std::fabs(deviation_of(m, i)) > std::fabs(deviation_of(m, worst))) worst = i;
+    return worst;
 }
 
 }  // namespace
@@ -72,22 +88,28 @@ std::string map_figures(const BinMap& m) {
     if (m.expected.empty()) return implied_figure(m);
     const double top = std::max(*std::max_element(m.observed.begin(), m.observed.end()),
         *std::max_element(m.expected.begin(), m.expected.end()));
-    const std::size_t worst = worst_bin(m.observed, m.expected);
+    const std::size_t worst = furthest_bin(m);
+    std::vector<double> deviations;
+    for (std::size_t i = 0; i < m.observed.size(); ++i) deviations.push_back(deviation_of(m, i));
     std::string out = fmt::format(
-        "<p>Draws by bin, {}: degrees from the axis downwards, one row a ring whatever it spans; degrees about it to "
-        "the right. Full scale "
-        "is {:.0f} draws. Difference: (observed - expected) / sqrt(expected), red more, blue fewer, full at 4. Framed: "
-        "the bin that is "
-        "off most, {:.0f} seen, {:.1f} due.</p><div class='row wide'>",
-        m.coordinates, top, m.observed[worst], m.expected[worst]);
-    for (const char* title : {"observed", "expected", "standardised difference"})
+        "<p>Draws by bin, {}; bins are finer where most draws are. The framed bin is furthest off: {:.0f} drawn, "
+        "{:.1f} "
+        "expected, {:+.1f} standard deviations; the furthest of {} bins of a right sampler is off by about 3.</p>"
+        "<div class='row wide'>",
+        m.coordinates, m.observed[worst], m.expected[worst], deviations[worst], m.observed.size());
+    const std::string captions[] = {fmt::format("Observed: draws, {} {:.0f}. Degrees: {}.", shades, top, axes_text),
+        fmt::format("Expected: what p gives, {} {:.0f}. Degrees: {}.", shades, top, axes_text),
+        fmt::format(
+            "Observed less expected in standard deviations: red more, blue fewer, full colour at 4. Degrees: {}.",
+            axes_text)};
+    for (const std::string& caption : captions)
         out += fmt::format(
             "<figure class=map><canvas width={} height={}></canvas><svg width=320 "
             "height=230>{}{}</svg><figcaption>{}</figcaption></figure>",
-            m.sectors, m.rings, map_axes(m), frame_of(m, worst), title);
+            m.sectors, m.rings, map_axes(m), frame_of(m, worst), caption);
     return out +
-        fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}])</script>", m.sectors, top,
-            fmt::join(m.observed, ","), fmt::join(m.expected, ","));
+        fmt::format("</div><script>paint({},{:.0f},[{:.0f}],[{:.1f}],[{:.2f}])</script>", m.sectors, std::max(top, 1.0),
+            fmt::join(m.observed, ","), fmt::join(m.expected, ","), fmt::join(deviations, ","));
 }
 
 std::string rose_figure(const WeightPicture& w) {
@@ -101,8 +123,8 @@ std::string rose_figure(const WeightPicture& w) {
     }
     out += curve(w.rose_f, "rose-f") + curve(w.rose_p, "rose-p");
     return out +
-        "</svg><figcaption>Plane of incidence, degrees of w_i from n: p (blue) over f L cos (grey), each to its own "
-        "largest value</figcaption></figure>";
+        "</svg><figcaption>p(w_i) (blue) and f L cos (grey) in the plane of incidence, by degrees of w_i from n; each "
+        "curve is scaled to its own largest value</figcaption></figure>";
 }
 
 std::string implied_html(const Verdict& v) {

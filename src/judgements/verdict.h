@@ -47,7 +47,9 @@ struct BinMap {
     std::string arm, trial, coordinates;
     int rings = 0, sectors = 0;
     std::vector<double> observed, expected;  // ring-major; draws, or 1/sr
+    std::vector<double> sd{};                // of observed less expected; empty: the root of what is expected
     std::vector<double> edges{};             // of the rings: 1 - cos of the angle to the axis
+    std::vector<double> sector_edges{};      // degrees about the axis; empty: even ones from 0
     double full_scale = 0;                   // of a density, 1/sr
 };
 

@@ -32,7 +32,7 @@ std::vector<CheckOutcome> grouped(std::span<const Trial> trials) {
                 t.lighting == trials[i].lighting;
         };
         auto at = std::ranges::find_if(out, same);
-        if (at == out.end()) at = out.insert(out.end(), {trials[i].arm, {}, {}, {}, 0, {}, {}});
+        if (at == out.end()) at = out.insert(out.end(), {trials[i].arm, {}, {}, {}, {}, 0, {}, {}});
         at->trials.push_back(i);
     }
     return out;
@@ -109,7 +109,7 @@ public:
     Call(std::span<const Trial> trials, const CheckSettings& settings, ProgressMonitor& monitor)
         : trials_(trials), settings_(settings), monitor_(monitor), outcomes_(grouped(trials)) {
         for (CheckOutcome& o : outcomes_) {
-            o.at.resize(o.trials.size()), o.cut.resize(o.trials.size());
+            o.at.resize(o.trials.size()), o.cut.resize(o.trials.size()), o.tails.resize(o.trials.size());
             for (std::size_t k = 0; k < o.trials.size(); ++k) jobs_.push_back({&o, k});
         }
         const double families = static_cast<double>(Family::families);
@@ -151,7 +151,15 @@ private:
                     {trial.light, static_cast<std::uint16_t>(index_of(job)), levels_}, budget, settings_.seed));
         });
         if (cut) at.clear();
+        job.outcome->tails[job.index] = tail_of(at);
+        for (CheckAt& c : at) forget(c);
         monitor_.advance(1);
+    }
+
+    /// What no report needs, of which there are megabytes at each w_o.
+    void forget(CheckAt& c) const {
+        c.observations.met = {}, c.integrals.light.weighed = {};
+        if (!settings_.keep_weights) c.observations.weights = {};
     }
 
     /// The middle first, then the most grazing one: between them they meet most faults.

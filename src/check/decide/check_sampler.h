@@ -10,6 +10,7 @@
 
 #include "base/progress_monitor.h"
 #include "check/decide/check_at.h"
+#include "check/decide/tail.h"
 
 namespace crescent::check {
 
@@ -22,6 +23,7 @@ struct CheckSettings {
     double alpha = 1e-3;
     /// Samplers and w_o in the whole call; beyond `questions_covered` families the second level is divided.
     double cases = 1;
+    bool keep_weights = false;  // for pictures
 };
 
 /// Why a sampler was not examined to the end at some w_o.
@@ -36,6 +38,7 @@ struct CheckOutcome {
     std::string arm;
     std::vector<std::size_t> trials;       // indices into the call's trials
     std::vector<std::vector<CheckAt>> at;  // by trial and technique; cut short: what the first draws showed
+    std::vector<WeightTail> tails;         // by trial
     std::vector<SmallFault> small;         // of the sampler as a whole
     std::uint64_t evaluations = 0;
     std::vector<std::optional<Cut>> cut;  // by trial

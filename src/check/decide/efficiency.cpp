@@ -55,41 +55,25 @@ std::vector<double> baseline_weights(const Trial& trial, const StreamKey& key) {
     return out;
 }
 
-void note_variance(std::span<const double> x, const stats::Spread& s, Efficiency& e) {
-    double fourth = 0;
-    for (double v : x) fourth += sqr(sqr(v - s.mean)) / s.n;
-    e.variance = sqr(s.sd);
-    e.relative_se = e.variance > 0 ? std::sqrt(std::max(fourth / sqr(e.variance) - 1, 0.0) / s.n) : 0;
+void note_variance(const WeightTail& t, Efficiency& e) {
+    e.weighed = t.weighed;
+    e.variance = sqr(t.spread.sd), e.relative_se = t.variance_error;
+    e.heavy = t.heavy() || t.open() || t.has_unseen();
 }
 
 bool draws_below(const CheckAt& c) {
+    if (!c.plan) return false;
     const std::vector<Leaf>& leaves = c.plan->tree.leaves();
     for (std::size_t l = 0; l < std::min(leaves.size(), c.observations.counts.size()); ++l)
         if (c.observations.counts[l] > 0 && c.plan->tree.rect(leaves[l]).t0 >= 1) return true;
     return false;
 }
 
-Efficiency variance_of(std::span<const CheckAt> techniques, std::size_t trial) {
-    Efficiency e;
-    e.trial = trial;
-    e.whole = std::ranges::any_of(techniques, draws_below);
-    const std::vector<double> x = weights_of(techniques);
-    e.weighed = !x.empty();
-    if (!e.weighed) return e;
-    const WeightTail t = tail_of(techniques);
-    note_variance(x, t.spread, e);
-    e.heavy = t.heavy() || t.open() || t.has_unseen();
-    return e;
-}
-
 Efficiency variance_of_baseline(const Trial& trial, std::size_t index, const StreamKey& key) {
     Efficiency e;
     e.trial = index;
     try {
-        const std::vector<double> x = baseline_weights(trial, key);
-        const WeightTail t = tail_of_weights(x);
-        note_variance(x, t.spread, e);
-        e.weighed = true, e.heavy = t.heavy() || t.open();
+        note_variance(tail_of_weights(baseline_weights(trial, key)), e);
     } catch (const SubjectTooSlow&) {
     } catch (const SubjectFault& fault) { e.fault = fault.what(); }
     return e;
@@ -102,7 +86,12 @@ std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<co
     std::vector<Efficiency> out(trials.size());
     std::vector<std::size_t> baselines;
     for (const CheckOutcome& o : outcomes)
-        for (std::size_t k = 0; k < o.trials.size(); ++k) out[o.trials[k]] = variance_of(o.at[k], o.trials[k]);
+        for (std::size_t k = 0; k < o.trials.size(); ++k) {
+            Efficiency& e = out[o.trials[k]];
+            e.trial = o.trials[k];
+            e.whole = std::ranges::any_of(o.at[k], draws_below);
+            note_variance(o.tails[k], e);
+        }
     for (std::size_t i = 0; i < trials.size(); ++i)
         if (trials[i].baseline) baselines.push_back(i);
     const auto run = [&](std::size_t b) {
@@ -225,7 +214,9 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
     std::map<std::string, std::vector<const Efficiency*>> companies;
     for (const Efficiency& e : all)
         if (e.weighed) companies[company_of(trials[e.trial])].push_back(&e);
+    std::size_t judged = 0;
     for (const Efficiency& e : all) {
+        if (!trials[e.trial].baseline) judged = e.trial;
         Verdict& v = out[e.trial];
         v.arm = trials[e.trial].arm, v.trial = trials[e.trial].text(), v.name = "efficiency";
         v.state = State::skipped;

@@ -129,7 +129,12 @@ std::vector<double> weights_of(std::span<const CheckAt> techniques) {
 
 WeightTail tail_of_weights(std::span<const double> x) {
     WeightTail out;
+    out.weighed = !x.empty();
     out.spread = stats::spread(x);
+    double fourth = 0;
+    for (double v : x) fourth += sqr(sqr(v - out.spread.mean)) / out.spread.n;
+    const double variance = sqr(out.spread.sd);
+    if (variance > 0) out.variance_error = std::sqrt(std::max(fourth / sqr(variance) - 1, 0.0) / out.spread.n);
     out.times_largest = times_of_largest(x);
     out.bounded = out.spread.n >= 1000 && out.spread.largest <= bounded_weight * out.spread.mean;
     out.fit = fit_of(x);
@@ -137,6 +142,7 @@ WeightTail tail_of_weights(std::span<const double> x) {
 }
 
 WeightTail tail_of(std::span<const CheckAt> techniques) {
+    if (!has_weights(techniques)) return {};
     WeightTail out = tail_of_weights(weights_of(techniques));
     std::vector<WeighedPoint> unseen;
     for (const CheckAt& c : techniques) out.due += find_unseen(c, unseen);
@@ -144,13 +150,12 @@ WeightTail tail_of(std::span<const CheckAt> techniques) {
     return out;
 }
 
-void judge_tail(const Trial& trial, std::span<const CheckAt> techniques, Verdict& v) {
-    if (!has_weights(techniques)) {
+void judge_tail(const Trial& trial, const WeightTail& t, Verdict& v) {
+    if (!t.weighed) {
         v.state = State::skipped;
         v.say = "There are no weights f L cos / p.";
         return;
     }
-    const WeightTail t = tail_of(techniques);
     const double mean = t.spread.mean;
     v.evidence["draws"] = t.spread.n;
     v.evidence["relative_sd"] = mean > 0 ? t.spread.sd / mean : 0;
@@ -181,9 +186,8 @@ void judge_tail(const Trial& trial, std::span<const CheckAt> techniques, Verdict
     }
 }
 
-void leave_heavy_mean_open(std::span<const CheckAt> techniques, Verdict& v) {
-    if (v.state != State::right || !has_weights(techniques)) return;
-    const WeightTail t = tail_of(techniques);
+void leave_heavy_mean_open(const WeightTail& t, Verdict& v) {
+    if (v.state != State::right || !t.weighed) return;
     if (t.has_unseen()) {
         v.evidence["mean"] = t.spread.mean, v.evidence["quadrature"] = t.due;
         v.say = fmt::format(

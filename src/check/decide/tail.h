@@ -15,7 +15,9 @@ namespace crescent::check {
 
 /// Of all techniques together.
 struct WeightTail {
+    bool weighed = false;  // every draw has a weight
     stats::Spread spread;
+    double variance_error = 0;       // relative standard error of the variance
     std::optional<stats::Tail> fit;  // none where the largest weights do not spread
     std::size_t times_largest = 0;   // draws of the largest weight
     bool bounded = false;            // the largest weight is no more than a few means
@@ -38,9 +40,9 @@ WeightTail tail_of_weights(std::span<const double> x);
 WeightTail tail_of(std::span<const CheckAt> techniques);
 
 /// The verdict `tail`: right, or inconclusive with what would settle it, or skipped.
-void judge_tail(const Trial& trial, std::span<const CheckAt> techniques, Verdict& v);
+void judge_tail(const Trial& trial, const WeightTail& t, Verdict& v);
 /// The verdict `mean` of weights without a variance: what was tested is right, but no interval of their plain mean
 /// means anything.
-void leave_heavy_mean_open(std::span<const CheckAt> techniques, Verdict& v);
+void leave_heavy_mean_open(const WeightTail& t, Verdict& v);
 
 }  // namespace crescent::check

@@ -49,8 +49,8 @@ JudgedTail tail_at(const PowerLobe& sampler) {
     for (const SmallFault& f : c.small) ADD_FAILURE() << f.what << f.size;
     JudgedTail out;
     out.of = tail_of({&c, 1});
-    judge_tail(t, {&c, 1}, out.tail);
-    leave_heavy_mean_open({&c, 1}, out.mean);
+    judge_tail(t, out.of, out.tail);
+    leave_heavy_mean_open(out.of, out.mean);
     return out;
 }
 

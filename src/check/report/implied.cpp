@@ -110,33 +110,4 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
         : "There is no pdf(w), and no direction is drawn as a density.";
 }
 
-BinMap implied_map(const CheckAt& c) {
-    constexpr int sectors = 32, rings_above = 16;
-    const Tree& tree = c.plan->tree;
-    bool below = false;
-    for (const Leaf& leaf : tree.leaves())
-        below = below ||
-            (tree.rect(leaf).t0 >= 1 &&
-                c.observations.counts[static_cast<std::size_t>(&leaf - tree.leaves().data())] > 0);
-    BinMap out;
-    out.coordinates = "cos theta x phi about n";
-    out.rings = below ? 2 * rings_above : rings_above, out.sectors = sectors;
-    out.observed.assign(static_cast<std::size_t>(out.rings * sectors), 0);
-    for (int i = 0; i <= out.rings; ++i) out.edges.push_back(static_cast<double>(i) / rings_above);
-    const double height = 1.0 / rings_above, width = two_pi / sectors;
-    for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
-        const ChartRect& r = tree.rect(tree.leaves()[l]);
-        const double p = static_cast<double>(c.observations.counts[l]) / (c.observations.independent * r.area());
-        const auto share = [](double low, double high, double from, double step) {
-            return std::max(0.0, std::min(high, from + step) - std::max(low, from)) / step;
-        };
-        for (int i = static_cast<int>(r.t0 / height); p > 0 && i < out.rings && i * height < r.t1; ++i)
-            for (int k = static_cast<int>(r.phi0 / width); k < sectors && k * width < r.phi1; ++k)
-                out.observed[static_cast<std::size_t>(i * sectors + k)] +=
-                    p * share(r.t0, r.t1, i * height, height) * share(r.phi0, r.phi1, k * width, width);
-    }
-    out.full_scale = *std::ranges::max_element(out.observed);
-    return out;
-}
-
 }  // namespace crescent::check

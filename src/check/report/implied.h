@@ -9,7 +9,5 @@ namespace crescent::check {
 
 /// Into the verdict on the density: by cells of the tree, by rings about n, and where it is highest.
 void note_implied_density(const CheckAt& c, Verdict& v);
-/// In rings of equal solid angle and sectors about n.
-BinMap implied_map(const CheckAt& c);
 
 }  // namespace crescent::check

@@ -99,8 +99,8 @@ std::vector<Verdict> verdicts_of(
                 judge_at(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
-            if (name == "tail") judge_tail(trial, outcome.at[k], v);
-            if (name == "mean") leave_heavy_mean_open(outcome.at[k], v);
+            if (name == "tail") judge_tail(trial, outcome.tails[k], v);
+            if (name == "mean") leave_heavy_mean_open(outcome.tails[k], v);
             if (k == 0)
                 for (const SmallFault& f : outcome.small)
                     if (info(f.family).verdict == name)

@@ -1,0 +1,337 @@
+// Shares have Clopper and Pearson's intervals, means those of the normal distribution, quantiles those of order
+// statistics. The support is measured on cells that other draws have shaped and ordered, so that no choice biases it.
+#include "check/report/describe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+
+#include "base/parallel.h"
+#include "check/constants.h"
+#include "check/estimate/budget.h"
+#include "check/estimate/chart.h"
+#include "check/estimate/source.h"
+#include "check/estimate/stream.h"
+#include "stats/distributions.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr double normal_95 = 1.959964, one_end = 0.025;
+constexpr double of_support = 0.95;
+constexpr std::array<double, 3> shares_within = {0.5, 0.9, 0.99};
+
+Interval share_interval(double hits, double of) {
+    if (!(of > 0)) return {};
+    const stats::ShareInterval i = stats::binomial_interval(of, hits, one_end);
+    return {hits / of, i.low, i.high};
+}
+
+/// Of the mean of n values with this sum and sum of squares.
+Interval mean_interval(double sum, double square, double n) {
+    const double mean = sum / n, half = normal_95 * std::sqrt(std::max(square / n - mean * mean, 0.0) / n);
+    return {mean, mean - half, mean + half};
+}
+
+/// Of the value below which a share of the draws lies; `sorted` rises.
+Interval quantile_interval(const std::vector<double>& sorted, double share) {
+    const double n = static_cast<double>(sorted.size()), half = normal_95 * std::sqrt(n * share * (1 - share));
+    const auto at = [&](double rank) { return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
+    return {at(n * share), at(n * share - half), at(n * share + half)};
+}
+
+double angle_between(Vec3d a, Vec3d b) {
+    const Vec3d across = cross(a, b);
+    return math::atan2(length(across), dot(a, b));
+}
+
+void describe_moments(const std::vector<Vec3d>& w, Description& d) {
+    const double n = static_cast<double>(w.size());
+    std::array<double, 3> sum{};
+    std::array<double, 6> product{}, product_square{};
+    for (Vec3d v : w) {
+        const double x[3] = {v.x, v.y, v.z}, xx[6] = {v.x * v.x, v.y * v.y, v.z * v.z, v.x * v.y, v.x * v.z, v.y * v.z};
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += x[k];
+        for (std::size_t k = 0; k < 6; ++k) product[k] += xx[k], product_square[k] += xx[k] * xx[k];
+    }
+    for (std::size_t k = 0; k < 3; ++k) d.mean[k] = mean_interval(sum[k], product[k], n);
+    for (std::size_t k = 0; k < 6; ++k) d.second[k] = mean_interval(product[k], product_square[k], n);
+    const Vec3d mean{d.mean[0].value, d.mean[1].value, d.mean[2].value};
+    const double size = length(mean);
+    if (!(size > 0)) return;
+    const Vec3d axis = mean * (1 / size);
+    d.theta = math::atan2(math::hypot(axis.x, axis.y), axis.z);
+    d.phi = math::atan2(axis.y, axis.x);
+    if (d.phi < 0) d.phi += two_pi;
+    double along = 0, along_square = 0, across_square = 0;
+    std::vector<double> angles;
+    for (Vec3d v : w) {
+        const double c = dot(v, axis);
+        along += c, along_square += c * c, across_square += 1 - c * c;
+        angles.push_back(angle_between(v, axis));
+    }
+    d.length = mean_interval(along, along_square, n);
+    // Across the mean direction the mean has two components of half this variance each: 2.4477 = sqrt(chi-square of two
+    // degrees at 95 %).
+    const double across = 2.4477 * std::sqrt(std::max(across_square, 0.0) / 2) / n;
+    d.direction_error = across < size ? math::asin(across / size) : two_pi / 2;
+    std::ranges::sort(angles);
+    for (std::size_t k = 0; k < shares_within.size(); ++k) d.within[k] = quantile_interval(angles, shares_within[k]);
+}
+
+/// Dyadic cells of the chart that hold at most `most` of the draws that shape them.
+class Cells {
+public:
+    explicit Cells(std::vector<ChartPoint> shape) { cut({}, std::move(shape), 0); }
+    std::size_t find(ChartPoint at) const {
+        std::size_t i = 0;
+        while (nodes_[i].child != 0) i = nodes_[i].child + ((nodes_[i].along_phi ? at.phi : at.t) >= nodes_[i].middle);
+        return nodes_[i].cell;
+    }
+    const std::vector<double>& areas() const { return areas_; }
+
+private:
+    static constexpr std::size_t most = 16;
+    struct Node {
+        std::size_t child = 0, cell = 0;
+        bool along_phi = false;
+        double middle = 0;
+    };
+    std::vector<Node> nodes_ = {{}};
+    std::vector<double> areas_;
+
+    void cut(const ChartRect& rect, std::vector<ChartPoint> inside, std::size_t node) {
+        const bool along_phi = rect.phi_width() > rect.theta_width();
+        if (inside.size() <= most || rect.width(along_phi) < least_width) {
+            nodes_[node].cell = areas_.size();
+            areas_.push_back(rect.area());
+            return;
+        }
+        const double middle = rect.middle(along_phi);
+        const std::size_t child = nodes_.size();
+        nodes_[node] = {child, 0, along_phi, middle};
+        nodes_.resize(child + 2);
+        std::vector<ChartPoint> half[2];
+        for (const ChartPoint& p : inside) half[(along_phi ? p.phi : p.t) >= middle].push_back(p);
+        inside = {};
+        for (std::size_t k = 0; k < 2; ++k) {
+            ChartRect part = rect;
+            if (along_phi) (k == 0 ? part.phi1 : part.phi0) = middle;
+            else (k == 0 ? part.t1 : part.t0) = middle;
+            cut(part, std::move(half[k]), child + k);
+        }
+    }
+};
+
+/// A third of the draws shapes the cells, a third gives each a density, by which a third measures.
+void describe_support(const std::vector<Vec3d>& w, Description& d) {
+    const std::size_t third = w.size() / 3;
+    const auto part = [&](std::size_t k) {
+        std::vector<ChartPoint> out;
+        for (std::size_t i = k; i < 3 * third; i += 3) out.push_back(to_chart(w[i]));
+        return out;
+    };
+    const Cells cells(part(0));
+    const std::size_t count = cells.areas().size();
+    const double n = static_cast<double>(third);
+    std::vector<double> density(count, 0), drawn(count, 0);
+    for (const ChartPoint& p : part(1)) density[cells.find(p)] += 1 / n;
+    for (std::size_t c = 0; c < count; ++c) density[c] /= cells.areas()[c];
+    double sum = 0, square = 0;
+    for (const ChartPoint& p : part(2)) {
+        const std::size_t c = cells.find(p);
+        ++drawn[c], sum += density[c], square += density[c] * density[c];
+    }
+    const Interval of_square = mean_interval(sum, square, n);
+    const auto inverse = [](double v) { return v > 0 ? std::min(1 / v, 2 * two_pi) : 2 * two_pi; };
+    d.effective = {inverse(of_square.value), inverse(of_square.high), inverse(of_square.low)};
+    std::vector<std::size_t> order(count);
+    for (std::size_t c = 0; c < count; ++c) order[c] = c;
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return density[a] > density[b]; });
+    const double half = normal_95 * std::sqrt(n * of_support * (1 - of_support));
+    double held = 0, area = 0;
+    bool low = false, middle = false, high = false;
+    for (std::size_t c : order) {
+        held += drawn[c], area += cells.areas()[c];
+        const auto take = [&](bool& done, double from, double& to) {
+            if (!done && held >= from) done = true, to = area;
+        };
+        take(low, n * of_support - half, d.solid_angle.low), take(middle, n * of_support, d.solid_angle.value);
+        take(high, std::min(n * of_support + half, n), d.solid_angle.high);
+    }
+}
+
+void describe_map(const std::vector<Vec3d>& w, Description& d) {
+    constexpr int rings_above = 9;
+    d.sectors = 24;
+    const int rings = d.below.value > 0 ? 2 * rings_above : rings_above;
+    for (int i = 0; i <= rings; ++i) d.theta_edges.push_back(two_pi / 4 * i / rings_above);
+    std::vector<double> hits(static_cast<std::size_t>(rings * d.sectors), 0);
+    for (Vec3d v : w) {
+        const ChartPoint at = to_chart(v);
+        const int ring = std::min(static_cast<int>(angle_of(at.t) / (two_pi / 4) * rings_above), rings - 1);
+        const int sector = std::min(static_cast<int>(at.phi / two_pi * d.sectors), d.sectors - 1);
+        ++hits[static_cast<std::size_t>(ring * d.sectors + sector)];
+    }
+    for (double h : hits) d.map.push_back(share_interval(h, static_cast<double>(d.draws)));
+}
+
+Description describe_one(const Trial& trial, int technique, const DescribeSettings& settings, std::uint16_t place) {
+    Description d;
+    d.arm = trial.arm, d.trial = trial.text();
+    d.technique = technique, d.techniques = trial.subject->techniques();
+    Source source(*trial.subject, technique, trial.wo, trial.light);
+    const StreamKey key{settings.seed, place, static_cast<std::uint8_t>(technique), 1, Purpose::draws, 0xffff};
+    const std::uint32_t n =
+        source.available(key, trial.subject->limited() ? settings.draws_of_limited : settings.draws);
+    std::vector<Vec3d> w;
+    std::vector<Numbers> u;
+    std::vector<Draw> draws;
+    double above = 0, delta = 0, nothing = 0;
+    for (std::uint32_t from = 0; from < n; from += batch_size) {
+        u.resize(std::min(batch_size, n - from)), draws.assign(u.size(), {});
+        source.draw(key, from, u, draws);
+        for (const Draw& x : draws) {
+            const double size = length(x.wi);
+            const bool drawn = x.delta != 0 || x.pdf > 0;
+            if (std::isnan(x.pdf) || (drawn && !(std::isfinite(size) && size > 0))) ++d.invalid;
+            else if (x.delta != 0) ++delta;
+            else if (!drawn) ++nothing;
+            else w.push_back(x.wi * (1 / size)), above += x.wi.z > 0;
+        }
+    }
+    d.draws = n, d.directions = w.size();
+    const double all = static_cast<double>(n);
+    d.above = share_interval(above, all), d.below = share_interval(static_cast<double>(w.size()) - above, all);
+    d.delta = share_interval(delta, all), d.nothing = share_interval(nothing, all);
+    if (w.size() < 64) return d;
+    describe_moments(w, d);
+    describe_support(w, d);
+    describe_map(w, d);
+    return d;
+}
+
+}  // namespace
+
+std::vector<Description> describe(
+    std::span<const Trial> trials, const DescribeSettings& settings, ProgressMonitor& monitor) {
+    std::vector<std::pair<std::size_t, int>> jobs;
+    for (std::size_t i = 0; i < trials.size(); ++i)
+        for (int t = 0; !trials[i].baseline && t < trials[i].subject->techniques(); ++t) jobs.emplace_back(i, t);
+    monitor.begin("describe", static_cast<double>(jobs.size()));
+    std::vector<Description> out(jobs.size());
+    const auto run = [&](std::size_t j) {
+        monitor.check();
+        const auto& [trial, technique] = jobs[j];
+        out[j] = describe_one(trials[trial], technique, settings, static_cast<std::uint16_t>(trial));
+        monitor.advance(1);
+    };
+    const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
+    if (serial)
+        for (std::size_t j = 0; j < jobs.size(); ++j) run(j);
+    else parallel_for(std::size_t{0}, jobs.size(), run);
+    return out;
+}
+
+namespace {
+
+std::string told(const Interval& i, double scale = 1, const char* unit = "") {
+    return fmt::format("{:.4g}{} ({:.4g} to {:.4g})", scale * i.value, unit, scale * i.low, scale * i.high);
+}
+
+/// Density by characters, theta downwards and phi to the right.
+std::string map_text(const Description& d) {
+    constexpr std::string_view shades = " .:-=+*#%@";
+    const auto sectors = static_cast<std::size_t>(d.sectors);
+    std::vector<double> density;
+    for (std::size_t i = 0; i < d.map.size(); ++i) {
+        const std::size_t ring = i / sectors;
+        const double band = math::cos(d.theta_edges[ring]) - math::cos(d.theta_edges[ring + 1]);
+        density.push_back(d.map[i].value / (band * two_pi / d.sectors));
+    }
+    const double top = std::max(*std::ranges::max_element(density), 1e-300);
+    std::string out = fmt::format("  map, by density: \"{}\" from 0 to {:.4g} 1/sr\n", shades, top);
+    const std::string_view label = "phi:", columns = "0           90          180         270         360";
+    out += fmt::format("  {:>11} {}\n", label, columns);
+    for (std::size_t ring = 0; ring + 1 < d.theta_edges.size(); ++ring) {
+        out += fmt::format(
+            "  {:>4.0f} to {:>3.0f} ", d.theta_edges[ring] * 360 / two_pi, d.theta_edges[ring + 1] * 360 / two_pi);
+        for (std::size_t k = 0; k < sectors; ++k) {
+            const double v = density[ring * sectors + k] / top;
+            const std::size_t shade = v > 0 ? 1 + std::min<std::size_t>(static_cast<std::size_t>(v * 9), 8) : 0;
+            out += std::string(2, shades[shade]);
+        }
+        out += '\n';
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string description_text(const Description& d) {
+    constexpr double degrees = 360 / two_pi;
+    std::string out = d.arm + ", " + d.trial;
+    if (d.techniques > 1) out += fmt::format(", technique {} of {}", d.technique + 1, d.techniques);
+    out += fmt::format(": {} draws, 95 % intervals in parentheses\n", d.draws);
+    out += "  above the horizon    " + told(d.above, 100, " %") + "\n";
+    out += "  below the horizon    " + told(d.below, 100, " %") + "\n";
+    if (d.delta.value > 0) out += "  delta parts          " + told(d.delta, 100, " %") + "\n";
+    if (d.nothing.value > 0) out += "  nothing (pdf 0)      " + told(d.nothing, 100, " %") + "\n";
+    if (d.invalid > 0) out += fmt::format("  no direction (NaN)   {} draws\n", d.invalid);
+    if (d.map.empty()) return out + "  too few directions for more\n";
+    out += fmt::format("  mean direction       theta {:.4g} deg, phi {:.4g} deg, within {:.2g} deg\n",
+        d.theta * degrees, d.phi * degrees, d.direction_error * degrees);
+    out += fmt::format("  mean vector          x {}, y {}, z {}\n", told(d.mean[0]), told(d.mean[1]), told(d.mean[2]));
+    out += "    its length         " + told(d.length) + "\n";
+    out += "  angle to the mean    50 % within " + told(d.within[0], degrees, " deg") + "\n";
+    out += "                       90 % within " + told(d.within[1], degrees, " deg") + "\n";
+    out += "                       99 % within " + told(d.within[2], degrees, " deg") + "\n";
+    out += "  second moments       ";
+    const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+    for (std::size_t k = 0; k < 6; ++k)
+        out += fmt::format("{}{} {:.4f} +- {:.4f}",
+            k == 0       ? ""
+                : k == 3 ? "\n                       "
+                         : ", ",
+            names[k], d.second[k].value, (d.second[k].high - d.second[k].low) / 2);
+    out += "\n  effective support    95 % of the draws in " + told(d.solid_angle, 1, " sr") + "\n";
+    out += "                       1 / integral of p^2: " + told(d.effective, 1, " sr") + "\n";
+    return out + map_text(d);
+}
+
+nlohmann::ordered_json description_json(std::span<const Description> all) {
+    using Json = nlohmann::ordered_json;
+    constexpr double degrees = 360 / two_pi;
+    const auto of = [](const Interval& i, double scale = 1) {
+        return Json{{"value", scale * i.value}, {"low", scale * i.low}, {"high", scale * i.high}};
+    };
+    Json out = Json::array();
+    for (const Description& d : all) {
+        Json j = {{"arm", d.arm}, {"case", d.trial}, {"technique", d.technique + 1}, {"draws", d.draws},
+            {"invalid", d.invalid}, {"share_above", of(d.above)}, {"share_below", of(d.below)},
+            {"share_of_delta_parts", of(d.delta)}, {"share_of_nothing", of(d.nothing)}};
+        if (!d.map.empty()) {
+            j["mean"] = {of(d.mean[0]), of(d.mean[1]), of(d.mean[2])};
+            j["length_of_mean"] = of(d.length);
+            j["mean_direction"] = {{"theta_deg", d.theta * degrees}, {"phi_deg", d.phi * degrees},
+                {"within_deg", d.direction_error * degrees}};
+            j["angle_to_mean_deg"] = {
+                {"50", of(d.within[0], degrees)}, {"90", of(d.within[1], degrees)}, {"99", of(d.within[2], degrees)}};
+            const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+            for (std::size_t k = 0; k < 6; ++k) j["second_moments"][names[k]] = of(d.second[k]);
+            j["solid_angle_of_95_percent_sr"] = of(d.solid_angle);
+            j["effective_solid_angle_sr"] = of(d.effective);
+            Json edges = Json::array(), rows = Json::array();
+            for (double e : d.theta_edges) edges.push_back(e * degrees);
+            for (const Interval& i : d.map) rows.push_back({i.value, i.low, i.high});
+            j["map"] = {{"theta_edges_deg", edges}, {"sectors", d.sectors}, {"columns", {"share", "low", "high"}},
+                {"rows", rows}};
+        }
+        out.push_back(std::move(j));
+    }
+    return out;
+}
+
+}  // namespace crescent::check

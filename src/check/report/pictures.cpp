@@ -1,0 +1,223 @@
+// Bins need not lie along the leaves: a leaf is shared out by area, and leaves are small where mass is.
+#include "check/report/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+
+#include "math/functions.h"
+#include "simd/scalar.h"
+
+namespace crescent::check {
+
+namespace {
+
+constexpr int map_rings = 20, map_sectors = 24;
+
+/// A share of a leaf's mass that is spread evenly over an interval.
+struct Spread1d {
+    double from, to, mass;
+};
+
+double mass_up_to(std::span<const Spread1d> all, double x) {
+    double sum = 0;
+    for (const Spread1d& s : all) sum += s.mass * std::clamp((x - s.from) / (s.to - s.from), 0.0, 1.0);
+    return sum;
+}
+
+double quantile_of(std::span<const Spread1d> all, double share, double low, double high) {
+    const double total = mass_up_to(all, high);
+    for (int i = 0; i < 50; ++i) {
+        const double middle = (low + high) / 2;
+        (mass_up_to(all, middle) < share * total ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
+
+/// Even bins where nearly all of the mass is, a few on either side of it.
+std::vector<double> edges_of(std::span<const Spread1d> all, double low, double high, int bins) {
+    constexpr double outside = 1e-3;    // of the mass, on either side
+    constexpr double zoom_below = 0.6;  // of the range
+    constexpr int beside = 2;           // bins
+    double from = quantile_of(all, outside, low, high), to = quantile_of(all, 1 - outside, low, high);
+    const double margin = 0.02 * (to - from);
+    from = std::max(low, from - margin), to = std::min(high, to + margin);
+    if (to - from > zoom_below * (high - low)) from = low, to = high;
+    const int before = from > low ? beside : 0, after = to < high ? beside : 0, inside = bins - before - after;
+    std::vector<double> out;
+    for (int i = 0; i < before; ++i) out.push_back(low + (from - low) * i / before);
+    for (int i = 0; i < inside; ++i) out.push_back(from + (to - from) * i / inside);
+    for (int i = 0; i < after; ++i) out.push_back(to + (high - to) * i / after);
+    out.push_back(high);
+    return out;
+}
+
+/// Shares of [from, to] that fall into each bin, added by `add(bin, share)`.
+void share_out(
+    double from, double to, const std::vector<double>& edges, const std::function<void(std::size_t, double)>& add) {
+    auto bin = static_cast<std::size_t>(std::ranges::upper_bound(edges, from) - edges.begin());
+    bin = bin > 0 ? bin - 1 : 0;
+    for (; bin + 1 < edges.size() && edges[bin] < to; ++bin) {
+        const double width = std::min(to, edges[bin + 1]) - std::max(from, edges[bin]);
+        if (width > 0) add(bin, width / (to - from));
+    }
+}
+
+/// One leaf in draws: what was drawn, what p expects, and the variance of their difference.
+struct LeafDraws {
+    ChartRect rect;
+    double observed = 0, expected = 0, variance = 0;
+};
+
+std::vector<LeafDraws> leaf_draws(const CheckAt& c, bool has_density) {
+    const std::vector<Leaf>& leaves = c.plan->tree.leaves();
+    const double n = c.observations.independent;
+    std::vector<LeafDraws> out;
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+        const LeafIntegral& claim = c.integrals.leaves[l];
+        LeafDraws d{c.plan->tree.rect(leaves[l])};
+        // What one draw counts for, E[h^2] / E[h]: 1 where h is.
+        const double unit = claim.bridge.value > 0 ? claim.second / claim.bridge.value : 1;
+        if (!has_density) {
+            d.observed = d.expected = static_cast<double>(c.observations.counts[l]);
+        } else if (unit > 0) {
+            d.observed = c.observations.leaves[l] / unit, d.expected = n * claim.bridge.value / unit;
+            d.variance = d.expected + sqr(n / unit) * claim.bridge.variance;
+        }
+        if (d.observed > 0 || d.expected > 0) out.push_back(d);
+    }
+    return out;
+}
+
+/// A leaf's azimuths from `start` on, in one or two pieces.
+std::vector<std::pair<double, double>> turned_azimuths(const ChartRect& rect, double start) {
+    const double from = rect.phi0 - start, to = rect.phi1 - start;
+    if (from >= 0) return {{from, to}};
+    if (to <= 0) return {{from + two_pi, to + two_pi}};
+    return {{from + two_pi, two_pi}, {0, to}};
+}
+
+/// Where the azimuth is cut open: across from where the draws are.
+double seam_of(const Vec3d& middle) {
+    if (math::hypot(middle.x, middle.y) < 0.05) return 0;
+    const double phi = math::atan2(middle.y, middle.x) + two_pi / 2;
+    return phi < 0 ? phi + two_pi : phi >= two_pi ? phi - two_pi : phi;
+}
+
+struct MapEdges {
+    std::vector<double> theta, phi;  // radians; phi from the seam on
+    double seam = 0;
+};
+
+MapEdges map_edges(const std::vector<LeafDraws>& leaves, const Vec3d& middle) {
+    MapEdges out;
+    out.seam = seam_of(middle);
+    std::vector<Spread1d> theta, phi;
+    bool below = false;
+    for (const LeafDraws& d : leaves) {
+        const double mass = d.observed + d.expected;
+        theta.push_back({angle_of(d.rect.t0), angle_of(d.rect.t1), mass});
+        below = below || (d.rect.t1 > 1 && mass > 0.5);
+        const auto pieces = turned_azimuths(d.rect, out.seam);
+        for (const auto& [from, to] : pieces)
+            phi.push_back({from, to, mass * (to - from) / (d.rect.phi1 - d.rect.phi0)});
+    }
+    out.theta = edges_of(theta, 0, below ? two_pi / 2 : two_pi / 4, map_rings);
+    out.phi = edges_of(phi, 0, two_pi, map_sectors);
+    return out;
+}
+
+/// Degrees in [0, 360], the last edge above the first.
+double degrees_from(double seam, double turned) {
+    const double d = (seam + turned) * 360 / two_pi;
+    return d > 360 + 1e-9 ? d - 360 : d;
+}
+
+}  // namespace
+
+std::optional<BinMap> bin_map(const Trial& trial, const CheckAt& c) {
+    if (!c.plan || c.observations.counts.empty()) return {};
+    const bool has_density = trial.subject->traits().has_pdf;
+    const std::vector<LeafDraws> leaves = leaf_draws(c, has_density);
+    if (leaves.empty()) return {};
+    const MapEdges edges = map_edges(leaves, c.plan->middle);
+    BinMap out;
+    out.arm = trial.arm, out.trial = trial.text();
+    out.coordinates = "theta from n and phi about it";
+    if (trial.subject->techniques() > 1) out.coordinates += fmt::format(", technique {}", c.technique + 1);
+    out.rings = static_cast<int>(edges.theta.size()) - 1, out.sectors = static_cast<int>(edges.phi.size()) - 1;
+    const auto sectors = static_cast<std::size_t>(out.sectors), bins = static_cast<std::size_t>(out.rings) * sectors;
+    out.observed.assign(bins, 0), out.expected.assign(bins, 0), out.sd.assign(bins, 0);
+    for (double theta : edges.theta) out.edges.push_back(1 - math::cos(theta));
+    for (double phi : edges.phi) out.sector_edges.push_back(degrees_from(edges.seam, phi));
+    for (const LeafDraws& d : leaves)
+        share_out(d.rect.t0, d.rect.t1, out.edges, [&](std::size_t ring, double of_ring) {
+            for (const auto& [from, to] : turned_azimuths(d.rect, edges.seam))
+                share_out(from, to, edges.phi, [&](std::size_t sector, double of_sector) {
+                    const double share = of_ring * of_sector * (to - from) / (d.rect.phi1 - d.rect.phi0);
+                    const std::size_t bin = ring * sectors + sector;
+                    out.observed[bin] += share * d.observed, out.expected[bin] += share * d.expected;
+                    out.sd[bin] += share * d.variance;
+                });
+        });
+    for (double& v : out.sd) v = std::sqrt(v);
+    if (has_density) return out;
+    for (std::size_t i = 0; i < bins; ++i) {
+        const std::size_t ring = i / sectors, sector = i % sectors;
+        const double area = (out.edges[ring + 1] - out.edges[ring]) * (edges.phi[sector + 1] - edges.phi[sector]);
+        out.observed[i] /= area * c.observations.independent;
+        out.full_scale = std::max(out.full_scale, out.observed[i]);
+    }
+    out.expected.clear(), out.sd.clear();
+    return out;
+}
+
+WeightPicture weight_picture(const Trial& trial, std::span<const double> x, const WeightTail& tail) {
+    constexpr int bins = 48;
+    WeightPicture out;
+    out.arm = trial.arm, out.trial = trial.text();
+    double low = 1e300, high = 0;
+    for (double v : x) {
+        if (v > 0) low = std::min(low, v), high = std::max(high, v);
+        else ++out.zeros;
+    }
+    if (high > 0) {
+        const double from = math::log10(low) - 0.05, to = math::log10(high) + 0.05;
+        for (int i = 0; i <= bins; ++i) out.log10_edges.push_back(from + (to - from) * i / bins);
+        out.counts.assign(bins, 0);
+        for (double v : x)
+            if (v > 0)
+                ++out.counts[static_cast<std::size_t>(
+                    std::clamp((math::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
+    }
+    if (!tail.fit || tail.fit->exceedances + 1 >= x.size()) return out;
+    out.k = tail.fit->k, out.exceedances = static_cast<double>(tail.fit->exceedances);
+    std::vector<double> largest(x.begin(), x.end());
+    std::ranges::sort(largest, std::greater<>());
+    out.threshold = largest[tail.fit->exceedances];
+    const double median = largest[tail.fit->exceedances / 2] - out.threshold;  // of the exceedances, which gives sigma
+    out.sigma = std::fabs(out.k) < 1e-6 ? median / math::log(2.0) : out.k * median / (math::exp2(out.k) - 1);
+    return out;
+}
+
+void add_rose(const Trial& trial, WeightPicture& to) {
+    Source source(*trial.subject, 0, trial.wo, trial.light);
+    if (!source.has_density() || !source.has_f()) return;
+    std::vector<Vec3d> wi;
+    const double azimuth = math::atan2(trial.wo.y, trial.wo.x) * 360 / two_pi;
+    for (int i = -89; i <= 89; ++i) wi.push_back(tilt(i, azimuth));
+    to.rose_p.assign(wi.size(), 0);
+    std::vector<double> p(wi.size());
+    for (int t = 0; t < trial.subject->techniques(); ++t) {
+        Source technique(*trial.subject, t, trial.wo, trial.light);
+        technique.density(wi, p);
+        for (std::size_t i = 0; i < wi.size(); ++i) to.rose_p[i] = std::max(to.rose_p[i], p[i]);
+    }
+    std::vector<Vec3d> f(wi.size());
+    source.f_cos(wi, f);
+    for (std::size_t i = 0; i < wi.size(); ++i)
+        to.rose_f.push_back((source.channels() == 3 ? luminance(f[i]) : f[i].x) * source.radiance(wi[i]));
+}
+
+}  // namespace crescent::check

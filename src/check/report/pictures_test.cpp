@@ -1,0 +1,61 @@
+// Maps sum to the draws, follow the lobe, and show what is off.
+#include "check/report/pictures.h"
+
+#include <gtest/gtest.h>
+#include <numeric>
+
+#include "subjects/list.h"
+
+namespace crescent::check {
+namespace {
+
+struct MappedTrial {
+    Trial trial;
+    CheckAt at;
+};
+MappedTrial mapped(const char* arm, double theta) {
+    MappedTrial out{trial_on(trial_setup(lobe_named("ggx"), false, "fill", 0.1), theta, 120, arm, nullptr), {}};
+    out.trial.subject = arm_on(arm, out.trial);
+    out.at = check_sampler_at(*out.trial.subject, 0, out.trial.wo, {out.trial.light}, CheckBudget::limited(), 1);
+    return out;
+}
+double sum_of(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+TEST(PicturesOfACheck, MapTheDrawsAndWhatPExpects) {
+    for (double theta : {0.0, 60.0}) {
+        const MappedTrial m = mapped("ggx-vndf", theta);
+        const std::optional<BinMap> map = bin_map(m.trial, m.at);
+        ASSERT_TRUE(map);
+        const auto bins = static_cast<std::size_t>(map->rings * map->sectors);
+        ASSERT_EQ(map->observed.size(), bins);
+        ASSERT_EQ(map->edges.size(), static_cast<std::size_t>(map->rings) + 1);
+        ASSERT_EQ(map->sector_edges.size(), static_cast<std::size_t>(map->sectors) + 1);
+        EXPECT_TRUE(std::ranges::is_sorted(map->edges));
+        const double drawn = static_cast<double>(m.at.observations.checks.directions);
+        EXPECT_NEAR(sum_of(map->observed) / drawn, 1, 0.02);
+        EXPECT_NEAR(sum_of(map->expected) / sum_of(map->observed), 1, 0.01);
+        double furthest = 0;
+        for (std::size_t i = 0; i < bins; ++i)
+            furthest = std::max(furthest, std::fabs(map->observed[i] - map->expected[i]) / std::max(map->sd[i], 1.0));
+        EXPECT_LT(furthest, 5);
+        // The lobe fills the map: no bin holds a tenth of the draws.
+        EXPECT_LT(*std::ranges::max_element(map->observed), drawn / 10);
+    }
+}
+
+TEST(PicturesOfACheck, ShowTheWeightsAndTheTail) {
+    const MappedTrial m = mapped("uniform", 30);
+    const std::vector<double> x = weights_of({&m.at, 1});
+    WeightPicture w = weight_picture(m.trial, x, tail_of({&m.at, 1}));
+    EXPECT_EQ(sum_of(w.counts) + w.zeros, static_cast<double>(x.size()));
+    EXPECT_EQ(w.log10_edges.size(), w.counts.size() + 1);
+    add_rose(m.trial, w);
+    ASSERT_EQ(w.rose_p.size(), 179u);
+    ASSERT_EQ(w.rose_f.size(), 179u);
+    // The plane of incidence: the lobe is across from w_o.
+    const auto top = std::ranges::max_element(w.rose_f) - w.rose_f.begin() - 89;
+    EXPECT_NEAR(static_cast<double>(top), -30, 3);
+}
+
+}  // namespace
+}  // namespace crescent::check
