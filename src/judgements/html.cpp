@@ -47,7 +47,8 @@ std::string histogram(const WeightPicture& w) {
         ? fmt::format("the line is the Pareto tail fitted to the {:.0f} largest, k = {:.3f}", w.exceedances, w.k)
         : std::string("the largest weights are alike, so that there is no tail to fit");
     return fmt::format(
-        "<figure class=narrow>{}<figcaption>Histogram of the weights X = f L cos / p, both axes logarithmic; {}; {:.0f} "
+        "<figure class=narrow>{}<figcaption>Histogram of the weights X = f L cos / p, both axes logarithmic; {}; "
+        "{:.0f} "
         "draws of weight 0 are left out.</figcaption></figure>",
         chart.str(), fitted, w.zeros);
 }
@@ -59,7 +60,8 @@ constexpr const char* head =
     ".matrix{width:auto;margin:1em 0}.matrix td,.matrix th{padding:.1em .5em}.matrix th:first-child{white-space:nowrap}"
     "details{margin-bottom:.6em}"
     "summary{cursor:pointer}canvas{width:260px;height:200px;image-rendering:pixelated;outline:1px solid var(--line)}"
-    ".map{position:relative;width:318px}.map canvas{position:absolute;left:40px;top:5px}.map "
+    ".row figure.map{position:relative;width:318px;padding-right:1em}.map "
+    "canvas{position:absolute;left:40px;top:5px}.map "
     "svg{position:relative;display:block}"
     ".map text,.rose text{font-size:11px;fill:var(--soft)}.map path,.rose path{stroke:var(--soft);fill:none}.rose "
     ".faint{stroke:var(--line)}"

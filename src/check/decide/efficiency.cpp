@@ -222,6 +222,8 @@ std::vector<Verdict> judge_efficiency(std::span<const Trial> trials, std::span<c
         v.state = State::skipped;
         v.say = "There are no weights to take a variance of.";
         if (e.weighed || !e.fault.empty()) judge_one_efficiency(e, trials, companies[company_of(trials[e.trial])], v);
+        // A program that broke off while its f was evaluated for a baseline: said where it would be ranked.
+        if (trials[e.trial].baseline && !e.fault.empty()) out[judged].state = State::error, out[judged].say = v.say;
     }
     return out;
 }

@@ -149,7 +149,8 @@ void describe_support(const std::vector<Vec3d>& w, Description& d) {
     d.effective = {inverse(of_square.value), inverse(of_square.high), inverse(of_square.low)};
     std::vector<std::size_t> order(count);
     for (std::size_t c = 0; c < count; ++c) order[c] = c;
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return density[a] > density[b]; });
+    std::ranges::sort(order,
+        [&](std::size_t a, std::size_t b) { return density[a] > density[b] || (density[a] == density[b] && a < b); });
     const double half = normal_95 * std::sqrt(n * of_support * (1 - of_support));
     double held = 0, area = 0;
     bool low = false, middle = false, high = false;
