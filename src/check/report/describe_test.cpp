@@ -42,9 +42,10 @@ Description described(const ConeOfDraws& s) {
 }
 /// True values lie within twice the distance of the ends.
 void expect_near(const Interval& i, double truth) {
-    EXPECT_LE(i.low, i.value), EXPECT_LE(i.value, i.high);
-    EXPECT_GE(truth, i.value - 2 * (i.value - i.low) - 1e-12),
-        EXPECT_LE(truth, i.value + 2 * (i.high - i.value) + 1e-12);
+    EXPECT_LE(i.low, i.value);
+    EXPECT_LE(i.value, i.high);
+    EXPECT_GE(truth, i.value - 2 * (i.value - i.low) - 1e-12);
+    EXPECT_LE(truth, i.value + 2 * (i.high - i.value) + 1e-12);
 }
 
 TEST(DescriptionOfDraws, HasTheMomentsOfACosine) {
