@@ -37,7 +37,7 @@ void expect(const Trial& trial, Verdict& v) {
     if (trial.theory.wrong && *trial.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
         v.why_expected = trial.theory.why;
-    } else if (infinite && v.name == "tail") {
+    } else if (infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
         v.expected = v.state == State::inconclusive;
         v.why_expected = trial.theory.why;
     } else if (!trial.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
@@ -205,7 +205,7 @@ Judgement judge(std::span<const Trial> trials, const TestSettings& settings, Pro
     check::CheckSettings of_engine;
     of_engine.budget = budget_of(settings, false, judged);
     of_engine.limited = budget_of(settings, true, judged);
-    of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_weights = settings.pictures;
+    of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_evidence = settings.pictures;
     monitor.begin("verdicts", static_cast<double>(judged));
     Judgement out;
     out.alpha = settings.alpha;

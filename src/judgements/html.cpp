@@ -24,6 +24,7 @@ std::string histogram(const WeightPicture& w) {
     seen.push_back(0.5);
     Axis x = linear_axis("log10 of X = f L cos / p", {w.log10_edges.front(), w.log10_edges.back()});
     x.low = w.log10_edges.front(), x.high = w.log10_edges.back();
+    bool line = false;
     Chart chart(420, 220, x, log_axis("draws", seen), "Histogram of the samples X");
     for (std::size_t i = 0; i < w.counts.size(); ++i)
         if (w.counts[i] > 0)
@@ -41,15 +42,15 @@ std::string histogram(const WeightPicture& w) {
             const double due = w.exceedances * (survival(low) - survival(high));
             if (due >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, due});
         }
-        if (tail.size() > 1) chart.line(tail, "c2");
+        if (tail.size() > 1) chart.line(tail, "c2"), line = true;
     }
     const std::string fitted = w.exceedances > 0
-        ? fmt::format("the line is the Pareto tail fitted to the {:.0f} largest, k = {:.3f}", w.exceedances, w.k)
+        ? fmt::format("{} Pareto tail fitted to the {:.0f} largest has k = {:.3f}{}", line ? "the" : "a", w.exceedances,
+              w.k, line ? " (line)" : "")
         : std::string("the largest weights are alike, so that there is no tail to fit");
     return fmt::format(
         "<figure class=narrow>{}<figcaption>Histogram of the weights X = f L cos / p, both axes logarithmic; {}; "
-        "{:.0f} "
-        "draws of weight 0 are left out.</figcaption></figure>",
+        "{:.0f} draws of weight 0 are left out.</figcaption></figure>",
         chart.str(), fitted, w.zeros);
 }
 

@@ -152,14 +152,19 @@ private:
         });
         if (cut) at.clear();
         job.outcome->tails[job.index] = tail_of(at);
-        for (CheckAt& c : at) forget(c);
+        for (CheckAt& c : at) forget(c, trial.subject->traits().has_pdf);
         monitor_.advance(1);
     }
 
-    /// What no report needs, of which there are megabytes at each w_o.
-    void forget(CheckAt& c) const {
-        c.observations.met = {}, c.integrals.light.weighed = {};
-        if (!settings_.keep_weights) c.observations.weights = {};
+    /// What neither the explanation nor the report needs, of which there are megabytes at each w_o: of a right w_o all
+    /// but the numbers, unless pictures are drawn or the draws are all that is known of the density.
+    void forget(CheckAt& c, bool has_density) const {
+        c.observations.met = {}, c.observations.node_by_set = {}, c.integrals.light.weighed = {};
+        if (settings_.keep_evidence) return;
+        c.observations.weights = {};
+        if (c.wrong() || !has_density) return;
+        c.plan.reset();
+        c.integrals.leaves = {}, c.observations.leaves = {}, c.observations.counts = {};
     }
 
     /// The middle first, then the most grazing one: between them they meet most faults.

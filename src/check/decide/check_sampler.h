@@ -23,7 +23,7 @@ struct CheckSettings {
     double alpha = 1e-3;
     /// Samplers and w_o in the whole call; beyond `questions_covered` families the second level is divided.
     double cases = 1;
-    bool keep_weights = false;  // for pictures
+    bool keep_evidence = false;  // of right w_o too, and the weights: for pictures
 };
 
 /// Why a sampler was not examined to the end at some w_o.

@@ -56,17 +56,9 @@ std::vector<double> baseline_weights(const Trial& trial, const StreamKey& key) {
 }
 
 void note_variance(const WeightTail& t, Efficiency& e) {
-    e.weighed = t.weighed;
+    e.weighed = t.weighed, e.whole = t.whole;
     e.variance = sqr(t.spread.sd), e.relative_se = t.variance_error;
     e.heavy = t.heavy() || t.open() || t.has_unseen();
-}
-
-bool draws_below(const CheckAt& c) {
-    if (!c.plan) return false;
-    const std::vector<Leaf>& leaves = c.plan->tree.leaves();
-    for (std::size_t l = 0; l < std::min(leaves.size(), c.observations.counts.size()); ++l)
-        if (c.observations.counts[l] > 0 && c.plan->tree.rect(leaves[l]).t0 >= 1) return true;
-    return false;
 }
 
 Efficiency variance_of_baseline(const Trial& trial, std::size_t index, const StreamKey& key) {
@@ -89,7 +81,6 @@ std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<co
         for (std::size_t k = 0; k < o.trials.size(); ++k) {
             Efficiency& e = out[o.trials[k]];
             e.trial = o.trials[k];
-            e.whole = std::ranges::any_of(o.at[k], draws_below);
             note_variance(o.tails[k], e);
         }
     for (std::size_t i = 0; i < trials.size(); ++i)

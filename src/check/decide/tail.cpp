@@ -95,11 +95,21 @@ void tell_unseen(const WeightTail& t, Verdict& v) {
     v.evidence["largest_drawn_weight"] = t.spread.largest;
     v.evidence["unmet_half_chance"] = t.half_chance;
     v.say += fmt::format(
-        "Heavy tail that no draw met: {:.3g} +- {:.1g} % of f L cos comes from directions whose weight is larger than "
+        "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
         "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
         100 * share, 196 * t.unseen_error / t.due, t.spread.n, t.spread.largest, t.half_chance);
-    if (t.half_chance > 0) v.next = {NextStep::Kind::more_draws, std::max(1 / (t.half_chance * t.spread.n), 2.0)};
+    constexpr double within_reach = 64;  // times as many draws; --full makes twelve times as many
+    const double times = t.half_chance > 0 ? 1 / (t.half_chance * t.spread.n) : 1e300;
+    if (times <= within_reach) v.next = {NextStep::Kind::more_draws, std::max(times, 2.0)};
     else v.next.kind = NextStep::Kind::heavier_pdf;
+}
+
+bool draws_below(const CheckAt& c) {
+    if (!c.plan) return false;
+    const std::vector<Leaf>& leaves = c.plan->tree.leaves();
+    for (std::size_t l = 0; l < std::min(leaves.size(), c.observations.counts.size()); ++l)
+        if (c.observations.counts[l] > 0 && c.plan->tree.rect(leaves[l]).t0 >= 1) return true;
+    return false;
 }
 
 bool has_weights(std::span<const CheckAt> techniques) {
@@ -147,6 +157,7 @@ WeightTail tail_of(std::span<const CheckAt> techniques) {
     std::vector<WeighedPoint> unseen;
     for (const CheckAt& c : techniques) out.due += find_unseen(c, unseen);
     note_unseen(std::move(unseen), out);
+    out.whole = std::ranges::any_of(techniques, draws_below);
     return out;
 }
 

@@ -16,6 +16,7 @@ namespace crescent::check {
 /// Of all techniques together.
 struct WeightTail {
     bool weighed = false;  // every draw has a weight
+    bool whole = false;    // some draws go below the surface
     stats::Spread spread;
     double variance_error = 0;       // relative standard error of the variance
     std::optional<stats::Tail> fit;  // none where the largest weights do not spread

@@ -67,7 +67,8 @@ TEST(DescriptionOfDraws, HasTheMomentsOfACosine) {
 
 TEST(DescriptionOfDraws, HasTheAxisAndTheSolidAngleOfACone) {
     const Description d = described({});
-    EXPECT_LT(d.direction_error, 2e-3);
+    // sqrt(chi-square of two degrees at 95 %) sqrt(E[sin^2] / 2 / n) over the length of the mean.
+    EXPECT_NEAR(d.direction_error, 2.47e-3, 5e-5);
     EXPECT_NEAR(d.theta, two_pi / 6, 2 * d.direction_error);
     EXPECT_LT(std::min(d.phi, two_pi - d.phi), 2 * d.direction_error / std::sin(d.theta));
     const double solid_angle = two_pi * (1 - std::cos(0.5));
