@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "check/against_f.h"
 #include "check/constants.h"
-#include "judgements/all.h"
+#include "judgements/next_step.h"
 #include "subjects/asked_once.h"
 #include "subjects/faults.h"
 #include "subjects/named_side.h"
@@ -245,7 +245,7 @@ std::vector<Verdict> broken_off(const Trial& a, const Trial& b, const SubjectFau
         v.say = slow                                   ? std::string(fault.what())
             : dynamic_cast<const SubjectGone*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
                                                        : fmt::format("The sampler broke off: {}.", fault.what());
-        if (slow) v.settle = "More time (--patience), or a program that answers faster.";
+        if (slow) v.next.kind = NextStep::Kind::more_time;
         out.push_back(std::move(v));
     }
     return out;
@@ -312,7 +312,7 @@ std::string against_text(const Judgement& j) {
         if (v.trial != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.trial);
         last = v.trial;
         out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.say,
-            v.settle.empty() ? "" : " What would settle it: " + v.settle);
+            settling(v).empty() ? "" : " What would settle it: " + settling(v));
     }
     return out +
         fmt::format(

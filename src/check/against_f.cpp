@@ -154,7 +154,6 @@ namespace {
 
 constexpr double alike_variances = 0.01;  // relative: less does not decide between samplers
 constexpr double interval_95 = 1.959964;
-constexpr const char* settles_tail = "A sampler whose p falls off no faster than f L cos, or more draws (--full).";
 
 /// Moments of weights with their standard errors.
 struct WeightMoments {
@@ -297,7 +296,7 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
             ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A that carry light: B never finds that.",
                   first.lost, first.x.size())
             : "A or B has a heavy tail: the variance is not known.";
-        v.settle = settles_tail;
+        v.next.kind = NextStep::Kind::heavier_pdf;
         return;
     }
     v.evidence["variance_a"] = first.all.variance();
@@ -354,7 +353,7 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
         if (m->heavy) {
             v.state = State::inconclusive;
             v.say += fmt::format("{}{} has a heavy tail: its variance is not known.", v.say.empty() ? "" : " ", who);
-            v.settle = settles_tail;
+            v.next.kind = NextStep::Kind::heavier_pdf;
         }
     if (v.state == State::right) rank(c, of_a, of_b, v);
 }

@@ -150,6 +150,9 @@ inline constexpr double missed_by_chance = 1e-4;
 inline constexpr double target_constant = 1e-3, target_leak = 5e-3, target_cap = 3e-3, target_rotation = 5e-3,
                         target_parameter = 2e-2;
 inline constexpr double inconclusive_at = 10;  // times the target
+/// The same where p is a random estimate. Chosen: an estimate that varies by its own size has to be averaged over 10^6
+/// evaluations to be known to 0.1 %, which a quick check through a program does not have.
+inline constexpr double inconclusive_of_estimates = 100;
 inline constexpr double stated_power = 0.9;
 
 }  // namespace crescent::check

@@ -190,7 +190,7 @@ private:
         }
         if (!out_.wrong()) {
             out_.sizes = sizes(e, level_of(budget_.look_count - 1));
-            out_.inconclusive = worst_ratio(out_.sizes) > inconclusive_at;
+            out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         }
         out_.integrals = std::move(first_.integrals);
         out_.observations = std::move(first_.observations);
@@ -198,6 +198,8 @@ private:
 };
 
 }  // namespace
+
+double CheckAt::most_ratio() const { return scatter.pdf() ? inconclusive_of_estimates : inconclusive_at; }
 
 CheckAt check_sampler_at(const JudgedSampler& subject, int technique, Vec3d wo, const CaseData& data,
     const CheckBudget& budget, std::uint32_t seed) {

@@ -43,6 +43,8 @@ struct CheckAt {
     std::shared_ptr<const Plan> plan;
     Integrals integrals;
     Observations observations;
+    /// Times its target, beyond which a size leaves a verdict open.
+    double most_ratio() const;
     bool wrong() const { return !findings.empty() || !small.empty(); }
 };
 

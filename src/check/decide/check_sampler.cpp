@@ -55,7 +55,9 @@ void look_at_whole(std::span<const Trial> trials, const CheckSettings& settings,
         for (std::size_t i : out.trials)
             if (ordinary.size() < 3) ordinary.push_back(trials[i].wo);
         for (int t = 0; t < subject.techniques(); ++t) add(special_places(subject, t, ordinary));
-        add(reciprocity(subject, key));
+        const auto is_estimate = [](const CheckAt& c) { return c.scatter.f(); };
+        if (std::ranges::none_of(out.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); }))
+            add(reciprocity(subject, key));
     }
     for (std::size_t i : out.trials) {
         const std::size_t before = out.small.size();

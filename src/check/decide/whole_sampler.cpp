@@ -127,9 +127,10 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
         there.push_back(p), back.push_back({p.wi, p.wo});
     }
     const std::vector<Vec3d> f = f_of(subject, there), g = f_of(subject, back), again = f_of(subject, there);
-    SmallFault out{Family::reciprocity, 0, 256, 0, {}, "f(a, b) differs from f(b, a)"};
+    const int channels = traits.channels == 3 ? 3 : 1;
+    SmallFault out{Family::reciprocity, 0, 256.0 * channels, 0, {}, "f(a, b) differs from f(b, a)"};
     for (std::size_t i = 0; i < there.size(); ++i)
-        for (int c = 0; c < (traits.channels == 3 ? 3 : 1); ++c) {
+        for (int c = 0; c < channels; ++c) {
             const Pair& p = there[i];
             const double a = channel_of(f[i], c), b = channel_of(g[i], c);
             if (differ(a, channel_of(again[i], c), same_number)) return {};  // a random estimate

@@ -1,5 +1,5 @@
-// The cells are nodes of the tree, cut while both halves have enough draws; a map's bins take their share of each leaf,
-// both being rectangles of one chart. What is counted has the standard error of a binomial law.
+// The cells are nodes of the tree, cut while their halves have enough draws; a map's bins take their share of each
+// leaf, both being rectangles of one chart. What is counted has the standard error of a binomial law.
 #include "check/report/implied.h"
 
 #include <algorithm>
@@ -35,12 +35,7 @@ std::vector<double> draws_by_node(const CheckAt& c) {
 
 /// The fullest cell is cut first.
 std::vector<std::size_t> cells_of(const Tree& tree, const std::vector<double>& draws) {
-    const auto can_be_cut = [&](std::size_t i) {
-        const int child = tree.nodes()[i].child;
-        return child >= 0 &&
-            std::min(draws[static_cast<std::size_t>(child)], draws[static_cast<std::size_t>(child) + 1]) >=
-            draws_of_cell;
-    };
+    const auto can_be_cut = [&](std::size_t i) { return tree.nodes()[i].child >= 0 && draws[i] >= 2 * draws_of_cell; };
     const auto emptier = [&](std::size_t a, std::size_t b) {
         return draws[a] < draws[b] || (draws[a] == draws[b] && a > b);
     };

@@ -7,6 +7,7 @@
 
 #include "check/constants.h"
 #include "check/decide/tail.h"
+#include "check/report/limits.h"
 #include "check/report/sentences.h"
 #include "judgements/all.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 /// Whether the sampler gives what a verdict needs.
 bool can_be_asked(const JudgedSampler& s, std::string_view name) {
-    if (name == "normalised" || name == "density") return s.traits().has_pdf;
+    if (name == "normalised") return s.traits().has_pdf;
     if (name == "support") return s.traits().has_pdf && s.has_f();
     if (name == "physics") return s.has_f() || s.traits().delta;
     if (name == "mean") return s.has_f();
@@ -54,7 +55,7 @@ void judge_at(const CheckAt& c, Verdict& v) {
         Sizes only;
         v.name == "normalised" ? void(only.constant = c.sizes.constant) : void(only = c.sizes);
         if (v.name == "density") only.constant.reset();
-        if (worst_ratio(only) <= inconclusive_at) return;
+        if (worst_ratio(only) <= c.most_ratio()) return;
         v.state = State::inconclusive;
         v.say = "A fault ten times its target would not have been found.";
         v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
@@ -97,6 +98,7 @@ std::vector<Verdict> verdicts_of(
             }
             for (const CheckAt& c : outcome.at[k]) {
                 judge_at(c, v);
+                note_limits(*trial.subject, c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
             if (name == "tail") judge_tail(trial, outcome.tails[k], v);

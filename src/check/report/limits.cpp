@@ -1,0 +1,71 @@
+// Without pdf(w) the draws are compared with f alone, by their weights; where these are missing too, nothing says
+// whether the draws are right.
+#include "check/report/limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "check/constants.h"
+#include "check/report/implied.h"
+
+namespace crescent::check {
+
+namespace {
+
+bool comes_weighted(const CheckAt& c) { return !c.observations.weights.empty() && c.observations.weightless == 0; }
+
+void note_density(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
+    note_implied_density(c, v);
+    v.state = State::skipped;
+    const bool of_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
+    if (of_deltas || (sampler.has_f() && comes_weighted(c))) return;
+    v.state = State::inconclusive;
+    v.say += fmt::format(" There is {}: whether the draws are right could not be examined.",
+        comes_weighted(c) ? "no f either" : "no weight with the draws either");
+    v.settle = comes_weighted(c) ? "f(w), which the mean of the weights is compared with."
+                                 : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
+}
+
+void note_mean(const CheckAt& c, Verdict& v) {
+    const bool asked = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
+    if (asked) return;
+    if (c.observations.weightless > 0) {
+        v.state = State::skipped;
+        v.say = "The draws come with neither a pdf nor a weight.";
+    } else if (c.observations.checks.deltas == 0 && tail_may_be_heavy(c.observations.weights)) {
+        v.state = State::inconclusive;
+        v.say = "The weights have a heavy tail: their mean has no known error.";
+        v.settle = "Draws whose weights are bounded.";
+    }
+}
+
+/// A file says how its rows were used, and how many would do.
+void note_rows(const CheckAt& c, Verdict& v) {
+    if (v.name == "density") {
+        v.evidence["rows"] = {{"tree", c.plan->of}, {"compared", c.observations.independent}};
+        v.say += fmt::format(
+            "{}One row in eight shapes the tree, four are compared with p, three confirm.", v.say.empty() ? "" : " ");
+    }
+    if (v.state != State::inconclusive || c.sizes.constant == std::nullopt) return;
+    const double times = worst_ratio(c.sizes) / inconclusive_at;
+    if (times > 1)
+        v.settle =
+            fmt::format("About {:.2g} rows, and a table as fine.", 2 * c.observations.independent * times * times);
+}
+
+}  // namespace
+
+void note_limits(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
+    if (v.state == State::wrong) return;
+    if (v.name == "density" && !sampler.traits().has_pdf) note_density(sampler, c, v);
+    if (v.name == "mean" && sampler.has_f()) note_mean(c, v);
+    if (v.name == "tail" && !comes_weighted(c)) {
+        v.state = State::skipped;
+        v.say = "There are no weights.";
+    }
+    if (v.name == "valid") v.say += text_of(c.scatter);
+    if (!sampler.draws_at_will()) note_rows(c, v);
+}
+
+}  // namespace crescent::check
