@@ -14,7 +14,9 @@ namespace {
 
 Judgement against(std::span<const Trial> a, std::span<const Trial> b, bool expect_same = false) {
     ProgressMonitor monitor;
-    return judge_against(a, b, of_draws(16384), expect_same, monitor);
+    TestSettings settings;
+    settings.budget = check::CheckBudget::limited();
+    return judge_against(a, b, settings, expect_same, monitor);
 }
 
 enum class Gives { pdf, weight, nothing };

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "check/against_f.h"
+#include "check/check.h"
 #include "check/constants.h"
 #include "judgements/next_step.h"
 #include "subjects/asked_once.h"
@@ -61,20 +62,22 @@ AgainstAnswer put_again(
 /// What the comparison of one w_o is made with.
 struct AgainstPlan {
     CheckBudget budget, own;  // of both together; of each by itself
+    Levels levels;
     std::uint32_t seed = 1;
-    double level = alpha1, again = alpha2;
     bool expect_same = false;
 };
 
 AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same, std::size_t cases) {
     AgainstPlan out;
-    out.budget = settings.full ? CheckBudget::thorough() : limited ? CheckBudget::limited() : CheckBudget::quick();
+    // A program answers for its own check too, which looks once: what is wrong at a first look is not ranked.
+    TestSettings shared = settings;
+    if (limited) shared.questions /= 2;
+    out.budget = budget_of(shared, limited, cases);
     out.own = CheckBudget::limited();
     if (limited && !settings.full) out.own.look_count = 1;
     out.seed = settings.seed, out.expect_same = expect_same;
     constexpr double of_each = static_cast<double>(AgainstAnswer::families) + 2 * static_cast<double>(Family::families);
-    const double questions = static_cast<double>(cases) * of_each;
-    out.again = alpha2 / std::max(1.0, questions / questions_covered);
+    out.levels = levels_of(settings.alpha, static_cast<double>(cases) * of_each);
     return out;
 }
 
@@ -100,8 +103,8 @@ public:
         }
         note_distribution(d, out[0]);
         const CheckAt own_a = own(a_), own_b = own(b_);
-        const AgainstCase c{a_, b_, *ground_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f, plan_.level,
-            plan_.again, plan_.expect_same};
+        const AgainstCase c{
+            a_, b_, *ground_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f, plan_.levels, plan_.expect_same};
         compare_f(c, out[1]);
         compare_variances(c, out[1], out[2]);
         return out;
@@ -120,8 +123,8 @@ private:
     }
 
     CheckAt own(const AgainstSide& side) const {
-        return check_sampler_at(
-            *side.trial.subject, 0, side.trial.wo, {side.trial.light, side.key.place, 1}, plan_.own, plan_.seed);
+        return check_sampler_at(*side.trial.subject, 0, side.trial.wo, {side.trial.light, side.key.place, plan_.levels},
+            plan_.own, plan_.seed);
     }
 
     Differences differences() {
@@ -131,7 +134,7 @@ private:
             const Look& to = plan_.budget.looks[static_cast<std::size_t>(look)];
             draw_on(a_, *ground_, to, plan_.budget.of_f, draws_a_);
             draw_on(b_, *ground_, to, plan_.budget.of_f, draws_b_);
-            const double level = plan_.level * (look == last ? 1 - last * early_look : early_look);
+            const double level = plan_.levels.first * (look == last ? 1 - last * early_look : early_look);
             out.p.clear();
             std::vector<AgainstAnswer> suspects;
             for (const auto& [family, worst] : worst_of(*ground_, draws_a_, draws_b_)) {
@@ -153,7 +156,7 @@ private:
         draw_on(b, *ground_, more, 0, of_b);
         for (const AgainstAnswer& r : suspects) {
             const AgainstAnswer again = put_again(*ground_, of_a, of_b, r);
-            if (again.p < plan_.again) out.found.push_back({r, again});
+            if (again.p < plan_.levels.second) out.found.push_back({r, again});
         }
     }
 
@@ -209,7 +212,7 @@ private:
             v.say = "They draw from different distributions. " + sentence_of(clearest->second);
             return;
         }
-        const AgainstSizes sizes = sizes_against(*ground_, draws_a_, draws_b_, plan_.level);
+        const AgainstSizes sizes = sizes_against(*ground_, draws_a_, draws_b_, plan_.levels.first);
         v.say = "No difference between their distributions is seen.";
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;

@@ -210,8 +210,8 @@ double means_p(const WeightMoments& a, const WeightMoments& b) {
 
 void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, Verdict& v) {
     const auto differ = [&](auto p) {
-        return p(a, b) < c.level &&
-            p(WeightMoments(fresh_weights(c.a, c)), WeightMoments(fresh_weights(c.b, c))) < c.again;
+        return p(a, b) < c.levels.first &&
+            p(WeightMoments(fresh_weights(c.a, c)), WeightMoments(fresh_weights(c.b, c))) < c.levels.second;
     };
     if (differ(means_p))
         return skip(v,
@@ -306,8 +306,8 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
             std::max(first.all.of_other(), 0.0));
         return;
     }
-    note_ratio(
-        v, math::exp(first.all.log_ratio()), first.log_se(), first.p() < c.level && ReweighedDraws(c, 2).p() < c.again);
+    note_ratio(v, math::exp(first.all.log_ratio()), first.log_se(),
+        first.p() < c.levels.first && ReweighedDraws(c, 2).p() < c.levels.second);
     v.say += " B's follows from the draws of A by p_A / p_B.";
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "check/against_draws.h"
+#include "check/constants.h"
 #include "check/decide/check_at.h"
 #include "judgements/verdict.h"
 
@@ -14,7 +15,7 @@ struct AgainstCase {
     const AgainstDraws &draws_a, &draws_b;
     const CheckAt &own_a, &own_b;  // of each by itself
     std::uint32_t of_f = 0;
-    double level = 0, again = 0;  // of a first and of a confirming test
+    Levels levels;
     bool expect_same = false;
 };
 

@@ -123,7 +123,7 @@ private:
         std::vector<std::size_t> odd;
         for (std::size_t k = 0; k < w_.size(); ++k)
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
-                    same_number * p_[k] + source_.subject.tabulation_error(w_[k])))
+                    same_number * p_[k] + 2 * source_.subject.tabulation_error(w_[k])))
                 odd.push_back(k);
         if (odd.empty()) return;
         std::vector<Vec3d> around, here;
@@ -176,7 +176,9 @@ private:
 
     void compare_weight(const Numbers& u, const Draw& d, std::size_t k, Vec3d due, int set) {
         const Vec3d f = f_[k];
-        const bool derived = source_.has_density(), random = source_.estimates || source_.f_estimates;
+        const bool derived = source_.has_density();
+        // The weight may be an estimate too; the mean is compared.
+        const bool random = source_.estimates || source_.f_estimates || source_.traits.own_random;
         const std::size_t leaf = derived ? 0 : plan_.tree.find(to_chart(w_[k]));
         bool wrong = false, untrue = false;
         for (int c = 0; c < source_.channels(); ++c) {
