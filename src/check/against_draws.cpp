@@ -7,13 +7,14 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/estimate/weights.h"
 
 namespace crescent::check {
 
 namespace {
 
-constexpr std::size_t most_ways = 16, kinds_before_ways = 2;  // nothing, directions
-constexpr double same_way = 1e-4;                             // distance of unit vectors
+constexpr std::size_t kinds_before_ways = 2;  // nothing, directions
+constexpr double same_way = 1e-4;             // distance of unit vectors
 constexpr std::size_t drawn_kept = 256;
 
 /// What one draw is: -1 nothing, 0 a direction, 1 + k the k-th way.
@@ -43,17 +44,6 @@ Vec3d weight_of(const Draw& d, int channels) {
     return channels == 3 ? d.weights : Vec3d{w, w, w};
 }
 
-void add_delta(std::vector<AgainstDelta>& parts, const Draw& d, int channels, double share) {
-    const Vec3d w = weight_of(d, channels);
-    for (AgainstDelta& p : parts)
-        if (length(p.wi - d.wi) < same_way && std::fabs(p.q - d.delta) <= same_number * p.q &&
-            length(p.weight - w) <= same_number * length(w)) {
-            p.drawn += share;
-            return;
-        }
-    if (parts.size() <= most_ways) parts.push_back({d.wi, w, d.delta, share});
-}
-
 std::size_t nearest_way(std::span<const Vec3d> ways, Vec3d w) {
     const auto off = [w](Vec3d way) { return length(w - way); };
     return static_cast<std::size_t>(std::ranges::min_element(ways, {}, off) - ways.begin());
@@ -75,10 +65,11 @@ std::uint32_t draw_pilots(
             sorter.source().draw(key, from, u, draws);
             for (const Draw& d : draws)
                 if (sorter.is_drawn(d)) out.push_back(normalize(d.wi));
-                else if (d.delta > 0 && d.delta <= 1) add_delta(parts, d, sorter.source().channels(), 1.0 / count);
+                else if (d.delta > 0 && d.delta <= 1) delta.add(d, weight_of(d, sorter.source().channels()));
         }
         of += count;
     }
+    parts = delta.parts(of);
     return of;
 }
 
@@ -123,9 +114,7 @@ namespace {
 class AgainstTechnique {
 public:
     AgainstTechnique(const AgainstSide& side, const CommonGround& ground, int technique, AgainstDraws& to)
-        : side_(side), ground_(ground), sorter_(side, technique), source_(sorter_.source()), to_(to) {
-        mis_ = side.trial.subject->techniques() > 1;
-    }
+        : ground_(ground), sorter_(side, technique), source_(sorter_.source()), to_(to) {}
 
     void independent(StreamKey key, std::uint32_t from, std::uint32_t last, std::uint32_t of_f) {
         key.purpose = Purpose::draws, key.technique = static_cast<std::uint8_t>(source_.technique);
@@ -155,12 +144,10 @@ public:
     }
 
 private:
-    const AgainstSide& side_;
     const CommonGround& ground_;
     Sorter sorter_;
     Source& source_;
     AgainstDraws& to_;
-    bool mis_ = false;
     std::vector<Numbers> u_;
     std::vector<Draw> draws_;
 
@@ -186,34 +173,21 @@ private:
         ++to_.node_by_set[static_cast<std::size_t>(leaf.coarse)][static_cast<std::size_t>(set)];
     }
 
-    /// f L cos / p of the draws in hand, or the weight that comes with them; of a pair of techniques their sum by MIS.
+    /// f L cos / p of the draws in hand, or the weight that comes with them; summed over the techniques.
     void weigh(std::uint32_t from) {
+        std::vector<std::size_t> at;
         std::vector<Vec3d> w;
-        std::vector<std::size_t> of;
-        std::vector<double> x(draws_.size());
-        const TrialLight& light = side_.trial.light;
-        const auto radiance = [&](Vec3d wi) { return light.even() || wi.z <= 0 ? light.fill : light(wi); };
         for (std::size_t i = 0; i < draws_.size(); ++i) {
             const Draw& d = draws_[i];
-            const bool drawn = sorter_.is_drawn(d);
-            if (!drawn && !(d.delta > 0)) continue;
-            if (d.weight) x[i] = *d.weight * radiance(d.wi);
-            else if (d.f) x[i] = *d.f * std::fabs(d.wi.z) / d.pdf * radiance(d.wi);
-            else if (drawn && source_.has_f() && source_.has_density()) w.push_back(d.wi), of.push_back(i);
-            else to_.weighs = false;
+            if (!sorter_.is_drawn(d)) continue;
+            at.push_back(i), w.push_back(d.wi);
+            to_.weighs = to_.weighs && (d.weight || (source_.has_density() && (source_.has_f() || d.f)));
         }
-        std::vector<Vec3d> f(w.size());
-        std::vector<double> share(w.size(), 1.0);
-        source_.f_cos(w, f);
-        if (mis_) {
-            std::vector<Pair> at;
-            for (Vec3d v : w) at.push_back({source_.wo, v});
-            source_.subject.mis_weight(source_.technique, at, share);
-        }
-        for (std::size_t k = 0; k < w.size(); ++k) {
-            const double y = source_.channels() == 3 ? luminance(f[k]) : f[k].x;
-            x[of[k]] = share[k] * y * radiance(w[k]) / draws_[of[k]].pdf;
-        }
+        std::vector<Vec3d> f(source_.has_f() ? w.size() : 0);
+        if (source_.has_f()) source_.f_cos(w, f);
+        const std::vector<double> drawn(w.size(), 1.0);
+        std::vector<double> x;
+        append_weights(source_, draws_, {at, w, drawn, f}, x);
         if (to_.x.size() < from + x.size()) to_.x.resize(from + x.size());
         for (std::size_t i = 0; i < x.size(); ++i) to_.x[from + i] += x[i];
     }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "check/estimate/delta_parts.h"
 #include "check/estimate/observations.h"
 #include "check/verdicts/statistics.h"
 
@@ -18,12 +19,6 @@ struct AgainstSide {
     const Trial& trial;
     const JudgedSampler& other;
     StreamKey key;
-};
-
-/// A delta part: where its draws go, what each weighs, and with which probability the sampler says it chooses it.
-struct AgainstDelta {
-    Vec3d wi, weight;
-    double q = 0, drawn = 0;
 };
 
 /// What both draw on.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "check/constants.h"
+#include "check/decide/tail.h"
 #include "check/estimate/scatter.h"
 #include "stats/moments.h"
 
@@ -166,7 +167,8 @@ struct WeightMoments {
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
         // The second term is what the mean costs: alone where two values come equally often.
         variance_se = std::sqrt(std::max(m4 - sqr(variance), 0.0) / n + 2 * sqr(variance / std::max(n - 1, 1.0)));
-        heavy = tail_may_be_heavy(x);
+        const WeightTail tail = tail_of_weights(x);
+        heavy = tail.heavy() || tail.open();
     }
     /// No more than the rounding of p is left.
     bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
