@@ -6,16 +6,17 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "check/against.h"
 #include "base/parallel.h"
 #include "base/sanitized_test.h"
-#include "cubature/cubature.h"
+#include "check/against.h"
+#include "check/print.h"
+#include "check/user.h"
+#include "laws/judged.h"
 #include "laws/planted/planted.h"
 #include "laws/right/renderers.h"
 #include "subjects/asked_once.h"
+#include "subjects/forwarded.h"
 #include "subjects/list.h"
-#include "check/print.h"
-#include "check/user.h"
 
 namespace crescent {
 namespace {
@@ -104,47 +105,66 @@ TEST(Programs, OfCoatsLayersAndAnisotropicLobesAreConclusiveWithinWhatTheyAreAsk
     }
 }
 
-/// p jumps along thousands of curves, and is not what is drawn: nothing is ever settled.
+/// p jumps along thousands of curves, and is not what is drawn.
 TEST(Programs, AreAskedNoMoreWhereNothingIsSettled) {
     Recipe wrinkled = ggx_visible_at(0.3, 0.3);
     wrinkled.pdf = [](Vec3d, Vec3d wi) {
         return wi.z > 0 ? (std::fmod(std::fabs(1e3 * wi.x * wi.y + 977 * wi.z), 1.0) < 0.5 ? 1.9 : 0.1) / (2 * pi)
                         : 0.0;
     };
-    const Seen seen = judged(at(wrinkled, {{75, 310}}));
-    EXPECT_GT(seen.most, 100000u);
-    EXPECT_LE(seen.most, promised);
+    EXPECT_LE(judged(at(wrinkled, {{75, 310}})).most, promised);
 }
 
-/// Two cones side by side, p of one of them doubled: what does not come to one is integrated twice, and both
-/// quadratures cut along both rims.
-struct TwoCones {
-    struct Drawn {
-        Vec3d wi;
-        double pdf;
-    };
-    static constexpr double a[] = {0.07, 0.05};  // 1 - cos of half their angles
-    Vec3d axis(int k) const { return normalize(k == 0 ? Vec3d{0, 0.3, 1} : Vec3d{0.8, 0, 0.4}); }
-    Drawn sample(Vec3d u) const {
-        const int k = u.z < 0.5 ? 0 : 1;
-        const Vec3d wi = SphereMap(axis(k)).direction({u.x * a[k], u.y});
-        return {wi, pdf(wi)};
+/// A program that mixes up the rows of its blocks: of draws, of pdf(w) or of f(w).
+class Mixed : public ForwardedSampler {
+public:
+    enum class Answers { draws, pdf, f };
+    enum class How { last_repeated, first_two_exchanged, late_rows_of_long_blocks };
+    Mixed(std::shared_ptr<const JudgedSampler> sampler, Answers answers, How how)
+        : ForwardedSampler(std::move(sampler)), answers_(answers), how_(how) {}
+    bool serial() const override { return true; }
+    void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {
+        inner().sample(t, wo, u, out);
+        if (answers_ == Answers::draws) mix(out);
     }
-    double pdf(Vec3d wi) const {
-        double p = 0;
-        for (int k : {0, 1})
-            if (1 - dot(wi, axis(k)) <= a[k]) p += (k == 0 ? 0.5 : 1.0) / (2 * pi * a[k]);
-        return p;
+    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+        inner().pdf(t, at, out);
+        if (answers_ == Answers::pdf) mix(out);
+    }
+    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override { pdf(t, at, out); }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        inner().f(at, out);
+        if (answers_ == Answers::f) mix(out);
+    }
+
+private:
+    Answers answers_;
+    How how_;
+    template <class T> void mix(std::span<T> out) const {
+        const std::size_t n = out.size();
+        if (n < 2) return;
+        if (how_ == How::last_repeated) out[n - 1] = out[n - 2];
+        if (how_ == How::first_two_exchanged) std::swap(out[0], out[1]);
+        if (how_ == How::late_rows_of_long_blocks && n > 1024) out[n - 1] = out[1023];
     }
 };
 
-TEST(Programs, AreAskedNoMoreWhereASecondQuadratureCutsAlongRims) {
-    const auto cones = std::make_shared<UserSubject<TwoCones>>("two cones", TwoCones{});
-    const Seen seen = judged({trial_of_subject(cones, 0, 0)});
-    EXPECT_GT(seen.most, 100000u);
-    EXPECT_LE(seen.most, promised);
-    for (const Verdict& v : seen.judgement.verdicts)
-        if (v.name == "normalised") EXPECT_EQ(v.state, State::wrong) << v.say;
+TEST(Programs, ThatMixUpTheRowsOfABlockAreFound) {
+    Recipe lobe{"lobe", "", {}, {}, {}};
+    lobe.pdf = [](Vec3d, Vec3d i) { return i.z > 0 ? 3 * i.z * i.z / (2 * pi) : 0; };
+    lobe.f = [](Vec3d, Vec3d i) { return i.z > 0 ? 0.5 * i.z / pi : 0; };
+    lobe.sample = [](Vec3d, const Numbers& u) {
+        const Vec3d i = about({0, 0, 1}, std::cbrt(1 - u[0]), u[1]);
+        return Draw{i, 3 * i.z * i.z / (2 * pi), {}, {}};
+    };
+    for (auto answers : {Mixed::Answers::draws, Mixed::Answers::pdf, Mixed::Answers::f})
+        for (auto how :
+            {Mixed::How::last_repeated, Mixed::How::first_two_exchanged, Mixed::How::late_rows_of_long_blocks}) {
+            const auto program = std::make_shared<Mixed>(subject_of(lobe), answers, how);
+            const Judgement j = judged_at(program, 45, TestSettings::quick());
+            EXPECT_EQ(named(j, "identity").state, State::wrong)
+                << static_cast<int>(answers) << static_cast<int>(how) << what_is_wrong(j);
+        }
 }
 
 /// All w_o of the grid in one call: four million questions, the greatest share of which none needs.
@@ -193,11 +213,9 @@ TEST(Structs, AreCountedAndSparedAsProgramsAre) {
     std::uint64_t by_one = 0;
     EXPECT_EQ(judge_sampler("wrinkled", WrinkledForOneThread{{&by_one}}, settings).questions, by_one);
     EXPECT_LE(by_one, 2 * promised);
-    EXPECT_GT(by_one, 200000u);
     std::atomic<std::uint64_t> by_many = 0;
     EXPECT_EQ(judge_sampler("wrinkled", WrinkledForMany{{&by_many}}, settings).questions, by_many);
     EXPECT_LE(by_many, 2 * promised);
-    EXPECT_GT(by_many, 200000u);
     by_many = 0;
     judge_sampler("wrinkled", WrinkledForMany{{&by_many}});
     EXPECT_LE(by_many, 8 * promised) << "four million at the w_o of the grid together";
@@ -261,7 +279,7 @@ TEST(Against, AsksAProgramOnceAtEachDirection) {
     const auto answers = [&](std::span<const Trial> trials) {
         const auto program = std::make_shared<Counted>(a[0].subject);
         TestSettings settings;
-        settings.draws = 4096;
+        settings.budget = check::CheckBudget::limited();
         ProgressMonitor monitor;
         judge_against(trials, sampler_against(program, trials), settings, false, monitor);
         return program->spending().answers;
@@ -275,7 +293,7 @@ TEST(Asked, PicturesTakeNoQuestionsOfTheirOwn) {
         Trial trial = trials_of("cosine", {}, false, {{45, 0}})[0];
         trial.subject = std::make_shared<Counted>(trial.subject);
         TestSettings settings;
-        settings.draws = 4096;
+        settings.budget = check::CheckBudget::limited();
         settings.pictures = pictures;
         ProgressMonitor monitor;
         return verdict_json(judge({&trial, 1}, settings, monitor), {});

@@ -131,7 +131,7 @@ static_assert(!user::Judgeable<V3>);
 
 TestSettings few() {
     TestSettings r;
-    r.draws = 4096;
+    r.budget = check::CheckBudget::limited();
     return r;
 }
 

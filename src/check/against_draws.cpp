@@ -51,8 +51,9 @@ std::size_t nearest_way(std::span<const Vec3d> ways, Vec3d w) {
 
 /// Pilot draws of all techniques.
 std::uint32_t draw_pilots(
-    const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<AgainstDelta>& parts) {
+    const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<DeltaPart>& parts) {
     std::uint32_t of = 0;
+    DeltaParts delta;
     for (int t = 0; t < side.trial.subject->techniques(); ++t) {
         Sorter sorter(side, t);
         StreamKey key = side.key;
@@ -77,10 +78,10 @@ std::uint32_t draw_pilots(
 
 CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
     std::vector<Vec3d> of_a, of_b, drawn, ways;
-    std::vector<AgainstDelta> delta_a, delta_b;
+    std::vector<DeltaPart> delta_a, delta_b;
     const std::uint32_t of = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
     for (const auto* parts : {&delta_a, &delta_b})
-        for (const AgainstDelta& p : *parts)
+        for (const DeltaPart& p : *parts)
             if (std::ranges::none_of(ways, [&](Vec3d w) { return length(w - p.wi) < same_way; })) ways.push_back(p.wi);
     const double step = std::max(step_of_directions(of_a), step_of_directions(of_b));
     std::vector<DensityPoint> pilots;

@@ -26,10 +26,10 @@ struct CommonGround {
     Tree tree;
     double step = 0;  // of the coarser arithmetic, as an angle
     Vec3d middle{};
-    double log_q = 0;                            // mean of ln q over the tree's mass
-    std::vector<Vec3d> ways;                     // directions of delta parts
-    std::vector<AgainstDelta> delta_a, delta_b;  // of the pilot draws
-    std::vector<Vec3d> drawn;                    // some of the pilot directions of each
+    double log_q = 0;                         // mean of ln q over the tree's mass
+    std::vector<Vec3d> ways;                  // directions of delta parts
+    std::vector<DeltaPart> delta_a, delta_b;  // of the pilot draws
+    std::vector<Vec3d> drawn;                 // some of the pilot directions of each
 };
 
 CommonGround common_ground(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);

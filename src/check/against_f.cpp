@@ -108,9 +108,9 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
 
 /// The first delta part whose q times weight differs. A part that is drawn less than once in a pilot may be missing.
 std::string differing_delta(const AgainstCase& c) {
-    const auto power = [](const std::vector<AgainstDelta>& parts, Vec3d w) {
+    const auto power = [](const std::vector<DeltaPart>& parts, Vec3d w) {
         Vec3d sum{};
-        for (const AgainstDelta& p : parts)
+        for (const DeltaPart& p : parts)
             if (length(p.wi - w) < same_number) sum = sum + p.weight * p.q;
         return sum;
     };
