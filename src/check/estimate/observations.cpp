@@ -13,6 +13,9 @@ namespace crescent::check {
 
 namespace {
 
+/// Draws that are compared with neighbours, nine evaluations each; where there are more, the share counts.
+constexpr std::uint64_t most_compared = 1024;
+
 /// A direction moved by a few roundings: eight of them, by 2 and by 8 ulp.
 std::array<Vec3d, 8> neighbours(Vec3d w) {
     std::array<Vec3d, 8> out;
@@ -125,7 +128,11 @@ private:
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
                     same_number * p_[k] + 2 * source_.subject.tabulation_error(w_[k])))
                 odd.push_back(k);
+        to_.checks.odd += odd.size();
+        if (to_.checks.odd_compared >= most_compared) return;
+        odd.resize(std::min<std::size_t>(odd.size(), most_compared - to_.checks.odd_compared));
         if (odd.empty()) return;
+        to_.checks.odd_compared += odd.size();
         std::vector<Vec3d> around, here;
         for (std::size_t k : odd) {
             here.push_back(w_[k]);

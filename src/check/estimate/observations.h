@@ -37,6 +37,8 @@ struct DrawChecks {
     Count weight;     // weight against f cos / pdf
     Count true_f;     // f against what it ought to be
     std::uint64_t weights = 0;
+    // Draws whose pdf is not pdf(w), and how many of them were compared with the neighbours of w.
+    std::uint64_t odd = 0, odd_compared = 0;
 };
 
 /// Sum and sum of squares of a value per draw.

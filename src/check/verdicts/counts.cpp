@@ -9,9 +9,9 @@ namespace crescent::check {
 
 namespace {
 
-/// More than a share of the draws, and more than a few.
-void ask_share(Family family, const Count& count, double of, double tolerated, const Visit& visit) {
-    const double times = static_cast<double>(count.times);
+/// More than a share of the draws, and more than a few. per: how many each one counted stands for.
+void ask_share(Family family, const Count& count, double of, double tolerated, const Visit& visit, double per = 1) {
+    const double times = per * static_cast<double>(count.times);
     visit({family, 0, of > 0 ? times / of : 0, 0, tolerated, times > tolerated * of + tolerated_breaks ? 0.0 : 1.0, 0});
 }
 
@@ -43,8 +43,9 @@ void ask_counts(const Evidence& e, const Visit& visit) {
     const double draws = static_cast<double>(c.looked_at);
     const double invalid = static_cast<double>(c.invalid.times + e.source.invalid());
     visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
-    ask_share(Family::pointwise, c.pointwise, draws, tolerated_share, visit);
-    ask_share(Family::zero, c.zero, draws, tolerated_zeros, visit);
+    const double per = static_cast<double>(c.odd) / static_cast<double>(std::max<std::uint64_t>(c.odd_compared, 1));
+    ask_share(Family::pointwise, c.pointwise, draws, tolerated_share, visit, std::max(per, 1.0));
+    ask_share(Family::zero, c.zero, draws, tolerated_zeros, visit, std::max(per, 1.0));
     ask_share(Family::weight, c.weight, static_cast<double>(c.weights), tolerated_share, visit);
     ask_share(Family::true_f, c.true_f, static_cast<double>(c.weights), tolerated_share, visit);
     if (!e.source.traits.delta) ask_repeats(e, visit);
