@@ -177,7 +177,7 @@ TEST(WithoutAPdf, ThePageHasOneMapAndATableAndTheTerminalALine) {
     EXPECT_EQ(page.find("<figcaption>expected"), std::string::npos) << "a copy of what was observed";
     EXPECT_EQ(page.find("off most"), std::string::npos);
     EXPECT_EQ(page.find("<polyline class=rose-p"), std::string::npos) << "p is not known";
-    EXPECT_NE(page.find("<figcaption>implied density"), std::string::npos);
+    EXPECT_NE(page.find("<figcaption>Density of the draws"), std::string::npos);
     EXPECT_NE(page.find("implied density, mean over the ring"), std::string::npos);
     EXPECT_NE(text.find("The density that the draws imply"), std::string::npos) << text;
     EXPECT_NE(text.find("0 to 15"), std::string::npos) << text;

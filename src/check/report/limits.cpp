@@ -13,7 +13,7 @@ namespace crescent::check {
 
 namespace {
 
-bool comes_weighted(const CheckAt& c) { return !c.observations.weights.empty() && c.observations.weightless == 0; }
+bool comes_weighted(const CheckAt& c) { return c.observations.weighed > 0 && c.observations.weightless == 0; }
 
 void note_density(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
     note_implied_density(c, v);
@@ -27,13 +27,13 @@ void note_density(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
                                  : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
 }
 
-void note_mean(const CheckAt& c, Verdict& v) {
+void note_mean(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
     const bool asked = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
     if (asked) return;
     if (c.observations.weightless > 0) {
         v.state = State::skipped;
         v.say = "The draws come with neither a pdf nor a weight.";
-    } else if (c.observations.checks.deltas == 0 && tail_may_be_heavy(c.observations.weights)) {
+    } else if (comes_weighted(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
         v.state = State::inconclusive;
         v.say = "The weights have a heavy tail: their mean has no known error.";
         v.settle = "Draws whose weights are bounded.";
@@ -43,7 +43,7 @@ void note_mean(const CheckAt& c, Verdict& v) {
 /// A file says how its rows were used, and how many would do.
 void note_rows(const CheckAt& c, Verdict& v) {
     if (v.name == "density") {
-        v.evidence["rows"] = {{"tree", c.plan->of}, {"compared", c.observations.independent}};
+        v.evidence["rows_compared"] = c.observations.independent;
         v.say += fmt::format(
             "{}One row in eight shapes the tree, four are compared with p, three confirm.", v.say.empty() ? "" : " ");
     }
@@ -59,11 +59,7 @@ void note_rows(const CheckAt& c, Verdict& v) {
 void note_limits(const JudgedSampler& sampler, const CheckAt& c, Verdict& v) {
     if (v.state == State::wrong) return;
     if (v.name == "density" && !sampler.traits().has_pdf) note_density(sampler, c, v);
-    if (v.name == "mean" && sampler.has_f()) note_mean(c, v);
-    if (v.name == "tail" && !comes_weighted(c)) {
-        v.state = State::skipped;
-        v.say = "There are no weights.";
-    }
+    if (v.name == "mean" && sampler.has_f()) note_mean(sampler, c, v);
     if (v.name == "valid") v.say += text_of(c.scatter);
     if (!sampler.draws_at_will()) note_rows(c, v);
 }
