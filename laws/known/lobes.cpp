@@ -215,7 +215,7 @@ std::vector<KnownSampler> lobe_samplers() {
     list.wrong("one direction again and again", "identity", atom(), {30});
     list.right("64 cones", cones(64, 0.01));
     list.right("100 cones that overlap", cones(100, 0.05));
-    list.wrong("64 cones that integrate to 1.005", "normalised", cones(64, 0.01, 1.005));
+    list.wrong("64 cones that integrate to 1.005", "", cones(64, 0.01, 1.005));
     list.missed("64 cones that integrate to 1.001", cones(64, 0.01, 1.001));  // of 1.0024 it would be found
     list.right("cone", band(0.8, 1));
     list.right("thin band", band(std::cos(0.735), std::cos(0.70)));

@@ -102,7 +102,7 @@ std::string verdict_table(const Judgement& judgement, bool all) {
 }
 
 std::string verdict_json(const Judgement& judgement, const JudgementSource& source) {
-    nlohmann::ordered_json root = head_of("crescent check 1", source);
+    nlohmann::ordered_json root = head_of("crescent check 2", source);
     root["state"] = word(judgement.state);
     root["as_expected"] = judgement.as_expected;
     root["alpha"] = judgement.alpha;

@@ -18,21 +18,6 @@ namespace {
 
 int rank(State s) { return s == State::wrong ? 0 : s == State::error ? 1 : 2; }
 
-/// How far off a verdict is, in whatever it measures: comparable within one verdict's name alone.
-double badness(const Verdict& v) {
-    const auto number = [&](const char* key) {
-        const auto at = v.evidence.find(key);
-        return at != v.evidence.end() && at->is_number() ? at->get<double>() : std::nan("");
-    };
-    for (const char* key : {"lost_fraction", "largest_relative_difference", "z", "k"})
-        if (const double x = std::fabs(number(key)); std::isfinite(x)) return x;
-    if (const double x = number("chi2") / number("degrees"); std::isfinite(x)) return x;
-    for (const char* key : {"integral", "smallest_p_jacobian"})
-        if (const double x = std::fabs(number(key) - 1); std::isfinite(x)) return x;
-    const double albedo = number("albedo");
-    return std::isfinite(albedo) ? albedo : 0;
-}
-
 using Key = std::pair<std::string, std::string>;  // arm and case
 
 std::map<Key, std::set<std::string>> left_out_of(const Judgement& j) {
@@ -59,7 +44,7 @@ std::map<std::string, Count> count_cases(const Judgement& j) {
 
 void add(Finding& f, const Verdict& v) {
     ++f.count;
-    if (!f.worst || badness(v) > badness(*f.worst)) f.worst = &v;
+    if (!f.worst || v.size > f.worst->size) f.worst = &v;
 }
 
 /// What a verdict says beyond what the worst of its finding says already.
@@ -91,16 +76,6 @@ std::string cause_of(const Finding& f, const Judgement& j) {
             if (out.empty() && v.arm == f.arm && v.state == State::wrong && (!of_name || v.name == f.name))
                 out = v.cause;
     return out;
-}
-
-/// A diagnosis of the same arm for a worst verdict that nothing usual explains.
-void find_explained(Finding& f, const Judgement& j) {
-    if (f.state != State::wrong || f.worst->evidence.value("diagnosis", "") != "none") return;
-    for (const Verdict& v : j.verdicts)
-        if (v.arm == f.arm && v.state == State::wrong && v.evidence.contains("diagnosis_says")) {
-            const bool better = !f.explained || (v.name == f.name && f.explained->name != f.name);
-            if (better) f.explained = &v;
-        }
 }
 
 }  // namespace
@@ -145,7 +120,6 @@ std::vector<Finding> findings_of(const Judgement& j) {
         members[at->second].push_back(&v);
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
-        find_explained(out[i], j);
         if (out[i].state == State::wrong) out[i].cause = cause_of(out[i], j);
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
         else
@@ -180,9 +154,6 @@ std::string told(const Finding& f, FrontEnd front_end) {
             "error: {} of {} verdicts could not be asked, the first at {}. {}", f.count, f.of, f.worst->trial, say);
     const std::string where = where_found(f);
     std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, say);
-    if (f.explained)
-        out += fmt::format(" What explains it at {}: {}.", f.explained->trial,
-            f.explained->evidence["diagnosis_says"].get<std::string>());
     return out;
 }
 
@@ -265,31 +236,30 @@ std::string what_is_wrong(const Judgement& judgement, std::size_t most_lines) {
 }
 
 std::string unseen_told(const Judgement& judgement) {
-    double integral = 0, bin = 0;
     if (judgement.state == State::error) return "";  // what there is of right verdicts is not the whole
-    for (const Verdict& v : judgement.verdicts) {
-        if (v.state != State::right) continue;
-        integral = std::max(integral, v.evidence.value("unseen", 0.0));
-        bin = std::max(bin, v.evidence.value("unseen_in_one_bin", 0.0));
-    }
-    std::string out;
-    if (integral > 0) out = fmt::format("p that integrates to one but for {:.2g}", integral);
-    if (bin > 0)
-        out += fmt::format(
-            "{}{:.2g} % of the draws too many or too few in one bin", out.empty() ? "" : ", and ", 100 * bin);
-    return out.empty() ? "" : "What is right could hide " + out + ".";
+    std::map<std::string, double> most;
+    for (const Verdict& v : judgement.verdicts)
+        for (const auto& [kind, size] : v.hidden)
+            if (v.state == State::right) most[kind] = std::max(most[kind], size);
+    std::vector<std::string> said;
+    const auto say = [&](const char* kind, const char* words, double unit) {
+        if (const auto at = most.find(kind); at != most.end())
+            said.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
+    };
+    say("constant", "a constant factor of {:.2g} %", 100);
+    say("leak", "{:.2g} % of the draws that are uniform", 100);
+    say("cap", "a cap with {:.2g} % of p that is never drawn", 100);
+    say("rotation", "a rotation by {:.2g} rad", 1);
+    say("parameter", "an exponent that is off by {:.2g} %", 100);
+    return said.empty() ? "" : fmt::format("What is right could hide {}.", fmt::join(said, ", or "));
 }
 
 std::string nothing_drawn_told(const Judgement& judgement) {
-    double most = 0;
-    const Verdict* where = nullptr;
-    for (const Verdict& v : judgement.verdicts)
-        if (v.evidence.contains("share_that_drew_nothing"))  // what was cut short may have no evidence at all
-            if (const double share = v.evidence["share_that_drew_nothing"].get<double>(); share > most)
-                most = share, where = &v;
-    if (!where) return "";
-    return fmt::format("Up to {:.3g} % of the draws drew nothing, pdf 0 or under the horizon: {} at {}.", 100 * most,
-        where->arm, where->trial);
+    constexpr double worth_saying = 0.01;
+    const auto most = std::ranges::max_element(judgement.verdicts, {}, &Verdict::nothing);
+    if (most == judgement.verdicts.end() || !(most->nothing > worth_saying)) return "";
+    return fmt::format("Up to {:.3g} % of the draws drew nothing, pdf 0 or under the horizon: {} at {}.",
+        100 * most->nothing, most->arm, most->trial);
 }
 
 }  // namespace crescent::inline judgements

@@ -20,9 +20,8 @@ struct Finding {
     const char* cases = "w_o";       // what is counted
     const Verdict* worst = nullptr;  // by the evidence, the first where that does not tell
     std::vector<std::pair<std::string, std::vector<std::string>>>
-        sentences;                       // what the others say beyond the worst, each with its cases
-    std::string cause{};                 // of the worst, or of another wrong one of the arm
-    const Verdict* explained = nullptr;  // one of the arm that says what explains it, where the worst cannot
+        sentences;        // what the others say beyond the worst, each with its cases
+    std::string cause{};  // of the worst, or of another wrong one of the arm
 };
 
 /// Wrong ones first, then errors, then what is inconclusive. What was left out for want of time is not among them, and
@@ -32,8 +31,8 @@ std::vector<Finding> findings_of(const Judgement& judgement);
 std::string told(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
 /// "Left out: all but valid at 3 of 8 cases (w_o 0 deg, ...). Not looked at: ..."; "" where nothing was.
 std::string left_out_told(const Judgement& judgement);
-/// What those that are right could hide, over all cases: "p that is off from one by less than ..."; "" where nothing
-/// was integrated.
+/// What those that are right could hide, over all cases: "a constant factor of 0.03 %, or ..."; "" where nothing
+/// is stated.
 std::string unseen_told(const Judgement& judgement);
 /// What share of the draws drew nothing where that is most, over 1 %; "" where it is nowhere.
 std::string nothing_drawn_told(const Judgement& judgement);

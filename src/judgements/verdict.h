@@ -1,6 +1,7 @@
 // Verdicts and what goes with each: a sentence, and the numbers behind it.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -31,6 +32,9 @@ struct Verdict {
     std::string settle{};  // what would settle it, where it is inconclusive and no front end has a call for it
     NextStep next{};
     std::optional<std::pair<double, double>> wo{};  // theta and azimuth in degrees; none for a sampler without w_o
+    double size = 0;                         // of what is wrong, in its standard errors: orders verdicts of one name
+    std::map<std::string, double> hidden{};  // by kind of fault, of a right verdict: the size that it could hide
+    double nothing = 0;                      // of `valid`: the share of the draws that drew nothing
     nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
     // What varies from run to run, kept apart so that equal calls give equal verdicts.
     double seconds = 0;

@@ -3,6 +3,7 @@
 #include "check/report/verdicts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "check/constants.h"
@@ -27,7 +28,10 @@ bool can_be_asked(const JudgedSampler& s, std::string_view name) {
 
 void add_sizes(const Sizes& s, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
-        if (size) v.evidence["would_have_found"][name] = *size;
+        if (!size) return;
+        double& most = v.hidden[name];
+        most = std::max(most, *size);
+        v.evidence["would_have_found"][name] = most;
     };
     if (v.name == "normalised") add("constant", s.constant);
     if (v.name != "density") return;
@@ -35,9 +39,14 @@ void add_sizes(const Sizes& s, Verdict& v) {
 }
 
 void judge_at(const CheckAt& c, Verdict& v) {
+    constexpr double beyond_chance = 1e9;  // standard errors of what is counted
+    const DrawChecks& checks = c.observations.checks;
+    if (v.name == verdict_names[0] && checks.looked_at > 0)
+        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing) / static_cast<double>(checks.looked_at));
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name)
-            v.state = State::wrong, v.say += (v.say.empty() ? "" : " ") + sentence_of(f, c.numbers);
+            v.state = State::wrong, v.size = beyond_chance * f.times / std::max(f.of, 1.0),
+            v.say += (v.say.empty() ? "" : " ") + sentence_of(f, c.numbers);
     const Finding* worst = nullptr;
     for (const Finding& f : c.findings)
         if (info(f.first.family).verdict == v.name) {
@@ -45,6 +54,10 @@ void judge_at(const CheckAt& c, Verdict& v) {
                 {"expected", f.second.expected}, {"sd", f.second.sd}, {"p_first", f.first.p}, {"p_again", f.second.p}};
             if (!worst || f.second.p < worst->second.p) worst = &f;
         }
+    if (worst) {
+        const Answer& a = worst->second.sd > 0 ? worst->second : worst->first;
+        v.size = std::max(v.size, std::fabs(a.difference) * (a.sd > 0 ? 1 / a.sd : beyond_chance));
+    }
     if (worst) v.state = State::wrong, v.say += (v.say.empty() ? "" : " ") + sentence_of(c, *worst);
     for (const Answer& a : c.answers)
         if (info(a.family).verdict == v.name && v.state != State::wrong)
