@@ -74,7 +74,7 @@ AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same
     if (limited) shared.questions /= 2;
     out.budget = budget_of(shared, limited, cases);
     out.own = CheckBudget::limited();
-    if (limited && !settings.full) out.own.look_count = 1;
+    if (limited && !settings.full) out.own.looks = 1;
     out.seed = settings.seed, out.expect_same = expect_same;
     constexpr double of_each = static_cast<double>(AgainstAnswer::families) + 2 * static_cast<double>(Family::families);
     out.levels = levels_of(settings.alpha, static_cast<double>(cases) * of_each);
@@ -104,7 +104,7 @@ public:
         note_distribution(d, out[0]);
         const CheckAt own_a = own(a_), own_b = own(b_);
         const AgainstCase c{
-            a_, b_, *ground_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f, plan_.levels, plan_.expect_same};
+            a_, b_, *ground_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f(), plan_.levels, plan_.expect_same};
         compare_f(c, out[1]);
         compare_variances(c, out[1], out[2]);
         return out;
@@ -129,11 +129,11 @@ private:
 
     Differences differences() {
         Differences out;
-        const int last = plan_.budget.look_count - 1;
+        const int last = plan_.budget.looks - 1;
         for (int look = 0; look <= last && out.found.empty(); ++look) {
-            const Look& to = plan_.budget.looks[static_cast<std::size_t>(look)];
-            draw_on(a_, *ground_, to, plan_.budget.of_f, draws_a_);
-            draw_on(b_, *ground_, to, plan_.budget.of_f, draws_b_);
+            const Look to = plan_.budget.look(look);
+            draw_on(a_, *ground_, to, plan_.budget.of_f(), draws_a_);
+            draw_on(b_, *ground_, to, plan_.budget.of_f(), draws_b_);
             const double level = plan_.levels.first * (look == last ? 1 - last * early_look : early_look);
             out.p.clear();
             std::vector<AgainstAnswer> suspects;
@@ -147,7 +147,7 @@ private:
     }
 
     void confirm(const std::vector<AgainstAnswer>& suspects, const Look& to, int look, Differences& out) const {
-        const Look& most = plan_.budget.again;
+        const Look most = plan_.budget.look(plan_.budget.looks - 1).divided_by(4);
         const Look more = {0, std::max(to.independent, most.independent), std::max(to.scrambled, most.scrambled)};
         AgainstSide a = a_, b = b_;
         a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look);

@@ -58,7 +58,7 @@ std::uint32_t draw_pilots(
         Sorter sorter(side, t);
         StreamKey key = side.key;
         key.purpose = Purpose::pilot, key.technique = static_cast<std::uint8_t>(t);
-        const std::uint32_t count = sorter.source().available(key, budget.pilot);
+        const std::uint32_t count = sorter.source().available(key, budget.pilot());
         std::vector<Numbers> u;
         std::vector<Draw> draws;
         for (std::uint32_t from = 0; from < count; from += batch_size) {

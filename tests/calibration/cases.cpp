@@ -170,13 +170,15 @@ Case case_of(const Sampler& sampler, const CaseKey& key, State expected, std::st
 
 StatedCase stated_case(const CaseKey& key) {
     constexpr FaultKind kinds[] = {
-        FaultKind::constant, FaultKind::leak, FaultKind::hole, FaultKind::rotation, FaultKind::mismatch};
+        FaultKind::constant, FaultKind::leak, FaultKind::hole, FaultKind::rotation, FaultKind::exponent};
     StatedCase out{nullptr, {}, Real::f64, kinds[key.index % 5]};
     std::vector<const Family*> all;
     for (const Family& f : families()) {
-        const bool can = out.kind == FaultKind::mismatch ? !f.parameter.empty()
-            : out.kind == FaultKind::rotation            ? f.name != "uniform sphere"
+        // An even density has nothing to leak into, and none of its powers is another.
+        const bool even = f.name.starts_with("uniform") || f.name == "cone" || f.name == "ring";
+        const bool can = out.kind == FaultKind::rotation ? f.name != "uniform sphere"
             : out.kind == FaultKind::leak                ? !f.name.starts_with("uniform")
+            : out.kind == FaultKind::exponent            ? !even
                                                          : true;
         if (can && f.held_out == of_held_out_set(key)) all.push_back(&f);
     }

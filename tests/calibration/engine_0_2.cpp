@@ -65,7 +65,7 @@ private:
         take_most(out.stated, "leak", c.sizes.leak);
         take_most(out.stated, "hole", c.sizes.cap);
         take_most(out.stated, "rotation", c.sizes.rotation);
-        take_most(out.stated, "mismatch", c.sizes.parameter);
+        take_most(out.stated, "exponent", c.sizes.parameter);
     }
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tests/calibration/geometry.h"
+#include "tests/calibration/measures.h"
 
 namespace crescent::calibration {
 
@@ -109,6 +110,14 @@ template <class F> struct Bend {
             for (std::uint64_t k = 1; k < 64 && d.pdf > 0 && in_cap(at, d.wi); ++k)
                 d = draws.sample(wo, others(u.data(), k).data());
         }
+        if (fault.kind == FaultKind::exponent) {
+            const double high = nearest(places, widened(wo)).high;
+            for (std::uint64_t k = 1; k < 64 && d.pdf > 0; ++k) {
+                const auto fresh = others(u.data(), k);
+                if (fresh.back() < std::pow(std::min(double(d.pdf) / high, 1.0), fault.size)) break;
+                d = draws.sample(wo, fresh.data());
+            }
+        }
         return d;
     }
     Drawn<F> sample(Vec3<F> wo, const F* u) const {
@@ -147,7 +156,7 @@ template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, 
 
 PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fault, Dice& dice) {
     const Vec3d any = dice.direction(-1, 1);
-    PlaceOfFault at{wo, any, {0, 0, 1}, 0};
+    PlaceOfFault at{wo, any, {0, 0, 1}};
     if (draws.empty()) return at;
     Vec3d mean{0, 0, 0};
     for (Vec3d w : draws) mean = mean + w * (1 / static_cast<double>(draws.size()));
@@ -167,16 +176,23 @@ PlaceOfFault place_at(const std::vector<Vec3d>& draws, Vec3d wo, const Fault& fa
 std::vector<PlaceOfFault> places_of(
     const Sampler& right, const Fault& fault, std::span<const Vec3d> wo, const StreamKey& key) {
     const bool capped = fault.kind == FaultKind::hole || fault.kind == FaultKind::blind;
-    if (!capped && fault.kind != FaultKind::rotation) return {};
+    const bool tempered = fault.kind == FaultKind::exponent;
+    if (!capped && !tempered && fault.kind != FaultKind::rotation) return {};
     Dice dice = dice_of(key);
     std::vector<PlaceOfFault> out;
     const std::vector<Vec3d> only = {{0, 0, 1}};
-    for (Vec3d o : right.wo == Traits::Asked::none ? std::span<const Vec3d>(only) : wo)
+    for (Vec3d o : right.wo == Traits::Asked::none ? std::span<const Vec3d>(only) : wo) {
         out.push_back(std::visit(
             [&](const auto& f) {
                 return place_at(drawn_at(f, o, dice, capped ? draws_for_places : 4096), o, fault, dice);
             },
             right.functions));
+        if (!tempered) continue;
+        std::vector<double> p = draws_of(right, o, 4096, key.seed).pdf;
+        const auto high = p.begin() + static_cast<std::ptrdiff_t>(p.size() * 999 / 1000);
+        std::nth_element(p.begin(), high, p.end());
+        out.back().high = *high;
+    }
     return out;
 }
 
@@ -199,8 +215,8 @@ Sampler faulty(const Family& family, const Member& member, Real real, const Faul
 }
 
 std::string_view word(const Fault& fault) {
-    constexpr std::array words = {"right", "constant", "leak", "hole", "blind", "rotation", "mismatch", "nan",
-        "negative", "length", "factor", "cosine missing", "cosine twice", "sine missing", "Jacobian missing",
+    constexpr std::array words = {"right", "constant", "leak", "hole", "blind", "rotation", "exponent", "mismatch",
+        "nan", "negative", "length", "factor", "cosine missing", "cosine twice", "sine missing", "Jacobian missing",
         "n.m missing", "one number twice", "azimuth unused", "frame mirrored", "NaN for w_o in the plane",
         "NaN for w_o next to n", "NaN for w_i in the plane", "NaN at u = 0"};
     constexpr std::array inner = {

@@ -17,6 +17,7 @@ enum class FaultKind {
     hole,              // mass of a cap that is never drawn, pdf positive there; its draws go elsewhere by p
     blind,             // mass of a cap that is drawn, pdf(w) 0 there
     rotation,          // draws turned by so many rad about an axis at right angles to their mean
+    exponent,          // draws follow p^(1 + size), but for the highest thousandth of p
     mismatch,          // draws made with the family's parameter 1 + size times what pdf has
     nan,               // share of the draws whose pdf is NaN
     negative,          // share of the draws whose pdf is negative
@@ -55,10 +56,11 @@ bool names_cause(std::string_view cause, const std::vector<std::string>& texts);
 Sampler faulty(const Family& family, const Member& member, Real real, const Fault& fault, std::span<const Vec3d> wo,
     const StreamKey& key);
 
-/// What was chosen for one w_o: the axis of the rotation, and the cap with its 1 - cos.
+/// What was chosen for one w_o: the axis of the rotation, the cap with its 1 - cos, the p that 999 draws in 1000 are
+/// below.
 struct PlaceOfFault {
     Vec3d wo, turn, cap;
-    double gap;
+    double gap = 0, high = 0;
 };
 std::vector<PlaceOfFault> places_of(
     const Sampler& right, const Fault& fault, std::span<const Vec3d> wo, const StreamKey& key);

@@ -1,5 +1,5 @@
-// Stage 1 looks at 2^14, 2^16, ... draws; a family below its level is put again, the same member with the same sign, to
-// fresh draws and fresh points on the same tree. Streams differ by stage, so no number is used twice.
+// Stage 1 looks at a share of its draws, then at all; a family below its level is put again, the same member with the
+// same sign, to fresh draws and fresh points on the same tree. Streams differ by stage, so no number is used twice.
 #include "check/decide/check_at.h"
 
 #include <algorithm>
@@ -18,13 +18,22 @@ namespace {
 struct Stage {
     Integrals integrals;
     Observations observations;
-    std::uint32_t points = 0;
+    Look done;
 
-    void extend(Source& source, const Plan& plan, const Look& to, std::uint32_t of_f, StreamKey key, int look) {
+    /// The share of evaluations that f takes where it is looked at: at the points of the first pass, and at the first
+    /// draws, where it may be compared with what it ought to be.
+    static double of_f(const Source& source, const Look& first, double draws) {
+        if (!source.has_f()) return 0;
+        return first.points + draws * (source.subject.has_true_f() ? 2 : 1);
+    }
+    void extend(Source& source, const Plan& plan, Look to, std::uint32_t of_f, StreamKey key, int look) {
+        to.points = std::max(to.points, done.points + 2 * static_cast<std::uint32_t>(plan.tree.leaves().size()));
+        to.independent = std::max(to.independent, done.independent);
         key.purpose = Purpose::points;
         key.part = static_cast<std::uint16_t>(look);
-        integrate(source, plan, to.points - points, points == 0, key, integrals);  // f in the first pass alone
-        points = to.points;
+        integrate(
+            source, plan, to.points - done.points, done.points == 0, key, integrals);  // f in the first pass alone
+        done = to;
         key.part = 0;
         observe(source, plan, to, of_f, key, integrals, observations);
     }
@@ -88,7 +97,7 @@ public:
         if (!source_.f_estimates) source_.unscaled = both_ways(source_.subject, key_) != BothWays::not_known;
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
-        for (int look = 0; look < budget_.look_count; ++look) {
+        for (int look = 0; look < budget_.looks; ++look) {
             if (decided_by(look)) break;
             if (look == 0 && regrown()) look = -1;
         }
@@ -107,19 +116,31 @@ private:
     Stage first_;
 
     double level_of(int look) const {
-        const int last = budget_.look_count - 1;
+        const int last = budget_.looks - 1;
         return levels_.first * (look == last ? 1 - last * early_look : early_look);
     }
 
+    double left() const { return budget_.evaluations - static_cast<double>(source_.evaluations()); }
+
+    /// What this look has: a share of all that stage 1 may still evaluate, with what it has evaluated.
+    Look next(int look) const {
+        const double all = left() - budget_.reserve() + first_.done.cost();
+        const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
+        Look last = look_of(all);
+        const double of_f = Stage::of_f(source_, last.divided_by(1u << 3 * (budget_.looks - 1)), budget_.of_f());
+        const double paid = first_.observations.weighed + first_.integrals.light.points;
+        last = look_of(all - std::max(of_f - paid, 0.0));
+        return last.divided_by(parts);
+    }
+
     bool decided_by(int look) {
-        const Look& to = budget_.looks[static_cast<std::size_t>(look)];
-        first_.extend(source_, *out_.plan, to, budget_.of_f, key_, look);
+        first_.extend(source_, *out_.plan, next(look), budget_.of_f(), key_, look);
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
         std::vector<Best> suspects;
         for (const auto& [family, best] : best_of(e))
             if (best.p() < level_of(look)) suspects.push_back(best);
-        if (!suspects.empty()) confirm(suspects, to, look);
+        if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
         return budget_.stop_when_targets_met && worst_ratio(sizes(e, level_of(look))) <= 1;
     }
@@ -143,29 +164,40 @@ private:
     Sizes sizes(const Evidence& e, double level) {
         const bool drawn = e.observations.checks.directions > 0 || e.integrals.sums[mass].value > 0;
         if (!drawn) return {};  // delta parts alone, or nothing: no density that could hide a fault
-        double nodes = 0;
-        ask_nodes(e, [&](const Answer& a) { nodes += a.family == Family::node; });
         StreamKey key = key_;
         key.purpose = Purpose::pairs;
-        return sizes_of(source_, e, level, nodes, key);
+        const Passing passing{level, levels_.second, first_.done, budget_.reserve() - budget_.cost_of_sizes()};
+        return sizes_of(source_, e, passing, budget_.of_sizes(), key);
     }
 
-    void confirm(const std::vector<Best>& suspects, const Look& to, int look) {
+    /// The same questions on fresh numbers, with what is left of the budget; after an early look with twice what that
+    /// had, so that the later ones lose little.
+    void confirm(const std::vector<Best>& suspects, int look) {
+        const auto count = [&](auto has) {
+            return std::ranges::count_if(suspects, [&](const Best& b) { return has(b.answer.family); });
+        };
+        const auto of_sets = count(by_replicates);
+        const Kinds kinds = of_sets == 0                              ? Kinds::independent
+            : of_sets == static_cast<std::ptrdiff_t>(suspects.size()) ? Kinds::scrambled
+                                                                      : Kinds::all;
+        const Answer& clearest = std::ranges::min_element(suspects, {}, &Best::p)->answer;
+        double most = left() - budget_.cost_of_sizes();
+        if (look < budget_.looks - 1) most = std::min(most, 2 * first_.done.cost());
+        const double draws_of_f = count(is_of_f) > 0 ? std::min<double>(budget_.of_f(), most / 8) : 0;
+        Look to = look_again(most, clearest.claimed, kinds);
+        if (draws_of_f > 0) to = look_again(most - Stage::of_f(source_, to, draws_of_f), clearest.claimed, kinds);
         Stage second;
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
-        const Look& most = budget_.again;
-        second.extend(source_, *out_.plan,
-            {std::max(to.points, most.points), std::max(to.independent, most.independent),
-                std::max(to.scrambled, most.scrambled)},
-            budget_.of_f, key, 0);
-        const Evidence e = second.evidence(source_, *out_.plan);
+        second.extend(source_, *out_.plan, to, static_cast<std::uint32_t>(draws_of_f), key, 0);
+        Evidence e = second.evidence(source_, *out_.plan);
+        e.least *= std::min(1.0, second.done.independent / static_cast<double>(first_.done.independent));
         for (const Best& b : suspects) {
             const Answer again = needs_no_second(b.answer.family) ? b.answer : same_member(e, b.answer);
             if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
-        if (!out_.findings.empty() && second.points > first_.points)
+        if (!out_.findings.empty() && kinds == Kinds::all && second.done.cost() > first_.done.cost())
             first_ = std::move(second);  // more to explain it by
     }
 
@@ -189,7 +221,7 @@ private:
             out_.answers.back().p = best.p();
         }
         if (!out_.wrong()) {
-            out_.sizes = sizes(e, level_of(budget_.look_count - 1));
+            out_.sizes = sizes(e, level_of(budget_.looks - 1));
             out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         }
         out_.integrals = std::move(first_.integrals);

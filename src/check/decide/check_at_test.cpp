@@ -90,6 +90,59 @@ TEST(CheckAtOneWo, FindsWhatARightVerdictSaysItWouldHaveFound) {
     EXPECT_GE(found(*s.cap, [](Cosine& c, double e) { c.hole = e; }), 7);
 }
 
+/// Counts every call. p: a noisy sky, a spike of 1/10 of the draws in a cosine, or a cosine; f = p pi where it has one.
+struct Counted : JudgedSampler {
+    enum Shape { cosine, noise, spike } shape;
+    bool with_f, leaks;
+    mutable std::uint64_t calls = 0;
+    Counted(Shape s, bool f, bool leak) : shape(s), with_f(f), leaks(leak) {}
+    std::string name() const override { return "counted"; }
+    bool has_f() const override { return with_f; }
+    static double noise_at(double x) { return 0.1 + 1.8 * (std::fabs(std::sin(7919 * std::floor(512 * x)))); }
+    double value(Vec3d w) const {
+        if (!(w.z > 0)) return 0;
+        const double even = w.z / 3.14159265358979323846;
+        if (shape == cosine) return even;
+        if (shape == noise) return even * noise_at(w.z * w.z);
+        constexpr double area = two_pi * 1e-7;
+        return 0.9 * even + (0.6 * w.x + 0.8 * w.z > 1 - 1e-7 ? 0.1 / area : 0);
+    }
+    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+        calls += u.size();
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            Vec3d w = from_chart({1 - std::sqrt(u[i].x), two_pi * u[i].y});
+            if (leaks && u[i].y < 0.01) w = from_chart({u[i].x, two_pi * u[i].y});
+            if (shape == spike && u[i].y > 0.9) {
+                const Vec3d a = from_chart({1e-7 * u[i].x, two_pi * 10 * (u[i].y - 0.9)});
+                w = {0.8 * a.x + 0.6 * a.z, a.y, 0.8 * a.z - 0.6 * a.x};
+            }
+            out[i] = {w, value(w)};
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        calls += at.size();
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = value(at[i].wi);
+    }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        calls += at.size();
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = value(at[i].wi) / std::fabs(at[i].wi.z);
+    }
+};
+
+TEST(CheckAtOneWo, EvaluatesNoMoreThanItsBudget) {
+    for (const CheckBudget& budget :
+        {CheckBudget::quick(), CheckBudget::limited(), CheckBudget::limited(4e6 / 12), CheckBudget::limited(1e5)})
+        for (auto shape : {Counted::cosine, Counted::noise, Counted::spike})
+            for (bool with_f : {false, true})
+                for (bool leaks : {false, true}) {
+                    const Counted s(shape, with_f, leaks);
+                    const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, budget, 5);
+                    EXPECT_EQ(c.evaluations, s.calls);
+                    EXPECT_LE(static_cast<double>(s.calls), budget.evaluations) << shape << with_f << leaks;
+                    EXPECT_GE(static_cast<double>(s.calls), 0.1 * budget.evaluations) << shape << with_f << leaks;
+                }
+}
+
 TEST(CheckAtOneWo, FindsNaNAtACornerOfU) {
     struct AtZero : Cosine {
         void sample(int t, Vec3d wo, std::span<const Numbers> u, std::span<Draw> out) const override {

@@ -1,5 +1,6 @@
-// A fault of size e shifts a question's difference by e times its effect; it is found with the stated power if the
-// shift exceeds what the level needs by the normal quantile of that power.
+// A fault of size e shifts a question's difference by e times its effect, and adds e times the variance of its draws.
+// It is found if the difference passes both stages; the size at which each is passed with probability
+// sqrt(stated_power) is stated.
 #include "check/decide/sizes.h"
 
 #include <cmath>
@@ -12,37 +13,187 @@ namespace crescent::check {
 
 namespace {
 
-/// Of the whole sums, what each needs by the better of its two kinds of draws.
-std::array<double, integrands> needed_by_sums(const Evidence& e, double level) {
-    std::array<double, integrands> out{};
+constexpr double stage_quantile = 1.6322;  // P(Z < 1.6322) = sqrt(0.9)
+
+/// The difference d for which Bennett's exponent is z2: Bernstein's bound, which is above it, and Newton's steps.
+double bennett_difference(double z2, double v, double b) {
+    v = std::max(v, 1e-30);
+    const double by = b * z2 / 6, c = z2 * b * b / (2 * v);
+    double x = b / v * (by + std::sqrt(by * by + v * z2));
+    if (x < 1e-4) return std::sqrt(v * z2);
+    for (int k = 0; k < 3; ++k) x -= ((1 + x) * math::log1p(x) - x - c) / math::log1p(x);
+    return x * v / b;
+}
+
+/// Variance of a question at the first stage: of its draws, and of its integrals.
+struct Variances {
+    double drawn, claimed;
+    double all() const { return drawn + claimed; }
+    /// At the second: independent draws have variances as 1 / n, stratified points as n^-2, and so have scrambled
+    /// draws, with what one draw more or less in a set counts for; where h and p have edges it is n^-1.5 (Owen 1997).
+    double again(const Passing& passing, bool by_sets) const {
+        const Look first = passing.first,
+                   second = look_again(
+                       passing.again, claimed / (all() + 1e-300), by_sets ? Kinds::scrambled : Kinds::independent);
+        const auto ratio = [](double a, double b) { return a / std::max(b, 1.0); };
+        const double points = std::max(1.0, ratio(first.points, second.points));
+        const double draws =
+            by_sets ? ratio(first.scrambled, second.scrambled) : ratio(first.independent, second.independent);
+        return drawn * draws * (by_sets ? draws : 1) + claimed * points * points;
+    }
+    /// How much larger one term is there.
+    double largest_again(const Passing& passing) const {
+        const Look second = look_again(passing.again, claimed / (all() + 1e-300), Kinds::independent);
+        return passing.first.independent / std::max<double>(second.independent, 1);
+    }
+};
+
+/// One question: what its difference must be to be found at both stages.
+class Needed {
+public:
+    /// largest: of one term, for Bennett's inequality.
+    static Needed by_bennett(double floor, Variances v, double largest, double freedom, const Passing& passing) {
+        const auto exponent = [&](double level) {
+            const double z2 = -2 * math::log(level / 2) / freedom;
+            return z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300;
+        };
+        return {floor, v.all(), v.again(passing, false), largest, largest * v.largest_again(passing),
+            exponent(passing.level), exponent(2 * passing.level_again)};
+    }
+    /// For many tests of one number of degrees of freedom: the quantiles of Student's t.
+    static std::pair<double, double> quantiles(double freedom, const Passing& passing) {
+        const double nu = std::clamp(freedom, 1.0, 1e6);
+        return {stats::student_two_sided_quantile(nu, passing.level),
+            stats::student_two_sided_quantile(nu, 2 * passing.level_again)};
+    }
+    static Needed by_student(double floor, Variances v, std::pair<double, double> t, const Passing& passing) {
+        return {floor, v.all(), v.again(passing, true), 0, 0, t.first, t.second};
+    }
+
+    /// `tested` is variance that the fault adds and the test takes from its draws; `beside` is not known to the test.
+    double difference(double tested = 0, double beside = 0) const {
+        const double ratio = second_ / std::max(first_, 1e-300);
+        const auto stage = [&](double quantile, double largest, double times) {
+            const double v = (first_ + tested) * times;
+            const double critical = largest > 0 ? bennett_difference(quantile, v, largest) : quantile * std::sqrt(v);
+            return critical + stage_quantile * std::sqrt(v + beside * times);
+        };
+        return floor_ +
+            std::max(stage(at_first_, largest_, 1), stage(at_second_, largest_again_, std::max(ratio, 0.25)));
+    }
+    /// The size of a fault of this effect and these variances of a share 1.
+    double size(double effect, double tested = 0, double beside = 0) const {
+        if (!(effect > 0)) return 1e300;
+        double e = difference() / effect;
+        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested, e * beside) / effect;
+        return e;
+    }
+
+private:
+    double floor_, first_, second_, largest_, largest_again_, at_first_, at_second_;
+    Needed(double floor, double first, double second, double largest, double largest_again, double at_first,
+        double at_second)
+        : floor_(floor),
+          first_(first),
+          second_(second),
+          largest_(largest),
+          largest_again_(largest_again),
+          at_first_(at_first),
+          at_second_(at_second) {}
+};
+
+struct SumTest {
+    std::size_t of;  // which sum
+    Needed needed;
+    double draws;
+};
+
+/// The whole sums, by both kinds of draws.
+std::vector<SumTest> whole_sums(const Evidence& e, const Passing& of_family) {
+    std::vector<SumTest> out;
     const double n = e.observations.independent;
     for (std::size_t q = 0; q < integrands; ++q) {
-        const double members = q >= centre_x ? 3 : 1;
+        Passing passing = of_family;
+        passing.level /= q >= centre_x ? 3 : 1;
         const Estimate& claimed = e.integrals.sums[q];
         const double mean = e.observations.sums[q].sum / n, square = e.observations.sums[q].square / n;
-        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : mean) + e.integrals.known_to[q];
-        const double v = std::max(square - mean * mean, 0.0) / n + claimed.variance;
-        out[q] = needed_by_bennett(floor, v, 1 / n, freedom(v, claimed.doubt), level / members);
-        if (e.observations.scrambled == 0) continue;
+        const double floor = floor_of_sum(e, static_cast<int>(q));
+        const Variances v{std::max(square - mean * mean, 0.0) / n, claimed.variance};
+        const double of_draws = freedom(v.all(), claimed.doubt);
+        const bool vary = draws_vary(e, static_cast<int>(q));
+        out.push_back({q,
+            vary ? Needed::by_bennett(floor, v, 1 / n, of_draws, passing)
+                 : Needed::by_student(floor, v, Needed::quantiles(of_draws, passing), passing),
+            n});
+        if (e.observations.scrambled == 0 || !vary) continue;
         const ReplicateMean<Replicates> sets = replicate_mean(e, static_cast<int>(q));
-        const double w = sets.variance + claimed.variance;
-        const double nu =
-            std::min(freedom(w, claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1)), 1e6);
-        const double t = stats::student_two_sided_quantile(std::max(nu, 1.0), level / members);
-        out[q] = std::min(out[q], floor + (t + power_quantile) * std::sqrt(w));
+        const Variances w{sets.variance, claimed.variance};
+        const double nu = freedom(w.all(), claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1));
+        out.push_back(
+            {q, Needed::by_student(floor, w, Needed::quantiles(nu, passing), passing), e.observations.scrambled});
     }
     return out;
 }
 
-/// The leak whose shift exceeds `needed`, where its draws vary too: their variance is in the test's own, so that the
-/// shift must be as many standard errors of the sum of both. Such a test needs some 6 of them.
-double leak_shown(double needed, double effect, double square, double draws) {
-    constexpr double sigmas =
-        8;  // t at alpha1 of 31 degrees of freedom, and the power's quantile: 5.3 + 1.3, and a floor
-    const double noise = sigmas * sigmas * square / draws;  // of e = 1
-    double e = needed / effect;
-    for (int k = 0; k < 50; ++k) e = std::sqrt(needed * needed + e * noise) / effect;
-    return e;
+struct NodeTest {
+    std::size_t node;
+    double share;  // of h p in the first half
+    double h;      // what one draw counts for
+    Needed needed;
+    double draws;  // that it is by; 0: its variance is predicted from the claim, not taken from the draws
+};
+
+/// The nodes that are tested, by both kinds of draws.
+std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, const Passing& of_family) {
+    std::vector<Answer> asked;
+    ask_nodes(e, [&](const Answer& a) {
+        if (a.family == Family::node || a.family == Family::node_sets) asked.push_back(a);
+    });
+    const auto by_sets = static_cast<double>(
+        std::ranges::count_if(asked, [](const Answer& a) { return a.family == Family::node_sets; }));
+    Passing one = of_family, of_sets = of_family;
+    one.level /= std::max(static_cast<double>(asked.size()) - by_sets, 1.0);
+    of_sets.level /= std::max(by_sets, 1.0);
+    const std::pair<double, double> t = Needed::quantiles(replicate_sets - 1, of_sets);
+    std::vector<NodeTest> out;
+    out.reserve(asked.size());
+    for (const Answer& a : asked) {
+        const auto i = static_cast<std::size_t>(a.member);
+        const NodeSplit s = split_of(e, sums, i);
+        if (a.family == Family::node)
+            out.push_back({i, s.share, s.one_draw,
+                Needed::by_bennett(s.floor, {s.variance - s.claim_variance, s.claim_variance}, sums[i].largest,
+                    freedom(s.variance, s.doubt), one),
+                0});
+        else
+            out.push_back({i, s.share, s.one_draw,
+                Needed::by_student(s.floor, {a.sd * a.sd * (1 - a.claimed), a.sd * a.sd * a.claimed}, t, of_sets),
+                e.observations.scrambled});
+    }
+    return out;
+}
+
+void take_less(std::optional<double>& to, double size) {
+    if (!to || size < *to) to = std::min(size, 1.0);
+}
+
+std::optional<double> leak_of(const Evidence& e, const std::vector<SumTest>& whole, const std::vector<NodeSums>& sums,
+    const std::vector<NodeTest>& nodes) {
+    std::optional<double> out;
+    const double domain = e.integrals.domain, n = e.observations.independent;
+    for (const SumTest& t : whole) {
+        const double effect = std::fabs(e.integrals.even[t.of] / domain - e.observations.sums[t.of].sum / n);
+        const double square = e.integrals.even_square[t.of] / domain + effect * effect;  // of one leaked draw
+        take_less(out, t.needed.size(effect, square / t.draws));
+    }
+    for (const NodeTest& t : nodes) {
+        const auto first = static_cast<std::size_t>(e.plan.tree.nodes()[t.node].child);
+        const double a = sums[first].solid_angle / domain, b = sums[first + 1].solid_angle / domain;
+        const double effect = std::fabs((1 - t.share) * a - t.share * b);
+        const double square = t.h * ((1 - t.share) * (1 - t.share) * a + t.share * t.share * b);
+        take_less(out, t.draws > 0 ? t.needed.size(effect, square / t.draws) : t.needed.size(effect, 0, square / n));
+    }
+    return out;
 }
 
 /// Total variation between p and an even density, by the leaves.
@@ -55,81 +206,16 @@ double distance_from_even(const Evidence& e) {
     return std::min(sum, 1.0);
 }
 
-void take_less(std::optional<double>& to, double size) {
-    if (std::isfinite(size) && (!to || size < *to)) to = size;
-}
-
-/// What each node's test by replicates needs; 0 where there is none. As many of them share the level as of nodes at
-/// most.
-std::vector<double> needed_by_node_sets(const Evidence& e, double level) {
-    std::vector<double> out(e.plan.tree.nodes().size());
-    const double t = stats::student_two_sided_quantile(replicate_sets - 1, level);
-    ask_nodes(e, [&](const Answer& a) {
-        if (a.family == Family::node_sets)
-            out[static_cast<std::size_t>(a.member)] = a.floor + (t + power_quantile) * a.sd;
-    });
-    return out;
-}
-
-/// By nodes: the smallest leak that one of them shows, and the cap that shows wherever it lies but for one place in
-/// ten.
-void by_nodes(const Evidence& e, double level, Sizes& out) {
-    const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
-    const std::vector<NodeSums> sums = node_sums(e);
-    const double n = e.observations.independent, domain = e.integrals.domain;
-    constexpr double spills = 2;  // a cap lies across cells: half of it in one
-    const std::vector<double> by_sets = needed_by_node_sets(e, level);
-    std::vector<double> cap(nodes.size(), 1.0);  // the mass that shows if it lies in this node
-    std::vector<std::pair<double, double>> leaves;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i].child < 0) {
-            leaves.push_back({cap[i], sums[i].claimed});
-            continue;
-        }
-        const auto first = static_cast<std::size_t>(nodes[i].child);
-        cap[first] = cap[first + 1] = cap[i];
-        if (std::min(sums[i].drawn, sums[i].claimed) * n < least_count) continue;
-        const NodeSplit s = split_of(e, sums, i);
-        const double needed =
-            needed_by_bennett(s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt), level);
-        const double leaked = std::fabs(sums[first].solid_angle - s.share * sums[i].solid_angle) / domain;
-        const double varies = power_quantile * (std::sqrt(s.variance + needed / n) - std::sqrt(s.variance));
-        if (leaked > 0) take_less(out.leak, (needed + varies) / leaked);
-        for (std::size_t half : {first, first + 1}) {
-            const double share = half == first ? s.share : 1 - s.share;
-            const double missing = spills * needed / ((1 - share) * s.one_draw + 1e-300);
-            const double mass_here = sums[half].claimed / s.one_draw;
-            if (missing <= mass_here) cap[half] = std::min(cap[half], missing);
-            else if (spills * needed <= sums[half].claimed * (1 - share))
-                cap[half] = std::min(cap[half], spills * mass_here);
-            if (by_sets[i] > 0) {
-                const double h = s.one_draw;
-                const double shown = leak_shown(by_sets[i], h * (1 - share), h * h, e.observations.scrambled);
-                if (shown <= mass_here) cap[half] = std::min(cap[half], spills * shown);
-            }
-        }
-    }
-    std::sort(leaves.begin(), leaves.end());
-    double all = 0, below = 0;
-    for (const auto& [size, mass_here] : leaves) all += mass_here;
-    for (const auto& [size, mass_here] : leaves)
-        if ((below += mass_here) >= stated_power * all) {
-            out.cap = size;
-            return;
-        }
-}
-
 /// A few thousand draws on streams of their own, with p there.
 struct Sample {
     std::vector<Vec3d> w;
     std::vector<double> p;
     double of = 0;
 };
-Sample drawn(Source& source, const StreamKey& key) {
-    constexpr std::uint32_t count = 4096;
+Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
     std::vector<Numbers> u(count);
     for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, source.numbers(), source.single());
-    std::vector<Draw> draws(count);
+    std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     Sample out;
     for (const Draw& d : draws)
@@ -140,12 +226,85 @@ Sample drawn(Source& source, const StreamKey& key) {
     return out;
 }
 
-/// The smallest rotation about one axis that a whole sum or a node shows, from draws that are turned by `angle` and p
-/// evaluated there; none where that shows nothing. Effects are taken at the low end of their intervals.
+/// Caps about draws: leaves are taken away in the order of their distance from the centre until a node shows it.
+class Caps {
+public:
+    Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests)
+        : e_(e), sums_(sums), parent_(sums.size(), -1), gone_(sums.size()), least_(sums.size(), 1e300) {
+        const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (nodes[i].child >= 0)
+                for (int half : {0, 1}) parent_[static_cast<std::size_t>(nodes[i].child + half)] = static_cast<int>(i);
+        for (const NodeTest& t : tests) least_[t.node] = std::min(least_[t.node], t.needed.difference());
+        for (const Leaf& leaf : e.plan.tree.leaves()) {
+            const NodeSums& s = sums[static_cast<std::size_t>(leaf.node)];
+            if (s.claimed > 0)
+                leaves_.push_back({from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)), leaf.node, s.claimed,
+                    s.claimed * s.claimed / std::max(s.second, 1e-300)});
+        }
+    }
+    double mass_about(Vec3d centre) {
+        std::vector<std::pair<double, std::size_t>> near;
+        near.reserve(leaves_.size());
+        for (std::size_t l = 0; l < leaves_.size(); ++l) near.push_back({dot(centre, leaves_[l].middle), l});
+        std::make_heap(near.begin(), near.end());
+        std::vector<int> touched;
+        double mass = 0;
+        bool found = false;
+        while (!near.empty() && !found) {
+            std::pop_heap(near.begin(), near.end());
+            const Piece& leaf = leaves_[near.back().second];
+            near.pop_back();
+            mass += leaf.mass;
+            for (int i = leaf.node; i >= 0; i = parent_[static_cast<std::size_t>(i)]) {
+                gone_[static_cast<std::size_t>(i)] += leaf.claimed, touched.push_back(i);
+                found = found || shows(static_cast<std::size_t>(i));
+            }
+        }
+        for (int i : touched) gone_[static_cast<std::size_t>(i)] = 0;
+        return found ? std::min(mass, 1.0) : 1;
+    }
+
+private:
+    struct Piece {
+        Vec3d middle;
+        int node;
+        double claimed, mass;
+    };
+    const Evidence& e_;
+    const std::vector<NodeSums>& sums_;
+    std::vector<int> parent_;
+    std::vector<double> gone_, least_;  // by node: of h p that is gone; the least difference that is found
+    std::vector<Piece> leaves_;
+
+    bool shows(std::size_t i) const {
+        const int child = e_.plan.tree.nodes()[i].child;
+        if (child < 0 || least_[i] > 1) return false;
+        const auto a = static_cast<std::size_t>(child);
+        return std::fabs(gone_[a] - sums_[a].claimed / sums_[i].claimed * gone_[i]) >= least_[i];
+    }
+};
+
+/// The mass of a cap that is found wherever a draw is its centre, but for one place in ten.
+std::optional<double> cap_of(
+    const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes, const Sample& sample) {
+    constexpr std::size_t centres = 64;
+    if (sample.w.empty()) return {};
+    Caps caps(e, sums, nodes);
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < std::min(centres, sample.w.size()); ++i) sizes.push_back(caps.mass_about(sample.w[i]));
+    const auto at = static_cast<std::ptrdiff_t>(stated_power * static_cast<double>(sizes.size()));
+    std::nth_element(sizes.begin(), sizes.begin() + at, sizes.end());
+    return sizes[static_cast<std::size_t>(at)];
+}
+
+/// What a rotation of the draws by `angle` about one axis changes, by question: as draws that are moved, and as p there
+/// over p where they were, which is the same but for the sign. The first is exact at edges of p, the second has less
+/// noise where p is smooth; of each effect the larger of the low ends of both counts.
 class Turned {
 public:
     Turned(Source& source, const Evidence& e, const Sample& sample, Vec3d axis, double angle)
-        : e_(e), angle_(angle), of_(sample.of), nodes_(e.plan.tree.nodes().size()) {
+        : e_(e), of_(sample.of), moved_(e.plan.tree.nodes().size()), weighted_(moved_) {
         std::vector<Vec3d> turned;
         const double c = math::cos(angle), s = math::sin(angle);
         for (Vec3d w : sample.w)
@@ -154,103 +313,156 @@ public:
         source.density(turned, p);
         const double n = static_cast<double>(sample.w.size());
         for (std::size_t i = 0; i < turned.size(); ++i) {
-            const Values change = add(turned[i], p[i], 1), before = add(sample.w[i], sample.p[i], -1);
-            for (std::size_t q = 0; q < integrands; ++q) sums_[q].add(change[q] - before[q]);
-            if (sample.p[i] > 0) distance += std::min(1.0, std::fabs(p[i] / sample.p[i] - 1)) / n / 2;
+            const Values here = values(sample.w[i], sample.p[i]), there = values(turned[i], p[i]);
+            add(moved_, turned[i], there, sample.w[i], here);
+            if (!(sample.p[i] > 0)) continue;
+            const double change = p[i] / sample.p[i] - 1;
+            Values times = here;
+            for (double& v : times) v *= change;
+            add(weighted_, sample.w[i], times, sample.w[i], {});
+            distance += std::min(1.0, std::fabs(change)) / n / 2;
         }
     }
 
     /// Total variation between p and p turned.
     double distance = 0;
 
-    std::optional<double> size(const std::array<double, integrands>& needed, double node_level) const {
-        std::optional<double> out;
-        for (std::size_t q = 0; q < integrands; ++q) take(out, sums_[q], needed[q]);
-        const std::vector<NodeSums> all = node_sums(e_);
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            const TreeNode& x = e_.plan.tree.nodes()[i];
-            const bool tested = x.child >= 0 && x.depth < depth &&
-                std::min(all[i].drawn, all[i].claimed) * e_.observations.independent >= least_count;
-            if (!tested) continue;
-            const NodeSplit s = split_of(e_, all, i);
-            const Sums &half = nodes_[static_cast<std::size_t>(x.child)], &whole = nodes_[i];
-            const Sums d{half.sum - s.share * whole.sum, half.square + s.share * s.share * whole.square};
-            take(out, d,
-                needed_by_bennett(s.floor, s.variance, all[i].largest, freedom(s.variance, s.doubt), node_level));
+    /// Effects over what is needed: of all whole sums, then of all nodes.
+    std::vector<double> ratios(const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) const {
+        // One-sided 90 %; of hundreds of nodes the largest error is of three standard errors.
+        constexpr double of_one = 1.2816, of_largest = 3.0;
+        std::vector<double> out;
+        for (const SumTest& t : whole)
+            out.push_back(std::max(low_end(moved_.sums[t.of], of_one), low_end(weighted_.sums[t.of], of_one)) /
+                t.needed.difference());
+        for (const NodeTest& t : nodes) {
+            const TreeNode& x = e_.plan.tree.nodes()[t.node];
+            if (x.depth >= depth) continue;
+            double effect = 0;
+            for (const Change* change : {&moved_, &weighted_}) {
+                const Sums &half = change->nodes[static_cast<std::size_t>(x.child)], &all = change->nodes[t.node];
+                const Sums d{half.sum - t.share * all.sum, half.square + t.share * t.share * all.square};
+                effect = std::max(effect, low_end(d, of_largest));
+            }
+            out.push_back(effect / t.needed.difference());
         }
         return out;
     }
 
 private:
     static constexpr int depth = 8;
+    struct Change {
+        std::vector<Sums> nodes;  // of h by node
+        std::array<Sums, integrands> sums{};
+        explicit Change(std::size_t count) : nodes(count) {}
+    };
     const Evidence& e_;
-    double angle_, of_;
-    std::vector<Sums> nodes_;  // by node: change of h
-    std::array<Sums, integrands> sums_{};
+    double of_;
+    Change moved_, weighted_;
 
-    Values add(Vec3d w, double p, double sign) {
+    Values values(Vec3d w, double p) const {
         if (!(p > 0)) return {};  // the estimator takes it for nothing
-        const ChartPoint at = to_chart(w);
-        const Values v = e_.plan.values(e_.plan.tree.leaves()[e_.plan.tree.find(at)], w, p);
-        const std::vector<TreeNode>& nodes = e_.plan.tree.nodes();
-        std::size_t i = 0;
-        for (;;) {
-            nodes_[i].add(sign * v[bridge]);
-            if (nodes[i].child < 0 || nodes[i].depth == depth) return v;
-            const bool along_phi = nodes[i].along_phi;
-            i = static_cast<std::size_t>(nodes[i].child) +
-                ((along_phi ? at.phi : at.t) >= nodes[i].rect.middle(along_phi));
+        return e_.plan.values(e_.plan.tree.leaves()[e_.plan.tree.find(to_chart(w))], w, p);
+    }
+    /// What is gained at one place and lost at another, as one difference in each node that both are in.
+    void add(Change& to, Vec3d gain_at, const Values& gain, Vec3d loss_at, const Values& loss) const {
+        for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(gain[q] - loss[q]);
+        const ChartPoint a = to_chart(gain_at), b = to_chart(loss_at);
+        std::size_t i = 0, j = 0;
+        for (bool in_a = true, in_b = true; in_a || in_b;) {
+            if (i == j) {
+                to.nodes[i].add(gain[bridge] - loss[bridge]);
+            } else {
+                if (in_a) to.nodes[i].add(gain[bridge]);
+                if (in_b) to.nodes[j].add(-loss[bridge]);
+            }
+            in_a = in_a && step(i, a), in_b = in_b && step(j, b);
         }
     }
-    void take(std::optional<double>& to, const Sums& change, double needed) const {
+    /// To the half that a place is in; false at the end.
+    bool step(std::size_t& i, ChartPoint at) const {
+        const TreeNode& x = e_.plan.tree.nodes()[i];
+        if (x.child < 0 || x.depth == depth) return false;
+        i = static_cast<std::size_t>(x.child) + ((x.along_phi ? at.phi : at.t) >= x.rect.middle(x.along_phi));
+        return true;
+    }
+    double low_end(const Sums& change, double errors) const {
         const double mean = change.sum / of_;
         const double se = std::sqrt(std::max(change.square / of_ - mean * mean, 0.0) / of_);
-        const double effect = std::fabs(mean) - 3 * se;
-        if (effect > needed || (effect > 0 && angle_ <= target_rotation)) take_less(to, angle_ * needed / effect);
+        return std::max(std::fabs(mean) - errors * se, 0.0);
     }
 };
 
-/// Of two axes across the mean direction the worse; each at a small and a large angle.
-void by_turning(Source& source, const Evidence& e, const std::array<double, integrands>& needed, double node_level,
-    const StreamKey& key, Sizes& out) {
-    const Sample sample = drawn(source, key);
-    if (sample.w.size() < 256) return;
+/// The least angle at which one question shows enough; 1 where none does. `ratios` are at angles from `first` on that
+/// grow by `growth`. Between two of them, and below the first, an effect is taken for a power of the angle, linear at
+/// least.
+constexpr double growth = 4;
+double least_angle(double first, const std::vector<std::vector<double>>& ratios) {
+    double out = 1;
+    for (std::size_t t = 0; t < ratios[0].size(); ++t) {
+        double angle = first;
+        for (std::size_t k = 0; k < ratios.size(); ++k, angle *= growth) {
+            const double here = ratios[k][t];
+            if (here < 1) continue;
+            const std::size_t low = std::max<std::size_t>(k, 1) - 1;
+            const double steeper = math::log(ratios[low + 1][t] / std::max(ratios[low][t], 1e-3)) / math::log(growth);
+            out = std::min(out, angle * math::exp(-math::log(here) / std::max(1.0, steeper)));
+            break;
+        }
+    }
+    return out;
+}
+
+/// Of four axes across the mean direction the worst of those about which a rotation changes something.
+void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& whole,
+    const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
+    if (sample.w.size() < 64) return;
     const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
     const Frame<double> frame = frame_about(axis_of_lobe);
-    for (Vec3d axis : {frame.t, frame.b}) {
-        const Turned little(source, e, sample, axis, target_rotation),
-            much(source, e, sample, axis, 20 * target_rotation);
-        if (little.distance < detection_floor) continue;  // it changes nothing
-        std::optional<double> size = little.size(needed, node_level);
-        if (const std::optional<double> other = much.size(needed, node_level)) take_less(size, *other);
-        if (size && (!out.rotation || *size > *out.rotation))
-            out.rotation = size, out.by_rotation = little.distance / target_rotation;
+    for (Vec3d axis : {frame.t, frame.b, normalize(frame.t + frame.b), normalize(frame.t - frame.b)}) {
+        std::vector<std::vector<double>> ratios;
+        double changed = 0;
+        for (double by : {1.0, growth, growth * growth}) {
+            const Turned turned(source, e, sample, axis, by * target_rotation);
+            if (by == 1) changed = turned.distance;
+            ratios.push_back(turned.ratios(whole, nodes));
+        }
+        if (changed < detection_floor) continue;
+        const double size = least_angle(target_rotation, ratios);
+        if (!out.rotation || size > *out.rotation) out.rotation = size, out.by_rotation = changed / target_rotation;
     }
+}
+
+/// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are taken for draws of p of
+/// which (p / c)^e are kept: some 3 e standard deviations of ln p are drawn again.
+void by_exponent(const Evidence& e, const std::vector<SumTest>& whole, Sizes& out) {
+    const Observations& o = e.observations;
+    const double n = o.independent;
+    const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
+    const double spread = o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
+    if (!(spread > 1e-4 && covariance > 0)) return;
+    const double again = 3 * std::sqrt(spread), square = 2 * o.sums[slope].square / n;
+    for (const SumTest& t : whole)
+        if (t.of == slope) take_less(out.parameter, t.needed.size(covariance, again * square / t.draws));
+    out.by_parameter = std::sqrt(spread) / 2;
 }
 
 }  // namespace
 
-Sizes sizes_of(Source& source, const Evidence& e, double level, double node_tests, const StreamKey& key) {
+Sizes sizes_of(Source& source, const Evidence& e, const Passing& passing, std::uint32_t draws, const StreamKey& key) {
     Sizes out;
     if (!e.source.has_density()) return out;
-    const std::array<double, integrands> needed = needed_by_sums(e, level);
-    const double n = e.observations.independent;
-    for (std::size_t q : {std::size_t{mass}, std::size_t{bridge}})
-        if (const double c = e.integrals.sums[q].value; c > 0) take_less(out.constant, needed[q] / c);
-    for (std::size_t q = mass; q < integrands; ++q) {
-        const double effect = std::fabs(e.integrals.even[q] / e.integrals.domain - e.observations.sums[q].sum / n);
-        const double square = e.integrals.even_square[q] / e.integrals.domain + effect * effect;  // of one leaked draw
-        if (effect > 0)
-            take_less(out.leak, leak_shown(needed[q], effect, square, std::max(n, e.observations.scrambled)));
-    }
-    by_nodes(e, level / std::max(node_tests, 1.0), out);
+    const std::vector<SumTest> whole = whole_sums(e, passing);
+    const std::vector<NodeSums> sums = node_sums(e);
+    const std::vector<NodeTest> nodes = node_tests(e, sums, passing);
+    for (const SumTest& t : whole)
+        if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
+    out.leak = leak_of(e, whole, sums, nodes);
     out.by_leak = distance_from_even(e);
-    const Observations& o = e.observations;
-    const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
-    const double spread = o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
-    if (spread > 1e-4 && covariance > 0)
-        out.parameter = needed[slope] / covariance, out.by_parameter = std::sqrt(spread) / 2;
-    by_turning(source, e, needed, level / std::max(node_tests, 1.0), key, out);
+    by_exponent(e, whole, out);
+    const Sample sample = drawn(source, draws, key);
+    out.cap = cap_of(e, sums, nodes, sample);
+    by_turning(source, e, whole, nodes, sample, out);
     return out;
 }
 

@@ -1,64 +1,95 @@
 // How much is evaluated at one w_o. None of this changes what a verdict means, only what it can see.
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 namespace crescent::check {
+
+/// Sets of scrambled Sobol points. 32: a t-test at 1e-8 needs t = 7.7, and sets of 8192 points still gain.
+inline constexpr int replicate_sets = 32;
 
 /// What is evaluated up to one look: points of the integrals, independent draws, draws of the scrambled Sobol sets in
 /// all.
 struct Look {
     std::uint32_t points = 0, independent = 0, scrambled = 0;
+
+    /// A point costs one evaluation of p, an independent draw is followed by one, a scrambled draw stands alone.
+    double cost() const { return points + 2.0 * independent + scrambled; }
+    Look divided_by(std::uint32_t n) const { return {points / n, independent / n, scrambled / n}; }
 };
 
-/// Numbers of draws and points, cumulative over the looks of a staged budget.
+/// So many evaluations of scrambled draws at most. Sobol sets have a power of two points each: a third more in a set
+/// would raise its variance.
+inline std::uint32_t scrambled_of(double evaluations) {
+    return replicate_sets * std::bit_floor(static_cast<std::uint32_t>(std::max(evaluations, 0.0) / replicate_sets));
+}
+
+/// The look that costs no more than so many evaluations: scrambled draws get 0.36 to 0.18 of them, points and
+/// independent draws share the rest evenly.
+inline Look look_of(double evaluations) {
+    const double most = std::max(evaluations, 0.0);
+    Look out;
+    out.scrambled = scrambled_of(0.36 * most);
+    out.independent = static_cast<std::uint32_t>((most - out.scrambled) / 4);
+    out.points = static_cast<std::uint32_t>(most - out.scrambled - 2.0 * out.independent);
+    return out;
+}
+
+/// Which draws answer a question.
+enum class Kinds { all, independent, scrambled };
+
+/// The look that confirms a question whose variance is that of the integrals by the share `of_points`: they get about
+/// that share of the evaluations. The draws that do not answer it get little: they are only counted.
+inline Look look_again(double evaluations, double of_points, Kinds kinds) {
+    const double most = std::max(evaluations, 0.0), of_draws = most * (0.85 - 0.7 * of_points);
+    Look out;
+    if (kinds != Kinds::independent) out.scrambled = scrambled_of(of_draws * (kinds == Kinds::all ? 0.5 : 0.875));
+    const double share = kinds == Kinds::all ? 0.25 : kinds == Kinds::scrambled ? 1.0 / 16 : 0.5;
+    out.independent = static_cast<std::uint32_t>(of_draws * share);
+    out.points = static_cast<std::uint32_t>(most - out.scrambled - 2.0 * out.independent);
+    return out;
+}
+
+/// All that is evaluated at one w_o, confirmation and small tests included, is at most `evaluations`. Its parts are
+/// fixed shares of it, at 1.5 M: 2^14 pilot draws (a leaf of mass 2e-4 has three of them), 4096 leaves, 2^16 draws
+/// whose weights are looked at.
 struct CheckBudget {
-    /// Pilot draws shape the tree alone. 2^14: a leaf of mass 2e-4 has three of them.
-    std::uint32_t pilot = 1u << 14;
-    std::array<Look, 3> looks = {Look{1u << 15, 1u << 15, 1u << 15}, Look{1u << 18, 1u << 17, 1u << 18}, Look{}};
-    int look_count = 2;
-    /// Of the second stage, where a look has less.
-    Look again = {1u << 16, 1u << 16, 1u << 16};
-    /// Leaves: at least so many; more until the integrals are known to a quarter of the detection floor.
-    int leaves = 4096, most_leaves = 32768;
-    /// Points and draws at which f is evaluated.
-    std::uint32_t of_f = 1u << 16;
+    double evaluations = 1.5e6;
+    int looks = 2;  // each eight times the one before
     /// Stop at the first look at which every target is met, too.
     bool stop_when_targets_met = false;
 
-    Look last() const { return looks[static_cast<std::size_t>(look_count) - 1]; }
+    /// A look where draws and points are all that is evaluated.
+    Look look(int i) const { return look_of(0.6 * evaluations).divided_by(1u << 3 * (looks - 1 - i)); }
+    /// Pilot draws shape the tree alone.
+    std::uint32_t pilot() const { return part(92); }
+    /// At least so many; more until the integrals are known to a quarter of the detection floor. A leaf costs 8.
+    int leaves() const { return static_cast<int>(part(366)); }
+    int most_leaves() const { return static_cast<int>(part(64)); }
+    /// Points of the integrals, about.
+    std::uint32_t points() const { return part(6); }
+    /// Draws at which f is evaluated.
+    std::uint32_t of_f() const { return part(23); }
+    /// Draws that are moved for the sizes that are stated, and what they cost.
+    std::uint32_t of_sizes() const { return part(732); }
+    double cost_of_sizes() const { return 14.0 * of_sizes(); }
+    /// What is left for the second stage and for the sizes.
+    double reserve() const { return 0.3 * evaluations; }
 
-    /// In process: at most 1.5 M evaluations.
+    /// In process.
     static CheckBudget quick() { return {}; }
-    /// Through pipes and Python: at most so many evaluations a w_o.
-    static CheckBudget limited(std::size_t /*evaluations*/ = 500000) {
-        CheckBudget b;
-        b.pilot = 1u << 13;
-        b.looks = {Look{1u << 14, 1u << 13, 1u << 14}, Look{1u << 16, 1u << 15, 1u << 16}, Look{}};
-        b.again = {1u << 15, 1u << 15, 1u << 15};
-        b.leaves = 2048;
-        b.most_leaves = 8192;
-        b.of_f = 1u << 14;
-        return b;
-    }
-    static CheckBudget thorough() {
-        CheckBudget b;
-        b.pilot = 1u << 16;
-        b.looks = {
-            Look{1u << 16, 1u << 16, 1u << 16}, Look{1u << 18, 1u << 18, 1u << 18}, Look{1u << 20, 1u << 20, 1u << 20}};
-        b.look_count = 3;
-        b.leaves = 8192;
-        b.most_leaves = 65536;
-        b.of_f = 1u << 18;
-        return b;
-    }
+    /// Through pipes and Python.
+    static CheckBudget limited(double evaluations = 5e5) { return {evaluations}; }
+    static CheckBudget thorough() { return {8e6, 3}; }
+
+private:
+    std::uint32_t part(double of) const { return static_cast<std::uint32_t>(evaluations / of); }
 };
 
 /// Draws and points of one batch: what is in memory at a time, and what a pipe is filled with.
 inline constexpr std::uint32_t batch_size = 4096;
-/// Sets of scrambled Sobol points. 32: a t-test at 1e-8 needs t = 7.7, and sets of 8192 points still gain.
-inline constexpr int replicate_sets = 32;
 /// Nodes above this depth are tested with replicates; below they have too few draws in each. Storage: 2^11 nodes.
 inline constexpr int replicated_depth = 10;
 /// All nodes of the tree down to this depth always exist.

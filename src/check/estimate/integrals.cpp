@@ -42,7 +42,8 @@ struct Grid {
     int cells() const { return rows * columns; }
 };
 
-/// How the points of a pass are shared out: a part evenly, the rest by the spread of p, edges worth more.
+/// How the points of a pass are shared out: two or four to each leaf, then a part evenly, the rest by the spread of p,
+/// edges worth more. No more than `points` in all where there are two for each leaf.
 std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     const std::vector<Leaf>& leaves = plan.tree.leaves();
     const auto worth = [&](const Leaf& leaf) {
@@ -50,13 +51,14 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     };
     double sum = 1e-300;
     for (const Leaf& leaf : leaves) sum += worth(leaf);
-    const int least = points < 4 * leaves.size() ? 1 : 2;  // pairs a leaf
+    const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs a leaf
+    const double rest = std::max(points / 2.0 - least * static_cast<double>(leaves.size()), 0.0);
     std::vector<Grid> out(leaves.size());
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const ChartRect& rect = plan.tree.rect(leaves[l]);
         const double share =
             even_points / static_cast<double>(leaves.size()) + (1 - even_points) * worth(leaves[l]) / sum;
-        const int pairs = std::max(least, static_cast<int>(points * share / 2));
+        const int pairs = least + static_cast<int>(rest * share);
         Grid& g = out[l];
         g.leaf = static_cast<std::uint32_t>(l);
         const double square = std::sqrt(pairs * rect.theta_width() / (rect.phi_width() + 1e-300));

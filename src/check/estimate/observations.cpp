@@ -39,6 +39,14 @@ public:
     Observer(Source& source, const Plan& plan, Integrals& integrals, Observations& to)
         : source_(source), plan_(plan), integrals_(integrals), to_(to) {}
 
+    /// Whether every independent draw so far had the pdf that pdf(w) gives: then scrambled draws need not be followed
+    /// by another evaluation.
+    bool pdf_is_confirmed() const {
+        const DrawChecks& c = to_.checks;
+        return source_.has_density() && !plan_.estimates && to_.independent > 0 &&
+            c.pointwise.times + c.zero.times + c.null_below == 0;
+    }
+
     /// Independent draws.
     void batch(const StreamKey& key, std::uint32_t from, std::span<Numbers> u, bool with_f) {
         draws_.assign(u.size(), {});
@@ -67,9 +75,13 @@ private:
         for (std::size_t i = 0; i < u.size(); ++i)
             if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
         p_.resize(w_.size());
-        source_.density(w_, p_);
-        if (source_.estimates) settle_zeros();
-        compare_pdf(u);
+        if (set >= 0 && pdf_is_confirmed()) {
+            for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
+        } else {
+            source_.density(w_, p_);
+            if (source_.estimates) settle_zeros();
+            compare_pdf(u);
+        }
         if (with_f) compare_weights(u, set);
         if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k)
@@ -88,7 +100,7 @@ private:
     /// A draw of the density with finite numbers; others are counted.
     bool usable(const Numbers& u, const Draw& d, int set) {
         DrawChecks& c = to_.checks;
-        ++c.looked_at;
+        if (set < 0) ++c.looked_at;
         if (d.delta != 0) {
             if (set < 0) ++c.deltas, take_delta(d);
             const bool chosen = d.delta > 0 && d.delta <= 1;
@@ -148,6 +160,7 @@ private:
             const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
             const double high = std::max({*std::max_element(first, last), p_[k], stated[j]});
             const bool null_below = d.wi.z <= 0 && high == 0;  // nothing is drawn there
+            to_.checks.null_below += null_below;
             if (null_below) continue;
             // Next to an edge beyond which p is 0 it may have a pole there, as of a sphere by its area.
             const bool at_edge = high > 0 && *std::min_element(first, last) == 0;
@@ -269,8 +282,9 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.subject.draws_at_will()) return;
+    const std::uint32_t evaluations_each = observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
-                        last = look.scrambled / replicate_sets;
+                        last = std::max(first, look.scrambled / replicate_sets / evaluations_each);
     for (int set = 0; set < replicate_sets; ++set) {
         StreamKey scramble = key;
         scramble.purpose = Purpose::scrambles;

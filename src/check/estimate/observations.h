@@ -28,7 +28,7 @@ struct Count {
     }
 };
 
-/// Per-draw checks.
+/// Per-draw checks, of independent draws; `invalid` of all.
 struct DrawChecks {
     std::uint64_t looked_at = 0, directions = 0, deltas = 0, nothing = 0;
     Count invalid;    // not finite, negative, not unit
@@ -39,6 +39,7 @@ struct DrawChecks {
     std::uint64_t weights = 0;
     // Draws whose pdf is not pdf(w), and how many of them were compared with the neighbours of w.
     std::uint64_t odd = 0, odd_compared = 0;
+    std::uint64_t null_below = 0;  // draws below the surface at which p is 0: what the estimator takes for nothing
 };
 
 /// Sum and sum of squares of a value per draw.

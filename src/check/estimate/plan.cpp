@@ -43,7 +43,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
     std::vector<Draw> draws;
     std::vector<Vec3d> w;
     std::vector<double> p;
-    out.of = source.available(key, budget.pilot);
+    out.of = source.available(key, budget.pilot());
     for (std::uint32_t from = 0; from < out.of; from += batch_size) {
         const std::uint32_t n = std::min(batch_size, out.of - from);
         u.resize(n), draws.assign(n, {});

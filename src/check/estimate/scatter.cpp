@@ -74,6 +74,7 @@ Scatter look_for_scatter(Source& source, const StreamKey& key) {
         std::vector<Pair> pairs;
         for (Vec3d w : wi) pairs.push_back({source.wo, w});
         std::vector<double> v(wi.size());
+        source.count(wi.size());
         of_f ? anew.f(pairs, v) : anew.pdf(source.technique, pairs, v);
         return v;
     };

@@ -56,6 +56,8 @@ public:
     double radiance(Vec3d w) const { return light.even() || w.z <= 0 ? light.fill : light(w); }
 
     std::uint64_t evaluations() const { return evaluations_; }
+    /// Of calls that go to the subject itself.
+    void count(std::size_t evaluations) { evaluations_ += evaluations; }
     /// Answers of density() and f_cos() that were not finite or negative, and where the first was.
     std::uint64_t invalid() const { return invalid_; }
     Vec3d first_invalid() const { return first_invalid_; }

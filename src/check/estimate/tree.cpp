@@ -72,8 +72,8 @@ private:
         double spread = 0;
         for (int i : open) spread += at(i).spread;
         const auto limit = static_cast<std::size_t>(
-            spread / std::sqrt(static_cast<double>(budget_.last().points)) > detection_floor / 4 ? budget_.most_leaves
-                                                                                                 : budget_.leaves);
+            spread / std::sqrt(static_cast<double>(budget_.points())) > detection_floor / 4 ? budget_.most_leaves()
+                                                                                            : budget_.leaves());
         if (open.size() >= limit) return false;
         std::size_t count = std::min(std::max(open.size() / round_share, std::size_t{16}), limit - open.size());
         count = std::min(count, open.size());

@@ -23,7 +23,8 @@ void ask_mean(const Evidence& e, int channel, const Visit& visit) {
     const Observations& o = e.observations;
     const Estimate drawn = mean_of(o.mean[c], o.weighed), &due = e.integrals.light.mean[c];
     const double v = drawn.variance + due.variance, floor = detection_floor * due.value;
-    Answer a{Family::mean, channel, drawn.value - due.value, std::sqrt(v), floor, 1, due.value};
+    Answer a{
+        Family::mean, channel, drawn.value - due.value, std::sqrt(v), floor, 1, due.value, due.variance / (v + 1e-300)};
     const bool bridged = is_bridged(e.source);
     const double largest = bridged ? e.plan.usual[c] : 0;  // a bridged weight is at most that
     if (bridged && !(largest > 0)) return;
@@ -68,7 +69,7 @@ void ask_albedo(const Evidence& e, int channel, const Visit& visit) {
     const Observations& o = e.observations;
     const Estimate& of_density = e.integrals.light.albedo[c];
     const double total = o.delta_power[c] + of_density.value, v = of_density.variance;
-    Answer a{Family::albedo, channel, total - 1, std::sqrt(v), albedo_excess, 1, 1};
+    Answer a{Family::albedo, channel, total - 1, std::sqrt(v), albedo_excess, 1, 1, 1};
     a.p = student_p_of(total - 1 - albedo_excess, v, freedom(v, of_density.doubt));
     visit(a);
 }
@@ -103,7 +104,7 @@ void ask_light(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density() || e.plan.estimates) return;
     const LightIntegrals& l = e.integrals.light;
     const double least = lost_light * l.lit.value;
-    Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value};
+    Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value, 1};
     a.p = l.lost.value > least
         ? student_p_of(l.lost.value - least, l.lost.variance, freedom(l.lost.variance, l.lost.doubt))
         : 1;

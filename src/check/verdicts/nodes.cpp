@@ -70,7 +70,7 @@ std::vector<Replicates> node_replicates(const Evidence& e) {
     return out;
 }
 
-Answer by_replicates(const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s) {
+Answer answer_of_sets(const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s) {
     const TreeNode& x = e.plan.tree.nodes()[node];
     const Replicates &whole = sets[static_cast<std::size_t>(x.row)],
                      &half = sets[static_cast<std::size_t>(e.plan.tree.nodes()[static_cast<std::size_t>(x.child)].row)];
@@ -79,7 +79,8 @@ Answer by_replicates(const Evidence& e, const std::vector<Replicates>& sets, std
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half[k] - s.share * whole[k]) * draw;
     const ReplicateMean of_sets(y, s.one_draw * draw);
     const double v = of_sets.variance + s.claim_variance;
-    Answer a{Family::node_sets, static_cast<int>(node), of_sets.mean, std::sqrt(v), s.floor, 1, s.share};
+    Answer a{Family::node_sets, static_cast<int>(node), of_sets.mean, std::sqrt(v), s.floor, 1, s.share,
+        s.claim_variance / (v + 1e-300)};
     a.p = student_p_of(std::fabs(of_sets.mean) - s.floor, v,
         freedom(v, s.doubt + 2 * of_sets.variance * of_sets.variance / (replicate_sets - 1)));
     return a;
@@ -96,18 +97,18 @@ void ask_nodes(const Evidence& e, const Visit& visit) {
     const std::vector<Replicates> sets = by_sets ? node_replicates(e) : std::vector<Replicates>();
     std::vector<double> chi(static_cast<std::size_t>(e.plan.tree.depth()) + 1), degrees(chi.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i].child < 0 || std::min(sums[i].drawn, sums[i].claimed) * n < least_count) continue;
+        if (nodes[i].child < 0 || std::min(sums[i].drawn, sums[i].claimed) * n < e.least) continue;
         const NodeSplit s = split_of(e, sums, i);
         const double z2 =
             bennett_z2(std::fabs(s.difference) - s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt));
         visit({Family::node, static_cast<int>(i), s.difference, std::sqrt(s.variance), s.floor, bennett_p(z2),
-            s.share * sums[i].drawn});
-        if (s.smaller_half < least_count) continue;
+            s.share * sums[i].drawn, s.claim_variance / (s.variance + 1e-300)});
+        if (s.smaller_half < e.least) continue;
         const auto depth = static_cast<std::size_t>(nodes[i].depth);
         chi[depth] += std::min(z2, 1e6), ++degrees[depth];
         // A replicate's mean must be near normal: with fewer draws Student's t errs by orders of magnitude in its tail.
-        if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= least_count)
-            visit(by_replicates(e, sets, i, s));
+        if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
+            visit(answer_of_sets(e, sets, i, s));
     }
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)

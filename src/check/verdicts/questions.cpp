@@ -40,4 +40,14 @@ const FamilyInfo& info(Family family) {
     return list[static_cast<std::size_t>(family)];
 }
 
+bool is_of_f(Family f) {
+    return f == Family::weight || f == Family::support || f == Family::mean || f == Family::true_f ||
+        f == Family::albedo;
+}
+
+bool by_replicates(Family f) {
+    return f == Family::mass_sets || f == Family::bridge_sets || f == Family::slope_sets || f == Family::centre_sets ||
+        f == Family::node_sets;
+}
+
 }  // namespace crescent::check

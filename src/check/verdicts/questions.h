@@ -48,6 +48,10 @@ struct FamilyInfo {
     std::string_view name, verdict;
 };
 const FamilyInfo& info(Family family);
+/// Whether f has a part in it.
+bool is_of_f(Family family);
+/// Whether the replicates of scrambled draws answer it.
+bool by_replicates(Family family);
 
 /// One question with its result at some stage.
 struct Answer {
@@ -57,6 +61,7 @@ struct Answer {
     double sd = 0, floor = 0;
     double p = 1;         // two-sided
     double expected = 0;  // right side
+    double claimed = 0;   // share of the variance that is of the integrals
 };
 
 using Visit = std::function<void(const Answer&)>;
@@ -67,6 +72,8 @@ struct Evidence {
     const Plan& plan;
     const Integrals& integrals;
     const Observations& observations;
+    /// Expected draws below which a node is not tested.
+    double least = least_count;
 };
 
 // Each visits every member of its families.
@@ -81,6 +88,12 @@ bool tail_may_be_heavy(std::span<const double> weights);
 /// Whether their mean can be compared with the integral of f cos.
 bool mean_can_be_asked(const Evidence& e);
 
+/// What a deviation of a whole sum may be: a share of the sum itself (mass, bridge) or of the spread of h (slope,
+/// centre), and for a logarithm the rounding of p in single precision.
+double floor_of_sum(const Evidence& e, int integrand);
+/// False for the mass where every draw is a direction: the draws then have no part in its variance. A share of draws
+/// that are nothing and that none of 2^16 shows at either stage is below the detection floor but for one in 10^11.
+bool draws_vary(const Evidence& e, int integrand);
 /// Mean of a whole sum over the replicates.
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 

@@ -1,6 +1,5 @@
 // normalised and density, by sums over all draws: mass (h = 1), bridge, slope, centre. A deviation is compared with its
-// standard error and the detection floor, relative to the sum itself (mass, bridge) or to the spread of h (slope,
-// centre).
+// standard error and a floor.
 #include <cmath>
 
 #include "check/constants.h"
@@ -45,6 +44,18 @@ ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand) {
     return {y, one_draw * replicate_sets / o.scrambled};
 }
 
+double floor_of_sum(const Evidence& e, int integrand) {
+    const auto q = static_cast<std::size_t>(integrand);
+    const Sums& s = e.observations.sums[q];
+    const double n = e.observations.independent, known_to = e.integrals.known_to[q];
+    if (integrand < slope) return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to;
+    return detection_floor * std::sqrt(s.square / n) + (integrand == slope ? ulp : 0) + known_to;
+}
+
+bool draws_vary(const Evidence& e, int integrand) {
+    return integrand != mass || e.observations.sums[mass].sum < e.observations.independent;
+}
+
 void ask_sums(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density()) return;
     const Observations& o = e.observations;
@@ -54,19 +65,20 @@ void ask_sums(const Evidence& e, const Visit& visit) {
         const auto at = static_cast<std::size_t>(q);
         const Estimate& claimed = e.integrals.sums[at];
         const double mean = o.sums[at].sum / n, square = o.sums[at].square / n;
-        const double floor = detection_floor * (q >= slope ? std::sqrt(square) : std::max(mean, claimed.value)) +
-            e.integrals.known_to[at];
+        const double floor = floor_of_sum(e, q);
         Answer a{kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
         const double v = std::max(square - mean * mean, 0.0) / n + claimed.variance;
-        a.sd = std::sqrt(v);
-        a.p = bennett_p(bennett_z2(std::fabs(a.difference) - floor, v, 1 / n, freedom(v, claimed.doubt)));
+        a.sd = std::sqrt(v), a.claimed = claimed.variance / (v + 1e-300);
+        const double beyond = std::fabs(a.difference) - floor, nu = freedom(v, claimed.doubt);
+        const bool vary = draws_vary(e, q);
+        a.p = vary ? bennett_p(bennett_z2(beyond, v, 1 / n, nu)) : student_p_of(beyond, v, nu);
         visit(a);
-        if (o.scrambled == 0) continue;
+        if (o.scrambled == 0 || !vary) continue;
         const ReplicateMean<Replicates> sets = replicate_mean(e, q);
         a.family = kinds[q].by_sets;
         a.difference = sets.mean - claimed.value;
         const double w = sets.variance + claimed.variance + unmet[at] / o.scrambled;
-        a.sd = std::sqrt(w);
+        a.sd = std::sqrt(w), a.claimed = claimed.variance / (w + 1e-300);
         a.p = student_p_of(std::fabs(a.difference) - floor, w,
             freedom(w, claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1)));
         visit(a);
