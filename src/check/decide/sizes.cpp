@@ -116,9 +116,8 @@ std::vector<SumTest> whole_sums(const Evidence& e, const Passing& of_family) {
         Passing passing = of_family;
         passing.level /= q >= centre_x ? 3 : 1;
         const Estimate& claimed = e.integrals.sums[q];
-        const double mean = e.observations.sums[q].sum / n, square = e.observations.sums[q].square / n;
         const double floor = floor_of_sum(e, static_cast<int>(q));
-        const Variances v{std::max(square - mean * mean, 0.0) / n, claimed.variance};
+        const Variances v{drawn_variance(e, static_cast<int>(q)), claimed.variance};
         const double of_draws = freedom(v.all(), claimed.doubt);
         const bool vary = draws_vary(e, static_cast<int>(q));
         out.push_back({q,

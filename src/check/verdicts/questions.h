@@ -94,6 +94,8 @@ double floor_of_sum(const Evidence& e, int integrand);
 /// False for the mass where every draw is a direction: the draws then have no part in its variance. A share of draws
 /// that are nothing and that none of 2^16 shows at either stage is below the detection floor but for one in 10^11.
 bool draws_vary(const Evidence& e, int integrand);
+/// The variance of a whole sum by independent draws: of these, or what takes its place where they do not vary.
+double drawn_variance(const Evidence& e, int integrand);
 /// Mean of a whole sum over the replicates.
 ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 

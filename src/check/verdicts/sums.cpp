@@ -56,6 +56,12 @@ bool draws_vary(const Evidence& e, int integrand) {
     return integrand != mass || e.observations.sums[mass].sum < e.observations.independent;
 }
 
+double drawn_variance(const Evidence& e, int integrand) {
+    const Sums& s = e.observations.sums[static_cast<std::size_t>(integrand)];
+    const double n = e.observations.independent, mean = s.sum / n;
+    return draws_vary(e, integrand) ? std::max(s.square / n - mean * mean, 0.0) / n : least_spread * least_spread;
+}
+
 void ask_sums(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density()) return;
     const Observations& o = e.observations;
@@ -64,10 +70,10 @@ void ask_sums(const Evidence& e, const Visit& visit) {
     for (int q = 0; q < integrands; ++q) {
         const auto at = static_cast<std::size_t>(q);
         const Estimate& claimed = e.integrals.sums[at];
-        const double mean = o.sums[at].sum / n, square = o.sums[at].square / n;
+        const double mean = o.sums[at].sum / n;
         const double floor = floor_of_sum(e, q);
         Answer a{kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
-        const double v = std::max(square - mean * mean, 0.0) / n + claimed.variance;
+        const double v = drawn_variance(e, q) + claimed.variance;
         a.sd = std::sqrt(v), a.claimed = claimed.variance / (v + 1e-300);
         const double beyond = std::fabs(a.difference) - floor, nu = freedom(v, claimed.doubt);
         const bool vary = draws_vary(e, q);
