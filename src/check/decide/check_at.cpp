@@ -31,8 +31,8 @@ struct Stage {
         to.independent = std::max(to.independent, done.independent);
         key.purpose = Purpose::points;
         key.part = static_cast<std::uint16_t>(look);
-        integrate(
-            source, plan, to.points - done.points, done.points == 0, key, integrals);  // f in the first pass alone
+        const bool with_f = done.points == 0 && of_f > 0;  // in the first pass alone
+        integrate(source, plan, to.points - done.points, with_f, key, integrals);
         done = to;
         key.part = 0;
         observe(source, plan, to, of_f, key, integrals, observations);

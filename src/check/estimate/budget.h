@@ -67,7 +67,7 @@ struct CheckBudget {
     std::uint32_t pilot() const { return part(92); }
     /// At least so many; more until the integrals are known to a quarter of the detection floor. A leaf costs 8.
     int leaves() const { return static_cast<int>(part(366)); }
-    int most_leaves() const { return static_cast<int>(part(64)); }
+    int most_leaves() const { return static_cast<int>(part(90)); }
     /// Points of the integrals, about.
     std::uint32_t points() const { return part(6); }
     /// Draws at which f is evaluated.
@@ -76,7 +76,7 @@ struct CheckBudget {
     std::uint32_t of_sizes() const { return part(732); }
     double cost_of_sizes() const { return 14.0 * of_sizes(); }
     /// What is left for the second stage and for the sizes.
-    double reserve() const { return 0.3 * evaluations; }
+    double reserve() const { return 0.22 * evaluations; }
 
     /// In process.
     static CheckBudget quick() { return {}; }
