@@ -29,12 +29,11 @@ private:
     double constant_;
 };
 
-/// One look of the size at which the fault was found.
+/// One look of the size at which the fault was found: six evaluations for each of its points and draws.
 CheckBudget budget_for(const CheckAt& found, bool few) {
-    CheckBudget b = few || found.looks == 1 ? CheckBudget::limited() : CheckBudget::quick();
     const std::uint32_t n = found.looks == 1 ? 1u << 15 : few ? 1u << 16 : 1u << 17;
-    b.looks = {Look{n, n, n}, Look{}, Look{}};
-    b.look_count = 1;
+    CheckBudget b = CheckBudget::limited(6.0 * n);
+    b.looks = 1;
     return b;
 }
 
