@@ -187,6 +187,9 @@ void draw_pictures(
     }
 }
 
+/// Fewer than these are not worth a verdict: a call with more than 18 w_o takes more in all.
+constexpr std::size_t least_evaluations = 200000;
+
 }  // namespace
 
 CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
@@ -194,7 +197,8 @@ CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_
     if (limited) {
         // A twelfth of all is for what belongs to no w_o, and for the arms beside it.
         const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
-        return CheckBudget::limited(std::min(settings.questions, each));
+        return CheckBudget::limited(
+            static_cast<double>(std::min(settings.questions, std::max(each, least_evaluations))));
     }
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }

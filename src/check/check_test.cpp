@@ -1,0 +1,152 @@
+// judge(): order of its verdicts, what is left of a sampler that breaks off or is too slow, budgets and levels.
+#include "check/check.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "check/constants.h"
+#include "check/decide/check_at.h"
+#include "judgements/all.h"
+#include "subjects/users_trials.h"
+
+namespace crescent {
+namespace {
+
+/// Lambert by the cosine, p times `factor`; a program that answers `rate` times a second and has `allowed` seconds.
+class Program : public JudgedSampler {
+public:
+    double factor = 1, rate = 1e5, allowed = 0;
+    std::uint64_t breaks_at = ~std::uint64_t{0};  // after so many answers
+
+    std::string name() const override { return "program"; }
+    bool serial() const override { return true; }
+    Spending spending() const override { return {answers_, static_cast<double>(answers_) / rate, allowed}; }
+    void sample(int, Vec3d, std::span<const Numbers> u, std::span<Draw> out) const override {
+        answer(u.size());
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const double r = std::sqrt(u[i].x), phi = 2 * pi * u[i].y, z = std::sqrt(1 - u[i].x);
+            out[i] = {{r * std::cos(phi), r * std::sin(phi), z}, factor * z / pi, {}, {}};
+        }
+    }
+    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+        answer(at.size());
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = factor * std::max(at[i].wi.z, 0.0) / pi;
+    }
+    bool has_f() const override { return true; }
+    void f(std::span<const Pair> at, std::span<double> out) const override {
+        answer(at.size());
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = at[i].wi.z > 0 ? 0.5 / pi : 0;
+    }
+
+private:
+    mutable std::uint64_t answers_ = 0;
+    mutable bool gone_ = false;
+    void answer(std::size_t n) const {
+        if (gone_) throw SubjectGone("given up");
+        answers_ += n;
+        if (answers_ > breaks_at) gone_ = true, throw SubjectFault("it fell silent");
+        if (allowed > 0 && spending().seconds > allowed) throw SubjectTooSlow("too slow");
+    }
+};
+
+std::vector<Trial> trials_of_program(const std::shared_ptr<const Program>& program) {
+    return trials_of_subject(program, false, {{0, 0}, {45, 90}, {85, 0}, {20, 10}});
+}
+
+Judgement judged(const std::shared_ptr<const Program>& program, bool accept_few = false) {
+    TestSettings settings;
+    settings.accept_few = accept_few;
+    ProgressMonitor monitor;
+    return judge(trials_of_program(program), settings, monitor);
+}
+
+const Verdict& verdict_at(const Judgement& j, std::size_t trial, std::string_view name) {
+    for (std::size_t k = 0; k < verdict_names.size(); ++k)
+        if (verdict_names[k] == name) return j.verdicts[trial * verdict_names.size() + k];
+    throw std::out_of_range("no such verdict");
+}
+
+TEST(Judge, GivesVerdictsInTheOrderOfTrialsAndOfTheList) {
+    const auto program = std::make_shared<Program>();
+    std::vector<Trial> trials = trials_of_program(program);
+    ProgressMonitor monitor;
+    const Judgement j = judge(trials, TestSettings::quick(), monitor);
+    std::erase_if(trials, [](const Trial& t) { return t.baseline; });
+    ASSERT_EQ(j.verdicts.size(), 4 * verdict_names.size());
+    for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
+        EXPECT_EQ(j.verdicts[i].name, verdict_names[i % verdict_names.size()]);
+        EXPECT_EQ(j.verdicts[i].trial, trials[i / verdict_names.size()].text());
+    }
+    EXPECT_EQ(j.state, State::right);
+    EXPECT_EQ(j.questions, program->spending().answers);
+    EXPECT_LE(j.questions, 4u * 500000);
+    EXPECT_LE(j.evaluations, j.questions);
+}
+
+/// The middle and the most grazing w_o come first; what there was no time for is inconclusive, but for `valid`.
+TEST(Judge, LeavesOutWhatThereIsNoTimeFor) {
+    const auto program = std::make_shared<Program>();
+    program->allowed = 8.5;  // 850,000 answers, two w_o
+    const Judgement j = judged(program);
+    for (std::size_t examined : {std::size_t{1}, std::size_t{2}})
+        EXPECT_EQ(verdict_at(j, examined, "density").state, State::right);
+    for (std::size_t left : {std::size_t{0}, std::size_t{3}}) {
+        EXPECT_EQ(verdict_at(j, left, "valid").state, State::right);
+        EXPECT_EQ(verdict_at(j, left, "density").state, State::inconclusive);
+        EXPECT_FALSE(verdict_at(j, left, "density").settle.empty());
+    }
+    ASSERT_EQ(j.left_out.size(), 2u);
+    EXPECT_EQ(j.left_out[0].verdicts.size(), verdict_names.size() - 1);
+    EXPECT_EQ(j.state, State::inconclusive);
+}
+
+TEST(Judge, AcceptsFewButNotNone) {
+    const auto some = std::make_shared<Program>(), none = std::make_shared<Program>();
+    some->allowed = 8.5, none->allowed = 0.5;
+    const Judgement j = judged(some, true);
+    EXPECT_EQ(j.state, State::right);
+    EXPECT_EQ(j.left_out.size(), 2u);
+    EXPECT_EQ(verdict_at(j, 0, "density").state, State::skipped);
+    EXPECT_EQ(judged(none, true).state, State::inconclusive);
+}
+
+/// The w_o that were examined before stay; the first error says what happened.
+TEST(Judge, KeepsWhatWasFoundBeforeASamplerBrokeOff) {
+    const auto program = std::make_shared<Program>();
+    program->breaks_at = 500000;
+    const Judgement j = judged(program);
+    EXPECT_EQ(j.state, State::error);
+    EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
+    EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // of its first draws
+    EXPECT_EQ(verdict_at(j, 2, "support").say, "The sampler broke off: it fell silent.");
+    EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "it fell silent");
+    EXPECT_EQ(verdict_at(j, 0, "density").say, "It could not be evaluated: the sampler broke off before.");
+    EXPECT_TRUE(j.left_out.empty());
+}
+
+TEST(Judge, AsksAProgramNoMoreThanItsBudget) {
+    for (std::uint64_t most : {200000u, 300000u, 500000u})
+        for (double factor : {1.0, 1.002, 1.005, 1.1}) {
+            Program program;
+            program.factor = factor;
+            const check::CheckAt c =
+                check::check_sampler_at(program, 0, {0, 0.6, 0.8}, {}, check::CheckBudget::limited(most), 1);
+            EXPECT_LE(program.spending().answers, most) << factor;
+            if (factor != 1.002) EXPECT_EQ(c.wrong(), factor != 1.0) << most << " " << factor;
+        }
+}
+
+TEST(Judge, SharesAlphaBetweenTheStages) {
+    for (double alpha : {1e-9, 1e-6, 1e-3, 0.05, 0.5})
+        for (double questions : {1.0, 1e5, 1e7}) {
+            const check::Levels l = check::levels_of(alpha, questions);
+            EXPECT_NEAR(l.first * l.second * std::max(questions, 1e5) / alpha, 1, 1e-9);
+            EXPECT_LE(l.second, 0.1 + 1e-12);
+            EXPECT_GE(l.second, 1e-5 - 1e-18);
+        }
+    EXPECT_NEAR(check::levels_of(1e-3, 1).first, check::alpha1, 1e-12);
+    EXPECT_NEAR(check::levels_of(1e-3, 1).second, check::alpha2, 1e-12);
+}
+
+}  // namespace
+}  // namespace crescent
