@@ -19,6 +19,7 @@ struct SmallFault {
     double size = 0;           // relative, where it has one
     Example first{};
     const char* what = "";
+    std::optional<Vec3d> wo{};  // of the first, where it is none of the call's
 };
 
 /// u at 0, next to 0, at quarters and next to 1, in every two numbers and in every corner: samplers divide by 0 there.

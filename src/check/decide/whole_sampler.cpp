@@ -25,8 +25,8 @@ std::vector<Numbers> few_numbers(int count) {
     return out;
 }
 
-void note(SmallFault& to, const Numbers& u, const Draw& d, double p, const char* what) {
-    if (to.times++ == 0) to.first = {u, d, p, 0}, to.what = what;
+void note(SmallFault& to, const Numbers& u, const Draw& d, double p, const char* what, std::optional<Vec3d> wo = {}) {
+    if (to.times++ == 0) to.first = {u, d, p, 0}, to.what = what, to.wo = wo;
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ std::optional<SmallFault> special_places(const JudgedSampler& subject, int techn
         subject.sample(technique, wo, u, draws);
         out.of += static_cast<double>(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
-            if (const auto fault = fault_of(draws[i])) note(out, u[i], draws[i], 0, *fault);
+            if (const auto fault = fault_of(draws[i])) note(out, u[i], draws[i], 0, *fault, wo);
             else if (draws[i].pdf > 0) pairs.push_back({wo, draws[i].wi});
         }
     }
@@ -79,8 +79,8 @@ std::optional<SmallFault> special_places(const JudgedSampler& subject, int techn
     for (std::size_t i = 0; i < pairs.size(); ++i) {  // a density may have a pole in a single direction
         Draw at;
         at.wi = pairs[i].wi;
-        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0");
-        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f is not a number >= 0");
+        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0", pairs[i].wo);
+        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f is not a number >= 0", pairs[i].wo);
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }

@@ -32,9 +32,8 @@ struct Candidate {
     Hypothesis hypothesis;
     std::function<Cause(const Hypothesis&)> tell;
     double in_part = 2;  // named too if it explains this share of the divergence; above 1: only if it passes
+    int plainness = 0;   // of two that say the same the plainer is named
 };
-
-std::string at_w_o(const Place& place) { return place.trial->text(); }
 
 std::optional<Candidate> constant_candidate(std::span<const Place> places) {
     std::vector<MassRatio> all;
@@ -63,8 +62,8 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
         const double known_to = std::max(4 * error / mean, detection_floor);
         Cause cause{"constant", mean, error, ""};
         if (high->ratio - low->ratio > 2 * known_to * mean) {
-            const auto at = [&](auto it) { return at_w_o(places[static_cast<std::size_t>(it - all.begin())]); };
-            cause.text = fmt::format("p is a constant times what is drawn at each w_o, from {} at {} to {} at {}.",
+            const auto at = [&](auto it) { return places[static_cast<std::size_t>(it - all.begin())].where(); };
+            cause.text = fmt::format("p is a constant times what is drawn at each w_o, from {}{} to {}{}.",
                 with_error(low->ratio, 1.96 * low->error), at(low), with_error(high->ratio, 1.96 * high->error),
                 at(high));
             return cause;
@@ -106,6 +105,9 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
 Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
     Candidate out;
     out.hypothesis = f.hypothesis;
+    const bool no_constant =
+        std::ranges::all_of(f.hypothesis.constants, [](double c) { return std::fabs(c - 1) < 0.01; });
+    out.plainness = (std::fabs(f.exponent) == 1) + no_constant;
     out.tell = [f, places](
                    const Hypothesis& h) { return Cause{f.name, f.exponent, f.error, factor_sentence(f, h, places)}; };
     return out;
@@ -123,12 +125,12 @@ Candidate candidate_of_power(FactorHypothesis f) {
 }
 
 Candidate candidate_of(const Hypothesis& frame) {
-    Candidate out{frame, {}, most_of_it};
+    Candidate out{frame, {}, most_of_it, -frame.place};
     out.tell = [name = frame.name](const Hypothesis& h) {
         return Cause{name, 0, 0,
             h.explained < 0.9 ? fmt::format("{:.0f} % of the difference is explained by {} between draws and p.",
                                     100 * h.explained, name)
-                              : fmt::format("Draws follow p with {}.", name)};
+                              : fmt::format("Draws follow p with {}.", name + h.same)};
     };
     return out;
 }
@@ -150,8 +152,8 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
                 with_error(t.by.z, 1.96 * t.error),
                 std::fabs(t.by.z) > 0 ? fmt::format(" = 2 pi / {:.1f}", two_pi / std::fabs(t.by.z)) : "");
         else
-            cause.text = fmt::format("Draws are those of p turned by {} rad about ({:.3f}, {:.3f}, {:.3f}) at {}.",
-                with_error(angle, 1.96 * t.error), axis.x, axis.y, axis.z, at_w_o(places[most]));
+            cause.text = fmt::format("Draws are those of p turned by {} rad about ({:.3f}, {:.3f}, {:.3f}){}.",
+                with_error(angle, 1.96 * t.error), axis.x, axis.y, axis.z, places[most].where());
         if (h.explained < 0.9)
             cause.text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
         return cause;
@@ -197,14 +199,20 @@ Candidates fitted_candidates(std::span<const Place> places) {
 
 /// The one that passes, if none that is as likely passes too.
 std::optional<Cause> passing(Candidates& all, std::span<const Place> places, bool& several) {
-    const Candidate* found = nullptr;
+    Candidate* found = nullptr;
     std::size_t checks = 0;
     for (Candidate& c : all) {
         if (found) {
             const double less = found->hypothesis.gain - c.hypothesis.gain;
             const double by_chance = least_lead / std::min(found->hypothesis.draws, c.hypothesis.draws);
             if (less > std::max({3 * found->hypothesis.error, 3 * c.hypothesis.error, by_chance})) break;
-            if (say_the_same(found->hypothesis, c.hypothesis, places)) continue;
+            if (say_the_same(found->hypothesis, c.hypothesis, places)) {
+                const bool plainer = c.plainness > found->plainness;
+                const std::string other = plainer ? found->hypothesis.name : c.hypothesis.name;
+                if (plainer) c.hypothesis.same = found->hypothesis.same, found = &c;
+                found->hypothesis.same += " (or " + other + ", which is the same here)";
+                continue;
+            }
         }
         if (checks++ == most_checks) break;
         if (!passes(c.hypothesis, places, 1)) continue;
@@ -212,9 +220,8 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
         found = &c;
     }
     if (!found) return {};
-    Hypothesis h = found->hypothesis;
-    score(h, places);
-    return found->tell(h);
+    found->hypothesis.explained = 1;
+    return found->tell(found->hypothesis);
 }
 
 /// What explains most of a difference that nothing explains wholly, by twice as much as anything else.

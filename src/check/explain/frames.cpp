@@ -205,6 +205,7 @@ std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places) {
         for (int which : {of_wi, of_wo, of_both}) {
             if (!can_be_asked(frame, which, places[0].traits)) continue;
             Hypothesis h = in_frame(frame, which, places[0].draws_at_zero());
+            h.place = static_cast<int>(&frame - named_frames);
             if (which == of_wi) score_by_tree(frame, places, h);
             else score(h, places);
             if (h.helps()) out.push_back(std::move(h));

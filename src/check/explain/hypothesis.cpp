@@ -29,11 +29,11 @@ private:
     double constant_;
 };
 
-/// One look of the size at which the fault was found: six evaluations for each of its points and draws.
+/// A look of the size at which the fault was found, after a small one for what is far off.
 CheckBudget budget_for(const CheckAt& found, bool few) {
     const std::uint32_t n = found.looks == 1 ? 1u << 15 : few ? 1u << 16 : 1u << 17;
     CheckBudget b = CheckBudget::limited(6.0 * n);
-    b.looks = 1;
+    b.looks = 2;
     return b;
 }
 

@@ -33,6 +33,8 @@ struct Place {
     bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
     const JudgedSampler& subject() const { return *trial->subject; }
     int technique() const { return at->technique; }
+    /// " at w_o 60 deg"; "" for a sampler without w_o.
+    std::string where() const { return traits.wo == Traits::Asked::none ? "" : " at " + trial->text(); }
     /// ln of a density at a draw; where it is 0, of e^-14 times the median of p.
     double log_of(double density) const;
     double mean_log(std::span<const double> density) const;
@@ -43,7 +45,9 @@ std::vector<Place> places_of(
     std::span<const Trial> trials, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
 
 struct Hypothesis {
-    std::string name;  // of the cause
+    std::string name;    // of the cause
+    std::string same{};  // what else would say the same, in brackets
+    int place = 0;       // in its list, the plainest first
     /// The supposed density of a subject's technique, 1/sr.
     std::function<void(const JudgedSampler&, int technique, std::span<const Pair>, std::span<double>)> density;
     /// By place: what that is multiplied by; empty: 1. free: it is set so that the masses agree.

@@ -227,6 +227,9 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
     if (off.size() == 1) {
         const LobeInterval& lobe = by.lobes[off[0]];
         const double x = s.x[off[0]];
+        if (std::fabs(x) < std::max(3 * s.errors[off[0]], known_share))
+            return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}.",
+                by.number + 1, lobe.from, lobe.to);
         const bool left_out =
             std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
         return fmt::format(
@@ -276,7 +279,7 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         if (!shares || !explains(*shares)) continue;
         const auto [least, most] = std::ranges::minmax_element(shares->x);
         if (*most - *least < known_share) continue;  // a constant
-        return Cause{"chooser", shares->x[0], shares->errors[0], lobe_sentence(*by, *shares)};
+        return Cause{"chooser", 0, 0, lobe_sentence(*by, *shares)};
     }
     return {};
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr int em_steps = 60;
 constexpr double least_share = 1e-4;
 constexpr double expected_at_least = 10;  // draws, of a leaf in which none fell: e^-10
-constexpr double least_unreached = 2e-3;  // share of p's mass
+constexpr double least_unreached = 0.02;  // share of p's mass
 
 bool in_domain(const ChartRect& rect, bool whole) { return whole || rect.t0 < 1; }
 
@@ -168,14 +168,16 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
     for (const Place& place : places) {
         const Reach r = reach_at(*place.at);
         if (!(r.unreached > least_unreached * (r.unreached + r.reached))) continue;
-        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached) continue;  // more than that is off
+        if (r.leaves > 0 && r.misfit / r.leaves > 1.5) continue;  // more than that is off
         if (!worst || r.unreached > most.unreached) worst = &place, most = r;
     }
     if (!worst) return {};
-    return Cause{"unreached", most.unreached, 0,
-        fmt::format("p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to, at {}. Combined "
-                    "with another sampler by MIS that darkens.",
-            most.unreached, most.unreached + most.reached, worst->trial->text())};
+    const double of = worst->at->integrals.sums[mass].value,
+                 part = of * most.unreached / (most.unreached + most.reached);
+    return Cause{"unreached", part, 0,
+        fmt::format("p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
+                    "another sampler by MIS that darkens.",
+            part, of, worst->where())};
 }
 
 }  // namespace crescent::check

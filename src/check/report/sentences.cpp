@@ -24,7 +24,8 @@ std::string first_at(const Example& e, int numbers) {
     for (int k = 0; k < numbers; ++k) any = any || e.u[k] != 0;
     std::string out = "first at ";
     if (any) out += "u = " + u_text(e.u, numbers) + ", ";
-    return out + "w_i = " + direction_text(e.draw.wi);
+    const Vec3d w = e.draw.wi;
+    return out + (std::isnan(w.x + w.y + w.z) ? "w_i NaN" : "w_i = " + direction_text(w));
 }
 
 std::string mass_sentence(const Answer& a) {
@@ -166,7 +167,9 @@ std::string sentence_of(const SmallFault& f, int numbers) {
     std::string out = fmt::format("{}: {:g} of {:g}", what, f.times, f.of);
     if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
     else if (f.family == Family::mis) out += fmt::format(", by up to {:.3g}", std::fabs(f.size));
-    return out + ", " + first_at(f.first, numbers) + ".";
+    const std::string where = first_at(f.first, numbers);
+    return out + ", " + (f.wo ? fmt::format("first at w_o = {}, {}", direction_text(*f.wo), where.substr(9)) : where) +
+        ".";
 }
 
 }  // namespace crescent::check
