@@ -240,38 +240,55 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
     return best->tell(best->hypothesis);
 }
 
-/// A constant in all the draws can be a factor that varies little. The map's own derivatives tell them apart where one
-/// u alone leads to each direction: then what it draws is all that is drawn.
-std::optional<Cause> by_the_map(std::optional<Cause> constant, std::span<const Place> places) {
-    constexpr double one_to_one = 20;  // times the constant's distance from 1
-    std::vector<KnownRatio> ratios;
-    const double off = std::fabs(std::log(constant->exponent));
+/// What the sampling map draws over p, by its derivatives at a few points of each place.
+std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
+    std::vector<KnownRatio> out;
     for (const Place& place : places) {
         Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
         const StreamKey key{23, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
             8, Purpose::jacobian, 1};
         for (const MapDensity& m : map_densities(source, key))
-            ratios.push_back({place.trial->wo, m.draw.wi, m.drawn / m.p, m.error});
+            out.push_back({place.trial->wo, m.draw.wi, m.drawn / m.p, m.error});
     }
-    double near = 0, same = 0;
-    for (const KnownRatio& r : ratios) {
-        near += std::fabs(std::log(r.value)) < one_to_one * off;
-        same += std::fabs(std::fabs(std::log(r.value)) - off) < 0.1 * off + 2 * r.error + constant->error;
-    }
-    const double count = static_cast<double>(ratios.size());
-    if (count < 32 || near < 0.9 * count || same > 0.8 * count) return constant;
+    return out;
+}
+
+/// A constant or factor that nine of ten points of the map show: without noise, so that nothing is as likely.
+std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<const Place> places) {
     const std::vector<Factor> factors = factors_for(places[0].traits, places[0].trial->light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
-    if (!c || c->exponent == 0) return {};
-    return Cause{c->name, c->exponent, 0,
-        ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits)};
+    if (!c) return {};
+    std::optional<Candidate> candidate = c->exponent == 0 ? constant_candidate(places) : std::nullopt;
+    if (c->exponent != 0) {
+        candidate.emplace();
+        candidate->hypothesis = times(*std::ranges::find(factors, c->name, &Factor::name), c->exponent);
+        candidate->hypothesis.constants.assign(places.size(), c->constant);
+        candidate->tell = [c, places](const Hypothesis&) {
+            return Cause{c->name, c->exponent, 0,
+                ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits) +
+                    fmt::format(" {} is {} in p.", c->name, c->exponent > 0 ? "missing" : "once too often")};
+        };
+    }
+    if (!candidate || !passes(candidate->hypothesis, places, 1)) return {};
+    return candidate->tell(candidate->hypothesis);
+}
+
+/// What is drawn is at least what the map draws at one u: p over that is nowhere below a constant that p has too much.
+bool can_be_constant(std::span<const KnownRatio> ratios, const Cause& constant) {
+    const double off = std::fabs(math::log(constant.exponent));
+    double below = 0;
+    for (const KnownRatio& r : ratios)
+        below += 1 / r.value < constant.exponent * (1 - 0.1 * off - 2 * r.error) - 2 * constant.error;
+    return below <= 0.1 * static_cast<double>(ratios.size());
 }
 
 std::optional<Cause> explained_by(std::span<const Place> places) {
+    const std::vector<KnownRatio> ratios = map_ratios(places);
+    if (std::optional<Cause> c = shown_by_map(ratios, places)) return c;
     Candidates plain = plain_candidates(places);
     bool several = false;
     if (std::optional<Cause> c = passing(plain, places, several); c || several) {
-        if (c && c->factor == "constant") return by_the_map(std::move(c), places);
+        if (c && c->factor == "constant" && !can_be_constant(ratios, *c)) return {};
         return c;
     }
     if (std::optional<Cause> c = lobe_cause(places)) return c;

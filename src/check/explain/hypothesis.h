@@ -53,7 +53,7 @@ struct Hypothesis {
     /// By place: what that is multiplied by; empty: 1. free: it is set so that the masses agree.
     std::vector<double> constants{};
     bool free = false;
-    double constant(std::size_t place) const { return constants.empty() ? 1 : constants[place]; }
+    double constant(std::size_t k) const { return constants.empty() ? 1 : constants[k]; }
     /// By place: what the density integrates to over what p does; empty: the same.
     std::vector<double> masses{};
     /// Mean log likelihood of a draw over the places (that of a Poisson process, so that masses count), relative to

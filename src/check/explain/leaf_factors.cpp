@@ -57,18 +57,6 @@ double simple_of(double b, double error) {
 
 double power_of(double x, double b) { return x > 0 ? math::exp(b * math::log(x)) : 0; }
 
-Hypothesis times(const Factor& f, double b) {
-    Hypothesis h;
-    h.name = f.name;
-    h.free = true;
-    h.density = [f, b](const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
-        s.exact_pdf(technique, at, out);
-        for (std::size_t i = 0; i < at.size(); ++i)
-            if (out[i] > 0) out[i] *= power_of(f.value(at[i].wo, at[i].wi), b);
-    };
-    return h;
-}
-
 /// The number that a constant is near to: 1, or what usually goes with the factor.
 double settled(double constant, double usual, double b) {
     for (double known : {1.0, power_of(usual, b)})
@@ -88,6 +76,18 @@ void set_gain(Hypothesis& h, double likelihood, std::span<const Place> places) {
 }
 
 }  // namespace
+
+Hypothesis times(const Factor& f, double b) {
+    Hypothesis h;
+    h.name = f.name;
+    h.free = true;
+    h.density = [f, b](const JudgedSampler& s, int technique, std::span<const Pair> at, std::span<double> out) {
+        s.exact_pdf(technique, at, out);
+        for (std::size_t i = 0; i < at.size(); ++i)
+            if (out[i] > 0) out[i] *= power_of(f.value(at[i].wo, at[i].wi), b);
+    };
+    return h;
+}
 
 std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
     const std::vector<Factor> factors = factors_for(places[0].traits, places[0].trial->light);

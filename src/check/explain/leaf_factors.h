@@ -14,6 +14,8 @@ struct FactorHypothesis {
     double usual_constant = 1;
 };
 
+/// Draws follow p times a power of a factor, and a free constant.
+Hypothesis times(const Factor& factor, double exponent);
 /// Single factors of largest likelihood first, those with a simple exponent.
 std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places);
 /// Draws follow a power of p.

@@ -168,7 +168,8 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
     for (const Place& place : places) {
         const Reach r = reach_at(*place.at);
         if (!(r.unreached > least_unreached * (r.unreached + r.reached))) continue;
-        if (r.leaves > 0 && r.misfit / r.leaves > 1.5) continue;  // more than that is off
+        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached)
+            continue;  // more than that is off
         if (!worst || r.unreached > most.unreached) worst = &place, most = r;
     }
     if (!worst) return {};
