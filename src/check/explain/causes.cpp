@@ -136,7 +136,7 @@ Candidate candidate_of(const Hypothesis& frame) {
 }
 
 Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, bool about_z) {
-    Candidate out{turn.hypothesis, {}, most_of_it};
+    Candidate out{turn.hypothesis, {}, about_z ? most_of_it : nearly_all};
     out.tell = [turn, places, about_z](const Hypothesis& h) {
         std::size_t most = 0;
         for (std::size_t k = 1; k < turn.turns.size(); ++k)
@@ -266,7 +266,7 @@ std::optional<Cause> shown_by_map(std::span<const KnownRatio> ratios, std::span<
         candidate->tell = [c, places](const Hypothesis&) {
             return Cause{c->name, c->exponent, 0,
                 ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits) +
-                    fmt::format(" {} is {} in p.", c->name, c->exponent > 0 ? "missing" : "once too often")};
+                    fmt::format(" In p {} is {}.", c->name, c->exponent > 0 ? "missing" : "once too often")};
         };
     }
     if (!candidate || !passes(candidate->hypothesis, places, 1)) return {};
@@ -298,12 +298,29 @@ std::optional<Cause> explained_by(std::span<const Place> places) {
     return in_part(plain, places);
 }
 
+/// Draws that cannot be used, and draws where p is 0, are all that masses differ by: their own findings say so.
+bool odd_draws_explain(std::span<const Place> places) {
+    bool any = false;
+    for (const Place& place : places) {
+        const DrawChecks& c = place.at->observations.checks;
+        const double looked_at = std::max(static_cast<double>(c.looked_at), 1.0);
+        const double unusable = static_cast<double>(c.invalid.times) / looked_at,
+                     at_zero = static_cast<double>(c.zero.times) / looked_at;
+        const MassRatio m = mass_ratio(*place.at);
+        const double off = m.claimed - m.drawn - (unusable - at_zero);
+        any = any || unusable + at_zero > detection_floor;
+        if (std::fabs(off) > 0.2 * (unusable + at_zero) + 4 * m.error * m.drawn + detection_floor) return false;
+    }
+    return any;
+}
+
 }  // namespace
 
 std::optional<Cause> cause_of(std::span<const Trial> trials, const CheckOutcome& outcome) {
     const bool few = std::ranges::any_of(outcome.trials, [&](std::size_t i) { return trials[i].subject->serial(); });
     const std::vector<Place> places = places_of(trials, outcome, most_places, few ? draws_of_few : draws_of_many);
     if (places.empty()) return weight_cause(trials, outcome);
+    if (odd_draws_explain(places)) return {};
     if (std::optional<Cause> c = curve_cause(places)) return c;
     if (std::optional<Cause> c = explained_by(places)) return c;
     return unreached_cause(places);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "check/explain/frames.h"
 #include "check/explain/text.h"
 #include "check/report/verdicts.h"
 #include "simd/frame.h"
@@ -115,10 +116,22 @@ TEST(CheckCauses, NamesAMirroredFrame) {
 
 TEST(CheckCauses, MeasuresATurn) {
     const Vec3d axis = tilt(50, 20), off = tilt(53, 20);
-    const Result r = judged(made([off](Vec3d, const Numbers& u) { return power_draw(off, 50, u); },
+    const auto subject = std::make_shared<Made>(made([off](Vec3d, const Numbers& u) { return power_draw(off, 50, u); },
         [axis](Vec3d, Vec3d w) { return power_pdf(axis, 50, w); }, 2, Traits::Asked::none));
-    expect_cause(r, "turned");
-    EXPECT_NEAR(r.cause ? r.cause->exponent : 0, 3 * pi / 180, 5 * r.cause->error + 1e-3) << r.text();
+    Trial t;
+    t.arm = "made", t.wo = {0, 0, 1}, t.subject = subject;
+    CheckSettings settings;
+    settings.budget = CheckBudget::limited();
+    ProgressMonitor monitor;
+    const auto all = check_samplers({&t, 1}, settings, monitor);
+    const std::vector<Place> places = places_of({&t, 1}, all.at(0), 2, 4096);
+    ASSERT_EQ(places.size(), 1u);
+    const auto turn = turn_hypothesis(places);
+    ASSERT_TRUE(turn);
+    const Vec3d by = turn->turns[0].by;
+    EXPECT_NEAR(std::sqrt(dot(by, by)), 3 * pi / 180, 5 * turn->turns[0].error);
+    EXPECT_LT(turn->turns[0].error, 0.01);
+    EXPECT_NEAR(dot(by, cross(axis, off)) / (std::sqrt(dot(by, by)) * std::sin(3 * pi / 180)), 1, 0.2);
 }
 
 TEST(CheckCauses, NamesTheChooserOfLobes) {

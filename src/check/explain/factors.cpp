@@ -117,6 +117,7 @@ std::string number_name(double value, double known_to, const Traits& traits) {
     for (const auto& [name, number] : known) {
         if (std::fabs(number - 1) < 10 * known_to) continue;
         if (std::fabs(value / number - 1) < known_to) return name;
+        if (name == "pi/2" && std::fabs(value * number - 1) < known_to) return "2/pi";
         if (std::fabs(value * number - 1) < known_to)
             return name.find_first_of(" /") == std::string::npos ? "1/" + name : "1/(" + name + ")";
     }

@@ -59,7 +59,8 @@ struct Hypothesis {
     /// Mean log likelihood of a draw over the places (that of a Poisson process, so that masses count), relative to
     /// that of p, and its standard error.
     double gain = 0, error = 0, draws = 0;  // draws: that this is known by
-    bool helps() const { return gain > 3 * error && gain > 0; }
+    /// Worth a check of its own, which then decides.
+    bool helps() const { return gain > error && gain > 0; }
     /// Of the divergence between draws and p, by the leaves; 1 where nothing is left.
     double explained = 0;
 };

@@ -13,6 +13,7 @@ namespace {
 constexpr double wide_leaf = 0.02;       // rad: a factor is averaged over four places of a wider leaf
 constexpr std::size_t most_factors = 3;  // that are looked at closely
 constexpr double to_simple = 0.03;       // an exponent this near to a multiple of 1/2 is that
+constexpr double most_power = 0.5;       // of it: of what is nearly even any power is likely
 constexpr double least_power = 1e-3;     // of an exponent that differs from 1
 
 double average(const Factor& f, Vec3d wo, const ChartRect& rect) {
@@ -122,7 +123,7 @@ std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) 
     if (rows.size() < 32) return {};
     const Fit f = fit(rows, places.size(), {0});
     const double b = f.exponents[0];
-    if (!(std::fabs(b) > std::max(least_power, 4 * f.errors[0])) || !(b > -0.95)) return {};
+    if (!(std::fabs(b) > std::max(least_power, 4 * f.errors[0])) || !(std::fabs(b) < most_power)) return {};
     FactorHypothesis out{{}, "p", b, b, f.errors[0], 1};
     out.hypothesis.name = "p";
     out.hypothesis.free = true;

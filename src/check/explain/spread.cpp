@@ -14,6 +14,7 @@ namespace {
 constexpr int em_steps = 60;
 constexpr double least_share = 1e-4;
 constexpr double expected_at_least = 10;  // draws, of a leaf in which none fell: e^-10
+constexpr double right_elsewhere = 0.1;   // how far draws over p may be from 1 where draws fall
 constexpr double least_unreached = 0.02;  // share of p's mass
 
 bool in_domain(const ChartRect& rect, bool whole) { return whole || rect.t0 < 1; }
@@ -93,6 +94,7 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
 /// Where no draw falls though p expects some, and where draws fall: masses of p and of the draws.
 struct Reach {
     double unreached = 0, reached = 0, drawn = 0, misfit = 0, leaves = 0;
+    double by = 1;  // draws over p where draws fall
 };
 Reach reach_at(const CheckAt& c) {
     Reach out;
@@ -102,7 +104,7 @@ Reach reach_at(const CheckAt& c) {
         const LeafIntegral& leaf = c.integrals.leaves[l];
         if (c.observations.counts[l] > 0) h_drawn += c.observations.leaves[l] / n, h_claimed += leaf.bridge.value;
     }
-    const double by = h_claimed > 0 ? h_drawn / h_claimed : 1;
+    const double by = out.by = h_claimed > 0 ? h_drawn / h_claimed : 1;
     for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
         const LeafIntegral& leaf = c.integrals.leaves[l];
         const Leaf& of_tree = c.plan->tree.leaves()[l];
@@ -167,9 +169,9 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
     Reach most;
     for (const Place& place : places) {
         const Reach r = reach_at(*place.at);
-        if (!(r.unreached > least_unreached * (r.unreached + r.reached))) continue;
-        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached)
-            continue;  // more than that is off
+        if (!(r.unreached > least_unreached * (r.unreached + r.reached)) || std::fabs(r.by - 1) > right_elsewhere)
+            continue;
+        if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached) continue;  // more than that is off
         if (!worst || r.unreached > most.unreached) worst = &place, most = r;
     }
     if (!worst) return {};

@@ -102,7 +102,7 @@ std::string sum_sentence(const Finding& f, const Answer& a) {
                 "Draws and p differ in many small places: chi^2 is {:.0f} over {:.0f} nodes of depth {}.",
                 a.difference + a.expected, a.expected, f.first.member);
         default:
-            return fmt::format("Where draws fall they are {} {} than p expects.",
+            return fmt::format("Draws, weighted by h = q / (p + q), are {} {} than p expects.",
                 percent(std::fabs(a.difference) / a.expected, half / a.expected), a.difference > 0 ? "more" : "fewer");
     }
 }
