@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "check/constants.h"
@@ -161,12 +162,13 @@ private:
     /// What neither the explanation nor the report needs, of which there are megabytes at each w_o: of a right w_o all
     /// but the numbers, unless pictures are drawn or the draws are all that is known of the density.
     void forget(CheckAt& c, bool has_density) const {
-        c.observations.met = {}, c.observations.node_by_set = {}, c.integrals.light.weighed = {};
+        const auto free = [](auto&... all) { (std::remove_reference_t<decltype(all)>().swap(all), ...); };
+        free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighed);
         if (settings_.keep_evidence) return;
-        c.observations.weights = {};
+        free(c.observations.weights);
         if (c.wrong() || !has_density) return;
         c.plan.reset();
-        c.integrals.leaves = {}, c.observations.leaves = {}, c.observations.counts = {};
+        free(c.integrals.leaves, c.observations.leaves, c.observations.counts);
     }
 
     /// The middle first, then the most grazing one: between them they meet most faults.

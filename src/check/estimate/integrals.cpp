@@ -11,7 +11,7 @@ namespace crescent::check {
 void LightIntegrals::scale(double by) {
     for (auto* by_channel : {&all, &mean, &albedo})
         for (Estimate& e : *by_channel) e.scale(by);
-    lost.scale(by), lit.scale(by);
+    lost.scale(by), lit.scale(by), largest_lost *= by;
     for (auto& by_channel : leaves)
         for (Estimate& e : by_channel) e.scale(by);
     for (WeighedPoint& w : weighed) w.light *= by, w.chance *= by;
@@ -19,7 +19,7 @@ void LightIntegrals::scale(double by) {
 
 void LightIntegrals::add(const LightIntegrals& o) {
     for (std::size_t c = 0; c < 3; ++c) all[c].add(o.all[c]), mean[c].add(o.mean[c]), albedo[c].add(o.albedo[c]);
-    lost.add(o.lost), lit.add(o.lit);
+    lost.add(o.lost), lit.add(o.lit), largest_lost = std::max(largest_lost, o.largest_lost);
     for (std::size_t l = 0; l < leaves.size(); ++l)
         for (std::size_t c = 0; c < 3; ++c) leaves[l][c].add(o.leaves[l][c]);
     weighed.insert(weighed.end(), o.weighed.begin(), o.weighed.end());
@@ -186,6 +186,7 @@ private:
         }
         l.lit.add_pair(lit[0], lit[1], k);
         l.lost.add_pair(lost[0], lost[1], k);
+        l.largest_lost = std::max(l.largest_lost, k * std::max(lost[0], lost[1]));
         l.points += 2;
         for (std::size_t a = 0; a < 2; ++a) note_weight(at + a, k);
     }

@@ -47,6 +47,7 @@ struct LightIntegrals {
     Estimate lit;                                 // times the light
     std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, where there is no density to divide the draws by
     std::vector<WeighedPoint> weighed;            // where p > 0 and X > 0
+    double largest_lost = 0;                      // what one point holds of `lost`, at most
     double points = 0;
     void scale(double by);
     void add(const LightIntegrals& other);

@@ -105,8 +105,10 @@ void ask_light(const Evidence& e, const Visit& visit) {
     const LightIntegrals& l = e.integrals.light;
     const double least = lost_light * l.lit.value;
     Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value, 1};
+    // If no more than `least` were lost, the sum over points that hold at most b each would have a variance of at most
+    // b times `least`.
     a.p = l.lost.value > least
-        ? student_p_of(l.lost.value - least, l.lost.variance, freedom(l.lost.variance, l.lost.doubt))
+        ? bennett_p(bennett_z2(l.lost.value - least, l.largest_lost * least, l.largest_lost, 1e12))
         : 1;
     visit(a);
 }
