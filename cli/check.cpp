@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <set>
 
 #include <charconv>
 #include <filesystem>
@@ -233,10 +234,29 @@ int describe_draws(const CheckFlags& flags, std::span<const Trial> trials, Progr
 
 }  // namespace
 
+namespace {
+
+/// "2.1 s, 3.9 s of CPU time, 45 MB of memory at most; 9,700,000 evaluations ..."
+std::string cost_of(const Judgement& j, double seconds) {
+    std::set<std::pair<std::string, std::string>> cases;
+    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.trial});
+    const Usage used = usage();
+    const double each =
+        static_cast<double>(j.evaluations) / static_cast<double>(std::max<std::size_t>(cases.size(), 1));
+    return fmt::format(
+        "{:.1f} s, {:.1f} s of CPU time, {:.0f} MB of memory at most; {} evaluations of sample, pdf and f, {:.0f} in "
+        "the "
+        "mean of {} cases\n",
+        seconds, used.cpu_seconds, static_cast<double>(used.peak_memory) / 1e6, j.evaluations, each, cases.size());
+}
+
+}  // namespace
+
 int check(const CheckFlags& given) {
     CheckFlags flags = given;
     for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.html})  // a sampler may chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
+    const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());
     StopOnSignal stop(monitor);
     try_files(flags);
@@ -260,6 +280,7 @@ int check(const CheckFlags& given) {
     const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
     if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
     print(verdict_table(j));
+    if (flags.verbose) print(cost_of(j, watch.seconds()));
     if (whole_list)
         print(j.as_expected ? "every arm gets the verdicts expected of it\n"
                             : "not every arm gets the verdicts expected of it\n");

@@ -73,8 +73,9 @@ struct CheckFlags {
     double alpha = 1e-3, patience = 0;      // patience: s a program may take; 0: two minutes, with --full an hour
     double timeout = 0;                     // s that an answer of a program or plugin may take; 0: the defaults
     unsigned seed = 1;
-    unsigned right = 0, first = 0;          // right: how many right samplers; 0: not asked for
+    unsigned right = 0, first = 0;  // right: how many right samplers; 0: not asked for
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
+    bool verbose = false;   // what it took
     bool describe = false;  // what distribution the draws have, and no verdict
 };
 int check(const CheckFlags& flags);

@@ -134,6 +134,7 @@ void add_check(CLI::App& app, Work& work) {
     for (auto* other : {planted, right}) against->excludes(other), wo->excludes(other);
     outputs(*c, *f);
     c->add_flag("--quiet", f->quiet, "no progress; the table stays");
+    c->add_flag("--verbose", f->verbose, "time, memory and evaluations, after the table");
 }
 
 }  // namespace crescent::cli

@@ -145,4 +145,18 @@ std::string program_file() {
 #endif
 }
 
+Usage usage() {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    Usage out;
+#ifdef __APPLE__
+    out.peak_memory = static_cast<std::uint64_t>(used.ru_maxrss);
+#else
+    out.peak_memory = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
+#endif
+    for (const timeval& t : {used.ru_utime, used.ru_stime})
+        out.cpu_seconds += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    return out;
+}
+
 }  // namespace crescent::inline base

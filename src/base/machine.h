@@ -13,6 +13,13 @@ int usable_threads();
 /// RLIMIT_AS.
 std::uint64_t available_memory();
 
+/// Of this process so far: the most memory that it had, in bytes, and the seconds of all its threads.
+struct Usage {
+    std::uint64_t peak_memory = 0;
+    double cpu_seconds = 0;
+};
+Usage usage();
+
 /// The processor's name as Linux has it; "" where it does not, and elsewhere.
 std::string host_cpu();
 

@@ -101,6 +101,7 @@ void cut_whole(const Cut& cut, const Trial& trial, const TestSettings& settings,
     if (valid.state != State::right) return;
     const Said said = said_of(cut, trial, settings);
     valid.state = said.state, valid.say = said.first;
+    if (cut.why == Cut::Why::fault) valid.evidence["first_fault"] = cut.what;
 }
 
 /// Verdicts of one sampler, handed to its trials.

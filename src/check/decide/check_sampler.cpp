@@ -120,10 +120,13 @@ public:
     }
 
     std::vector<CheckOutcome> run() {
-        if (std::ranges::any_of(trials_, [](const Trial& t) { return t.subject->serial(); })) in_turn();
-        else parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
+        if (std::ranges::any_of(trials_, [](const Trial& t) { return t.subject->serial(); })) {
+            in_turn();
+        } else {
+            parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
+            check_whole();
+        }
         for (CheckOutcome& o : outcomes_) {
-            o.whole_cut = cut_of([&] { look_at_whole(trials_, settings_, o); });
             for (const auto& techniques : o.at)
                 for (const CheckAt& c : techniques) o.evaluations += c.evaluations;
         }
@@ -171,6 +174,10 @@ private:
         free(c.integrals.leaves, c.observations.leaves, c.observations.counts);
     }
 
+    void check_whole() {
+        for (CheckOutcome& o : outcomes_) o.whole_cut = cut_of([&] { look_at_whole(trials_, settings_, o); });
+    }
+
     /// The middle first, then the most grazing one: between them they meet most faults.
     void order() {
         std::ranges::sort(
@@ -201,8 +208,8 @@ private:
         return now.seconds + static_cast<double>(dearest) / rate < now.allowed;
     }
 
-    /// By one thread: first few draws at every w_o, then each w_o that there is time for, as far as the dearest one so
-    /// far tells; the first is tried in any case.
+    /// By one thread: first few draws at every w_o and what belongs to none, then each w_o that there is time for, as
+    /// far as the dearest one so far tells; the first is tried in any case.
     void in_turn() {
         order();
         std::vector<std::optional<SmallFault>> looks(jobs_.size());
@@ -214,6 +221,7 @@ private:
             if (trial.subject->draws_at_will())
                 jobs_[j].outcome->cut[jobs_[j].index] = cut_of([&] { looks[j] = look_first(trial, key); });
         }
+        check_whole();
         std::uint64_t dearest = 0;
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
