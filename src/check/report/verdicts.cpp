@@ -10,21 +10,12 @@
 #include "check/decide/tail.h"
 #include "check/report/limits.h"
 #include "check/report/sentences.h"
+#include "check/verdicts/kinds.h"
 #include "judgements/all.h"
 
 namespace crescent::check {
 
 namespace {
-
-/// Whether the sampler gives what a verdict needs.
-bool can_be_asked(const JudgedSampler& s, std::string_view name) {
-    if (name == "normalised") return s.traits().has_pdf;
-    if (name == "support") return s.traits().has_pdf && s.has_f();
-    if (name == "physics") return s.has_f() || s.traits().delta;
-    if (name == "mean") return s.has_f();
-    if (name == "tail") return s.has_drawn_f();
-    return name != "efficiency";  // of several samplers
-}
 
 void add_sizes(const Sizes& s, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
@@ -100,17 +91,20 @@ std::vector<Verdict> verdicts_of(
     std::vector<Verdict> out;
     for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
         const Trial& trial = trials[outcome.trials[k]];
-        for (std::string_view name : verdict_names) {
+        for (std::size_t n = 0; n < verdict_names.size(); ++n) {
+            const std::string_view name = verdict_names[n];
+            const VerdictKind& kind = *verdict_kinds[n];
             Verdict v;
             v.arm = trial.arm, v.trial = trial.text(), v.name = name;
             if (v.trial != without_wo) v.wo = {trial.theta_deg, trial.azimuth_deg};
-            if (!can_be_asked(*trial.subject, name)) {
+            if (!kind.applies(*trial.subject)) {
                 v.state = State::skipped;
                 out.push_back(std::move(v));
                 continue;
             }
             for (const CheckAt& c : outcome.at[k]) {
                 judge_at(c, v);
+                if (kind.add) kind.add(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
             if (name == "tail") judge_tail(trial, outcome.tails[k], v);

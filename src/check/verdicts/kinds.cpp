@@ -1,0 +1,28 @@
+// What each verdict needs of a sampler: a pdf, f, weights.
+#include "check/verdicts/kinds.h"
+
+namespace crescent::check::kinds {
+
+namespace {
+
+bool always(const JudgedSampler&) { return true; }
+bool never(const JudgedSampler&) { return false; }
+bool with_pdf(const JudgedSampler& s) { return s.traits().has_pdf; }
+bool with_pdf_and_f(const JudgedSampler& s) { return s.traits().has_pdf && s.has_f(); }
+bool with_f(const JudgedSampler& s) { return s.has_f(); }
+bool with_power(const JudgedSampler& s) { return s.has_f() || s.traits().delta; }
+bool with_weights(const JudgedSampler& s) { return s.has_drawn_f(); }
+
+}  // namespace
+
+constinit const VerdictKind valid = {.applies = always};
+constinit const VerdictKind support = {.applies = with_pdf_and_f};
+constinit const VerdictKind normalised = {.applies = with_pdf};
+constinit const VerdictKind density = {.applies = always};  // without a pdf: the density that the draws imply
+constinit const VerdictKind identity = {.applies = always};
+constinit const VerdictKind physics = {.applies = with_power};
+constinit const VerdictKind tail = {.applies = with_weights};
+constinit const VerdictKind mean = {.applies = with_f};
+constinit const VerdictKind efficiency = {.applies = never};  // of several samplers: decide/efficiency.h
+
+}  // namespace crescent::check::kinds
