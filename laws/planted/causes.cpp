@@ -1,7 +1,5 @@
-// Which planted faults have a cause that a diagnosis knows, and whether it is the one that is named.
-#include <fmt/format.h>
+// Which planted faults have a cause that can be named, by a word of it.
 #include <map>
-#include <set>
 
 #include "laws/planted/planted.h"
 
@@ -53,24 +51,6 @@ std::vector<PlantedFault> planted_faults(bool full) {
     for (PlantedFault& f : renderer_faults()) out.push_back(std::move(f));
     for (PlantedFault& f : boundary_faults()) out.push_back(std::move(f));
     for (PlantedFault& fault : out) fault.verdict = verdict_of(fault.name);
-    return out;
-}
-
-Explained explained(const PlantedFault& fault, const Judgement& judgement) {
-    Explained out{fault.name, fault.cause, "none", false};
-    std::set<std::string> said;
-    bool other = false;
-    for (const Verdict& v : judgement.verdicts) {
-        if (v.state != State::wrong || !v.evidence.contains("diagnosis")) continue;
-        const std::string name = v.evidence["diagnosis"];
-        if (name == "none") continue;
-        said.insert(name);
-        const bool it = !fault.cause.empty() && name.find(fault.cause) != std::string::npos;
-        out.right = out.right || it;
-        other = other || !it;
-    }
-    out.right = out.right && !other;
-    if (!said.empty()) out.said = fmt::format("{}", fmt::join(said, "; "));
     return out;
 }
 

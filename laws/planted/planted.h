@@ -14,7 +14,7 @@ struct PlantedFault {
     std::string name;    // a few words
     std::string breaks;  // the arm it breaks
     std::vector<Trial> trials;
-    std::string cause{};    // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
+    std::string cause{};  // a word of the factor that explains it; "" where it is none of those that a diagnosis knows
     std::string verdict{};  // the one that asks for it; "" where several do
 };
 
@@ -31,12 +31,5 @@ std::vector<PlantedFault> held_out_faults();
 std::vector<PlantedFault> held_out_lobe_faults();
 std::string cause_of(const std::string& fault);
 std::string verdict_of(const std::string& fault);
-
-/// What was said of a planted fault over its w_o.
-struct Explained {
-    std::string fault, cause, said;  // said: the factors, or "none"
-    bool right = false;              // it has a cause, which is named, and nothing else is
-};
-Explained explained(const PlantedFault& fault, const Judgement& judgement);
 
 }  // namespace crescent
