@@ -136,12 +136,8 @@ std::string implied_html(const Verdict& v) {
         out += fmt::format("<tr><td>{:.0f} to {:.0f}<td>{:.4g}<td>{:.2g}", row[0].get<double>(), row[1].get<double>(),
             row[2].get<double>(), row[3].get<double>());
     return out +
-        fmt::format(
-            "</table><p>In the JSON these are <code>implied_rings</code>; every bin stands in "
-            "<code>implied_bins</code>{}.</p>",
-            v.evidence.contains("implied_density")
-                ? ", and the density by 1/|Jacobian|, direction by direction, in <code>implied_density</code>"
-                : "");
+        "</table><p>In the JSON these are <code>implied_rings</code>; cells of about equal numbers of draws are "
+        "<code>implied_bins</code>.</p>";
 }
 
 }  // namespace crescent::inline judgements

@@ -1,5 +1,5 @@
-// Read off the evidence: implied_rings and implied_peak of density (implied.cpp), not_looked_at of physics. Rings of
-// 15 degrees are means of the evidence's own, by solid angle.
+// Read off the evidence: implied_rings and implied_peak of density (check/report/implied.cpp), not_looked_at of
+// physics. Rings of 15 degrees are means of the evidence's own, by solid angle.
 #include "judgements/told_last.h"
 
 #include <algorithm>
@@ -52,12 +52,11 @@ std::string line_of(const Verdict& v, const std::string& name) {
 
 std::string implied_told(const Judgement& j) {
     std::vector<const Verdict*> all;
-    bool one_arm = true, warp = false;
+    bool one_arm = true;
     for (const Verdict& v : j.verdicts)
         if (v.evidence.contains("implied_rings")) {
             all.push_back(&v);
             one_arm = one_arm && v.arm == all[0]->arm;
-            warp = warp || v.evidence.contains("implied_density");
         }
     if (all.empty()) return "";
     std::string out = fmt::format("{:<20}", "degrees from n");
@@ -69,8 +68,7 @@ std::string implied_told(const Judgement& j) {
     if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
     return "The density that the draws imply, there being no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +
-        out + "Finer in the JSON: implied_rings, implied_bins" +
-        (warp ? " and, by 1/|Jacobian| of the warp, implied_density." : ".");
+        out + "Finer in the JSON: implied_rings, implied_bins.";
 }
 
 std::string not_looked_at_told(const Judgement& j) {
