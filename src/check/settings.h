@@ -24,7 +24,7 @@ struct TestSettings {
     std::optional<check::CheckBudget> budget{};  // of each w_o; empty: that of the mode, or of the questions
 
     static TestSettings quick() { return {}; }
-    /// Six times as many evaluations at each w_o and twice as many w_o: of a cosine lobe 1.0 s of processor time for
+    /// More evaluations at each w_o and twice as many w_o: of a cosine lobe, measured once, 1.0 s of processor time for
     /// each w_o, where quick takes 0.2 s.
     static TestSettings thorough() {
         TestSettings r;
