@@ -5,7 +5,6 @@
 #include "check.h"
 #include "laws/planted/planted.h"
 #include "laws/right/law.h"
-#include "stats/rates.h"
 
 namespace crescent::cli {
 

@@ -74,6 +74,7 @@
 #include "scene/shadow.h"
 #include "simd/random.h"
 #include "stats/quantiles.h"
+#include "stats/rates.h"
 #include "stats/tail.h"
 #include "studies/evidence.h"
 #include "studies/monte_carlo_reference.h"

@@ -125,8 +125,8 @@ std::pair<std::string, std::string> described(
     const auto work = [&] { all = check::describe(trials.all, settings, monitor); };
     tell(trials, &raised);
     try {
-        watched(monitor, raised, progress, is_serial(trials),
-            [&] { threads > 0 ? on_threads(threads, work) : work(); });
+        watched(
+            monitor, raised, progress, is_serial(trials), [&] { threads > 0 ? on_threads(threads, work) : work(); });
     } catch (...) {
         tell(trials, nullptr);
         throw;

@@ -18,6 +18,7 @@ struct Usage {
     std::uint64_t peak_memory = 0;
     double cpu_seconds = 0;
 };
+/// What this process has used so far; zeros where the system does not say.
 Usage usage();
 
 /// The processor's name as Linux has it; "" where it does not, and elsewhere.

@@ -45,9 +45,9 @@ inline constexpr double least_count = 20;
 /// With 0.3 that passes alpha1 from f = 0.28 on, where both stages together have a probability below 1e-9.
 inline constexpr double least_jumps = 0.3;
 
-/// Standard deviation, of the mass, that is added where the integral alone is uncertain: its variance may rest on the few
-/// cells at an edge, whose few degrees of freedom would ask for any multiple of a number far below the floor. Cost: a
-/// tenth of the floor.
+/// Standard deviation, of the mass, that is added where the integral alone is uncertain: its variance may rest on the
+/// few cells at an edge, whose few degrees of freedom would ask for any multiple of a number far below the floor. Cost:
+/// a tenth of the floor.
 inline constexpr double least_spread = detection_floor / 20;
 
 // ---- arithmetic of the sampler

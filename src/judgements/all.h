@@ -7,16 +7,16 @@
 #include <string_view>
 
 // clang-format off: one a line
-#define CRESCENT_VERDICTS(verdict)                              \
-    verdict(valid, "can what comes back be used?")              \
-    verdict(support, "does p reach wherever f L cos is not 0?") \
-    verdict(normalised, "does p integrate to one?")             \
-    verdict(density, "do the draws follow p?")                  \
-    verdict(identity, "does the sampler agree with itself?")    \
-    verdict(physics, "is f a BRDF?")                            \
-    verdict(tail, "how heavy is the weight X = f L cos / p?")   \
-    verdict(mean, "is the mean of X the integral?")             \
-    verdict(efficiency, "what does a sample cost?")
+#define CRESCENT_VERDICTS(verdict)                                                                              \
+    verdict(valid, "are all densities and weights finite and non-negative, and all directions of unit length?") \
+    verdict(support, "is p > 0 wherever f L cos > 0?")                                                          \
+    verdict(normalised, "does p integrate to the share of samples that draw a direction?")                      \
+    verdict(density, "do the draws follow p?")                                                                  \
+    verdict(identity, "do the sampler's functions agree?")                                                      \
+    verdict(physics, "is f a BRDF?")                                                                            \
+    verdict(tail, "how heavy is the weight f L cos / p?")                                                       \
+    verdict(mean, "do the weights average to the integral?")                                                    \
+    verdict(efficiency, "how large is variance times cost, against uniform and cosine sampling?")
 // clang-format on
 
 namespace crescent::inline judgements {

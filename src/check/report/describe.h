@@ -40,6 +40,7 @@ struct Description {
     std::vector<Interval> map;  // share of the draws by bin, rings first
 };
 
+/// Seed and number of draws at each w_o, fewer for programs, plugins and Python.
 struct DescribeSettings {
     std::uint32_t seed = 1;
     std::uint32_t draws = 1u << 16, draws_of_limited = 1u << 14;
