@@ -65,6 +65,8 @@ void note_unseen(std::vector<WeighedPoint> unseen, WeightTail& to) {
         light += unseen[i].light, to.half_chance += unseen[i].chance;
 }
 
+double standard_error(const stats::Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
+
 /// Draws whose mean has a standard error of 1 %.
 double draws_for_1_percent(const stats::Spread& s) {
     return s.mean > 0 ? std::max(s.sd * s.sd / (s.mean * s.mean) / 1e-4, 1.0) : 1;
@@ -121,8 +123,7 @@ bool has_weights(std::span<const CheckAt> techniques) {
 }  // namespace
 
 bool WeightTail::has_unseen() const {
-    const double se = spread.sd / std::sqrt(std::max(spread.n, 1.0));
-    return due > 0 && unseen - 2 * unseen_error > unseen_errors * se + detection_floor * due &&
+    return due > 0 && unseen - 2 * unseen_error > unseen_errors * standard_error(spread) + detection_floor * due &&
         spread.n * unseen_chance < -math::log(missed_by_chance);
 }
 
@@ -197,10 +198,14 @@ void judge_tail(const Trial& trial, const WeightTail& t, Verdict& v) {
     }
 }
 
-void leave_heavy_mean_open(const WeightTail& t, Verdict& v) {
-    if (v.state != State::right || !t.weighed) return;
+void judge_plain_mean(const WeightTail& t, Verdict& v) {
+    if (!t.weighed) return;
+    v.evidence["draws"] = t.spread.n;
+    v.evidence["mean"] = t.spread.mean;
+    v.evidence["standard_error"] = standard_error(t.spread);
+    if (t.due > 0) v.evidence["quadrature"] = t.due;
+    if (v.state != State::right) return;
     if (t.has_unseen()) {
-        v.evidence["mean"] = t.spread.mean, v.evidence["quadrature"] = t.due;
         v.say = fmt::format(
             "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}. ", t.spread.n, t.spread.mean, t.due);
         tell_unseen(t, v);

@@ -42,8 +42,8 @@ WeightTail tail_of(std::span<const CheckAt> techniques);
 
 /// The verdict `tail`: right, or inconclusive with what would settle it, or skipped.
 void judge_tail(const Trial& trial, const WeightTail& t, Verdict& v);
-/// The verdict `mean` of weights without a variance: what was tested is right, but no interval of their plain mean
-/// means anything.
-void leave_heavy_mean_open(const WeightTail& t, Verdict& v);
+/// The plain mean of the weights, into the evidence of `mean`, which stays open where they have no variance: what was
+/// tested is right, but no interval of the plain mean means anything.
+void judge_plain_mean(const WeightTail& t, Verdict& v);
 
 }  // namespace crescent::check

@@ -50,7 +50,7 @@ JudgedTail tail_at(const PowerLobe& sampler) {
     JudgedTail out;
     out.of = tail_of({&c, 1});
     judge_tail(t, out.of, out.tail);
-    leave_heavy_mean_open(out.of, out.mean);
+    judge_plain_mean(out.of, out.mean);
     return out;
 }
 
@@ -73,6 +73,17 @@ TEST(TailOfWeights, IsRightWhereWeightsAreAlike) {
     EXPECT_EQ(t.tail.state, State::right);
     EXPECT_FALSE(t.of.has_unseen());
     EXPECT_NEAR(t.tail.evidence["samples_for_1_percent"].get<double>(), 1, 1e-9);
+}
+
+TEST(TailOfWeights, TellsThePlainMeanAndItsError) {
+    PowerLobe lobe;
+    lobe.s = 2;
+    const nlohmann::ordered_json e = tail_at(lobe).mean.evidence;
+    const double error = e["standard_error"].get<double>();
+    EXPECT_GT(error, 0);
+    EXPECT_LT(error, 0.01);
+    EXPECT_NEAR(e["mean"].get<double>(), e["quadrature"].get<double>(), 5 * error);
+    EXPECT_NEAR(e["quadrature"].get<double>(), 1, 1e-3);  // the albedo
 }
 
 /// One draw in 1e6 is of the cosine, which carries nearly all of the light: no draw meets it.

@@ -108,7 +108,7 @@ std::vector<Verdict> verdicts_of(
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
             if (name == "tail") judge_tail(trial, outcome.tails[k], v);
-            if (name == "mean") leave_heavy_mean_open(outcome.tails[k], v);
+            if (name == "mean") judge_plain_mean(outcome.tails[k], v);
             for (const CheckAt& c : outcome.at[k]) note_limits(*trial.subject, c, v);
             if (k == 0)
                 for (const SmallFault& f : outcome.small)
