@@ -247,11 +247,11 @@ std::string unseen_told(const Judgement& judgement) {
             said.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
     };
     say("constant", "a constant factor of {:.2g} %", 100);
-    say("leak", "{:.2g} % of the draws that are uniform", 100);
-    say("cap", "a cap with {:.2g} % of p that is never drawn", 100);
+    say("leak", "{:.2g} % of the draws uniform", 100);
+    say("cap", "a cap with {:.2g} % of p never drawn", 100);
     say("rotation", "a rotation by {:.2g} rad", 1);
-    say("parameter", "an exponent that is off by {:.2g} %", 100);
-    return said.empty() ? "" : fmt::format("What is right could hide {}.", fmt::join(said, ", or "));
+    say("parameter", "an exponent off by {:.2g} %", 100);
+    return said.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(said, ", "));
 }
 
 std::string nothing_drawn_told(const Judgement& judgement) {

@@ -31,8 +31,8 @@ std::vector<Finding> findings_of(const Judgement& judgement);
 std::string told(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
 /// "Left out: all but valid at 3 of 8 cases (w_o 0 deg, ...). Not looked at: ..."; "" where nothing was.
 std::string left_out_told(const Judgement& judgement);
-/// What those that are right could hide, over all cases: "a constant factor of 0.03 %, or ..."; "" where nothing
-/// is stated.
+/// Sizes of faults that right verdicts would have found, over all cases: "... a constant factor of 0.03 %, ..."; ""
+/// where nothing is stated.
 std::string unseen_told(const Judgement& judgement);
 /// What share of the draws drew nothing where that is most, over 1 %; "" where it is nowhere.
 std::string nothing_drawn_told(const Judgement& judgement);

@@ -1,6 +1,7 @@
 // Each sentence is computed from the numbers of the finding alone. w_o is named by the verdict that it stands in.
 #include "check/report/sentences.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
@@ -170,6 +171,49 @@ std::string sentence_of(const SmallFault& f, int numbers) {
     const std::string where = first_at(f.first, numbers);
     return out + ", " + (f.wo ? fmt::format("first at w_o = {}, {}", direction_text(*f.wo), where.substr(9)) : where) +
         ".";
+}
+
+namespace {
+
+/// The least p-value of a verdict's families, and how many of them were tested.
+std::pair<double, int> least_p(const CheckAt& c, std::string_view verdict) {
+    std::pair<double, int> out{1, 0};
+    for (const Answer& a : c.answers)
+        if (info(a.family).verdict == verdict) out.first = std::min(out.first, a.p), ++out.second;
+    return out;
+}
+
+std::string albedo_sentence(const CheckAt& c) {
+    double most = 0, half = 0;
+    for (const Answer& a : c.answers)
+        if (a.family == Family::albedo && a.difference + a.expected > most)
+            most = a.difference + a.expected, half = interval * a.sd;
+    return most > 0 ? fmt::format("{} of an even light is reflected or transmitted.", with_error(most, half)) : "";
+}
+
+std::string mean_sentence(const CheckAt& c) {
+    for (const Answer& a : c.answers)
+        if (a.family == Family::mean && a.expected > 0)
+            return fmt::format("Weights average to {} times the integral of f L cos.",
+                with_error(1 + a.difference / a.expected, interval * a.sd / a.expected));
+    return "The weights average to the integral of f L cos.";
+}
+
+}  // namespace
+
+std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
+    const Estimate& whole = c.integrals.sums[mass];
+    if (verdict == "valid") return fmt::format("{} evaluations can be used.", c.evaluations);
+    if (verdict == "support")
+        return fmt::format("f L cos is 0 wherever p is 0, at {:.0f} points.", c.integrals.light.points);
+    if (verdict == "normalised")
+        return fmt::format("p integrates to {}.", with_error(whole.value, interval * std::sqrt(whole.variance)));
+    if (verdict == "physics") return albedo_sentence(c);
+    if (verdict == "mean") return mean_sentence(c);
+    if (const auto [p, families] = least_p(c, verdict); families > 0 && verdict == "density")
+        return fmt::format("Draws follow p in {} families of tests; the least p-value is {:.2g}.", families, p);
+    if (verdict == "identity") return "The functions of the sampler agree.";
+    return "";
 }
 
 }  // namespace crescent::check

@@ -99,6 +99,7 @@ std::vector<Verdict> verdicts_of(
             if (v.trial != without_wo) v.wo = {trial.theta_deg, trial.azimuth_deg};
             if (!kind.applies(*trial.subject)) {
                 v.state = State::skipped;
+                v.say = kind.needs;
                 out.push_back(std::move(v));
                 continue;
             }
@@ -115,6 +116,8 @@ std::vector<Verdict> verdicts_of(
                     if (info(f.family).verdict == name)
                         v.state = State::wrong,
                         v.say += (v.say.empty() ? "" : " ") + sentence_of(f, trial.subject->traits().numbers);
+            if (v.state == State::right && v.say.empty() && !outcome.at[k].empty())
+                v.say = sentence_of_right(outcome.at[k][0], name);
             out.push_back(std::move(v));
         }
     }

@@ -16,13 +16,14 @@ bool with_weights(const JudgedSampler& s) { return s.has_drawn_f(); }
 }  // namespace
 
 constinit const VerdictKind valid = {.applies = always};
-constinit const VerdictKind support = {.applies = with_pdf_and_f};
-constinit const VerdictKind normalised = {.applies = with_pdf};
+constinit const VerdictKind support = {.applies = with_pdf_and_f, .needs = "Needs pdf and f."};
+constinit const VerdictKind normalised = {.applies = with_pdf, .needs = "Needs pdf."};
 constinit const VerdictKind density = {.applies = always};  // without a pdf: the density that the draws imply
 constinit const VerdictKind identity = {.applies = always};
-constinit const VerdictKind physics = {.applies = with_power};
-constinit const VerdictKind tail = {.applies = with_weights};
-constinit const VerdictKind mean = {.applies = with_f};
-constinit const VerdictKind efficiency = {.applies = never};  // of several samplers: decide/efficiency.h
+constinit const VerdictKind physics = {.applies = with_power, .needs = "Needs f."};
+constinit const VerdictKind tail = {.applies = with_weights, .needs = "Needs f or weights."};
+constinit const VerdictKind mean = {.applies = with_f, .needs = "Needs f."};
+constinit const VerdictKind efficiency = {
+    .applies = never, .needs = "Needs f and another sampler at the same w_o."};  // decide/efficiency.h
 
 }  // namespace crescent::check::kinds

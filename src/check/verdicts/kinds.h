@@ -14,6 +14,7 @@ namespace crescent::check {
 struct VerdictKind {
     /// Whether a sampler provides what the verdict needs; else it is skipped.
     bool (*applies)(const JudgedSampler&);
+    const char* needs = "";  // said of a verdict that is skipped
     /// Adds to the verdict at one w_o what no family says; null: nothing.
     void (*add)(const CheckAt&, Verdict&) = nullptr;
 };
