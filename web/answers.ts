@@ -9,6 +9,8 @@ import { quoted, Source } from "./state";
 /** `kind` names what was found: the lesson has a sentence for it. */
 export interface Found { answer: string; kind: string; lines: string[]; pixel?: [number, number] }
 
+/** Of a sampler at one w_o; the program makes five times as many. A reader waits for up to seven surfaces at once. */
+export const evaluations = 300_000;
 const builtIn = ["uniform", "cosine", "phong"]; // arms that the experiment of the lessons has
 
 /** Asks the core on the experiment of the lessons, whatever the bench shows. */
@@ -39,7 +41,7 @@ export class Asker {
   private all(of: readonly Measured[]): Promise<unknown[]> { return Promise.all(of.map((m) => this.measured(m))); }
 
   /** The verdicts of a sampler at one w_o. */
-  judged<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("judged", { sampler, theta }, this.opened([], [])); }
+  judged<T>(sampler: string, theta: number): Promise<T> { return this.model.ask<T>("judged", { sampler, theta, evaluations }, this.opened([], [])); }
 
   /** The furnaces at an exponent and a number of samples. */
   furnaces(lesson: Lesson, s: number, n: number): Promise<Found> { return this.model.ask<Found>("furnaces_of", { ...lesson.answer, n }, this.opened([`sphere.s=${s}`], [])); }

@@ -1,5 +1,6 @@
 // `check` in the page: an arm of the list at one w_o, or a planted fault at the nearest of its own, judged by the same
-// calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence.
+// calls as the program's. `crescent check ARM --wo THETA` gives the same verdicts and the same evidence, of as many
+// evaluations.
 #include <algorithm>
 #include <cmath>
 
@@ -35,15 +36,19 @@ ordered_json told_verdict(const Verdict& v) {
 
 }  // namespace
 
-/// {sampler, theta} -> {name, state, cases: [{surface, trial, verdicts: [{name, state, say, evidence}]}]}; what depends
-/// on a clock, efficiency, is left out.
+/// {sampler, theta, evaluations} -> {name, state, cases: [{surface, trial, verdicts: [{name, state, say, evidence}]}]};
+/// so many evaluations at each w_o, those of the program where it is not asked; what depends on a clock, efficiency, is
+/// left out.
 CRESCENT_EXPORT(judged)()->void {
     const ordered_json asked = request();
     const std::string name = asked.at("sampler").get<std::string>();
     std::vector<Trial> trials = trials_named(name, asked.at("theta").get<double>());
     for (Trial& t : trials) t.subject = paused(t.subject);
     ProgressMonitor monitor;
-    const Judgement judgement = judge(trials, TestSettings::quick(), monitor);
+    TestSettings settings = TestSettings::quick();
+    if (asked.contains("evaluations"))
+        settings.budget = check::CheckBudget::limited(asked.at("evaluations").get<double>());
+    const Judgement judgement = judge(trials, settings, monitor);
     ordered_json out = {{"name", name}, {"state", word(State::right)}, {"cases", ordered_json::array()}};
     bool wrong = false, doubt = false;
     for (const Trial& t : trials) {

@@ -1,6 +1,6 @@
 // `check` on the page: a sampler at one w_o, its verdicts in a table; and samplers shown by their draws over the density
 // that they claim.
-import { Asker } from "./answers";
+import { Asker, evaluations } from "./answers";
 import { choice } from "./controls";
 import { el, minus } from "./dom";
 import { Lesson } from "./lessons";
@@ -30,7 +30,7 @@ export function checkPanel(asker: Asker, lesson: Lesson): HTMLElement {
       const judged = await asker.judged<Judged>(sampler, at);
       if (mine !== asked) return;
       // A planted fault has a name of several words; the program judges it at three w_o in one call.
-      const how = sampler.includes(" ") ? ["; the program judges such faults by ", "crescent check --planted"] : [", as from ", `crescent check ${sampler} --wo ${at}`];
+      const how = sampler.includes(" ") ? ["; the program judges such faults by ", "crescent check --planted"] : [`, from ${evaluations} evaluations a surface; the program makes five times as many: `, `crescent check ${sampler} --wo ${at}`];
       out.replaceChildren(el("p", {}, el("b", {}, judged.state), how[0], el("code", {}, how[1])), ...judged.cases.map(table));
     } catch (error) {
       out.replaceChildren(el("p", { class: "bad" }, `It could not be judged: ${error instanceof Error ? error.message : error}.`));

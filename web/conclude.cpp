@@ -93,9 +93,18 @@ const ordered_json& verdict_of(const ordered_json& one, const std::string& name)
         if (v.at("name").get<std::string>() == name) return v;
     throw InputError({"lesson", 0, 0}, "no verdict '" + name + "' in " + one.dump());
 }
+/// The smallest p-value of a verdict, each for all members of its family; "" where it has none.
+std::string least_p(const ordered_json& v) {
+    const ordered_json all = v.at("evidence").value("p", ordered_json::object());
+    double least = 1;
+    for (const auto& p : all) least = std::min(least, p.get<double>());
+    if (all.empty()) return "";
+    return fmt::format("; the smallest p-value of its tests, {} in all, is {}", all.size(), figures(least, 2));
+}
 std::string told_of(const ordered_json& v) {
     const auto name = v.at("name").get<std::string>(), state = v.at("state").get<std::string>(),
                say = v.at("say").get<std::string>();
+    if (say.empty()) return fmt::format("{}: {}{}", name, state, least_p(v));
     return say.starts_with(state) ? fmt::format("{}: {}", name, say) : fmt::format("{}: {}. {}", name, state, say);
 }
 std::string state_of(const ordered_json& v) { return v.at("state").get<std::string>(); }
@@ -134,8 +143,7 @@ Found beside_t_test(const ordered_json& one) {
     const ordered_json& e = mean.at("evidence");
     const double off = e.at("mean").get<double>() - e.at("quadrature").get<double>(),
                  t = off / e.at("standard_error").get<double>();
-    const double draws = verdict_of(one, "valid").at("evidence").at("draws").get<double>();
-    const double p = student_p(t, draws - 1);
+    const double p = student_p(t, e.at("draws").get<double>() - 1);
     const bool rejects = p < TestSettings{}.alpha;
     Found out{state_of(mean), (rejects ? "rejects-" : "passes-") + state_of(mean), {}};
     out.lines.push_back(fmt::format("The t-test: mean {} ± {}, integral {}, t = {}, p {} {}: it {}",

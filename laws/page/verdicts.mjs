@@ -8,17 +8,17 @@ const module = await WebAssembly.compile(readFileSync(compiled));
 const Instance = WebAssembly.Instance;
 
 /** What it says, and the work of each of its parts. */
-function judged(sampler, theta) {
+function judged(sampler, theta, evaluations) {
   const door = new Door(module), parts = [];
-  let said = door.ask("judged", { sampler, theta });
+  let said = door.ask("judged", { sampler, theta, evaluations });
   for (; said.more; said = door.ask("go_on")) parts.push(door.number("worked"));
   return { said, parts: [...parts, door.number("worked")] };
 }
 
 /** The same in one part. */
-function whole(sampler, theta) {
+function whole(sampler, theta, evaluations) {
   WebAssembly.Instance = function (of, imports) { return new Instance(of, { ...imports, door: { ...imports.door, pause() {} } }); };
-  const { said, parts } = judged(sampler, theta);
+  const { said, parts } = judged(sampler, theta, evaluations);
   WebAssembly.Instance = Instance;
   if (parts.length !== 1) throw new Error(`${sampler} was to be judged at once, not in ${parts.length} parts`);
   return said;
@@ -29,9 +29,9 @@ function hold(is, words) { if (!is) throw new Error(words); }
 const most = new Door(module).number("most_of_part");
 const faults = ["sqrt forgotten", "pdf off by 1 %", "phi over half a turn", "cosine", "cosine folded in twice", "s+2 for s+1 in the pdf"];
 for (const name of faults) {
-  const { said, parts } = judged(name, 45);
+  const { said, parts } = judged(name, 45, 300_000);
   hold(parts.length > 10 && Math.max(...parts) <= most, `${name}: ${parts.length} parts, of ${Math.max(...parts)} samples, not ${most}`);
-  hold(isDeepStrictEqual(said, whole(name, 45)), `${name} is judged otherwise in ${parts.length} parts`);
+  hold(isDeepStrictEqual(said, whole(name, 45, 300_000)), `${name} is judged otherwise in ${parts.length} parts`);
 }
 const { verdicts } = JSON.parse(readFileSync(native, "utf8")), arm = verdicts[0].arm;
 let compared = 0;
