@@ -13,7 +13,7 @@ namespace {
 struct Kind {
     Family family, by_sets;
 };
-constexpr Kind kinds[integrands] = {{Family::mass, Family::mass_sets}, {Family::bridge, Family::bridge_sets},
+constexpr Kind sum_kinds[integrands] = {{Family::mass, Family::mass_sets}, {Family::bridge, Family::bridge_sets},
     {Family::slope, Family::slope_sets}, {Family::centre, Family::centre_sets}, {Family::centre, Family::centre_sets},
     {Family::centre, Family::centre_sets}};
 
@@ -72,7 +72,7 @@ void ask_sums(const Evidence& e, const Visit& visit) {
         const Estimate& claimed = e.integrals.sums[at];
         const double mean = o.sums[at].sum / n;
         const double floor = floor_of_sum(e, q);
-        Answer a{kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
+        Answer a{sum_kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
         const double v = drawn_variance(e, q) + claimed.variance;
         a.sd = std::sqrt(v), a.claimed = claimed.variance / (v + 1e-300);
         const double beyond = std::fabs(a.difference) - floor, nu = freedom(v, claimed.doubt);
@@ -81,7 +81,7 @@ void ask_sums(const Evidence& e, const Visit& visit) {
         visit(a);
         if (o.scrambled == 0 || !vary) continue;
         const ReplicateMean<Replicates> sets = replicate_mean(e, q);
-        a.family = kinds[q].by_sets;
+        a.family = sum_kinds[q].by_sets;
         a.difference = sets.mean - claimed.value;
         const double w = sets.variance + claimed.variance + unmet[at] / o.scrambled;
         a.sd = std::sqrt(w), a.claimed = claimed.variance / (w + 1e-300);
