@@ -78,7 +78,7 @@ std::vector<Trial> at(const Recipe& recipe, std::initializer_list<std::pair<doub
     return out;
 }
 
-constexpr std::uint64_t promised = 500000;
+constexpr std::uint64_t promised = 500000, in_process = 1500000;
 
 /// Seen from the denser side, past the angle of total reflection, a number chooses at a few points alone.
 TEST(Programs, OfRightGlassAreConclusiveWithinWhatTheyAreAsked) {
@@ -206,19 +206,20 @@ struct WrinkledForMany : Wrinkled<std::atomic<std::uint64_t>> {
     double pdf(Vec3d, Vec3d wi) const { return wrinkled(wi); }
 };
 
-/// A struct is spared as a program is, whether one thread asks it or all, and it is told how often it was asked.
-TEST(Structs, AreCountedAndSparedAsProgramsAre) {
+/// A struct in this process is asked as often as an arm of the list, whether one thread asks it or all, and it is told
+/// how often it was asked.
+TEST(Structs, AreCountedAndSparedAsArmsAre) {
     TestSettings settings = TestSettings::quick();
     settings.wo = {{30, 0}, {85, 75}};
     std::uint64_t by_one = 0;
     EXPECT_EQ(judge_sampler("wrinkled", WrinkledForOneThread{{&by_one}}, settings).questions, by_one);
-    EXPECT_LE(by_one, 2 * promised);
+    EXPECT_LE(by_one, 2 * in_process);
     std::atomic<std::uint64_t> by_many = 0;
     EXPECT_EQ(judge_sampler("wrinkled", WrinkledForMany{{&by_many}}, settings).questions, by_many);
-    EXPECT_LE(by_many, 2 * promised);
+    EXPECT_LE(by_many, 2 * in_process);
     by_many = 0;
     judge_sampler("wrinkled", WrinkledForMany{{&by_many}});
-    EXPECT_LE(by_many, 8 * promised) << "four million at the w_o of the grid together";
+    EXPECT_LE(by_many, 12 * in_process);
 }
 
 /// However many threads ask it, a struct is asked the same.

@@ -12,6 +12,7 @@
 #include "check/report/pictures.h"
 #include "check/report/verdicts.h"
 #include "judgements/all.h"
+#include "subjects/capped.h"
 #include "subjects/faults.h"
 
 namespace crescent {
@@ -104,10 +105,35 @@ void cut_whole(const Cut& cut, const Trial& trial, const TestSettings& settings,
     if (cut.why == Cut::Why::fault) valid.evidence["first_fault"] = cut.what;
 }
 
+/// Questions to a program for each w_o that belong to none of its estimates, at most: f at the draws of two baselines,
+/// seven turns of 512 samples each that are timed, the first draws, a rose. And for the call: corners, reciprocity.
+constexpr std::size_t asked_beside = 16000, asked_for_all = 8000;
+
+/// Trials whose programs may be asked what is left of what they may be asked in all, less what follows.
+std::vector<Trial> with_what_is_left(std::span<const Trial> trials, const TestSettings& settings) {
+    std::vector<Trial> out(trials.begin(), trials.end());
+    const auto w_o = static_cast<std::size_t>(std::ranges::count_if(out, [](const Trial& t) { return !t.baseline; }));
+    const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
+    for (Trial& t : out)
+        if (t.subject->limited())
+            t.subject = std::make_shared<CappedSampler>(t.subject, in_all - std::min(in_all, w_o * asked_beside));
+    return out;
+}
+
+/// What is wrong, as far as the evaluations that are left tell.
+std::optional<check::Cause> cause_of(
+    std::span<const Trial> trials, const CheckOutcome& outcome, const TestSettings& settings) {
+    if (!outcome.wrong()) return {};
+    const std::vector<Trial> capped = with_what_is_left(trials, settings);
+    try {
+        return check::cause_of(capped, outcome);
+    } catch (const SubjectFault&) { return {}; }  // they did not suffice, or it ended meanwhile
+}
+
 /// Verdicts of one sampler, handed to its trials.
 void distribute(std::span<const Trial> trials, const CheckOutcome& outcome, const TestSettings& settings, ByTrial& to,
     Judgement& j) {
-    const std::optional<check::Cause> cause = outcome.wrong() ? check::cause_of(trials, outcome) : std::nullopt;
+    const std::optional<check::Cause> cause = cause_of(trials, outcome, settings);
     std::vector<Verdict> all = check::verdicts_of(trials, outcome, cause);
     auto next = all.begin();
     for (std::size_t k = 0; k < outcome.trials.size(); ++k) {
@@ -196,10 +222,11 @@ constexpr std::size_t least_evaluations = 200000;
 CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
     if (settings.budget) return *settings.budget;
     if (limited) {
-        // A twelfth of all is for what belongs to no w_o, and for the arms beside it.
+        // A twelfth of all is for what belongs to no w_o, for the arms beside it and for causes.
         const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
-        return CheckBudget::limited(
-            static_cast<double>(std::min(settings.questions, std::max(each, least_evaluations))));
+        const std::size_t beside = asked_beside + asked_for_all / std::max<std::size_t>(w_o, 1);
+        return CheckBudget::limited(static_cast<double>(
+            std::min(settings.questions - std::min(settings.questions, beside), std::max(each, least_evaluations))));
     }
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }
