@@ -154,6 +154,18 @@ std::vector<Trial> trials_for(const CheckFlags& flags, const ProgressMonitor& mo
     return {t};
 }
 
+bool whole_list(const CheckFlags& flags) {
+    return flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
+}
+
+/// Of hundreds of cases each ends at the first look that leaves nothing open.
+TestSettings settings_of_list(const CheckFlags& flags) {
+    TestSettings r = test_settings_of(flags);
+    r.budget = flags.full ? check::CheckBudget::thorough() : check::CheckBudget::quick();
+    r.budget->stop_when_targets_met = !flags.full;
+    return r;
+}
+
 /// The command that judges alike; where the files go is left out, so that equal calls state equal commands.
 std::string command_of(const CheckFlags& f) {
     std::string out = "crescent check";
@@ -273,15 +285,15 @@ int check(const CheckFlags& given) {
         if (flags.describe) return describe_draws(flags, trials, monitor);
         if (!flags.against.empty()) return check_against(flags, trials, waivers, same, monitor);
         tell_cost(trials, test_settings_of(flags), monitor);
-        j = judge(trials, test_settings_of(flags), monitor);
+        j = judge(trials, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
     } catch (const SubjectFault& fault) { j = complaint(fault, flags, flags.exec.empty() ? flags.plugin : flags.exec); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
-    const bool whole_list = flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
-    if (whole_list) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
+    const bool all = whole_list(flags);
+    if (all) j.state = j.as_expected ? State::right : State::wrong;  // the question is whether the list is right
     print(verdict_table(j));
     if (flags.verbose) print(cost_of(j, watch.seconds()));
-    if (whole_list)
+    if (all)
         print(j.as_expected ? "every arm gets the verdicts expected of it\n"
                             : "not every arm gets the verdicts expected of it\n");
     write_files(flags, j);

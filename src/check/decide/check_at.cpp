@@ -142,7 +142,7 @@ private:
             if (best.p() < level_of(look)) suspects.push_back(best);
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
-        return budget_.stop_when_targets_met && worst_ratio(sizes(e, level_of(look))) <= 1;
+        return budget_.stop_when_targets_met && worst_ratio(sizes(e, level_of(look))) <= out_.most_ratio();
     }
 
     /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is

@@ -287,7 +287,7 @@ private:
 /// The mass of a cap that is found wherever a draw is its centre, but for one place in ten.
 std::optional<double> cap_of(
     const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes, const Sample& sample) {
-    constexpr std::size_t centres = 64;
+    constexpr std::size_t centres = 256;
     if (sample.w.empty()) return {};
     Caps caps(e, sums, nodes);
     std::vector<double> sizes;

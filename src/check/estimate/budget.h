@@ -58,7 +58,7 @@ inline Look look_again(double evaluations, double of_points, Kinds kinds) {
 struct CheckBudget {
     double evaluations = 1.5e6;
     int looks = 2;  // each eight times the one before
-    /// Stop at the first look at which every target is met, too.
+    /// Stop, too, at the first look at which every target is met within what leaves a verdict open (inconclusive_at).
     bool stop_when_targets_met = false;
 
     /// A look where draws and points are all that is evaluated.
