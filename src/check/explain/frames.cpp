@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simd/frame.h"
+
 namespace crescent::check {
 
 namespace {
@@ -142,6 +144,8 @@ public:
         return bend > 0 ? 1 / std::sqrt(bend * static_cast<double>(count_)) : step;
     }
 
+    double count() const { return static_cast<double>(count_); }
+
 private:
     const Place& place_;
     std::size_t count_;
@@ -165,6 +169,17 @@ Vec3d climb(Vec3d from, std::span<const Vec3d> axes, double step, double least, 
 
 /// An angle of which p varies over a lobe: of a lobe of density p, 1 / sqrt(p).
 double width_of(const Place& place) { return std::min(1.0, 0.3 * math::exp(-place.at->plan->median_log_p / 2)); }
+
+/// A lobe that is round about its middle looks the same after any twist: the twist is left out, and the rest is sought
+/// again, unless all draws together tell it by two units of log likelihood.
+Vec3d without_twist(
+    Vec3d by, std::span<const Vec3d, 3> axes, double width, const Likelihood& fine, const Likelihood& all) {
+    const std::span<const Vec3d> across = axes.first(2);
+    Vec3d level = by - axes[2] * dot(by, axes[2]);
+    level = climb(level, across, width / 8, width / 256, [&](Vec3d v) { return fine.by_p(v); });
+    level = climb(level, across, width / 256, width / 1024, [&](Vec3d v) { return all.by_p(v); });
+    return all.by_p(level) + 2 / all.count() >= all.by_p(by) ? level : by;
+}
 
 /// The part of a turn, 2 pi / n, next to an angle that is as likely: a column of a table.
 template <class L> double whole_columns(double angle, const L& likelihood) {
@@ -217,13 +232,18 @@ std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places) {
 
 std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places) {
     FoundTurn out;
-    const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (const Place& place : places) {
+        Vec3d middle{};
+        for (Vec3d w : place.w) middle = middle + w;
+        const double length = std::sqrt(dot(middle, middle));
+        const Frame<double> frame = frame_about(length > 0 ? middle * (1 / length) : Vec3d{0, 0, 1});
+        const Vec3d axes[] = {frame.t, frame.b, frame.n};
         const double width = width_of(place);
         const Likelihood coarse(place, 1024), fine(place, draws_to_climb), all(place, place.w.size());
         Vec3d by = climb({}, axes, width, width / 16, [&](Vec3d v) { return coarse.by_tree(v); });
         by = climb(by, axes, width / 8, width / 256, [&](Vec3d v) { return fine.by_p(v); });
         by = climb(by, axes, width / 256, width / 1024, [&](Vec3d v) { return all.by_p(v); });
+        by = without_twist(by, axes, width, fine, all);
         out.turns.push_back({by, all.error_of(by, width / 16)});
     }
     out.hypothesis = turned_by(places, out.turns);
