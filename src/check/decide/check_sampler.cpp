@@ -45,6 +45,16 @@ bool takes_any_wo(std::span<const Trial> trials, const CheckOutcome& o) {
         o.trials, [&](std::size_t i) { return trials[i].subject == trials[o.trials[0]].subject; });
 }
 
+/// An estimate of f is not reciprocal. Of a sampler that is checked in turn, no w_o has been looked at yet.
+bool estimates_f(const Trial& trial, const CheckOutcome& o, const StreamKey& key) {
+    if (std::ranges::all_of(o.at, [](const auto& at) { return at.empty(); })) {
+        Source source(*trial.subject, 0, trial.wo, trial.light);
+        return look_for_scatter(source, key).f();
+    }
+    const auto is_estimate = [](const CheckAt& c) { return c.scatter.f(); };
+    return std::ranges::any_of(o.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); });
+}
+
 void look_at_whole(std::span<const Trial> trials, const CheckSettings& settings, CheckOutcome& out) {
     const JudgedSampler& subject = *trials[out.trials[0]].subject;
     StreamKey key{settings.seed, static_cast<std::uint16_t>(out.trials[0]), 0, 1, Purpose::light, 0};
@@ -56,9 +66,8 @@ void look_at_whole(std::span<const Trial> trials, const CheckSettings& settings,
         for (std::size_t i : out.trials)
             if (ordinary.size() < 3) ordinary.push_back(trials[i].wo);
         for (int t = 0; t < subject.techniques(); ++t) add(special_places(subject, t, ordinary));
-        const auto is_estimate = [](const CheckAt& c) { return c.scatter.f(); };
-        if (std::ranges::none_of(out.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); }))
-            add(reciprocity(subject, key));
+        if (const std::optional<SmallFault> fault = reciprocity(subject, key))
+            if (!estimates_f(trials[out.trials[0]], out, key)) add(fault);
     }
     for (std::size_t i : out.trials) {
         const std::size_t before = out.small.size();
