@@ -115,7 +115,7 @@ std::vector<KnownSampler> small_fault_samplers() {
     list.right("cosine", cosine(), {0, 45, 89});
     list.wrong("weights 10 % too large", "identity", bright_weights());
     list.wrong("sun that pdf does not know", "density", hidden_sun(false), {0});
-    list.missed("sun that pdf does not know, with its own numbers", hidden_sun(true), {0});  // no replicates
+    list.wrong("sun that pdf does not know, with its own numbers", "density", hidden_sun(true), {0});
     list.wrong(
         "number clamped at 0.999", "density", with_numbers(cosine(), [](Numbers& u) { u[0] = std::min(u[0], 0.999); }));
     list.wrong(
