@@ -33,13 +33,14 @@ bool may_stay_open(const Verdict& v) {
 }
 
 /// Whether it is what is expected of a right sampler, or of a built-in arm here.
-void expect(const Trial& trial, Verdict& v) {
+void expect(const Trial& trial, bool reaches_all, Verdict& v) {
     const bool infinite = trial.theory.tail_k && *trial.theory.tail_k >= check::heavy_index;
     if (trial.theory.wrong && *trial.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
         v.why_expected = trial.theory.why;
     } else if (infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
-        v.expected = v.state == State::inconclusive;
+        // Where p is 0, the light that makes the tail is not among the weights.
+        v.expected = v.state == State::inconclusive || !reaches_all;
         v.why_expected = trial.theory.why;
     } else if (!trial.theory.underflows.empty() && v.name == "support" && v.state == State::wrong) {
         v.expected = true;
@@ -244,6 +245,7 @@ Judgement judge(std::span<const Trial> trials, const TestSettings& settings, Pro
     const std::vector<CheckOutcome> outcomes = check::check_samplers(trials, of_engine, monitor);
     ByTrial verdicts(trials.size());
     std::vector<std::size_t> trial_of;
+    std::vector<bool> reaches_all(trials.size());
     for (const CheckOutcome& outcome : outcomes) {
         distribute(trials, outcome, settings, verdicts, out);
         count(outcome, out);
@@ -253,11 +255,14 @@ Judgement judge(std::span<const Trial> trials, const TestSettings& settings, Pro
     for (std::size_t i = 0; i < trials.size(); ++i) {
         if (trials[i].baseline) continue;
         out.questions = std::max(out.questions, trials[i].subject->spending().answers);
+        reaches_all[i] = std::ranges::none_of(
+            verdicts[i], [](const Verdict& v) { return v.name == "support" && v.state == State::wrong; });
         std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));
         trial_of.resize(out.verdicts.size(), i);
     }
     if (settings.accept_few) refuse_none(outcomes, out);
-    for (std::size_t v = 0; v < out.verdicts.size(); ++v) expect(trials[trial_of[v]], out.verdicts[v]);
+    for (std::size_t v = 0; v < out.verdicts.size(); ++v)
+        expect(trials[trial_of[v]], reaches_all[trial_of[v]], out.verdicts[v]);
     settle(out);
     return out;
 }

@@ -189,6 +189,7 @@ private:
         Stage second;
         StreamKey key = key_;
         key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
+        second.integrals.light.lost_in = first_.integrals.light.lost_in;
         second.extend(source_, *out_.plan, to, static_cast<std::uint32_t>(draws_of_f), key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.done.independent / static_cast<double>(first_.done.independent));

@@ -88,6 +88,8 @@ private:
     std::uint32_t part(double of) const { return static_cast<std::uint32_t>(evaluations / of); }
 };
 
+/// Points at which lost light is measured, in the leaves where p was 0 at one: about so many, two a leaf at least.
+inline constexpr double points_of_lost = 2048;
 /// Draws and points of one batch: what is in memory at a time, and what a pipe is filled with.
 inline constexpr std::uint32_t batch_size = 4096;
 /// Nodes above this depth are tested with replicates; below they have too few draws in each. Storage: 2^11 nodes.

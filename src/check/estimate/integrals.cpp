@@ -11,7 +11,7 @@ namespace crescent::check {
 void LightIntegrals::scale(double by) {
     for (auto* by_channel : {&all, &mean, &albedo})
         for (Estimate& e : *by_channel) e.scale(by);
-    lost.scale(by), lit.scale(by), largest_lost *= by;
+    lost.scale(by), lost_again.scale(by), lit.scale(by), largest_lost *= by;
     for (auto& by_channel : leaves)
         for (Estimate& e : by_channel) e.scale(by);
     for (WeighedPoint& w : weighed) w.light *= by, w.chance *= by;
@@ -19,7 +19,8 @@ void LightIntegrals::scale(double by) {
 
 void LightIntegrals::add(const LightIntegrals& o) {
     for (std::size_t c = 0; c < 3; ++c) all[c].add(o.all[c]), mean[c].add(o.mean[c]), albedo[c].add(o.albedo[c]);
-    lost.add(o.lost), lit.add(o.lit), largest_lost = std::max(largest_lost, o.largest_lost);
+    lost.add(o.lost), lost_again.add(o.lost_again), lit.add(o.lit);
+    largest_lost = std::max(largest_lost, o.largest_lost);
     for (std::size_t l = 0; l < leaves.size(); ++l)
         for (std::size_t c = 0; c < 3; ++c) leaves[l][c].add(o.leaves[l][c]);
     weighed.insert(weighed.end(), o.weighed.begin(), o.weighed.end());
@@ -71,8 +72,10 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
 
 class Pass {
 public:
-    Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key)
+    /// lost_in: leaves where light was found lost before.
+    Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key, std::vector<std::size_t> lost_in)
         : source_(source), plan_(plan), of_f_(of_f && source.has_f()), stream_(key) {
+        out_.light.lost_in = std::move(lost_in);
         out_.leaves.resize(plan.tree.leaves().size());
         if (of_f_ && !source.has_density()) out_.light.leaves.resize(plan.tree.leaves().size());
     }
@@ -92,6 +95,7 @@ public:
             for (std::size_t g = first; g < last; ++g) take(grids[g], at);
             first = last;
         }
+        if (of_f_) measure_lost();
         return std::move(out_);
     }
 
@@ -103,6 +107,46 @@ private:
     Integrals out_;
     std::vector<Vec3d> w_, f_;
     std::vector<double> p_, mis_;
+
+    /// f |cos| L there, of three channels their sum; 0 where p or another technique reaches.
+    double lit_at(std::size_t at) const {
+        const Vec3d f = f_[at];
+        const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
+        return y > 0 ? y * source_.radiance(w_[at]) : 0;
+    }
+    double lost_at(std::size_t at) {
+        const double lit = lit_at(at);
+        return p_[at] > 0 || (lit > 0 && source_.reached_otherwise(w_[at])) ? 0 : lit;
+    }
+
+    /// A thin region where p is 0 is met by a few points, too few to test. In the leaves where p was 0 somewhere,
+    /// points of their own measure what is lost.
+    void measure_lost() {
+        std::vector<std::size_t>& in = out_.light.lost_in;
+        std::sort(in.begin(), in.end());
+        in.erase(std::unique(in.begin(), in.end()), in.end());
+        const auto pairs = static_cast<int>(std::max(points_of_lost / 2 / static_cast<double>(in.size() + 1), 1.0));
+        std::vector<double> per_point;
+        w_.clear();
+        for (std::size_t l : in) {
+            const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[l]);
+            for (int j = 0; j < 2 * pairs; ++j) {
+                const double x = stream_.number(), y = stream_.number();
+                w_.push_back(from_chart(rect.at(x, y)));
+            }
+            per_point.insert(per_point.end(), static_cast<std::size_t>(pairs), rect.area() / (2 * pairs));
+        }
+        if (w_.empty()) return;
+        p_.resize(w_.size()), f_.assign(w_.size(), {});
+        source_.density(w_, p_);
+        source_.f_cos(w_, f_, source_.subject.has_true_f());
+        LightIntegrals& l = out_.light;
+        for (std::size_t j = 0; j < per_point.size(); ++j) {
+            const double a = lost_at(2 * j), b = lost_at(2 * j + 1), k = per_point[j];
+            l.lost_again.add_pair(a, b, k);
+            l.largest_lost = std::max(l.largest_lost, k * std::max(a, b));
+        }
+    }
 
     void place(const Grid& g) {
         const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[g.leaf]);
@@ -140,6 +184,7 @@ private:
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
             if (of_f_) take_light(g.leaf, at, k);
         }
+        if (of_f_ && least == 0) out_.light.lost_in.push_back(g.leaf);
         to.top = most;
         out_.points += 2 * g.cells();
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
@@ -177,16 +222,9 @@ private:
             l.albedo[channel].add_pair(flux[0], flux[1], k);
             if (!l.leaves.empty()) l.leaves[leaf][channel].add_pair(f[0], f[1], k);
         }
-        double lit[2], lost[2];
-        for (std::size_t a = 0; a < 2; ++a) {
-            const Vec3d f = f_[at + a];
-            const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
-            lit[a] = y > 0 ? y * source_.radiance(w_[at + a]) : 0;
-            lost[a] = p_[at + a] > 0 || (lit[a] > 0 && source_.reached_otherwise(w_[at + a])) ? 0 : lit[a];
-        }
-        l.lit.add_pair(lit[0], lit[1], k);
+        const double lost[2] = {lost_at(at), lost_at(at + 1)};
+        l.lit.add_pair(lit_at(at), lit_at(at + 1), k);
         l.lost.add_pair(lost[0], lost[1], k);
-        l.largest_lost = std::max(l.largest_lost, k * std::max(lost[0], lost[1]));
         l.points += 2;
         for (std::size_t a = 0; a < 2; ++a) note_weight(at + a, k);
     }
@@ -213,7 +251,7 @@ void scale(Integrals& x, double by) {
 }  // namespace
 
 void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to) {
-    Integrals pass = Pass(source, plan, of_f, key).run(grids_of(plan, points));
+    Integrals pass = Pass(source, plan, of_f, key, to.light.lost_in).run(grids_of(plan, points));
     if (to.points == 0) {
         to = std::move(pass);
         return;

@@ -47,7 +47,9 @@ struct LightIntegrals {
     Estimate lit;                                 // times the light
     std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, where there is no density to divide the draws by
     std::vector<WeighedPoint> weighed;            // where p > 0 and X > 0
-    double largest_lost = 0;                      // what one point holds of `lost`, at most
+    Estimate lost_again;                          // of the leaves where p was 0, by points of their own
+    double largest_lost = 0;                      // what one of these points holds, at most
+    std::vector<std::size_t> lost_in;             // these leaves; those given before a pass are among them
     double points = 0;
     void scale(double by);
     void add(const LightIntegrals& other);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int em_steps = 60;
 constexpr double least_share = 1e-4;
+constexpr double least_errors = 4;        // standard errors that a share is above 0
 constexpr double expected_at_least = 10;  // draws, of a leaf in which none fell: e^-10
 constexpr double right_elsewhere = 0.1;   // how far draws over p may be from 1 where draws fall
 constexpr double least_unreached = 0.02;  // share of p's mass
@@ -129,7 +130,7 @@ std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     std::vector<Leak> out;
     for (bool whole : {true, false}) {
         Leak leak = fitted_leak(places, whole);
-        if (leak.share < least_share || leak.share > 0.9) continue;
+        if (leak.share < std::max(least_share, least_errors * leak.error) || leak.share > 0.9) continue;
         bool mass_agrees = true;
         for (const Place& place : places) {
             leak.hypothesis.masses.push_back(1 - leak.share +

@@ -107,8 +107,8 @@ void ask_light(const Evidence& e, const Visit& visit) {
     Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value, 1};
     // If no more than `least` were lost, the sum over points that hold at most b each would have a variance of at most
     // b times `least`.
-    a.p = l.lost.value > least
-        ? bennett_p(bennett_z2(l.lost.value - least, l.largest_lost * least, l.largest_lost, 1e12))
+    a.p = l.lost_again.value > least
+        ? bennett_p(bennett_z2(l.lost_again.value - least, l.largest_lost * least, l.largest_lost, 1e12))
         : 1;
     visit(a);
 }
