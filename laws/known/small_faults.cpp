@@ -118,8 +118,7 @@ std::vector<KnownSampler> small_fault_samplers() {
     list.wrong("sun that pdf does not know, with its own numbers", "density", hidden_sun(true), {0});
     list.wrong(
         "number clamped at 0.999", "density", with_numbers(cosine(), [](Numbers& u) { u[0] = std::min(u[0], 0.999); }));
-    list.wrong(
-        "sliver of 0.5 degrees never drawn", "", with_numbers(cosine(), [](Numbers& u) { u[1] *= 359.5 / 360; }));
+    list.wrong("sliver of 1 degree never drawn", "", with_numbers(cosine(), [](Numbers& u) { u[1] *= 359.0 / 360; }));
     list.right("sky of bands", bands(1), {0});
     list.wrong("sky of bands short of 6 in 10 000", "", bands(0.9994), {0});
     list.wrong("part of p never drawn", "normalised", left_out());
