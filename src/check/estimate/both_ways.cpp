@@ -14,7 +14,7 @@ namespace {
 constexpr int pair_count = 64;
 constexpr int fewest = 16;  // with f > 0, to be told from nothing
 
-bool alike(double a, double b) { return std::fabs(a - b) <= reciprocity_tolerance * std::max(a, b); }
+bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_tolerance * std::max(a, b); }
 
 }  // namespace
 
@@ -42,8 +42,8 @@ BothWays both_ways(const JudgedSampler& subject, StreamKey key) {
     int positive = 0;
     for (std::size_t i = 0; i < f.size(); ++i) {
         positive += f[i] > 0;
-        phase = phase && alike(f[i] * std::fabs(there[i].wi.z), g[i] * std::fabs(there[i].wo.z));
-        same = same && alike(f[i], g[i]);
+        phase = phase && nearly_equal(f[i] * std::fabs(there[i].wi.z), g[i] * std::fabs(there[i].wo.z));
+        same = same && nearly_equal(f[i], g[i]);
     }
     if (phase) return BothWays::phase_function;
     return same && positive >= fewest ? BothWays::same_f : BothWays::not_known;
