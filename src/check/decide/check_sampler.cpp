@@ -156,8 +156,8 @@ private:
     void check(const Job& job) {
         monitor_.check();
         const Trial& trial = trial_of(job);
-        const CheckBudget& budget =
-            trial.subject->limited() && settings_.limited ? *settings_.limited : settings_.budget;
+        CheckBudget budget = trial.subject->limited() && settings_.limited ? *settings_.limited : settings_.budget;
+        if (trial.theory.wrong) budget.stop_when_targets_met = false;  // a fault that is known is looked for
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {

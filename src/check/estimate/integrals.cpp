@@ -163,12 +163,14 @@ private:
         LeafIntegral& to = out_.leaves[g.leaf];
         const double k = to.per_point = g.per_point;
         double least = 1e300, most = 0;
+        bool lit = false;
         for (int j = 0; j < g.cells(); ++j, at += 2) {
             Values h[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 const double p = p_[at + a];
                 h[a] = plan_.values(leaf, w_[at + a], p);
                 least = std::min(least, p), most = std::max(most, p);
+                lit = lit || (of_f_ && lit_at(at + a) > 0);
                 if (k * p > heavy_point) out_.heavy.push_back({to_chart(w_[at + a]), p});
                 to.second += k * h[a][bridge] * h[a][bridge] * p;
                 if (w_[at + a].z > 0 || p > 0) out_.domain += k;
@@ -184,7 +186,7 @@ private:
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
             if (of_f_) take_light(g.leaf, at, k);
         }
-        if (of_f_ && least == 0) out_.light.lost_in.push_back(g.leaf);
+        if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
         to.top = most;
         out_.points += 2 * g.cells();
         if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
