@@ -162,7 +162,7 @@ bool whole_list(const CheckFlags& flags) {
 TestSettings settings_of_list(const CheckFlags& flags) {
     TestSettings r = test_settings_of(flags);
     r.budget = flags.full ? check::CheckBudget::thorough() : check::CheckBudget::quick();
-    r.budget->stop_when_targets_met = !flags.full;
+    r.budget->stop_when_conclusive = !flags.full;
     return r;
 }
 

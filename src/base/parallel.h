@@ -92,4 +92,10 @@ struct Guard {
 
 #endif
 
+/// work(i) for every i below `count`: one after another in order if it is serial, else on all cores.
+template <class Work> void for_each_index(bool serial, std::size_t count, const Work& work) {
+    if (!serial) return parallel_for(std::size_t{0}, count, work);
+    for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
 }  // namespace crescent::inline base

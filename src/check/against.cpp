@@ -13,6 +13,8 @@
 #include "check/against_f.h"
 #include "check/check.h"
 #include "check/constants.h"
+#include "check/explain/text.h"
+#include "check/verdicts/two_stages.h"
 #include "judgements/next_step.h"
 #include "subjects/asked_once.h"
 #include "subjects/faults.h"
@@ -31,32 +33,8 @@ struct Differences {
     std::map<AgainstAnswer::Family, double> p;                   // the least, times their number
 };
 
-struct WorstOf {
-    AgainstAnswer answer{};
-    double members = 0;
-    double p() const { return std::min(1.0, answer.p * members); }
-};
-
-std::map<AgainstAnswer::Family, WorstOf> worst_of(
-    const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b) {
-    std::map<AgainstAnswer::Family, WorstOf> out;
-    ask_against(ground, a, b, [&](const AgainstAnswer& r) {
-        WorstOf& w = out[r.family];
-        if (w.members++ == 0 || r.p < w.answer.p) w.answer = r;
-    });
-    return out;
-}
-
-/// The same member again, one-sided in the direction of the first.
-AgainstAnswer put_again(
-    const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b, const AgainstAnswer& r) {
-    AgainstAnswer out = r;
-    out.p = 1;
-    ask_against(ground, a, b, [&](const AgainstAnswer& again) {
-        if (again.family == r.family && again.member == r.member) out = again;
-    });
-    out.p = (out.difference > 0) == (r.difference > 0) ? out.p / 2 : 1;
-    return out;
+auto questions_to(const CommonGround& ground, const AgainstDraws& a, const AgainstDraws& b) {
+    return [&](const std::function<void(const AgainstAnswer&)>& visit) { ask_against(ground, a, b, visit); };
 }
 
 /// What the comparison of one w_o is made with.
@@ -129,17 +107,17 @@ private:
 
     Differences differences() {
         Differences out;
-        const int last = plan_.budget.looks - 1;
-        for (int look = 0; look <= last && out.found.empty(); ++look) {
+        for (int look = 0; look < plan_.budget.looks && out.found.empty(); ++look) {
             const Look to = plan_.budget.look(look);
             draw_on(a_, *ground_, to, plan_.budget.of_f(), draws_a_);
             draw_on(b_, *ground_, to, plan_.budget.of_f(), draws_b_);
-            const double level = plan_.levels.first * (look == last ? 1 - last * early_look : early_look);
+            const double level = level_at(plan_.levels, look, plan_.budget.looks);
             out.p.clear();
             std::vector<AgainstAnswer> suspects;
-            for (const auto& [family, worst] : worst_of(*ground_, draws_a_, draws_b_)) {
-                out.p[family] = worst.p();
-                if (worst.p() < level) suspects.push_back(worst.answer);
+            for (const auto& [family, least] :
+                least_by_family<AgainstAnswer>(questions_to(*ground_, draws_a_, draws_b_))) {
+                out.p[family] = least.p();
+                if (least.p() < level) suspects.push_back(least.answer);
             }
             if (!suspects.empty()) confirm(suspects, to, look, out);
         }
@@ -155,7 +133,8 @@ private:
         draw_on(a, *ground_, more, 0, of_a);
         draw_on(b, *ground_, more, 0, of_b);
         for (const AgainstAnswer& r : suspects) {
-            const AgainstAnswer again = put_again(*ground_, of_a, of_b, r);
+            AgainstAnswer again = same_member(questions_to(*ground_, of_a, of_b), r);
+            again.p = one_sided(r, again);
             if (again.p < plan_.levels.second) out.found.push_back({r, again});
         }
     }
@@ -177,7 +156,7 @@ private:
                         r.member == 0 ? "draws nothing at" : "draws a direction at", r.difference, half);
                 return fmt::format(
                     "The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
-                    text_of(ground_->ways[static_cast<std::size_t>(r.member) - 2]), r.difference, half);
+                    direction_text(ground_->ways[static_cast<std::size_t>(r.member) - 2]), r.difference, half);
             case AgainstAnswer::sums:
             case AgainstAnswer::sums_by_sets:
                 if (r.member == log_density)
@@ -193,9 +172,9 @@ private:
         return fmt::format(
             "About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
             "of those there.",
-            text_of(from_chart(rect.at(0.5, 0.5))), std::max(rect.theta_width(), rect.phi_width()), r.difference, half);
+            direction_text(from_chart(rect.at(0.5, 0.5))), std::max(rect.theta_width(), rect.phi_width()), r.difference,
+            half);
     }
-    static std::string text_of(Vec3d w) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z); }
 
     void note_distribution(const Differences& d, Verdict& v) const {
         const bool differ = !d.found.empty();

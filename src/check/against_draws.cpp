@@ -8,6 +8,7 @@
 
 #include "check/constants.h"
 #include "check/estimate/weights.h"
+#include "check/verdicts/questions.h"
 
 namespace crescent::check {
 
@@ -256,24 +257,6 @@ AgainstAnswer answer_of(AgainstAnswer::Family family, int member, const TwoShare
     return out;
 }
 
-double node_floor(const CommonGround& g, const TreeNode& x, double share) {
-    const double less = std::min(share, 1 - share);
-    return detection_floor * less + g.step / x.rect.width(x.along_phi) +
-        less * g.step / (x.rect.width(!x.along_phi) + 1e-300);
-}
-
-/// Sum over replicates of what falls into each node down to the replicated depth, by row.
-std::vector<Replicates> rows_of(const Tree& tree, std::vector<Replicates> out) {
-    for (std::size_t i = tree.nodes().size(); i-- > 0;) {
-        const TreeNode& x = tree.nodes()[i];
-        if (x.child < 0 || x.depth >= replicated_depth) continue;
-        const auto row = [&](int n) { return static_cast<std::size_t>(tree.nodes()[static_cast<std::size_t>(n)].row); };
-        for (std::size_t k = 0; k < replicate_sets; ++k)
-            out[static_cast<std::size_t>(x.row)][k] = out[row(x.child)][k] + out[row(x.child + 1)][k];
-    }
-    return out;
-}
-
 /// Means of replicates of both sides, by Welch's t-test.
 AgainstAnswer by_sets(AgainstAnswer::Family family, int member, const ReplicateMean<Replicates>& a,
     const ReplicateMean<Replicates>& b, double floor) {
@@ -327,15 +310,15 @@ void ask_against(const CommonGround& g, const AgainstDraws& a, const AgainstDraw
     ask_sums_against(g, a, b, visit);
     const std::vector<NodeCounts> counts = counts_of(g.tree, a, b);
     const bool both = a.scrambled > 0 && b.scrambled > 0;
-    const std::vector<Replicates> sets_a = both ? rows_of(g.tree, a.node_by_set) : std::vector<Replicates>(),
-                                  sets_b = both ? rows_of(g.tree, b.node_by_set) : std::vector<Replicates>();
+    const std::vector<Replicates> sets_a = both ? replicates_by_row(g.tree, a.node_by_set) : std::vector<Replicates>(),
+                                  sets_b = both ? replicates_by_row(g.tree, b.node_by_set) : std::vector<Replicates>();
     for (std::size_t i = 0; i < counts.size(); ++i) {
         const TreeNode& x = g.tree.nodes()[i];
         const NodeCounts& all = counts[i];
         if (x.child < 0 || std::min(all.a, all.b) < least_count) continue;
         const NodeCounts& half = counts[static_cast<std::size_t>(x.child)];
         const TwoShares s(half.a, all.a, half.b, all.b);
-        const double floor = node_floor(g, x, s.share);
+        const double floor = floor_of_cut(x, s.share, g.step);
         visit(answer_of(AgainstAnswer::nodes, static_cast<int>(i), s, floor));
         const auto in_each = [&](const AgainstDraws& d, double n) {
             return std::min(s.share, 1 - s.share) * n * d.scrambled / d.independent / replicate_sets;
@@ -384,7 +367,7 @@ AgainstSizes sizes_against(const CommonGround& g, const AgainstDraws& a, const A
         if (std::min(all.a, all.b) < least_count) continue;
         const TwoShares s(counts[first].a, all.a, counts[first].b, all.b);
         const double needed =
-            needed_by_bennett(node_floor(g, x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) *
+            needed_by_bennett(floor_of_cut(x, s.share, g.step) / s.per_share, s.variance, 1, 1e12, level / tests) *
             s.per_share;
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;

@@ -10,6 +10,7 @@
 #include "check/constants.h"
 #include "check/decide/tail.h"
 #include "check/estimate/scatter.h"
+#include "check/explain/text.h"
 #include "stats/moments.h"
 
 namespace crescent::check {
@@ -101,8 +102,8 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     v.evidence["largest_relative"] = most;
     v.evidence["worst_wi"] = {w.x, w.y, w.z};
     v.evidence["f"] = {both.a[worst], both.b[worst]};
-    v.say = fmt::format("f differs at {} of {} directions, most at ({:.4g}, {:.4g}, {:.4g}): {:.6g} and {:.6g}", count,
-        both.wi.size(), w.x, w.y, w.z, both.a[worst], both.b[worst]);
+    v.say = fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}", count, both.wi.size(),
+        direction_text(w), both.a[worst], both.b[worst]);
     v.say += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
 }
 
@@ -117,9 +118,8 @@ std::string differing_delta(const AgainstCase& c) {
     for (Vec3d w : c.ground.ways) {
         const Vec3d a = power(c.ground.delta_a, w), b = power(c.ground.delta_b, w);
         if (length(a - b) <= same_number * std::max({length(a), length(b), 1e-30})) continue;
-        return fmt::format(
-            "The delta part towards ({:.4g}, {:.4g}, {:.4g}) differs: q times weight is {:.6g} and {:.6g}.", w.x, w.y,
-            w.z, luminance(a), luminance(b));
+        return fmt::format("The delta part towards {} differs: q times weight is {:.6g} and {:.6g}.", direction_text(w),
+            luminance(a), luminance(b));
     }
     return "";
 }
@@ -338,14 +338,14 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
         return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
         return skip(v,
-            a.draws_at_will() ? "There is no f, hence no variance of f L cos / p."
-                              : "The file of A has no column f, hence there are no weights f L cos / p.");
-    if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, hence no variance of f L cos / p.");
+            a.draws_at_will() ? "There is no f, so f L cos / p has no variance."
+                              : "The file of A has no column f, so there are no weights f L cos / p.");
+    if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, so its f L cos / p has no variance.");
     for (const auto& [draws, subject, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
         if (subject->has_drawn_f() && !draws->weighs)
             return skip(v,
                 fmt::format(
-                    "{} has neither a pdf(w) nor a weight with its draws (weight=yes), hence no variance.", who));
+                    "{} has neither a pdf(w) nor a weight with its draws (weight=yes), so it has no variance.", who));
     if (is_wrong_itself(c.own_a, "A", v) || is_wrong_itself(c.own_b, "B", v)) return;
     if (!b.has_drawn_f()) return over_draws_of_a(c, v);
     const WeightMoments of_a(c.draws_a.x), of_b(c.draws_b.x);

@@ -108,7 +108,7 @@ void cut_whole(const Cut& cut, const Trial& trial, const TestSettings& settings,
 
 /// Questions to a program for each w_o that belong to none of its estimates, at most: f at the draws of two baselines,
 /// seven turns of 512 samples each that are timed, the first draws, a rose. And for the call: corners, reciprocity.
-constexpr std::size_t asked_beside = 16000, asked_for_all = 8000;
+constexpr std::size_t evaluations_beside = 16000, evaluations_for_all = 8000;
 
 /// Trials whose programs may be asked what is left of what they may be asked in all, less what follows.
 std::vector<Trial> with_what_is_left(std::span<const Trial> trials, const TestSettings& settings) {
@@ -117,7 +117,7 @@ std::vector<Trial> with_what_is_left(std::span<const Trial> trials, const TestSe
     const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all);
     for (Trial& t : out)
         if (t.subject->limited())
-            t.subject = std::make_shared<CappedSampler>(t.subject, in_all - std::min(in_all, w_o * asked_beside));
+            t.subject = std::make_shared<CappedSampler>(t.subject, in_all - std::min(in_all, w_o * evaluations_beside));
     return out;
 }
 
@@ -168,10 +168,6 @@ void count(const CheckOutcome& outcome, Judgement& j) {
         }
     j.evaluations += outcome.evaluations;
 }
-
-}  // namespace
-
-namespace {
 
 /// Trials beside each other; the call does nothing else while it takes times. What ended early stays so.
 void rank(std::span<const Trial> trials, std::span<const CheckOutcome> outcomes, const check::CheckSettings& settings,
@@ -225,7 +221,7 @@ CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_
     if (limited) {
         // A twelfth of all is for what belongs to no w_o, for the arms beside it and for causes.
         const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
-        const std::size_t beside = asked_beside + asked_for_all / std::max<std::size_t>(w_o, 1);
+        const std::size_t beside = evaluations_beside + evaluations_for_all / std::max<std::size_t>(w_o, 1);
         return CheckBudget::limited(static_cast<double>(
             std::min(settings.questions - std::min(settings.questions, beside), std::max(each, least_evaluations))));
     }

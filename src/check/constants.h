@@ -32,6 +32,10 @@ constexpr Levels levels_of(double alpha, double questions) {
 /// How alpha1 is shared among the looks of a staged budget, the last look having what is left. Chosen: an early look
 /// may only stop for a clear fault, and 1/8 of alpha1 costs it 3 % in the size found.
 inline constexpr double early_look = 1.0 / 8;
+/// The level of one of so many looks.
+constexpr double level_at(const Levels& levels, int look, int looks) {
+    return levels.first * (look == looks - 1 ? 1 - (looks - 1) * early_look : early_look);
+}
 
 /// A deviation below this share of the quantity is not reported. Chosen: below every fault of the public reports (the
 /// smallest, sin(theta) taken at a texel's centre, is 4e-4), and four times the error the integrals are built for.

@@ -193,7 +193,7 @@ public:
         count(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = called(
-                "sample(wo, u)", wo, [&] { return told(u[i]); }, [&] { return user::sample(sampler(), wo, u[i]); });
+                "sample(wo, u)", wo, [&] { return text_of(u[i]); }, [&] { return user::sample(sampler(), wo, u[i]); });
             if (!user::HasPdf<S> && out[i].pdf > 0) out[i].pdf = 1;
         }
     }
@@ -202,7 +202,7 @@ public:
             count(at.size());
             for (std::size_t i = 0; i < at.size(); ++i)
                 out[i] = called(
-                    "pdf(wo, wi)", at[i].wo, [&] { return told(at[i].wi); },
+                    "pdf(wo, wi)", at[i].wo, [&] { return text_of(at[i].wi); },
                     [&] { return user::pdf(sampler(), at[i]); });
         } else
             for (double& p : out) p = 1;
@@ -214,7 +214,8 @@ public:
         if constexpr (user::HasF<S>)
             for (std::size_t i = 0; i < at.size(); ++i)
                 out[i] = called(
-                    "f(wo, wi)", at[i].wo, [&] { return told(at[i].wi); }, [&] { return user::f(sampler(), at[i]); });
+                    "f(wo, wi)", at[i].wo, [&] { return text_of(at[i].wi); },
+                    [&] { return user::f(sampler(), at[i]); });
     }
     void f(std::span<const Pair> at, std::span<double> out) const override {
         std::vector<Vec3d> by_channel(out.size());
@@ -228,8 +229,8 @@ private:
     mutable Given given_;  // called by one thread where a member is not const
     decltype(auto) sampler() const { return user::Sampler<Given>::of(given_); }
 
-    static std::string told(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
-    static std::string told(const Numbers& u) {
+    static std::string text_of(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
+    static std::string text_of(const Numbers& u) {
         std::string out = "u = (";
         for (int k = 0; k < user::numbers<S>(); ++k) out += fmt::format("{}{:.9g}", k ? ", " : "", u[k]);
         return out + ")";

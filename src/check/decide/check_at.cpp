@@ -7,8 +7,9 @@
 
 #include "base/stopwatch.h"
 #include "check/constants.h"
-#include "check/estimate/both_ways.h"
 #include "check/decide/delta_directions.h"
+#include "check/estimate/both_ways.h"
+#include "check/verdicts/two_stages.h"
 
 namespace crescent::check {
 
@@ -48,33 +49,20 @@ void ask_all(const Evidence& e, const Visit& visit) {
     ask_deltas(e, visit);
 }
 
-/// By family, the member with the least p, and how many there are.
-struct Best {
-    Answer answer;
-    double members = 0;
-    double p() const { return std::min(1.0, answer.p * members); }
-};
+using Least = LeastOf<Answer>;
 
-std::map<Family, Best> best_of(const Evidence& e) {
-    std::map<Family, Best> out;
-    ask_all(e, [&](const Answer& a) {
-        Best& b = out[a.family];
-        if (b.members++ == 0 || a.p < b.answer.p) b.answer = a;
-    });
-    return out;
+auto least_of(const Evidence& e) {
+    return least_by_family<Answer>([&](const Visit& visit) { ask_all(e, visit); });
 }
 
 /// A count that has failed is not a matter of chance for numbers that cannot be used.
 bool needs_no_second(Family f) { return f == Family::values || f == Family::corners; }
 
 /// The same member again, one-sided in the direction of the first.
-Answer same_member(const Evidence& e, const Answer& first) {
-    Answer out;
-    ask_all(e, [&](const Answer& a) {
-        if (a.family == first.family && a.member == first.member) out = a;
-    });
+Answer put_again(const Evidence& e, const Answer& first) {
+    Answer out = same_member([&](const Visit& visit) { ask_all(e, visit); }, first);
     const bool two_sided = out.p > 0 && first.family != Family::depth;
-    if (two_sided) out.p = (out.difference > 0) == (first.difference > 0) ? out.p / 2 : 1;
+    if (two_sided) out.p = one_sided(first, out);
     return out;
 }
 
@@ -114,11 +102,9 @@ private:
     Levels levels_;
     CheckAt out_;
     Stage first_;
+    std::map<Family, Least> least_;  // of first_
 
-    double level_of(int look) const {
-        const int last = budget_.looks - 1;
-        return levels_.first * (look == last ? 1 - last * early_look : early_look);
-    }
+    double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
 
     double left() const { return budget_.evaluations - static_cast<double>(source_.evaluations()); }
 
@@ -137,12 +123,13 @@ private:
         first_.extend(source_, *out_.plan, next(look), budget_.of_f(), key_, look);
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
-        std::vector<Best> suspects;
-        for (const auto& [family, best] : best_of(e))
-            if (best.p() < level_of(look)) suspects.push_back(best);
+        std::vector<Least> suspects;
+        note_answers(e);
+        for (const auto& [family, least] : least_)
+            if (least.p() < level_of(look)) suspects.push_back(least);
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
-        return budget_.stop_when_targets_met && worst_ratio(sizes(e, level_of(look))) <= out_.most_ratio();
+        return budget_.stop_when_conclusive && worst_ratio(sizes(e, level_of(look))) <= out_.most_ratio();
     }
 
     /// Where p has places that the tree knows nothing of, it is grown once more from all that was met so far, which is
@@ -172,15 +159,15 @@ private:
 
     /// The same questions on fresh numbers, with what is left of the budget; after an early look with twice what that
     /// had, so that the later ones lose little.
-    void confirm(const std::vector<Best>& suspects, int look) {
+    void confirm(const std::vector<Least>& suspects, int look) {
         const auto count = [&](auto has) {
-            return std::ranges::count_if(suspects, [&](const Best& b) { return has(b.answer.family); });
+            return std::ranges::count_if(suspects, [&](const Least& b) { return has(b.answer.family); });
         };
         const auto of_sets = count(by_replicates);
         const Kinds kinds = of_sets == 0                              ? Kinds::independent
             : of_sets == static_cast<std::ptrdiff_t>(suspects.size()) ? Kinds::scrambled
                                                                       : Kinds::all;
-        const Answer& clearest = std::ranges::min_element(suspects, {}, &Best::p)->answer;
+        const Answer& clearest = std::ranges::min_element(suspects, {}, &Least::p)->answer;
         double most = left() - budget_.cost_of_sizes();
         if (look < budget_.looks - 1) most = std::min(most, 2 * first_.done.cost());
         const double draws_of_f = count(is_of_f) > 0 ? std::min<double>(budget_.of_f(), most / 8) : 0;
@@ -193,13 +180,21 @@ private:
         second.extend(source_, *out_.plan, to, static_cast<std::uint32_t>(draws_of_f), key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.done.independent / static_cast<double>(first_.done.independent));
-        for (const Best& b : suspects) {
-            const Answer again = needs_no_second(b.answer.family) ? b.answer : same_member(e, b.answer);
+        for (const Least& b : suspects) {
+            const Answer again = needs_no_second(b.answer.family) ? b.answer : put_again(e, b.answer);
             if (again.p < levels_.second) out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
         }
         if (!out_.findings.empty() && kinds == Kinds::all && second.done.cost() > first_.done.cost())
-            first_ = std::move(second);  // more to explain it by
+            take(std::move(second));
+    }
+
+    void note_answers(const Evidence& e) { least_ = least_of(e); }
+
+    /// More to explain a finding by than the first stage has.
+    void take(Stage&& second) {
+        first_ = std::move(second);
+        note_answers(first_.evidence(source_, *out_.plan));
     }
 
     /// Where delta parts lead: no matter of chance.
@@ -217,9 +212,9 @@ private:
     void finish() {
         look_at_deltas();
         const Evidence e = first_.evidence(source_, *out_.plan);
-        for (const auto& [family, best] : best_of(e)) {
-            out_.answers.push_back(best.answer);
-            out_.answers.back().p = best.p();
+        for (const auto& [family, least] : least_) {
+            out_.answers.push_back(least.answer);
+            out_.answers.back().p = least.p();
         }
         if (!out_.wrong()) {
             out_.sizes = sizes(e, level_of(budget_.looks - 1));

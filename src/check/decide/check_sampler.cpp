@@ -76,10 +76,6 @@ void look_at_whole(std::span<const Trial> trials, const CheckSettings& settings,
     }
 }
 
-}  // namespace
-
-namespace {
-
 /// One w_o of one sampler.
 struct Job {
     CheckOutcome* outcome;
@@ -102,9 +98,7 @@ template <class Work> std::optional<Cut> cut_of(const Work& work) {
 std::optional<SmallFault> look_first(const Trial& trial, const StreamKey& key) {
     constexpr std::uint32_t few = 256;  // a program of 10 answers/s gives them at 12 w_o within five minutes
     SmallFault out{Family::values};
-    const Traits traits = trial.subject->traits();
-    std::vector<Numbers> u;
-    for (std::uint32_t i = 0; i < few; ++i) u.push_back(numbers_at(key, i, traits.numbers, traits.bits == 24));
+    const std::vector<Numbers> u = first_numbers(key, few, trial.subject->traits());
     std::vector<Draw> draws(u.size());
     for (int t = 0; t < trial.subject->techniques(); ++t) {
         trial.subject->sample(t, trial.wo, u, draws);
@@ -157,7 +151,7 @@ private:
         monitor_.check();
         const Trial& trial = trial_of(job);
         CheckBudget budget = trial.subject->limited() && settings_.limited ? *settings_.limited : settings_.budget;
-        if (trial.theory.wrong) budget.stop_when_targets_met = false;  // a fault that is known is looked for
+        if (trial.theory.wrong) budget.stop_when_conclusive = false;  // a fault that is known is looked for
         std::vector<CheckAt>& at = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {

@@ -34,8 +34,7 @@ bool is_refracted(Vec3d wo, Vec3d wi, Vec3d eta, bool inverted) {
 
 /// Draws of the same technique at another w_o.
 std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, const StreamKey& key) {
-    std::vector<Numbers> u;
-    for (std::uint32_t i = 0; i < n; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    const std::vector<Numbers> u = first_numbers(key, n, source.traits);
     std::vector<Draw> out(n);
     source.subject.sample(source.technique, wo, u, out);
     return out;

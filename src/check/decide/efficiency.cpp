@@ -92,9 +92,7 @@ std::vector<Efficiency> variances_of(std::span<const Trial> trials, std::span<co
         out[i] = variance_of_baseline(trials[i], i, key);
     };
     const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
-    if (serial)
-        for (std::size_t b = 0; b < baselines.size(); ++b) run(b);
-    else parallel_for(std::size_t{0}, baselines.size(), run);
+    for_each_index(serial, baselines.size(), run);
     return out;
 }
 
@@ -189,7 +187,7 @@ void judge_one_efficiency(
     v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
     if (e.heavy) {
         v.state = State::inconclusive;
-        v.say = "Heavy tail: the variance is not known, hence no rank.";
+        v.say = "Heavy tail: the variance is not known, so it is not ranked.";
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
     }

@@ -110,7 +110,7 @@ std::vector<Differences> differences(Source& source, const std::vector<Point>& a
 }
 
 /// Whether all differences of finer steps are parts of that of step s, up to `jacobian_error` of it. Rounding moves
-/// each by up to the sampler's own step, whatever that is; three of a few such steps each, in the ratio of the steps in
+/// each by up to the sampler's own step; three of a few such steps each, in the ratio of the steps in
 /// u, would agree exactly. Across the pieces of a table they are not parts of one difference either.
 bool is_linear_below(const Differences& d, std::size_t s) {
     for (std::size_t k = s + 1; k < steps; ++k) {
@@ -165,8 +165,7 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
     if (source.traits.own_random || !source.subject.draws_at_will() || source.traits.numbers < 2 ||
         source.traits.numbers > 3)
         return out;
-    std::vector<Numbers> u;
-    for (std::uint32_t i = 0; i < points; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    const std::vector<Numbers> u = first_numbers(key, points, source.traits);
     const std::vector<Draw> at = draws_at(source, u);
     std::vector<double> branch(u.size(), 1.0);
     int first = 0, second = 1;

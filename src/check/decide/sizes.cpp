@@ -212,8 +212,7 @@ struct Sample {
     double of = 0;
 };
 Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
-    std::vector<Numbers> u(count);
-    for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, source.numbers(), source.single());
+    const std::vector<Numbers> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     Sample out;

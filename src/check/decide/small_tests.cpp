@@ -49,8 +49,7 @@ std::vector<Numbers> corner_numbers(int count) {
 }
 
 std::vector<Numbers> some_numbers(const Source& source, StreamKey key, std::uint32_t count) {
-    std::vector<Numbers> u;
-    for (std::uint32_t i = 0; i < count; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.single()));
+    const std::vector<Numbers> u = first_numbers(key, count, source.traits);
     return u;
 }
 

@@ -100,13 +100,15 @@ std::vector<Vec3d> f_of(const JudgedSampler& subject, std::span<const Pair> pair
     return out;
 }
 
-/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and
-/// one over that for importance (Veach 1997, (5.14)).
-double due_ratio(const Traits& traits, const Pair& p, int channel) {
+}  // namespace
+
+double reciprocal_ratio(const Traits& traits, const Pair& p, int channel) {
     if (p.wo.z * p.wi.z > 0 || !traits.eta) return 1;
     const double eta2 = sqr(channel_of(*traits.eta, channel));
     return (p.wo.z > 0) == !traits.importance ? eta2 : 1 / eta2;
 }
+
+namespace {
 
 bool differ(double a, double b, double tolerance) { return std::fabs(a - b) > tolerance * std::max(a, b) + 1e-30; }
 
@@ -117,10 +119,7 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
     if (!subject.has_f() || !traits.reciprocal || traits.wo == Traits::Asked::none) return {};
     const bool both = traits.wo == Traits::Asked::both;
     Stream stream(key);
-    const auto direction = [&](bool below) {
-        const double z = 0.02 + 0.98 * stream.number();
-        return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
-    };
+    const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
     std::vector<Pair> there, back;
     for (int i = 0; i < 256; ++i) {
         const Pair p{direction(both && (i & 1)), direction(both && (i & 2))};
@@ -137,7 +136,7 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
             const bool across = p.wo.z * p.wi.z < 0;
             Draw at;
             at.wi = p.wi;
-            if ((!across || traits.eta) && differ(a * due_ratio(traits, p, c), b, reciprocity_tolerance))
+            if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance))
                 note(out, {}, at, a, out.what), out.first.due = b;
         }
     // A pair or two in 256 may be where f ends: a rounding of the half vector.
@@ -150,8 +149,7 @@ std::optional<SmallFault> mis_weights(const JudgedSampler& subject, Vec3d wo, co
     const Traits traits = subject.traits();
     SmallFault out{Family::mis, 0, 0, 0, {}, "weights of the techniques do not sum to 1"};
     for (int t = 0; t < subject.techniques(); ++t) {
-        std::vector<Numbers> u;
-        for (std::uint32_t i = 0; i < 512; ++i) u.push_back(numbers_at(key, i, traits.numbers, traits.bits == 24));
+        const std::vector<Numbers> u = first_numbers(key, 512, traits);
         std::vector<Draw> draws(u.size());
         subject.sample(t, wo, u, draws);
         std::vector<Pair> at;

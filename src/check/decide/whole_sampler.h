@@ -17,4 +17,8 @@ std::optional<SmallFault> reciprocity(const JudgedSampler& subject, const Stream
 /// Weights of two techniques that are combined sum to 1 wherever one of them draws.
 std::optional<SmallFault> mis_weights(const JudgedSampler& subject, Vec3d wo, const StreamKey& key);
 
+/// What f(b, a) is over f(a, b): 1 on one side of the surface; across it eta^2 from above to below, for radiance, and
+/// one over that for importance (Veach 1997, (5.14)).
+double reciprocal_ratio(const Traits& traits, const Pair& p, int channel);
+
 }  // namespace crescent::check

@@ -12,7 +12,7 @@ namespace crescent::check {
 namespace {
 
 constexpr int pair_count = 64;
-constexpr int fewest = 16;  // with f > 0, to be told from nothing
+constexpr int fewest = 16;  // pairs with f > 0, fewer show nothing
 
 bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_tolerance * std::max(a, b); }
 
@@ -23,10 +23,7 @@ BothWays both_ways(const JudgedSampler& subject, StreamKey key) {
     if (!subject.has_f() || traits.eta || traits.wo == Traits::Asked::none) return BothWays::not_known;
     const bool both = traits.wo == Traits::Asked::both;
     Stream stream(key);
-    const auto direction = [&](bool below) {
-        const double z = 0.02 + 0.98 * stream.number();
-        return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
-    };
+    const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
     std::vector<Pair> there, back, through;
     for (int i = 0; i < pair_count; ++i) {
         there.push_back({direction(both && (i & 1)), direction(both && !(i & 1))});

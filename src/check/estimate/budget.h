@@ -59,7 +59,7 @@ struct CheckBudget {
     double evaluations = 1.5e6;
     int looks = 2;  // each eight times the one before
     /// Stop, too, at the first look at which every target is met within what leaves a verdict open (inconclusive_at).
-    bool stop_when_targets_met = false;
+    bool stop_when_conclusive = false;
 
     /// A look where draws and points are all that is evaluated.
     Look look(int i) const { return look_of(0.6 * evaluations).divided_by(1u << 3 * (looks - 1 - i)); }

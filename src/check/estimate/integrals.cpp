@@ -115,8 +115,9 @@ private:
         return y > 0 ? y * source_.radiance(w_[at]) : 0;
     }
     double lost_at(std::size_t at) {
+        if (p_[at] > 0) return 0;
         const double lit = lit_at(at);
-        return p_[at] > 0 || (lit > 0 && source_.reached_otherwise(w_[at])) ? 0 : lit;
+        return lit > 0 && source_.reached_otherwise(w_[at]) ? 0 : lit;
     }
 
     /// A thin region where p is 0 is met by a few points, too few to test. In the leaves where p was 0 somewhere,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "check/estimate/chart.h"
 #include "simd/random.h"
 #include "subjects/subject.h"
 
@@ -57,6 +58,12 @@ private:
     Vec4u<std::uint32_t> block_{};
 };
 
+/// Above the horizon by `least_z` at least, or below it; even over what is left.
+inline Vec3d random_direction(Stream& stream, bool below, double least_z) {
+    const double z = least_z + (1 - least_z) * stream.number();
+    return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
+}
+
 /// The random numbers of sample i of a stream, by position: blocks 2 i and 2 i + 1.
 inline Numbers numbers_at(const StreamKey& key, std::uint32_t i, int count, bool single) {
     Numbers out;
@@ -67,6 +74,13 @@ inline Numbers numbers_at(const StreamKey& key, std::uint32_t i, int count, bool
             out[4 * half + k] = single ? single_number(unit_number(lanes[k])) : unit_number(lanes[k]);
     }
     return out;
+}
+
+/// The first `count` of them, as a sampler takes them.
+inline std::vector<Numbers> first_numbers(const StreamKey& key, std::uint32_t count, const Traits& traits) {
+    std::vector<Numbers> u(count);
+    for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, std::max(traits.numbers, 1), traits.bits == 24);
+    return u;
 }
 
 }  // namespace crescent::check

@@ -244,9 +244,8 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
 std::vector<KnownRatio> map_ratios(std::span<const Place> places) {
     std::vector<KnownRatio> out;
     for (const Place& place : places) {
-        Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
-        const StreamKey key{23, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
-            8, Purpose::jacobian, 1};
+        Source source = place.source();
+        const StreamKey key = place.key(23, Purpose::jacobian, 1);
         for (const MapDensity& m : map_densities(source, key))
             out.push_back({place.trial->wo, m.draw.wi, m.drawn / m.p, m.error});
     }

@@ -44,11 +44,9 @@ bool density_is_wrong(const CheckAt& c) {
 }
 
 void draw_at(Place& place, std::uint32_t count) {
-    Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
-    const StreamKey key{7, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()), 8,
-        Purpose::pairs, 1};
-    std::vector<Numbers> u(count);
-    for (std::uint32_t i = 0; i < count; ++i) u[i] = numbers_at(key, i, source.numbers(), source.single());
+    Source source = place.source();
+    const StreamKey key = place.key(7, Purpose::pairs, 1);
+    const std::vector<Numbers> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(count);
     source.draw(u, draws);
     std::vector<Vec3d> w;

@@ -33,6 +33,11 @@ struct Place {
     bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
     const JudgedSampler& subject() const { return *trial->subject; }
     int technique() const { return at->technique; }
+    Source source() const { return {subject(), technique(), trial->wo, trial->light}; }
+    /// Streams of the explanation: each has a seed of its own.
+    StreamKey key(std::uint32_t seed, Purpose purpose, std::uint16_t part) const {
+        return {seed, static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(technique()), 8, purpose, part};
+    }
     /// " at w_o 60 deg"; "" for a sampler without w_o.
     std::string where() const { return traits.wo == Traits::Asked::none ? "" : " at " + trial->text(); }
     /// ln of a density at a draw; where it is 0, of e^-14 times the median of p.

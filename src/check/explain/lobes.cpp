@@ -1,5 +1,5 @@
-// The ends of the lobes are where the direction jumps along one number, at the same place whatever the others are. By
-// (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, x = 1
+// The ends of the lobes are where the direction jumps along one number, at the same place for all values of the others.
+// By (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, x = 1
 // where p has the lobe as it is drawn; x follows by weighted least squares over cells.
 #include "check/explain/lobes.h"
 
@@ -266,9 +266,8 @@ std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
 
 std::optional<Cause> lobe_cause(std::span<const Place> places) {
     for (const Place& place : places) {
-        Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
-        const StreamKey key{13, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
-            8, Purpose::pairs, 2};
+        Source source = place.source();
+        const StreamKey key = place.key(13, Purpose::pairs, 2);
         const std::optional<LobeChooser> by = chooser_of(source, key);
         if (!by) continue;
         const std::uint32_t count = source.subject.serial() ? few_draws_for_lobes : draws_for_lobes;

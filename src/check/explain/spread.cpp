@@ -154,9 +154,8 @@ std::string leak_sentence(const Leak& leak) {
 
 std::optional<Cause> curve_cause(std::span<const Place> places) {
     for (const Place& place : places) {
-        Source source(place.subject(), place.technique(), place.trial->wo, place.trial->light);
-        const StreamKey key{11, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()),
-            8, Purpose::corners, 1};
+        Source source = place.source();
+        const StreamKey key = place.key(11, Purpose::corners, 1);
         const std::vector<int> unused = numbers_without_effect(source, key);
         if (unused.empty() || source.traits.numbers - static_cast<int>(unused.size()) > 1) continue;
         return Cause{

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "check/constants.h"
+#include "check/decide/whole_sampler.h"
 #include "check/explain/ratios.h"
 
 namespace crescent::check {
@@ -32,8 +33,7 @@ ByChannel channels_of(Vec3d v) { return {v.x, v.y, v.z}; }
 std::vector<Compared> compared_at(const Trial& trial, int technique, std::uint16_t place) {
     Source source(*trial.subject, technique, trial.wo, trial.light);
     const StreamKey key{17, place, static_cast<std::uint8_t>(technique), 8, Purpose::light, 1};
-    std::vector<Numbers> u(draws_to_compare);
-    for (std::uint32_t i = 0; i < u.size(); ++i) u[i] = numbers_at(key, i, source.numbers(), source.single());
+    const std::vector<Numbers> u = first_numbers(key, draws_to_compare, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     std::vector<Vec3d> w;
@@ -117,10 +117,7 @@ std::vector<KnownRatio> reciprocity_ratios(const Trial& trial) {
     Stream stream({19, 0, 0, 8, Purpose::pairs, 1});
     std::vector<Pair> there, back;
     for (int i = 0; i < 256; ++i) {
-        const auto direction = [&](bool below) {
-            const double z = 0.05 + 0.95 * stream.number();
-            return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
-        };
+        const auto direction = [&](bool below) { return random_direction(stream, below, 0.05); };
         const bool both = traits.wo == Traits::Asked::both;
         there.push_back({direction(both && i % 2), direction(both && i % 2 == 0)});
         back.push_back({there.back().wi, there.back().wo});
@@ -130,10 +127,7 @@ std::vector<KnownRatio> reciprocity_ratios(const Trial& trial) {
     std::vector<KnownRatio> out;
     for (std::size_t i = 0; i < there.size(); ++i) {
         const Pair& p = there[i];
-        double due = 1;
-        if (p.wo.z * p.wi.z < 0 && traits.eta)
-            due = (p.wo.z > 0) == !traits.importance ? sqr(traits.eta->x) : 1 / sqr(traits.eta->x);
-        add_ratio(out, p.wo, p.wi, a[i] * due, b[i]);
+        add_ratio(out, p.wo, p.wi, a[i] * reciprocal_ratio(traits, p, 0), b[i]);
     }
     return out;
 }

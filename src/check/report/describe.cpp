@@ -230,15 +230,13 @@ std::vector<Description> describe(
         monitor.advance(1);
     };
     const bool serial = std::ranges::any_of(trials, [](const Trial& t) { return t.subject->serial(); });
-    if (serial)
-        for (std::size_t j = 0; j < jobs.size(); ++j) run(j);
-    else parallel_for(std::size_t{0}, jobs.size(), run);
+    for_each_index(serial, jobs.size(), run);
     return out;
 }
 
 namespace {
 
-std::string told(const Interval& i, double scale = 1, const char* unit = "") {
+std::string interval_text(const Interval& i, double scale = 1, const char* unit = "") {
     return fmt::format("{:.4g}{} ({:.4g} to {:.4g})", scale * i.value, unit, scale * i.low, scale * i.high);
 }
 
@@ -276,19 +274,20 @@ std::string description_text(const Description& d) {
     std::string out = d.arm + ", " + d.trial;
     if (d.techniques > 1) out += fmt::format(", technique {} of {}", d.technique + 1, d.techniques);
     out += fmt::format(": {} draws, 95 % intervals in parentheses\n", d.draws);
-    out += "  above the horizon    " + told(d.above, 100, " %") + "\n";
-    out += "  below the horizon    " + told(d.below, 100, " %") + "\n";
-    if (d.delta.value > 0) out += "  delta parts          " + told(d.delta, 100, " %") + "\n";
-    if (d.nothing.value > 0) out += "  nothing (pdf 0)      " + told(d.nothing, 100, " %") + "\n";
+    out += "  above the horizon    " + interval_text(d.above, 100, " %") + "\n";
+    out += "  below the horizon    " + interval_text(d.below, 100, " %") + "\n";
+    if (d.delta.value > 0) out += "  delta parts          " + interval_text(d.delta, 100, " %") + "\n";
+    if (d.nothing.value > 0) out += "  nothing (pdf 0)      " + interval_text(d.nothing, 100, " %") + "\n";
     if (d.invalid > 0) out += fmt::format("  no direction (NaN)   {} draws\n", d.invalid);
     if (d.map.empty()) return out + "  too few directions for more\n";
     out += fmt::format("  mean direction       theta {:.4g} deg, phi {:.4g} deg, within {:.2g} deg\n",
         d.theta * degrees, d.phi * degrees, d.direction_error * degrees);
-    out += fmt::format("  mean vector          x {}, y {}, z {}\n", told(d.mean[0]), told(d.mean[1]), told(d.mean[2]));
-    out += "    its length         " + told(d.length) + "\n";
-    out += "  angle to the mean    50 % within " + told(d.within[0], degrees, " deg") + "\n";
-    out += "                       90 % within " + told(d.within[1], degrees, " deg") + "\n";
-    out += "                       99 % within " + told(d.within[2], degrees, " deg") + "\n";
+    out += fmt::format("  mean vector          x {}, y {}, z {}\n", interval_text(d.mean[0]), interval_text(d.mean[1]),
+        interval_text(d.mean[2]));
+    out += "    its length         " + interval_text(d.length) + "\n";
+    out += "  angle to the mean    50 % within " + interval_text(d.within[0], degrees, " deg") + "\n";
+    out += "                       90 % within " + interval_text(d.within[1], degrees, " deg") + "\n";
+    out += "                       99 % within " + interval_text(d.within[2], degrees, " deg") + "\n";
     out += "  second moments       ";
     const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
     for (std::size_t k = 0; k < 6; ++k)
@@ -297,8 +296,8 @@ std::string description_text(const Description& d) {
                 : k == 3 ? "\n                       "
                          : ", ",
             names[k], d.second[k].value, (d.second[k].high - d.second[k].low) / 2);
-    out += "\n  effective support    95 % of the draws in " + told(d.solid_angle, 1, " sr") + "\n";
-    out += "                       1 / integral of p^2: " + told(d.effective, 1, " sr") + "\n";
+    out += "\n  effective support    95 % of the draws in " + interval_text(d.solid_angle, 1, " sr") + "\n";
+    out += "                       1 / integral of p^2: " + interval_text(d.effective, 1, " sr") + "\n";
     return out + map_text(d);
 }
 

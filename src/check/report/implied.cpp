@@ -1,6 +1,7 @@
 // The cells are nodes of the tree, cut while their halves have enough draws; a map's bins take their share of each
 // leaf, both being rectangles of one chart. What is counted has the standard error of a binomial law.
 #include "check/report/implied.h"
+#include "check/explain/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,8 +101,8 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
     v.say = draws[0] > 0
         ? fmt::format(
               "There is no pdf(w) to compare the draws with. The density that they imply is highest about "
-              "({:.4g}, {:.4g}, {:.4g}): {:.4g} +- {:.2g} 1/sr, over {:.2g} sr.",
-              w.x, w.y, w.z, peak.p, peak.se, r.area())
+              "{}: {:.4g} +- {:.2g} 1/sr, over {:.2g} sr.",
+              direction_text(w), peak.p, peak.se, r.area())
         : "There is no pdf(w), and no direction is drawn as a density.";
 }
 

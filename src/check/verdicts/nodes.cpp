@@ -33,17 +33,20 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
     return out;
 }
 
+double floor_of_cut(const TreeNode& x, double share, double step) {
+    const double less = std::min(share, 1 - share);
+    const double moved = step / x.rect.width(x.along_phi) + less * step / (x.rect.width(!x.along_phi) + 1e-300);
+    return detection_floor * less + moved;
+}
+
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node) {
     const TreeNode& x = e.plan.tree.nodes()[node];
     const NodeSums &all = sums[node], &a = sums[static_cast<std::size_t>(x.child)],
                    &b = sums[static_cast<std::size_t>(x.child) + 1];
     NodeSplit out;
     const double r = out.share = a.claimed / all.claimed, less = std::min(r, 1 - r), n = e.observations.independent;
-    // Share of the draws that rounding moves over the cut, and over the node's other edges.
-    const double moved =
-        e.plan.step / x.rect.width(x.along_phi) + less * e.plan.step / (x.rect.width(!x.along_phi) + 1e-300);
     out.difference = a.drawn - r * all.drawn;
-    out.floor = all.drawn * (detection_floor * less + moved + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
+    out.floor = all.drawn * (floor_of_cut(x, r, e.plan.step) + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
     const double c2 = all.claimed * all.claimed, to_variance = all.drawn * all.drawn / (c2 * c2);
     out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };
@@ -54,12 +57,8 @@ NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::si
     return out;
 }
 
-namespace {
-
-/// Sum of h by node and replicate, down to the replicated depth; by row.
-std::vector<Replicates> node_replicates(const Evidence& e) {
-    std::vector<Replicates> out = e.observations.node_by_set;
-    const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicates> out) {
+    const std::vector<TreeNode>& nodes = tree.nodes();
     for (std::size_t i = nodes.size(); i-- > 0;) {
         const TreeNode& x = nodes[i];
         if (x.child < 0 || x.depth >= replicated_depth) continue;
@@ -69,6 +68,8 @@ std::vector<Replicates> node_replicates(const Evidence& e) {
     }
     return out;
 }
+
+namespace {
 
 Answer answer_of_sets(const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s) {
     const TreeNode& x = e.plan.tree.nodes()[node];
@@ -94,7 +95,8 @@ void ask_nodes(const Evidence& e, const Visit& visit) {
     const std::vector<NodeSums> sums = node_sums(e);
     const double n = e.observations.independent;
     const bool by_sets = e.observations.scrambled > 0;
-    const std::vector<Replicates> sets = by_sets ? node_replicates(e) : std::vector<Replicates>();
+    const std::vector<Replicates> sets =
+        by_sets ? replicates_by_row(e.plan.tree, e.observations.node_by_set) : std::vector<Replicates>();
     std::vector<double> chi(static_cast<std::size_t>(e.plan.tree.depth()) + 1), degrees(chi.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (nodes[i].child < 0 || std::min(sums[i].drawn, sums[i].claimed) * n < e.least) continue;
