@@ -93,7 +93,7 @@ Recipe cones(int count, double half_angle, double claimed = 1) {
     std::vector<Vec3d> axes;
     Dice dice(static_cast<std::uint64_t>(count));
     while (static_cast<int>(axes.size()) < count) axes.push_back(dice.direction(0.2, 0.98));
-    const double a = 1 - std::cos(half_angle);
+    const double a = 1 - math::cos(half_angle);
     Recipe r = recipe("cones", 3);
     r.pdf = [=](Vec3d, Vec3d wi) {
         double p = 0;
@@ -124,7 +124,7 @@ Recipe cells() {
         sums.push_back(sums.back() + 0.1 + (k / 16 * 7 + k % 16 * 13) % 11 * 0.35 + (k == 3 * 16 + 5 ? 40 : 0));
     Recipe r = recipe("cells");
     r.pdf = [=](Vec3d, Vec3d wi) {
-        const double turns = std::atan2(wi.y, wi.x) / (2 * pi);
+        const double turns = math::atan2(wi.y, wi.x) / (2 * pi);
         const int k = std::min(7, int(wi.z * 8)) * 16 + std::min(15, int((turns < 0 ? turns + 1 : turns) * 16));
         return wi.z <= 0 ? 0.0 : (sums[std::size_t(k) + 1] - sums[std::size_t(k)]) / sums.back() * 128 / (2 * pi);
     };
@@ -218,7 +218,7 @@ std::vector<KnownSampler> lobe_samplers() {
     list.wrong("64 cones that integrate to 1.005", "", cones(64, 0.01, 1.005));
     list.missed("64 cones that integrate to 1.001", cones(64, 0.01, 1.001));  // of 1.0024 it would be found
     list.right("cone", band(0.8, 1));
-    list.right("thin band", band(std::cos(0.735), std::cos(0.70)));
+    list.right("thin band", band(math::cos(0.735), math::cos(0.70)));
     list.right("cells", cells(), {0});
     list.right("window", window(), {0});
     list.wrong("window with p beside it", "", window(0.012), {0});

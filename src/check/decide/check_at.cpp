@@ -136,8 +136,8 @@ private:
     /// used for nothing else then.
     bool regrown() {
         const Estimate& claimed = first_.integrals.sums[mass];
-        if (key_.stage != 1 || !(std::sqrt(claimed.variance) > regrow_from * std::max(claimed.value, 1e-3)))
-            return false;
+        const double worse = regrow_from * regrow_points / first_.integrals.points;
+        if (key_.stage != 1 || !(std::sqrt(claimed.variance) > worse * std::max(claimed.value, 1e-3))) return false;
         std::vector<DensityPoint> hints = first_.integrals.heavy;
         const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;
         hints.insert(hints.end(), drawn.begin(), drawn.end());

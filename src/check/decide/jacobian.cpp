@@ -81,12 +81,12 @@ struct Difference {
     Vec3d along[2]{};
     double area = -1, least_pdf = 0, most_pdf = 0;  // |dw/du|; -1 where a draw is missing
 };
-using Differences = std::array<Difference, steps>;
+using CentralDifferences = std::array<Difference, steps>;
 
 double step_size(std::size_t s) { return std::ldexp(1.0, -coarsest - static_cast<int>(s)); }
 
-std::vector<Differences> differences(Source& source, const std::vector<Point>& all) {
-    std::vector<Differences> out(all.size());
+std::vector<CentralDifferences> differences(Source& source, const std::vector<Point>& all) {
+    std::vector<CentralDifferences> out(all.size());
     for (std::size_t s = 0; s < steps; ++s) {
         const double h = step_size(s);
         std::vector<Numbers> u;
@@ -112,7 +112,7 @@ std::vector<Differences> differences(Source& source, const std::vector<Point>& a
 /// Whether all differences of finer steps are parts of that of step s, up to `jacobian_error` of it. Rounding moves
 /// each by up to the sampler's own step; three of a few such steps each, in the ratio of the steps in
 /// u, would agree exactly. Across the pieces of a table they are not parts of one difference either.
-bool is_linear_below(const Differences& d, std::size_t s) {
+bool is_linear_below(const CentralDifferences& d, std::size_t s) {
     for (std::size_t k = s + 1; k < steps; ++k) {
         if (!(d[k].area >= 0)) return false;
         for (int n = 0; n < 2; ++n) {
@@ -126,7 +126,7 @@ bool is_linear_below(const Differences& d, std::size_t s) {
 /// Central differences over all steps, the finest of which three in a row agree and the pdf with the draws is about the
 /// same.
 void differentiate(Source& source, std::vector<Point>& all) {
-    const std::vector<Differences> of = differences(source, all);
+    const std::vector<CentralDifferences> of = differences(source, all);
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t s = steps - 2; s-- > 0;) {  // the finest first
             const Difference *a = &of[i][s], *b = a + 1, *c = a + 2;

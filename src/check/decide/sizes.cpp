@@ -8,6 +8,7 @@
 #include "check/constants.h"
 #include "check/verdicts/statistics.h"
 #include "simd/frame.h"
+#include "stats/distributions.h"
 
 namespace crescent::check {
 
@@ -71,12 +72,12 @@ public:
     }
 
     /// `tested` is variance that the fault adds and the test takes from its draws; `beside` is not known to the test.
-    double difference(double tested = 0, double beside = 0) const {
+    double difference(double tested = 0, double beside = 0, double quantile_of_stage = stage_quantile) const {
         const double ratio = second_ / std::max(first_, 1e-300);
         const auto stage = [&](double quantile, double largest, double times) {
             const double v = (first_ + tested) * times;
             const double critical = largest > 0 ? bennett_difference(quantile, v, largest) : quantile * std::sqrt(v);
-            return critical + stage_quantile * std::sqrt(v + beside * times);
+            return critical + quantile_of_stage * std::sqrt(v + beside * times);
         };
         return floor_ +
             std::max(stage(at_first_, largest_, 1), stage(at_second_, largest_again_, std::max(ratio, 0.25)));
@@ -224,16 +225,48 @@ Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
     return out;
 }
 
-/// Caps about draws: leaves are taken away in the order of their distance from the centre until a node shows it.
+/// The noncentrality with which chi^2 of so many degrees passes this level half of the time.
+double noncentrality(double degrees, double level) {
+    double low = 0, high = degrees + 1000;
+    for (int k = 0; k < 50; ++k) {
+        const double middle = (low + high) / 2;
+        (stats::chi_squared_tail(degrees, middle) > level ? low : high) = middle;
+    }
+    return high - degrees;
+}
+
+/// Caps about draws: leaves are taken away in the order of their distance from the centre until a node shows it, or all
+/// nodes of one depth together do.
 class Caps {
 public:
-    Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests)
-        : e_(e), sums_(sums), parent_(sums.size(), -1), gone_(sums.size()), least_(sums.size(), 1e300) {
+    Caps(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& tests,
+        const Passing& passing)
+        : e_(e),
+          sums_(sums),
+          parent_(sums.size(), -1),
+          gone_(sums.size()),
+          least_(sums.size(), 1e300),
+          variance_(sums.size()),
+          shift_(static_cast<std::size_t>(e.plan.tree.depth()) + 1),
+          least_shift_(shift_.size(), 1e300) {
         const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
+        std::vector<double> degrees(shift_.size());
         for (std::size_t i = 0; i < nodes.size(); ++i)
             if (nodes[i].child >= 0)
                 for (int half : {0, 1}) parent_[static_cast<std::size_t>(nodes[i].child + half)] = static_cast<int>(i);
-        for (const NodeTest& t : tests) least_[t.node] = std::min(least_[t.node], t.needed.difference());
+        for (const NodeTest& t : tests) {
+            least_[t.node] = std::min(least_[t.node], t.needed.difference(0, 0, 0));
+            const NodeSplit split = split_of(e, sums, t.node);
+            if (t.draws > 0 || split.smaller_half < e.least) continue;
+            variance_[t.node] = split.variance;
+            ++degrees[static_cast<std::size_t>(nodes[t.node].depth)];
+        }
+        const auto depths = static_cast<double>(std::ranges::count_if(degrees, [](double d) { return d > 0; }));
+        const double again = look_again(passing.again, 0, Kinds::independent).independent;
+        for (std::size_t d = 0; d < degrees.size(); ++d)
+            if (degrees[d] > 0)
+                least_shift_[d] = std::max(noncentrality(degrees[d], passing.level / depths),
+                    noncentrality(degrees[d], passing.level_again) * passing.first.independent / std::max(again, 1.0));
         for (const Leaf& leaf : e.plan.tree.leaves()) {
             const NodeSums& s = sums[static_cast<std::size_t>(leaf.node)];
             if (s.claimed > 0)
@@ -254,12 +287,15 @@ public:
             const Piece& leaf = leaves_[near.back().second];
             near.pop_back();
             mass += leaf.mass;
-            for (int i = leaf.node; i >= 0; i = parent_[static_cast<std::size_t>(i)]) {
-                gone_[static_cast<std::size_t>(i)] += leaf.claimed, touched.push_back(i);
-                found = found || shows(static_cast<std::size_t>(i));
+            for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
+                const auto i = static_cast<std::size_t>(at);
+                const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
+                gone_[i] += leaf.claimed, touched.push_back(at);
+                found = found || shows(i, before);
             }
         }
         for (int i : touched) gone_[static_cast<std::size_t>(i)] = 0;
+        std::ranges::fill(shift_, 0);
         return found ? std::min(mass, 1.0) : 1;
     }
 
@@ -272,23 +308,36 @@ private:
     const Evidence& e_;
     const std::vector<NodeSums>& sums_;
     std::vector<int> parent_;
-    std::vector<double> gone_, least_;  // by node: of h p that is gone; the least difference that is found
+    std::vector<double> gone_, least_;         // by node: of h p that is gone; the least difference that is found
+    std::vector<double> variance_;             // by node, of those that a depth counts
+    std::vector<double> shift_, least_shift_;  // by depth: of chi^2, and the least that is found
     std::vector<Piece> leaves_;
 
-    bool shows(std::size_t i) const {
+    double difference(std::size_t i) const {
         const int child = e_.plan.tree.nodes()[i].child;
-        if (child < 0 || least_[i] > 1) return false;
+        if (child < 0) return 0;
         const auto a = static_cast<std::size_t>(child);
-        return std::fabs(gone_[a] - sums_[a].claimed / sums_[i].claimed * gone_[i]) >= least_[i];
+        return std::fabs(gone_[a] - sums_[a].claimed / sums_[i].claimed * gone_[i]);
+    }
+    /// Of node i, whose difference had this square before. What is left of its draws has less variance.
+    bool shows(std::size_t i, double before) {
+        const double now = difference(i), left = std::max(1 - gone_[i] / sums_[i].claimed, 1e-3);
+        if (variance_[i] > 0) {
+            double& shift = shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)];
+            shift += (sqr(now) - before) / variance_[i];
+            if (shift >= least_shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)]) return true;
+        }
+        return least_[i] < 1 && now >= least_[i] * std::sqrt(left);
     }
 };
 
-/// The mass of a cap that is found wherever a draw is its centre, but for one place in ten.
-std::optional<double> cap_of(
-    const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes, const Sample& sample) {
+/// The mass of a cap that is found half of the time at nine of ten centres: about some it is found at a fifth of that,
+/// so that over all centres nine of ten are found.
+std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes,
+    const Sample& sample, const Passing& passing) {
     constexpr std::size_t centres = 256;
     if (sample.w.empty()) return {};
-    Caps caps(e, sums, nodes);
+    Caps caps(e, sums, nodes, passing);
     std::vector<double> sizes;
     for (std::size_t i = 0; i < std::min(centres, sample.w.size()); ++i) sizes.push_back(caps.mass_about(sample.w[i]));
     const auto at = static_cast<std::ptrdiff_t>(stated_power * static_cast<double>(sizes.size()));
@@ -459,7 +508,7 @@ Sizes sizes_of(Source& source, const Evidence& e, const Passing& passing, std::u
     out.by_leak = distance_from_even(e);
     by_exponent(e, whole, out);
     const Sample sample = drawn(source, draws, key);
-    out.cap = cap_of(e, sums, nodes, sample);
+    out.cap = cap_of(e, sums, nodes, sample, passing);
     by_turning(source, e, whole, nodes, sample, out);
     return out;
 }

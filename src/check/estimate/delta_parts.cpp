@@ -85,7 +85,7 @@ std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& p
             else out[c] += carried * flux_factor(source, p.wi, channel);
         }
     if (std::ranges::all_of(onward, [](double v) { return v == 0; })) return out;
-    const bool at_normal = std::hypot(source.wo.x, source.wo.y) < beside_normal && source.subject.draws_at_will();
+    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < beside_normal && source.subject.draws_at_will();
     const Vec3d slanted = at_normal ? through_holes(source) : Vec3d{};
     for (std::size_t c = 0; c < channels; ++c) {
         const int channel = static_cast<int>(c);

@@ -15,17 +15,17 @@ constexpr std::size_t round_share = 8;  // a round cuts one leaf in eight
 constexpr double worthless = 1e-7;      // a score that no cut can use: 1/2000 of the detection floor
 constexpr double fewest_pilots = 8;     // draws of a leaf that is cut by them alone: its halves then have some
 
-/// What is known of a leaf while the tree grows.
-struct Growing {
-    std::vector<DensityPoint> points;
-    std::size_t first = 0, last = 0;  // its pilot draws
-    double spread = 0, score = 0, q = 0;
-    bool met = false;
-};
-
 }  // namespace
 
 class TreeGrowth {
+    /// What is known of a leaf while the tree grows.
+    struct Growing {
+        std::vector<DensityPoint> points;
+        std::size_t first = 0, last = 0;  // its pilot draws
+        double spread = 0, score = 0, q = 0;
+        bool met = false;
+    };
+
 public:
     TreeGrowth(Tree& tree, Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step,
         const CheckBudget& budget, const StreamKey& key)

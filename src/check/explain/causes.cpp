@@ -80,7 +80,7 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     const double exponent = f.exponent;
     std::string out;
     if (f.name == "a constant across the surface") {
-        const double by = std::exp(-f.fitted), half = 1.96 * f.error * by;
+        const double by = math::exp(-f.fitted), half = 1.96 * f.error * by;
         out = fmt::format("Across the surface p is {} times what is drawn{}.", with_error(by, half),
             h.constants.empty() || std::fabs(h.constants[0] - 1) < 0.01 ? ", and right on the side of w_o"
                                                                         : ", relative to the side of w_o");

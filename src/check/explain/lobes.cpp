@@ -21,7 +21,7 @@ constexpr int halvings = 22;
 constexpr double jump_angle = 0.02;    // rad: a root or a logarithm moves less over 2^-22
 constexpr double one_end = 1e-4;       // of the number
 constexpr double steep_rim = 0x1p-7;   // what is steep at 0 and at 1 is no jump
-constexpr double draws_of_cell = 400;  // so that a cell's 5 % error biases x by 0.3 % at most
+constexpr double least_draws = 400;  // so that a cell's 5 % error biases x by 0.3 % at most
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
 constexpr double fits_at = 1e-3;      // p-value of the misfit that is left
 constexpr double known_share = 0.02;  // of x, relative
@@ -152,7 +152,7 @@ std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& by, const 
             cell.mean[k] += share * all[k].sum[l], cell.mean_variance[k] += share * share * all[k].square[l];
             cell.draws += 2 * all[k].sum[l];
         }
-        if (cell.draws + 2 * cell.claimed * all[0].drawn < draws_of_cell) continue;
+        if (cell.draws + 2 * cell.claimed * all[0].drawn < least_draws) continue;
         out.push_back(std::move(cell));
         clear();
     }

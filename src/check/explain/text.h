@@ -14,8 +14,8 @@ namespace crescent::check {
 /// same place.
 inline std::string with_error(double value, double half) {
     if (!(half > 0) || !std::isfinite(half)) return fmt::format("{:.5g}", value);
-    const double exponent = std::floor(std::log10(half) + 1e-9);
-    const int digits = -static_cast<int>(exponent) + (half < 1.95 * std::pow(10, exponent) ? 1 : 0);
+    const double exponent = std::floor(math::log10(half) + 1e-9);
+    const int digits = -static_cast<int>(exponent) + (half < 1.95 * math::pow(10, exponent) ? 1 : 0);
     if (digits > 12 || digits < -3) return fmt::format("{:.5g} +- {:.1g}", value, half);
     return fmt::format("{:.{}f} +- {:.{}f}", value, std::max(digits, 0), half, std::max(digits, 0));
 }

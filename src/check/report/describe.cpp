@@ -19,13 +19,13 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double normal_95 = 1.959964, one_end = 0.025;
+constexpr double normal_95 = 1.959964, one_tail = 0.025;
 constexpr double of_support = 0.95;
 constexpr std::array<double, 3> shares_within = {0.5, 0.9, 0.99};
 
 Interval share_interval(double hits, double of) {
     if (!(of > 0)) return {};
-    const stats::ShareInterval i = stats::binomial_interval(of, hits, one_end);
+    const stats::ShareInterval i = stats::binomial_interval(of, hits, one_tail);
     return {hits / of, i.low, i.high};
 }
 

@@ -48,6 +48,7 @@ void note_rows(const CheckAt& c, Verdict& v) {
             "{}One row in eight shapes the tree, four are compared with p, three confirm.", v.say.empty() ? "" : " ");
     }
     if (v.state != State::inconclusive || c.sizes.constant == std::nullopt) return;
+    v.next = {};
     const double times = worst_ratio(c.sizes) / inconclusive_at;
     if (times > 1)
         v.settle =
