@@ -15,7 +15,8 @@ fi
 
 # The known samplers in single precision compute as a user's do: with the C library.
 mapfile -t parts < <(
-    find "${CRESCENT_BUILD:?the build folder}" -maxdepth 2 -name 'libcrescent_*.a' ! -name 'libcrescent_known.a'  # deeper ones are other builds
+    # Deeper ones are other builds.
+    find "${CRESCENT_BUILD:?the build folder}" -maxdepth 2 -name 'libcrescent_*.a' ! -name 'libcrescent_known.a'
     find "$CRESCENT_BUILD/cli" "$CRESCENT_BUILD/gl" "$CRESCENT_BUILD/explainer" -name '*.cpp.o' 2>/dev/null |
         grep -v _test
 )

@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::size_t settings_of_others = 12, scanned = 65, most_lobes = 8;
 constexpr int halvings = 22;
-constexpr double jump_angle = 0.02;    // rad: a root or a logarithm moves less over 2^-22
-constexpr double one_end = 1e-4;       // of the number
-constexpr double steep_rim = 0x1p-7;   // what is steep at 0 and at 1 is no jump
-constexpr double least_draws = 400;  // so that a cell's 5 % error biases x by 0.3 % at most
+constexpr double jump_angle = 0.02;   // rad: a root or a logarithm moves less over 2^-22
+constexpr double one_end = 1e-4;      // of the number
+constexpr double steep_rim = 0x1p-7;  // what is steep at 0 and at 1 is no jump
+constexpr double least_draws = 400;   // so that a cell's 5 % error biases x by 0.3 % at most
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
 constexpr double fits_at = 1e-3;      // p-value of the misfit that is left
 constexpr double known_share = 0.02;  // of x, relative
